@@ -11,7 +11,7 @@
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
-#include "platform/storage/pack.h"
+#include "platform/storage/packed_results.h"
 #include "results_folder.h"
 #include "verbs.h"
 
@@ -29,18 +29,15 @@ struct GetWish {
   bool all = false, list = false;
 };
 
-/// Where the results of a campaign lie, as a person calls it.
-std::string place_of(const fs::path& folder) {
-  const auto packed = storage::in_pack(folder);
-  return packed ? "pack " + packed->pack.filename().string() : "folder " + folder.string();
-}
+/// Results that programs which read files don't find.
+bool is_packed(const fs::path& folder) { return storage::stored_in(folder) != folder; }
 
 Expected<std::vector<std::string>> ids_of(const GetWish& wish) {
   std::vector<std::string> ids = wish.ids;
   for (const std::string& id : ids)
     if (!config::is_campaign_id(id)) return fail("\"" + id + "\" is no id of a campaign");
   const auto take = [&](const fs::path& folder) {
-    const bool wanted = wish.list || !wish.to.empty() || storage::in_pack(folder);
+    const bool wanted = wish.list || !wish.to.empty() || is_packed(folder);
     const std::string id = folder.filename().string();
     if (wanted && config::is_campaign_id(id) &&
         storage::is_there(folder / evaluation::record_name).value_or(true))
@@ -67,15 +64,16 @@ void print_list(const std::string& id, const fs::path& folder,
   std::uint64_t bytes = 0;
   for (const auto& f : files) bytes += f.size;
   if (json) {
-    Json line = {{"schema", "nonio-get/1"},  {"id", id},
-                 {"place", folder.string()}, {"packed", storage::in_pack(folder).has_value()},
-                 {"bytes", bytes},           {"files", Json::array()}};
+    Json line = {{"schema", "nonio-get/1"},     {"id", id},       {"place", folder.string()},
+                 {"packed", is_packed(folder)}, {"bytes", bytes}, {"files", Json::array()}};
     for (const auto& f : files)
       line["files"].push_back({{"name", f.name}, {"bytes", f.size}, {"sha256", f.sha256}});
     print_json(line, -1);
     return;
   }
-  std::cout << id << ": " << files.size() << " files, " << bytes << " bytes, " << place_of(folder)
+  std::cout << id << ": " << files.size() << " files, " << bytes << " bytes, "
+            << (is_packed(folder) ? "pack " + storage::stored_in(folder).filename().string()
+                                  : "folder " + folder.string())
             << "\n";
   if (!each_file) return;
   for (const auto& f : files)

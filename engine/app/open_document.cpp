@@ -14,7 +14,7 @@
 #include "colour.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
-#include "platform/storage/pack.h"
+#include "platform/storage/packed_results.h"
 #include "results_folder.h"
 #include "verbs.h"
 
@@ -123,8 +123,8 @@ int open_document(const std::string& folder, const std::string& out, const Commo
   if (!found) return complain(text_of(found.error()));
   std::error_code error;
   const fs::path path = fs::absolute(*found).lexically_normal();
-  if (const auto packed = storage::in_pack(path))
-    return complain(path.filename().string() + " is in the pack " + packed->pack.string() +
+  if (const fs::path stored = storage::stored_in(path); stored != path)
+    return complain(path.filename().string() + " is in the pack " + stored.string() +
                         "; `nonio export " + path.parent_path().filename().string() +
                         " --out OUT` writes it out",
                     exit_failed);

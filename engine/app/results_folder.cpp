@@ -4,7 +4,7 @@
 #include "campaign/evaluation/evaluate.h"
 #include "campaign/evaluation/record.h"
 #include "platform/storage/files.h"
-#include "platform/storage/pack.h"
+#include "platform/storage/packed_results.h"
 
 namespace nonio::app {
 namespace fs = std::filesystem;
@@ -25,7 +25,7 @@ fs::path results_at(const fs::path& folder) {
   for (const fs::path& out : {above, above.parent_path()}) {  // OUT/ID, OUT/ab/ID
     const std::string id = path.filename().string();
     if (storage::own_folder(out, id) != path) continue;
-    if (fs::path place = storage::results_folder(out, id); storage::in_pack(place)) return place;
+    if (fs::path place = storage::results_folder(out, id); place != path) return place;
   }
   return folder;
 }

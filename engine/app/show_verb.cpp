@@ -14,7 +14,7 @@
 #include "nonio/sdk/format.h"
 #include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
-#include "platform/storage/pack.h"
+#include "platform/storage/packed_results.h"
 #include "results_folder.h"
 #include "shown_results.h"
 #include "text_layout.h"
@@ -440,7 +440,7 @@ int show(const ShowWish& wish, const Common& common) {
   const auto shown =
       holds == Holds::campaign ? evaluated_now(folder, common) : of_run(folder, common);
   if (!shown) return complain(text_of(shown.error()));
-  const bool is_stored = holds == Holds::results && !storage::in_pack(folder);
+  const bool is_stored = holds == Holds::results && storage::stored_in(folder) == folder;
   try {
     const Json results = storage::parse(shown->text);
     if (common.json)

@@ -14,7 +14,7 @@
 #include "nonio/sdk/format.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
-#include "platform/storage/pack.h"
+#include "platform/storage/packed_results.h"
 
 namespace nonio::live {
 namespace fs = std::filesystem;
@@ -220,10 +220,8 @@ bool CampaignIndex::is_over() const {
 std::string CampaignIndex::stamp_of(const std::string& folder, const std::string& id) const {
   std::string stamp = file_stamp(site_ / folder / config::manifest_name);
   if (out_.empty() || !config::is_campaign_id(id)) return stamp;
-  const fs::path results = storage::results_folder(out_, id);
-  // In a pack the file of the pack changes.
-  return stamp + file_stamp(storage::in_pack(results) ? results.parent_path()
-                                                      : results / evaluation::record_name);
+  return stamp + file_stamp(storage::stored_in(storage::results_folder(out_, id) /
+                                               evaluation::record_name));
 }
 
 CampaignIndex::Seen CampaignIndex::read(const std::string& folder) const {

@@ -68,8 +68,7 @@ Answer refusal(int status, const std::string& words) {
 
 std::vector<Route> shell_routes() {
   std::vector<Route> routes;
-  for (const char* path :
-       {"/", "/app.js", "/app.css", "/site.js", "/site.css", "/uplot.js", "/uplot.css"})
+  for (const char* path : {"/", "/app.js", "/app.css", "/site.js", "/site.css"})
     routes.push_back({Method::get, path, true});
   return routes;
 }
@@ -78,9 +77,10 @@ Answer shell_file(const Request& request, const std::string& shell) {
   const std::string& path = request.route.path;
   Answer out;
   const std::pair<const char*, std::string_view> files[] = {
-      {"/app.js", workbench::app_js()},     {"/app.css", workbench::app_css()},
-      {"/site.js", workbench::site_js()},   {"/site.css", workbench::site_css()},
-      {"/uplot.js", workbench::uplot_js()}, {"/uplot.css", workbench::uplot_css()}};
+      {"/app.js", workbench::app_js()},
+      {"/app.css", workbench::app_css()},
+      {"/site.js", workbench::site_js()},
+      {"/site.css", workbench::site_css()}};
   const auto file = std::find_if(std::begin(files), std::end(files),
                                  [&](const auto& one) { return path == one.first; });
   if (file != std::end(files)) {

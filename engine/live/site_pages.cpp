@@ -5,7 +5,7 @@
 #include "campaign/evaluation/record.h"
 #include "live/site_service.h"
 #include "platform/storage/files.h"
-#include "platform/storage/pack.h"
+#include "platform/storage/packed_results.h"
 
 namespace nonio::live {
 namespace fs = std::filesystem;
@@ -146,18 +146,12 @@ Answer SiteService::settings(const User* user) const {
 
 namespace {
 
-/// Of a folder only its plain files, by name.
+/// Only plain files, by name; a link leads anywhere.
 bool is_plain_file_in(const fs::path& folder, const std::string& name) {
-  if (storage::in_pack(folder))
-    return (storage::is_artifact_name(name) || name == evaluation::results_name) &&
-           storage::is_there(folder / name).value_or(false);
-  std::error_code failed;
-  for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
-    std::error_code ignored;
-    if (it->path().filename() == name)
-      return fs::is_regular_file(it->symlink_status(ignored)) && !name.starts_with('.');
-  }
-  return false;
+  std::error_code error;
+  return name == fs::path(name).filename() && !name.starts_with('.') &&
+         fs::is_regular_file(fs::symlink_status(storage::stored_in(folder / name), error)) &&
+         storage::is_there(folder / name).value_or(false);
 }
 
 }  // namespace

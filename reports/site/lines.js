@@ -33,6 +33,12 @@ function nonioLines(root, until = {}) {
     addEventListener("hashchange", readAddress, until);
     readAddress();
   }
+  // Charts as files: the numbers are those of the table below the chart.
+  for (const svg of root.querySelectorAll("svg.chart")) {
+    const table = svg.parentNode.querySelector("table"), box = Object.assign(document.createElement("div"), {className: "save"});
+    box.append(...nonioSave.buttons(svg, table && (() => [...table.rows].map((row) => [...row.cells].map((cell) => cell.textContent)))));
+    svg.after(box);
+  }
   // j and k move from line to line, Enter opens one.
   addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey || event.target.closest("select, input, textarea, dialog")) return;

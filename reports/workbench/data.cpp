@@ -65,6 +65,7 @@ void put_words(JsonWriter& json, const Drawn& source) {
         "residual", "time", "temperature", "line", "suspect", "reversal", "polar_title",
         "polar_says", "rest_title", "rest_says"})
     json.member(name, source.words.get(std::string("page.") + name));
+  for (const char* name : chart_words) json.member(name, source.words.get(name));
   json.member("no_readings", source.words.get("picture.no_readings"));
   json.member("one_direction", source.words.get("picture.reversal.none"));
   json.end_object();

@@ -6,6 +6,7 @@
 #include "embedded.h"
 #include "nonio/reports/page.h"
 #include "nonio/sdk/json_writer.h"
+#include "nonio/workbench/data.h"
 
 namespace nonio::workbench {
 
@@ -28,6 +29,8 @@ Expected<std::string> shell_html(const Templates& templates, const std::string& 
   JsonWriter json(JsonWriter::Layout::in_script);
   json.begin_object();
   for (const auto& [key, text] : words(templates, language)) json.member(key, text);
+  const Wording of_charts(templates, language, {"pictures"});
+  for (const char* key : chart_words) json.member(key, of_charts.get(key));
   json.end_object();
   View view;
   view.set("language", language).flag("campaign", of == Shell::campaign);
@@ -41,7 +44,5 @@ std::string_view app_js() { return embedded::app_js; }
 std::string_view app_css() { return embedded::app_css; }
 std::string_view site_js() { return embedded::site_js; }
 std::string_view site_css() { return embedded::site_css; }
-std::string_view uplot_js() { return embedded::uplot_js; }
-std::string_view uplot_css() { return embedded::uplot_css; }
 
 }  // namespace nonio::workbench

@@ -5,7 +5,7 @@
 
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
-#include "platform/storage/pack.h"
+#include "platform/storage/packed_results.h"
 
 namespace nonio::evaluation {
 namespace fs = std::filesystem;
@@ -40,15 +40,13 @@ Expected<std::vector<RecordedFile>> results_files(const fs::path& folder) {
   if (auto added = add_files(folder / last_good_name, good, all); !added)
     return fail(added.error());
   if (auto added = add_files(folder, "", all); !added) return fail(added.error());
-  const auto packed = storage::in_pack(folder);
-  if (!packed) return all;
-  NONIO_TRY(const auto names, storage::names_packed(*packed));
+  NONIO_TRY(const auto names, storage::names_in_store(folder));
   std::set<std::string> known;
   for (const RecordedFile& f : all) known.insert(f.name);
   for (const std::string& name : names)
     if (!known.contains(name))
-      return fail("the pack " + packed->pack.string() + " has a file \"" +
-                  storage::path_text(packed->name + "/" + name) +
+      return fail("the pack " + storage::stored_in(folder).string() + " has a file \"" +
+                  storage::path_text((folder.filename() / name).string()) +
                   "\" that the record of the campaign does not name");
   return all;
 }

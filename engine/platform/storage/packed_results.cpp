@@ -241,6 +241,16 @@ Expected<void> each_results_folder(const fs::path& out,
   return {};
 }
 
+fs::path stored_in(const fs::path& path) {
+  const auto packed = in_pack(path);
+  return packed ? packed->pack : path;
+}
+
+Expected<std::vector<std::string>> names_in_store(const fs::path& results) {
+  const auto packed = in_pack(results);
+  return packed ? names_packed(*packed) : std::vector<std::string>();
+}
+
 Expected<void> sweep_packs(const fs::path& out) {
   NONIO_TRY(const auto catalogue, Catalogue::read(out));
   std::set<std::string> used;

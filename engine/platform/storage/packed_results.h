@@ -29,6 +29,11 @@ std::filesystem::path results_folder(const std::filesystem::path& out, const std
 Expected<void> each_results_folder(const std::filesystem::path& out,
                                    const std::function<void(const std::filesystem::path&)>& take);
 
+/// The file of the disk that has a file of results, or all of them: the path itself, or the pack that an address leads into.
+std::filesystem::path stored_in(const std::filesystem::path& path);
+/// Names that the store itself has of a campaign. A folder has none of its own: people may put files into it.
+Expected<std::vector<std::string>> names_in_store(const std::filesystem::path& results);
+
 struct PackFile {
   std::string name;  ///< in OUT/.nonio/packs
   std::uint64_t size = 0;

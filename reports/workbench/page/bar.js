@@ -28,22 +28,14 @@ const bar = (() => {
     if (!fit || shown.fitIsOld) return ["thinking", say("verdict.fitting")];
     if (!explain || shown.explainIsOld) return ["thinking", shown.seconds > 0 ? say("verdict.progress", {seconds: shown.seconds}) : say("verdict.thinking")];
     const verdict = explain.verdict || {};
-    const effect = verdict.effect;
-    const found = (explain.candidates || []).find((c) => c.effect === effect);
-    if (verdict.kind === "missing" && found)
-      return [verdict.kind, say(found.aliases.length ? "verdict.missing_or" : "verdict.missing", {effect, others: found.aliases.join(", "),
-        from: short(field(explain.model, "rms")), to: short(field(found, "rms")), unit: shown.unit})];
-    return [verdict.kind, words["verdict." + verdict.kind] ? say("verdict." + verdict.kind + (overTime(shown) && words["verdict." + verdict.kind + "_over_time"] ? "_over_time" : ""), {rms: short(field(explain.model, "rms")), floor: short(field(explain, "noise_floor")), unit: shown.unit}) : typeset(verdict.says || "")];
+    return [verdict.kind, typeset(verdict.says || "")];
   }
 
   function limitsOf(shown) {
     const {explain, unit} = shown;
     if (!explain || shown.explainIsOld) return "";
     const out = shown.openAliases.map(([effect, others]) => say("limits.open", {effect, others: others.join(", ")}));
-    if (finite(explain.false_alarm_rate)) {
-      const trials = explain.false_alarm_trials;
-      out.push(explain.false_alarm_rate > 0 ? say("limits.alarms", {n: Math.max(1, Math.round(1 / explain.false_alarm_rate)), trials}) : say("limits.alarms_none", {trials}));
-    }
+    if (explain.false_alarms) out.push(typeset(explain.false_alarms));
     const sizes = (explain.candidates || []).map((c) => [field(c, "minimum_detectable_rms"), c.effect]).filter((c) => finite(c[0])).sort((a, b) => a[0] - b[0]);
     if (sizes.length) out.push(say("limits.smallest", {size: short(sizes[0][0]), unit, effect: sizes[0][1]}));
     return out.join(" ");
@@ -100,5 +92,5 @@ const bar = (() => {
     fill(by("trail"), trail(state, shown, most, floor, go), el("label", {class: "naming"}, say("trail.name") + " ", field_));
     by("limits").textContent = shown.hideVerdict ? "" : limitsOf(shown);
   }
-  return {draw, errors, verdictOf};
+  return {draw, errors};
 })();

@@ -68,32 +68,27 @@ const measure = (() => {
 
   // ---- its curve ----
   const number = (v, digits) => local(v.toFixed(digits));
+  let charts = null, redraw = null;
   /// Deviation over position, one line for each run and direction.
   function plot(p) {
-    const W = 640, H = 250, x = 52, y = 12, w = W - x - 16, h = H - y - 54;
-    const low = Math.min(...p.position), high = Math.max(...p.position), least = Math.min(0, ...p.deviation), largest = Math.max(0, ...p.deviation);
-    const edge = 0.06 * (largest - least) || 1, X = (v) => x + (w * (v - low)) / (high - low || 1), Y = (v) => y + h - (h * (v - least + edge)) / (largest - least + 2 * edge);
-    const unit = shownUnit(p.deviation_unit), picture = svg("svg", {viewBox: `0 0 ${W} ${H}`, class: "chart curve", role: "img", "aria-label": say("new.plot", {n: p.position.length, low: short(least), high: short(largest), unit, from: short(low), to: short(high), at: p.position_unit})});
-    const text = (at, label, anchor, px, py) => svg("text", {x: px, y: py, "text-anchor": anchor}, label);
-    for (const t of nonioTicks(number, least - edge, largest + edge, 5)) picture.append(svg("line", {class: t.at === 0 ? "zero" : "grid", x1: x, x2: x + w, y1: Y(t.at), y2: Y(t.at)}), text(t, t.label, "end", x - 8, Y(t.at) + 5));
-    for (const t of nonioTicks(number, low, high || 1, 6)) picture.append(svg("line", {class: "grid", x1: X(t.at), x2: X(t.at), y1: y + h, y2: y + h + 5}), text(t, t.label, "middle", X(t.at), y + h + 20));
-    picture.append(text(0, `${say("new.position")}, ${p.position_unit}`, "middle", x + w / 2, H - 5), text(0, unit, "start", 2, y + 6));
-    const lines = new Map();
-    p.position.forEach((at, i) => {
+    const unit = shownUnit(p.deviation_unit), [low, high] = nonioExtremes([0, ...p.deviation]), edge = 0.06 * (high - low) || 1, ends = nonioExtremes(p.position);
+    const picture = svg("svg", {class: "curve", role: "img", "aria-label": say("new.plot", {n: p.position.length, low: short(low), high: short(high), unit, from: short(ends[0]), to: short(ends[1]), at: p.position_unit})});
+    const figure = el("figure", {id: "new-plot"}, picture, el("figcaption", {class: "muted"}, el("span", {class: "key plus"}, "\u25B2 +"), " ", el("span", {class: "key minus"}, "\u25BD \u2212"), " ", say("new.taken", {n: preview.readings, missing: preview.missing})));
+    const rows = p.position.map((at, i) => i), passes = new Map();
+    for (const i of rows) {
       const key = `${p.run[i]} ${p.direction[i]}`;
-      if (!lines.has(key)) lines.set(key, []);
-      lines.get(key).push([at, p.deviation[i]]);
-    });
-    for (const [key, points] of lines) {
-      const kind = key.endsWith("-1") ? "minus" : "plus";
-      picture.append(svg("polyline", {class: "curve-line " + kind, points: points.map(([a, b]) => `${X(a).toFixed(1)},${Y(b).toFixed(1)}`).join(" ")}));
-      if (p.position.length <= 2000) for (const [a, b] of points) {
-        const mark = kind === "plus" ? svg("circle", {class: "curve-mark plus", cx: X(a).toFixed(1), cy: Y(b).toFixed(1), r: 3}) : svg("rect", {class: "curve-mark minus", x: (X(a) - 2.6).toFixed(1), y: (Y(b) - 2.6).toFixed(1), width: 5.2, height: 5.2});
-        mark.append(svg("title", {}, `${short(a)} ${p.position_unit}: ${short(b)} ${unit}, ${say("new.run", {run: key.split(" ")[0]})} ${kind === "plus" ? "+" : "\u2212"}`));
-        picture.append(mark);
-      }
+      passes.set(key, [...(passes.get(key) || []), i]);
     }
-    return el("figure", {id: "new-plot"}, picture, el("figcaption", {class: "muted"}, el("span", {class: "key plus"}, "\u25CF +"), " ", el("span", {class: "key minus"}, "\u25A0 \u2212"), " ", say("new.taken", {n: preview.readings, missing: preview.missing})));
+    charts = charts || nonioCharts({tip: by("tip"), words: () => words, number, zoomed: () => redraw()});
+    charts.forget();
+    redraw = () => {
+      const frame = new charts.Frame(picture, "new", p.position, {width: 640, to: 250, range: [low - edge, high + edge], said: {x: `${say("new.position")} / ${p.position_unit}`, y: unit}});
+      for (const one of passes.values()) frame.line(one.map((i) => p.position[i]), one.map((i) => p.deviation[i]), "pass " + (p.direction[one[0]] < 0 ? "minus" : "plus"));
+      frame.scatter(rows, p.position, p.deviation, {direction: p.direction, painted: true,
+        about: (i) => [`${short(p.position[i])} ${p.position_unit}: ${short(p.deviation[i])} ${unit}`, `${say("new.run", {run: p.run[i]})} ${p.direction[i] < 0 ? "\u2212" : "+"}`]});
+    };
+    redraw();
+    return figure;
   }
 
   // ---- columns that were not recognised ----

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Polar plots of circles, as of a ball bar: readings and model enlarged about a ring, and the residuals about another;
-// one plot per plane, one below the other. The page from disk and the live one draw with this code.
+// Circles as a ball bar draws them: readings and model enlarged about a ring, and what remains about another; each
+// plane by itself, one below the other. The page from disk and the live one draw with this code.
 "use strict";
-/// figure(name): the element "polar" or "rest", or nothing; put: that of draw.js; value(i): residual of reading i, NaN if
-/// there is no model yet; rows: the readings that are shown. Returns the two pictures, or none.
-function nonioPolar({figure, data, rows, put, value, number, text}) {
-  const finite = (v) => typeof v === "number" && isFinite(v), r1 = (v) => Math.round(v * 10) / 10;
+/// figure(name): "polar" or "rest", or nothing; charts: those of the page (chart.js); value(i): what remains of reading i, NaN where
+/// there is no model yet; rows: the readings that are shown.
+function nonioPolar({figure, data, rows, charts, value, number, text}) {
+  const finite = Number.isFinite, {put, r1} = charts;
   const radius = data.circles || [], of_circle = rows.filter((i) => radius[data.measurement[i]]);
   for (const name of ["polar", "rest"]) if (figure(name)) figure(name).hidden = of_circle.length === 0;
-  if (of_circle.length === 0) return [];
+  if (of_circle.length === 0) return;
 
-  /// Each run in each direction has its own centre and zero, those of a circle through its readings.
+  /// Each run in each direction has its own centre and zero: what a circle through its readings says.
   const paths = new Map();
   for (const i of of_circle) {
     const key = [data.measurement[i], data.run[i], data.direction[i]].join(" ");
@@ -50,7 +50,7 @@ function nonioPolar({figure, data, rows, put, value, number, text}) {
   if (!modelled) curves.model = curves.rest = [];
   const planes = [...new Set([...paths.values()].map((path) => path.plane))];
 
-  /// Distance of two rings in um: three rings contain the largest value.
+  /// um of a ring: three rings hold the largest of them.
   function division(all) {
     let largest = 0;
     for (const c of all) for (const v of c.r) if (finite(v)) largest = Math.max(largest, Math.abs(v));
@@ -59,9 +59,9 @@ function nonioPolar({figure, data, rows, put, value, number, text}) {
   }
   function draw(name, all, says) {
     const holder = figure(name);
-    if (!holder) return null;
+    if (!holder) return;
     holder.hidden = all.length === 0;
-    if (holder.hidden) return null;
+    if (holder.hidden) return;
     const svg = holder.querySelector("svg"), size = 320, middle = size / 2, ring = 19.5, each = division(all);
     const places = {division: number(each, Math.max(0, -Math.floor(Math.log10(each)))), unit: data.unit};
     holder.querySelector("figcaption b").textContent = text(data.words[name + "_title"], places);
@@ -69,7 +69,7 @@ function nonioPolar({figure, data, rows, put, value, number, text}) {
     svg.setAttribute("aria-label", text(data.words[name + "_title"], places));
     svg.setAttribute("viewBox", `0 0 ${size} ${size * planes.length}`);
     svg.replaceChildren();
-    const frame = {svg, g: svg, k: name, x: 0, y: 0, w: size, h: size * planes.length, points: []};
+    const frame = {svg, g: svg, k: name, x: 0, y: 0, w: size, h: size * planes.length, points: [], said: {x: "deg", y: data.unit}, series: []};
     for (const [row, plane] of planes.entries()) {
       const top = row * size, y = top + middle;
       for (let k = 1; k <= 7; k++) put(svg, "circle", {class: k === 4 ? "zero" : "rule ring", cx: middle, cy: y, r: k * ring});
@@ -81,6 +81,7 @@ function nonioPolar({figure, data, rows, put, value, number, text}) {
     for (const {look, path, r} of all) {
       const top = planes.indexOf(path.plane) * size;
       let d = "", last = NaN;
+      frame.series.push([`${look} ${path.plane}`, path.map((p) => (p.t * 180) / Math.PI), r]);
       path.forEach((p, j) => {
         if (!finite(r[j])) return;
         const [x, y] = at(p, r[j], top);
@@ -91,7 +92,8 @@ function nonioPolar({figure, data, rows, put, value, number, text}) {
       const whole = path[0].t + 2 * Math.PI - path[path.length - 1].t < 0.2;
       put(svg, "path", {class: "line " + look, d: d + (whole ? "z" : "")});
     }
-    return frame;
+    charts.add(frame);
   }
-  return [draw("polar", [...curves.read, ...curves.model], data.words.polar_says), draw("rest", curves.rest, data.words.rest_says)].filter(Boolean);
+  draw("polar", [...curves.read, ...curves.model], data.words.polar_says);
+  draw("rest", curves.rest, data.words.rest_says);
 }

@@ -1,11 +1,11 @@
-// ---- single readings: their origin, regions of readings, and exclusion with a reason ----
+// ---- single readings: where each comes from, regions of them, leaving one out with a reason ----
 const readings = (() => {
   let first = 0, columns = null;
-  /// The row in the files of the reading at place `i` of the page.
+  /// The row of a reading as the files have it, of its place on the page.
   const rowOf = (shown, i) => (shown.fit.page.row ? shown.fit.page.row[i] : i);
   const excludedIn = (state, shown) => (state.excluded || []).filter((e) => e.part === shown.part);
 
-  /// A form that excludes readings; it requires a reason.
+  /// Form that leaves readings out: nothing goes without a reason.
   function form(count, send) {
     const why = el("input", {"data-key": "why", maxlength: 200, autocomplete: "off", required: true, "aria-label": say("exclude.why")});
     const problem = el("p", {class: "flag", role: "alert"});
@@ -15,14 +15,14 @@ const readings = (() => {
       else send(why.value.trim());
     }}, el("label", {}, say("exclude.why") + " ", why), el("button", {type: "submit", class: "exclude-do"}, say("exclude.do", {n: count})), problem);
   }
-  /// Details of the selected reading: file, line, values.
+  /// The reading that was touched: file, line, values.
   function openOne(shown, pictures, i, act) {
     const data = shown.fit.page, lines = pictures.about(i);
     view.dialog(say("reading.title"), el("ul", {class: "plain"}, ...lines.map((t) => el("li", {}, t))), form(1, (why) => act.exclude([rowOf(shown, i)], why)),
       el("div", {class: "buttons"}, el("button", {type: "button", onclick: () => by("dialog").close()}, say("dialog.close"))));
   }
 
-  /// A region by its ends, for people who cannot drag.
+  /// A region by its ends, for those who cannot drag.
   function regionForm(shown, choose) {
     const names = {position: "target", time: "time", run: "run", temperature: "temperature", residual: "residual"};
     const kinds = Object.keys(names).filter((k) => shown.fit.page[names[k]]);
@@ -46,7 +46,7 @@ const readings = (() => {
       form(rows.length, (why) => act.exclude(rows.map((i) => rowOf(shown, i)), why)), el("button", {type: "button", id: "region-clear", onclick: () => act.select([])}, say("region.clear"))));
   }
 
-  /// All readings in a table of 25 per page, and the excluded ones.
+  /// Every reading in a table, 25 a page, and those that were left out.
   function drawTable(state, shown, act) {
     const box = by("readings-list");
     if (!shown.fit || shown.looks) return fill(box);
@@ -75,68 +75,34 @@ const readings = (() => {
     navigator.clipboard.writeText(["file,line,run,direction,target,deviation,residual", ...lines].join("\n")).then(() => (button.textContent = say("command.copied")));
   }
 
-  // ---- more readings than the page receives: the server sends the minimum and maximum for each column of pixels ----
+  // ---- more readings than a page holds: the server sends least and greatest of each column of pixels ----
   const big = new Map();
   const axes = {0: "target", 2: "time", 3: "run", 4: "phase", 5: "temperature", 6: "model"};
   const isBig = (shown, k) => shown.thinned && axes[k] !== undefined && !(shown.looks && axes[k] === "model");
-  async function drawBig(shown, k, x0, x1) {
-    const figure = by("picture-" + k), drawing = figure.querySelector("svg");
-    const width = Math.max(240, Math.round(figure.clientWidth));
-    const query = new URLSearchParams({x: axes[k], y: shown.column, px: String(width)});
-    if (finite(x0) && finite(x1)) for (const [name, v] of [["x0", x0], ["x1", x1]]) query.set(name, String(v));
+  async function drawBig(shown, pictures, k, range) {
+    const figure = by("picture-" + k), query = new URLSearchParams({x: axes[k], y: shown.column, px: String(Math.max(240, Math.round(figure.clientWidth)))});
+    if (range) for (const [j, name] of ["x0", "x1"].entries()) query.set(name, String(range[j]));
     const times = shown.drawnTimes, series = await net.ask(`/api/parts/${encodeURIComponent(shown.part)}/series?${query}`);
     if (times !== shown.drawnTimes || series.x.length === 0) return;
-    const old = big.get(k);
-    if (old) old.plot.destroy();
-    for (const node of figure.querySelectorAll(".zoom, .big")) node.remove();
-    const holder = el("div", {class: "big", role: "group", tabindex: 0, "aria-label": say("big.label", {n: series.n, low: short(Math.min(...series.min.filter(finite))), high: short(Math.max(...series.max.filter(finite))), unit: shown.unit})});
-    const style = getComputedStyle(document.documentElement), colour = (name) => style.getPropertyValue(name).trim();
-    const data = shown.fit.page, axis = {stroke: colour("--text"), grid: {stroke: colour("--rule"), width: 0.5}, font: "11px Liberation Sans, Arial, sans-serif", size: 34, values: (u, splits) => splits.map((v) => (v === null ? "" : local(String(Number(v.toPrecision(9))))))};
-    // The server's time is in seconds, also if the picture of the sample has another unit.
-    const label = series.x_unit ? `${data.pictures[k].x.split(" / ")[0]} / ${shownUnit(series.x_unit)}` : data.pictures[k].x;
-    drawing.classList.add("replaced");
-    drawing.after(holder);
-    const again = (a, b) => drawBig(shown, k, a, b).then(() => {
-      requestAnimationFrame(() => setTimeout(() => performance.mark("zoomed")));
-    }).catch((e) => e.status === 409 || view.alarm(e.message));
-    const plot = new uPlot({width, height: 230, legend: {show: false}, scales: {x: {time: false}},
-      cursor: {drag: {x: true, y: false, setScale: false}, points: {show: false}},
-      series: [{}, {stroke: colour("--plus"), width: 1}, {stroke: colour("--plus"), width: 1}], bands: [{series: [2, 1], fill: colour("--band")}],
-      axes: [{...axis, label, labelSize: 16, labelFont: axis.font}, {...axis, size: 46, label: shown.looks ? `${data.words.deviation} / ${data.unit}` : data.pictures[k].y, labelSize: 14, labelFont: axis.font}],
-      hooks: {setSelect: [(u) => u.select.width > 4 && again(u.posToVal(u.select.left, "x"), u.posToVal(u.select.left + u.select.width, "x"))]}},
-      [series.x, series.min, series.max], holder);
-    big.set(k, {plot, range: [x0, x1]});
-    const ends = [series.x[0], series.x[series.x.length - 1]], span = ends[1] - ends[0];
-    const zoom = (word, a, b) => el("button", {type: "button", class: "small", onclick: () => again(a, b)}, say(word));
-    holder.addEventListener("keydown", (event) => {
-      const to = {"+": [ends[0] + span / 4, ends[1] - span / 4], "-": [ends[0] - span / 2, ends[1] + span / 2], 0: [NaN, NaN], ArrowRight: [ends[0] + span / 4, ends[1] + span / 4], ArrowLeft: [ends[0] - span / 4, ends[1] - span / 4]}[event.key];
-      if (!to) return;
-      event.preventDefault();
-      event.stopPropagation();
-      again(...to).then(() => figure.querySelector(".big").focus({preventScroll: true}));
-    });
-    holder.after(el("div", {class: "zoom"}, zoom("big.in", ends[0] + span / 4, ends[1] - span / 4), zoom("big.out", ends[0] - span / 2, ends[1] + span / 2), zoom("big.left", ends[0] - span / 4, ends[1] - span / 4), zoom("big.right", ends[0] + span / 4, ends[1] + span / 4), zoom("big.all", NaN, NaN),
-      el("span", {class: "muted"}, say("big.shown", {n: series.n}))));
+    const data = shown.fit.page, xs = series.x, [low, high] = [series.min, series.max], ends = [Math.min(...low.filter(finite)), Math.max(...high.filter(finite))];
+    // The server's time is in seconds, whatever the sample's picture shows.
+    const {whole} = pictures.between(k, {xs, low, high, whole: range && (big.get(k) || {}).whole, x: series.x_unit ? `${data.pictures[k].x.split(" / ")[0]} / ${shownUnit(series.x_unit)}` : data.pictures[k].x,
+      y: shown.looks ? `${data.words.deviation} / ${data.unit}` : data.pictures[k].y, about: (j) => [`${local(String(Number(xs[j].toPrecision(6))))}: ${short(low[j])} \u2026 ${short(high[j])} ${shown.unit}`]});
+    big.set(k, {whole, range});
+    by(`big-${k}`).textContent = say("big.shown", {n: series.n, low: short(ends[0]), high: short(ends[1]), unit: shown.unit});
+    requestAnimationFrame(() => setTimeout(() => performance.mark("zoomed")));
   }
-  /// An enlarged range is kept when the model changes.
-  function drawAllBig(shown) {
-    const data = shown.fit.page, all = [];
-    for (let k = 0; k < 9; k++) {
-      const figure = by("picture-" + k);
-      if (isBig(shown, k) && !data.pictures[k].none) {
-        all.push(drawBig(shown, k, ...((big.get(k) || {}).range || [])).catch((e) => e.status === 409 || view.alarm(e.message)));
-      } else if (big.has(k)) {
-        big.get(k).plot.destroy();
+  const drawAgain = (...of) => drawBig(...of).catch((e) => e.status === 409 || view.alarm(e.message));
+  /// Where one was enlarged it stays so, whatever the model is.
+  function drawAllBig(shown, pictures) {
+    const all = [];
+    for (let k = 0; k < 9; k++)
+      if (isBig(shown, k) && !shown.fit.page.pictures[k].none) all.push(drawAgain(shown, pictures, k, (big.get(k) || {}).range));
+      else {
         big.delete(k);
-        for (const node of figure.querySelectorAll(".zoom, .big")) node.remove();
-        figure.querySelector("svg").classList.remove("replaced");
+        by(`big-${k}`).textContent = "";
       }
-    }
     return Promise.all(all);
   }
-  /// Another part has other positions and times: enlarged ranges are reset.
-  function forget() {
-    for (const one of big.values()) one.range = [];
-  }
-  return {openOne, drawRegion, drawTable, drawAllBig, isBig, forget};
+  return {openOne, drawRegion, drawTable, drawAllBig, drawAgain, isBig, forget: () => big.clear()};
 })();

@@ -8,7 +8,7 @@ const view = (() => {
     return el("figure", {id: "picture-" + k, "aria-labelledby": `picture-${k}-title`},
       el("figcaption", {}, el("b", {id: `picture-${k}-title`}), el("span", {class: "fails", id: `fails-${k}`})),
       svg("svg", {role: "application", "aria-labelledby": `picture-${k}-title`, "aria-describedby": "picture-help", tabindex: 0}),
-      el("figcaption", {}, el("p", {id: `picture-${k}-says`})));
+      el("figcaption", {}, el("p", {class: "muted", id: `big-${k}`}), el("p", {id: `picture-${k}-says`})));
   }
   /// A figure for circles, hidden if there are none.
   function polarFigure(name) {

@@ -8,7 +8,7 @@
     aliases: JSON.parse(sessionStorage.getItem("nonio-aliases") || "{}")};
   const hidden = {d: new Set(), r: new Set()};
   const pictures = nonioPictures({figure: (k) => by("picture-" + k), tip: by("tip"), hidden,
-    inTurn: () => performance.mark("all"), elsewhere: (k) => readings.isBig(shown, k),
+    inTurn: () => performance.mark("all"), elsewhere: (k) => readings.isBig(shown, k), enlarged: (k, range) => readings.drawAgain(shown, pictures, k, range),
     pick: (i) => readings.openOne(shown, pictures, i, act), brushed: (rows) => region(rows), said: (lines) => view.speak(lines.join(", "))});
   const part = () => state.parts.find((p) => p.name === shown.part);
   /// What a fit depends on: numbers of another trial are never shown as those of this one.
@@ -178,7 +178,7 @@
     pictures.set(page);
     legends();
     drawPictures();
-    const big = readings.drawAllBig(shown);
+    const big = readings.drawAllBig(shown, pictures);
     big.then(() => painted("picture"));
     return big;
   }
@@ -206,7 +206,7 @@
       by(`picture-${k}-says`).textContent = p.says || "";
       const old = figure.querySelector(".none");
       if (old) old.remove();
-      figure.querySelector("svg").classList.toggle("replaced", p.none !== "" || readings.isBig(shown, k));
+      figure.querySelector("svg").classList.toggle("replaced", p.none !== "");
       if (p.none) figure.querySelector("svg").after(el("p", {class: "none"}, p.none));
     });
     const data = shown.fit.page, thinned = shown.thinned;
@@ -242,12 +242,9 @@
     }
     const items = shown.learning ? [] : all.map((f) => {
       const k = figureOf(f.where), share = Math.round(100 * f.share);
-      const what = f.where.split(" x ").map((w) => say("where." + w)).join(" \u00D7 ");
-      const on = !f.line ? what : f.where === "channel" ? say("places.channel", {name: f.line}) : say("places.on", {what, line: f.line});
-      const text = say("places.depends", {share, what: on});
       by("picture-" + k).classList.add("failing");
       by("fails-" + k).textContent = " " + say("places.here", {share});
-      return el("li", {}, el("button", {type: "button", class: "place", "data-where": f.where, "data-share": f.share, "data-key": "place-" + f.where, onclick: () => goPlace(f, k)}, text), el("span", {class: "muted"}, ` ${short(field(f, "rms"))} ${shown.unit}`));
+      return el("li", {}, el("button", {type: "button", class: "place", "data-where": f.where, "data-share": f.share, "data-key": "place-" + f.where, onclick: () => goPlace(f, k)}, typeset(f.says)), el("span", {class: "muted"}, ` ${share} %`));
     });
     fill(by("places-list"), shown.learning ? el("p", {class: "muted"}, say("learn.look")) : items.length ? el("ul", {class: "plain"}, ...items) : el("p", {class: "muted"}, compare ? say("places.nowhere") : say("verdict.fitting")));
   }
@@ -264,7 +261,7 @@
     pictures.select(rows);
     region(rows);
     figure.scrollIntoView({block: "center", behavior: matchMedia("(prefers-reduced-motion: reduce)").matches ? "auto" : "smooth"});
-    figure.querySelector(figure.querySelector(".big") ? ".big" : "svg").focus({preventScroll: true});
+    figure.querySelector("svg").focus({preventScroll: true});
   }
   function region(rows) {
     readings.drawRegion(state, shown, rows, act);
@@ -429,7 +426,7 @@
       el("div", {class: "buttons"}, write, el("button", {type: "button", onclick: () => by("dialog").close()}, say("dialog.close")))));
   }
   function help() {
-    const keys = ["z", "y", "g", "f", "s", "arrows", "enter", "1", "esc", "help"];
+    const keys = ["z", "y", "g", "f", "s", "arrows", "zoom", "enter", "1", "esc", "help"];
     view.dialog(say("tools.keys"), el("dl", {class: "keys"}, ...keys.flatMap((k) => [el("dt", {}, el("kbd", {}, say(`key.${k}`))), el("dd", {}, say(`key.${k}_what`))])), el("div", {class: "buttons"}, el("button", {type: "button", onclick: () => by("dialog").close()}, say("dialog.close"))));
   }
   function enlarge(k) {

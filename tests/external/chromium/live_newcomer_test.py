@@ -113,7 +113,7 @@ class Newcomer(live_browser.LivePage):
         self.wait(lambda: self.has("#new-plot"), "the curve")
         top = self.js("document.querySelector('#new-plot').getBoundingClientRect()")
         self.assertLess(top["bottom"], 720, "the curve is seen without scrolling, before any form")
-        self.assertEqual(110, self.js("document.querySelectorAll('#new-plot .curve-mark').length"))
+        self.assertEqual(110, self.js("[...document.querySelectorAll('#new-plot .marks')].reduce((n, p) => n + p.getAttribute('d').split('M').length - 1, 0)"))
         self.assertEqual(["X", "2026-11-20"], self.js("['new-axis', 'new-campaign-date'].map((id) => document.getElementById(id).value)"), "from the name of the file")
         self.assertIn("Serial number of the instrument", self.text("new-lacks"), "what is missing is named")
         self.looks_right("new")

@@ -43,13 +43,13 @@ class Pictures(live_browser.CampaignPage):
         self.open(self.serve(self.folder / "many"), "fitted")
         n = said("compare", self.folder / "many")["parts"][0]["observations"]
         self.assertGreater(n, 20000)
-        self.wait(lambda: self.js("document.querySelectorAll('.big canvas').length") == 6, "position, time, run, phase, temperature, model")
-        zoomed = "document.querySelector('#picture-0 .zoom .muted').textContent"
+        self.wait(lambda: self.js("document.querySelectorAll('svg:has(.between)').length") == 6, "position, time, run, phase, temperature, model")
+        zoomed = "document.getElementById('big-0').textContent"
         count = lambda: int(re.match(r"\d+", self.js(zoomed))[0])
         self.assertGreaterEqual(count(), n)
-        self.js("document.querySelector('#picture-0 .zoom button').click()")
+        self.js("document.querySelector('#picture-0 .chart-tools button').click()")
         self.wait(lambda: 0.4 * n < count() < 0.6 * n, "half of the axis")
-        self.js("document.querySelector('#picture-0 .big').focus()")
+        self.js("document.querySelector('#picture-0 svg').focus()")
         self.press("0")
         self.wait(lambda: count() >= n)
         self.no_complaints()

@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 import tempfile
+from xml.etree import ElementTree
 
 from browser import SKIPPED, Browser, complaints, program
 
@@ -91,6 +92,53 @@ def check_hover(browser, page):
     assert marked == {"picture-fit"} | {f"picture-{k}" for k in range(9) if k != 1}, marked  # 1 has means of targets
 
 
+def check_chart(browser, page):
+    """Zoom by button, key and pointer; the chart as a file."""
+    data = json.loads(page.read_text().split('id="data">')[1].split("</script>")[0])
+    browser.open(page.as_uri(), 1400)
+    readings = "[...document.querySelectorAll('#picture-0 .marks')].reduce((n, p) => n + p.getAttribute('d').split('M').length - 1, 0)"
+    labels = "[...document.querySelectorAll('#picture-0 svg text')].map((t) => t.textContent).join(' ')"
+    everything, whole = browser.value(readings), browser.value(labels)
+    assert everything == len(data["residual"]), everything
+    press = lambda name: browser.value(f"document.querySelectorAll('#picture-0 .chart-tools button')[{('in', 'out', 'left', 'right', 'all').index(name)}].click()")
+    press("in")
+    middle = browser.value(readings)
+    assert 0.3 * everything < middle < 0.7 * everything and browser.value(labels) != whole, middle
+    press("left")
+    first = browser.value(labels)
+    press("right")
+    press("right")
+    assert first != browser.value(labels) != whole
+    press("right")  # there is no more
+    key = "document.querySelector('#picture-0 svg').dispatchEvent(new KeyboardEvent('keydown', {key: '%s', bubbles: true}))"
+    browser.value(key % "0")
+    assert (browser.value(readings), browser.value(labels)) == (everything, whole)
+    box = browser.value("""(() => { const svg = document.querySelector('#picture-0 svg'); svg.scrollIntoView({block: 'center'});
+        const box = svg.getBoundingClientRect(); return [box.x, box.y, box.width, box.height]; })()""")
+    browser.value("new Promise(done => setTimeout(done, 200))")
+    for kind, part in (("mousePressed", 0.6), ("mouseMoved", 0.8), ("mouseReleased", 0.8)):
+        browser.ask("Input.dispatchMouseEvent", type=kind, x=box[0] + part * box[2], y=box[1] + 0.4 * box[3], button="left", buttons=1, clickCount=1)
+    assert 0 < browser.value(readings) < 0.4 * everything
+    browser.value(key % "0")
+    browser.value(key % "Home")
+    assert "line" in browser.value("document.getElementById('tip').innerText"), "the first reading, by a key"
+    browser.value("""(() => { const make = URL.createObjectURL; window.handed = {};
+        let last; URL.createObjectURL = (blob) => make.call(URL, last = blob);
+        HTMLAnchorElement.prototype.click = function () { window.handed[this.download.split('.').pop()] = last; }; })()""")
+    browser.value("[...document.querySelectorAll('#picture-0 .chart-tools button')].slice(-3).forEach((b) => b.click())")
+    while browser.value("Object.keys(handed).length") < 3:
+        pass
+    table = browser.value("handed.csv.text()").splitlines()
+    assert table[0].startswith("axis,series,line,") and sum(",readings," in row for row in table) == everything, table[:3]
+    drawn = browser.value("handed.svg.text()")
+    assert ElementTree.fromstring(drawn) is not None and 'stroke="rgb(' in drawn and "var(" not in drawn
+    pixels = browser.value("createImageBitmap(handed.png).then((image) => [image.width, image.height])")
+    view = browser.value("(({width, height}) => [width, height])(document.querySelector('#picture-0 svg').viewBox.baseVal)")
+    assert pixels == [2 * v for v in view], (pixels, view)
+    bad = [b for b in complaints(browser, lambda url: "/model-" in url) if not b.startswith("asks for data:image/svg")]
+    assert not bad, bad
+
+
 def main():
     if program() is None:
         print("skipped: no Chromium on this machine")
@@ -103,6 +151,7 @@ def main():
             check(browser, page, (1400,) if page.parts[-3] == "many" else (1400, 400, 320))
         check_dark(browser, pages / "usual" / "en" / "model-X.html")
         check_hover(browser, pages / "usual" / "en" / "model-X.html")
+        check_chart(browser, pages / "usual" / "en" / "model-X.html")
         browser.close()
     return 0
 

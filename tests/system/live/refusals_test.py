@@ -147,7 +147,7 @@ class Refusals(unittest.TestCase):
         self.assertEqual(self.ask()[0], 200)
 
     def test_what_every_answer_carries(self):
-        for path, token in (("/", False), ("/app.js", False), ("/app.css", False), ("/uplot.js", False), ("/uplot.css", False), ("/api/state", True), ("/none", True)):
+        for path, token in (("/", False), ("/app.js", False), ("/app.css", False), ("/api/state", True), ("/none", True)):
             status, headers, body = self.server.request("GET", path, token=token)
             self.assertEqual(status, 404 if path == "/none" else 200, path)
             policy = headers["Content-Security-Policy"]

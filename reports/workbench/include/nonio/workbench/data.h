@@ -26,6 +26,10 @@ struct Drawn {
 /// Whether the part has circles, which have pictures of their own (page/polar.js).
 bool has_circles(const Campaign&, const ModelFit&);
 
+/// Names of the words that page/chart.js uses.
+inline constexpr std::array<const char*, 6> chart_words = {
+    "chart.in", "chart.out", "chart.left", "chart.right", "chart.all", "chart.tools"};
+
 inline constexpr std::size_t most_readings = 20000;
 
 /// The readings that a page holds: all, or of many a sample, and with it those with the largest

@@ -28,8 +28,4 @@ std::string_view app_css();
 std::string_view site_js();
 std::string_view site_css();
 
-/// third_party/uplot, byte for byte.
-std::string_view uplot_js();
-std::string_view uplot_css();
-
 }  // namespace nonio::workbench
