@@ -50,7 +50,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
   }
   const dots = (frame, rows, xs, ys) => frame.scatter(rows, xs, ys, {direction: data.direction, wrong, painted: !printing});
 
-  // ---- places: lines in space stand side by side, each in a lane of width 1 ----
+  // ---- places: lines in space are side by side, each in a lane of width 1 ----
   function place_of(m, target) {
     if (!data.lanes) return target;
     const [low, high] = ends_of_lane[m], room = 0.08;
@@ -239,7 +239,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     return frame;
   }
 
-  // ---- what an effect would take away, over what remains: means, as a thin line ----
+  // ---- what an effect would remove, over what remains: means, as a thin line ----
   function ghost_line(frame, xs, group) {
     const sums = new Map();
     shown.forEach((i, j) => {
