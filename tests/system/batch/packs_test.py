@@ -137,7 +137,7 @@ class Packs(NightTest):
         report = f"Report: {self.out}/c1/report.pdf\n"  # a packed one cannot be opened
         self.assertEqual(self.nonio("show", self.parts / "c1").stdout, self.nonio("show", self.out / "c1").stdout.replace(report, ""))
         self.assertEqual(self.nonio("show", self.parts / "wrong", expect=1).stdout, self.nonio("show", self.out / "wrong", expect=1).stdout)
-        self.assertIn("there is no folder", self.nonio("show", self.parts / "nobody", expect=2).stderr)
+        self.assertIn("is neither a folder nor a machine", self.nonio("show", self.parts / "nobody", expect=2).stderr)
         opened = self.nonio("show", "--open", self.parts / "c1", expect=1).stderr
         self.assertIn(".sqlar; `nonio export c1 --out OUT` writes it out", opened)
         page = [self.nonio("status", "--actions", out, "--site", self.site, "--page", "index.html").stdout for out in (self.out, self.parts)]

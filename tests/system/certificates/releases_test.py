@@ -115,7 +115,7 @@ class Releases(NumberedTest):
         self.out_of_tolerance()
         self.night()
         done = self.release_verb("--by", "B", expect=1, known=())
-        self.assertIn("X: " + KNOWN + " requires action", done.stderr)
+        self.assertIn("X: " + KNOWN + " requires a reason", done.stderr)
         done = self.release_verb("--by", "B", expect=1)
         self.assertIn("X: tolerance.X.E.iso230-2 requires action", done.stderr)
         self.assertNotIn("X: " + KNOWN + " requires action", done.stderr)

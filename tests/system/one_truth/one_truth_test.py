@@ -265,7 +265,7 @@ class Truth(unittest.TestCase):
                 self.assertNotRegex(index.read_text(), r"[Nn]othing has to be done|nothing needs a decision|Nothing was judged")
 
     def check_history(self, out):
-        """7. A value has one U in results and history; no forecast keeps the date of an axis that is out, or one that has
+        """7. A value has one U (of k = 2) in results and history; no forecast keeps the date of an axis that is out, or one that has
         passed; a line of what comes soon has the last value of the history."""
         by_campaign = {json.loads(p.read_text())["campaign"]["id"]: json.loads(p.read_text()) for p in out.glob("*/results.json")}
         told = json.loads(run("machine", "history", out, "--json").stdout)
@@ -280,7 +280,7 @@ class Truth(unittest.TestCase):
         for s in told["series"]:
             for p in s["points"]:
                 results = by_campaign.get(p["campaign"], {"analyses": []})
-                stated = [v["U"] for a, name, v in values_of(results)
+                stated = [2.0 * v["U"] / v.get("k", 2.0) for a, name, v in values_of(results)
                           if name == s["quantity"] and "U" in v and abs(v["value"] - p["value"]) < 1e-6]
                 if stated:  # of several measurements with this value one
                     self.assertTrue(any(abs(p["U"] - U) <= 1e-6 * U for U in stated), (s["machine"], p, stated))
