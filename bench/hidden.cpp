@@ -107,7 +107,7 @@ std::vector<model::Part> parts_with(const Hidden& h, std::uint64_t thermal) {
   std::vector<Observations> read{h.table};
   if (thermal > 0 && !h.scenario.rotary) {
     Measurement m;
-    m.id = "X-thermal", m.kind = "thermal", m.axis = "X";
+    m.id = "X-thermal", m.kind = "thermal", m.motion = Measurement::Motion::time, m.axis = "X";
     campaign.measurements.push_back(m);
     read.push_back(hidden::thermal_test(h.scenario, 0.01 * static_cast<double>(thermal)));
   }

@@ -206,10 +206,10 @@ def page(nonio, folder, trials, readings):
             time.sleep(1.0)
         out["page: click to the new picture"], out["page: ... all nine"] = clicks[0]
         out["page: click, fitted before"] = middle([c[0] for c in clicks[1:]])
-        if d.execute_script("return document.querySelector('#picture-0 .zoom button') !== null"):
+        if d.execute_script("return document.querySelector('#picture-0 .between') !== null"):
             zooms = []
             for _ in range(trials):
-                at = clicked(d, "#picture-0 .zoom button")
+                at = clicked(d, "#picture-0 .chart-tools button")
                 zooms.append(marked(d, "zoomed", at) - at / 1e3)
                 time.sleep(0.2)
             out["page: zoom"] = middle(zooms)

@@ -32,14 +32,6 @@ void put_number(JsonWriter& json, std::string_view name, double value) {
   put_number(json, value);
 }
 
-template <class Items, class Each>
-void put_list(JsonWriter& json, std::string_view name, const Items& items, const Each& each) {
-  json.key(name);
-  json.begin_array();
-  for (const auto& item : items) each(item);
-  json.end_array();
-}
-
 /// A column of the readings that are kept; null if the files did not have it.
 template <class T>
 void put_column(JsonWriter& json, std::string_view name, const std::vector<T>& values,
@@ -48,7 +40,7 @@ void put_column(JsonWriter& json, std::string_view name, const std::vector<T>& v
     json.key(name);
     return json.null();
   }
-  put_list(json, name, rows, [&](std::size_t row) {
+  json.list(name, rows, [&](std::size_t row) {
     put_number(json, row < values.size() ? (static_cast<double>(values[row]) - from) * factor
                                          : std::nan(""));
   });
@@ -84,7 +76,7 @@ void put_pictures(JsonWriter& json, const Drawn& source, bool titles) {
   };
   json.key("fit");
   put(fit_words(source.fit, source.words));
-  put_list(json, "pictures", source.pictures, put);
+  json.list("pictures", source.pictures, put);
 }
 
 /// The model fitted again without one effect: RMS of all readings, residuals of those on the page.
@@ -109,7 +101,7 @@ struct CircleOf {
 CircleOf circle_of(const Campaign& campaign, const std::string& id) {
   CircleOf out;
   for (const Measurement& m : campaign.measurements) {
-    if (m.id != id || m.kind != "circle") continue;
+    if (m.id != id || m.motion != Measurement::Motion::path) continue;
     for (const auto& [axis, from] : m.from)
       if (const auto to = m.to.find(axis); to != m.to.end() && to->second != from)
         out = {axis + out.axes, to->second - from};
@@ -123,10 +115,10 @@ CircleOf circle_of(const Campaign& campaign, const std::string& id) {
 void put_circles(JsonWriter& json, const Drawn& source) {
   if (!has_circles(source.campaign, source.fit)) return;
   const auto& all = source.fit.measurements;
-  put_list(json, "circles", all, [&](const std::string& id) {
+  json.list("circles", all, [&](const std::string& id) {
     put_number(json, circle_of(source.campaign, id).radius * unit_of(Quantity::length).per_si);
   });
-  put_list(json, "circle_axes", all, [&](const std::string& id) {
+  json.list("circle_axes", all, [&](const std::string& id) {
     const CircleOf circle = circle_of(source.campaign, id);
     json.value(circle.radius > 0.0 ? circle.axes : std::string());
   });
@@ -231,14 +223,14 @@ std::string data_of(const Drawn& source, const Kept& kept, bool titles) {
   put_column(json, "residual", fit.residual, rows, per_si);
   put_column(json, "left_out", fit.cv_residual, rows, per_si);
   put_column(json, "weight", weight, rows);
-  put_list(json, "effects", fit.effects, [&](const ModelFit::Effect& e) {
+  json.list("effects", fit.effects, [&](const ModelFit::Effect& e) {
     json.begin_object();
     json.member("name", e.name);
     put_column(json, "says", known(e.contribution, fit.size()), rows, per_si);
     put_without(json, fit, e.name, rows, per_si);
     json.end_object();
   });
-  put_list(json, "channels", fit.channels, [&](const ModelFit::Channel& c) {
+  json.list("channels", fit.channels, [&](const ModelFit::Channel& c) {
     json.begin_object();
     json.member("name", c.name);
     json.member("unit", c.unit == "degC" ? "°C" : c.unit);
@@ -248,7 +240,7 @@ std::string data_of(const Drawn& source, const Kept& kept, bool titles) {
   });
   std::map<std::size_t, std::size_t> place;
   for (std::size_t k = 0; k < rows.size(); ++k) place[rows[k]] = k;
-  put_list(json, "suspects", fit.suspects, [&](const ModelFit::Suspect& s) {
+  json.list("suspects", fit.suspects, [&](const ModelFit::Suspect& s) {
     const auto it = place.find(s.row);
     if (it == place.end()) return;
     json.begin_array();

@@ -62,7 +62,7 @@ NONIO_MEMBERS(Tolerance, a, b, c)
 NONIO_MEMBERS(Settings, a)
 NONIO_MEMBERS(Measurement::Channel, a, b, c)
 NONIO_MEMBERS(Measurement, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x,
-              y, z, aa, bb, cc)
+              y, z, aa, bb, cc, dd)
 NONIO_MEMBERS(Formula::Parameter, a, b, c, d)
 NONIO_MEMBERS(Formula, a, b, c, d, e)
 NONIO_MEMBERS(Campaign, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s)

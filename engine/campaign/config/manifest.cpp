@@ -122,6 +122,8 @@ void read_measurement(TableReader& common, const std::vector<Method>* methods, M
     m.method = m.kind;
     m.kind = method->observed_as;
   }
+  for (const Method& one : *methods)
+    if (one.info.name == m.kind) m.motion = one.motion;
   fill_members(reader, m);
   check_members(reader, m);
   fill_circle(reader, m);

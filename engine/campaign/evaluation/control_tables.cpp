@@ -127,10 +127,8 @@ class OfCampaign {
 
 void put_numbers(JsonWriter& json, const std::string& name, const std::vector<double>& values,
                  Quantity q) {
-  json.key(name + std::string(unit_of(q).suffix));
-  json.begin_array();
-  for (const double v : values) json.value(printed(v, q));
-  json.end_array();
+  json.list(name + std::string(unit_of(q).suffix), values,
+            [&](const double v) { json.value(printed(v, q)); });
 }
 
 void put_correction(JsonWriter& json, const AxisCorrection& c, bool rotary) {

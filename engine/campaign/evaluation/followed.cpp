@@ -187,27 +187,17 @@ void put_quantity(JsonWriter& json, const FollowedQuantity& q) {
   json.member("u", printed(q.u, q.quantity));
   json.member("state", q.state);
   if (!q.common.empty()) {
-    json.key("common");
-    json.begin_array();
-    for (const auto& c : q.common) {
-      json.begin_object();
+    json.objects("common", q.common, [&](const auto& c) {
       json.member("source", c.source);
       json.member("u", printed(c.u, q.quantity));
-      json.end_object();
-    }
-    json.end_array();
+    });
   }
   json.key("conditions");
   json.begin_object();
   for (const auto& [name, value] : q.numbers) json.member(name, value);
   for (const auto& [name, text] : q.texts) json.member(name, text);
   json.end_object();
-  if (!q.not_stated.empty()) {
-    json.key("not_stated");
-    json.begin_array();
-    for (const std::string& key : q.not_stated) json.value(key);
-    json.end_array();
-  }
+  if (!q.not_stated.empty()) json.member("not_stated", q.not_stated);
   json.end_object();
 }
 
@@ -255,19 +245,14 @@ std::vector<FollowedGroup> followed_of(const reading::ReadCampaign& read, const 
 
 void put_followed(JsonWriter& json, const std::vector<FollowedGroup>& groups) {
   if (groups.empty()) return;
-  json.key("followed");
-  json.begin_array();
-  for (const FollowedGroup& group : groups)
+  json.list("followed", groups, [&](const FollowedGroup& group) {
     for (const FollowedQuantity& q : group.quantities) put_quantity(json, q);
-  json.end_array();
-  json.key("followed_covariance");
-  json.begin_array();
+  });
   std::size_t first = 0;
-  for (const FollowedGroup& group : groups) {
+  json.list("followed_covariance", groups, [&](const FollowedGroup& group) {
     put_covariance(json, group, first);
     first += group.quantities.size();
-  }
-  json.end_array();
+  });
 }
 
 }  // namespace nonio::evaluation

@@ -19,10 +19,7 @@ void put_change(JsonWriter& json, const Change& change) {
 }
 
 void put_changes(JsonWriter& json, const std::vector<FileChange>& changes) {
-  json.key("changes");
-  json.begin_array();
-  for (const FileChange& file : changes) {
-    json.begin_object();
+  json.objects("changes", changes, [&](const FileChange& file) {
     json.member("file", file.file);
     if (!file.changes.empty()) {
       json.key("places");
@@ -31,23 +28,16 @@ void put_changes(JsonWriter& json, const std::vector<FileChange>& changes) {
       json.end_array();
     }
     if (file.more != 0) json.member("more", file.more);
-    json.end_object();
-  }
-  json.end_array();
+  });
 }
 
 void put_reasons(JsonWriter& json, const Issue& issue) {
   if (issue.reasons.empty()) return;
-  json.key("reasons");
-  json.begin_array();
-  for (const Issue::Reason& r : issue.reasons) {
-    json.begin_object();
+  json.objects("reasons", issue.reasons, [&](const Issue::Reason& r) {
     json.member("finding", r.finding);
     json.member("reason", r.text);
     json.member("by", r.by);
-    json.end_object();
-  }
-  json.end_array();
+  });
 }
 
 void put_register(JsonWriter& json, const Issue& issue) {

@@ -18,18 +18,13 @@ namespace fs = std::filesystem;
 namespace {
 
 void put_findings(JsonWriter& json, const char* key, const std::vector<KnownFinding>& findings) {
-  json.key(key);
-  json.begin_array();
-  for (const KnownFinding& f : findings) {
-    json.begin_object();
+  json.objects(key, findings, [&](const KnownFinding& f) {
     json.member("measurement", f.measurement);
     json.member("id", f.id);
     json.member("title", f.title);
     if (!f.said.empty()) json.member("said", f.said);
     json.member("severity", f.attention ? "attention" : "info");
-    json.end_object();
-  }
-  json.end_array();
+  });
 }
 
 void put_files(JsonWriter& json, const std::vector<RecordedFile>& files) {
@@ -146,10 +141,7 @@ std::string to_json(const Record& r) {
     json.end_object();
     json.end_object();
   }
-  json.key("errors");
-  json.begin_array();
-  for (const Error& e : r.errors) put_error(json, e);
-  json.end_array();
+  json.list("errors", r.errors, [&](const Error& e) { put_error(json, e); });
   put_findings(json, "findings", r.findings);
   put_findings(json, "previous_findings", r.previous);
   json.end_object();

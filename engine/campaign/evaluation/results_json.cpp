@@ -35,12 +35,10 @@ void put_texts(JsonWriter& json, const char* key,
 /// results.json speaks English; documents look the words up in their own language.
 void put_notes(JsonWriter& json, const std::vector<Remark>& notes, const Templates& templates) {
   if (notes.empty()) return;
-  json.key("notes");
-  json.begin_array();
-  for (const Remark& note : notes)
+  json.list("notes", notes, [&](const Remark& note) {
     json.value((note.measurement.empty() ? "" : "measurement " + note.measurement + ": ") +
                remark_text(templates, "en", note));
-  json.end_array();
+  });
 }
 
 void put_campaign(JsonWriter& json, const Campaign& c, const std::string& purpose) {
@@ -128,10 +126,8 @@ void put_point_U(JsonWriter& json, const PointTable& points) {
 void put_series(JsonWriter& json, const std::vector<Series>& all) {
   if (all.empty()) return;
   const auto list = [&](const char* key, const std::vector<double>& values, Quantity q) {
-    json.key(key);
-    json.begin_array();
-    for (const double v : values) std::isfinite(v) ? json.value(printed(v, q)) : json.null();
-    json.end_array();
+    json.list(key, values,
+              [&](const double v) { std::isfinite(v) ? json.value(printed(v, q)) : json.null(); });
   };
   json.key("series");
   json.begin_object();
@@ -170,10 +166,8 @@ void put_budget(JsonWriter& json, const std::optional<UncertaintyBudget>& budget
   json.key("budget");
   json.begin_object();
   json.member("length_mm", printed(budget->length, Quantity::length));
-  json.key("contributions");
-  json.begin_array();
-  for (const Contribution& c : budget->contributions) put_contribution(json, c);
-  json.end_array();
+  json.list("contributions", budget->contributions,
+            [&](const Contribution& c) { put_contribution(json, c); });
   json.key("results");
   json.begin_object();
   for (const auto& r : budget->results) {
@@ -195,10 +189,7 @@ void put_budget(JsonWriter& json, const std::optional<UncertaintyBudget>& budget
 
 void put_findings(JsonWriter& json, const std::vector<Finding>& findings, bool with_measurement,
                   const Templates& templates) {
-  json.key("findings");
-  json.begin_array();
-  for (const Finding& f : findings) {
-    json.begin_object();
+  json.objects("findings", findings, [&](const Finding& f) {
     json.member("id", f.id);
     json.member("severity", f.attention ? "attention" : "info");
     if (with_measurement) put_text(json, "measurement", f.measurement);
@@ -211,9 +202,7 @@ void put_findings(JsonWriter& json, const std::vector<Finding>& findings, bool w
     for (const auto& [key, words_of] : f.texts) json.member(key, words_of);
     json.end_object();
     json.member("advice", finding_text(templates, "en", f, "advice"));
-    json.end_object();
-  }
-  json.end_array();
+  });
 }
 
 void put_analysis(JsonWriter& json, const Results::Analysed& a,
@@ -226,12 +215,7 @@ void put_analysis(JsonWriter& json, const Results::Analysed& a,
   for (const Remark& note : a.evaluation.notes)
     for (const Number& n : note.evidence)
       if (n.name == "edition") json.member("edition", static_cast<std::uint64_t>(n.value));
-  if (!a.evaluation.uses.empty()) {
-    json.key("uses");
-    json.begin_array();
-    for (const std::string& id : a.evaluation.uses) json.value(id);
-    json.end_array();
-  }
+  if (!a.evaluation.uses.empty()) json.member("uses", a.evaluation.uses);
   json.key("values");
   json.begin_object();
   for (const Value& v : a.evaluation.values) put_value(json, v, a, conformity);
@@ -248,10 +232,7 @@ void put_analysis(JsonWriter& json, const Results::Analysed& a,
 
 void put_conformity(JsonWriter& json, const std::vector<Conformity>& all) {
   if (all.empty()) return;
-  json.key("conformity");
-  json.begin_array();
-  for (const Conformity& c : all) {
-    json.begin_object();
+  json.objects("conformity", all, [&](const Conformity& c) {
     put_text(json, "measurement", c.measurement);
     put_text(json, "axis", c.axis);
     put_text(json, "plugin", c.plugin);
@@ -260,9 +241,7 @@ void put_conformity(JsonWriter& json, const std::vector<Conformity>& all) {
     json.member("unit", unit_of(c.quantity).symbol);
     json.member("decision", evaluation::to_text(c.decision));
     put_text(json, "reason", c.reason);
-    json.end_object();
-  }
-  json.end_array();
+  });
 }
 
 void put_files(JsonWriter& json, const std::vector<Results::Written>& outputs,
@@ -283,18 +262,13 @@ void put_files(JsonWriter& json, const std::vector<Results::Written>& outputs,
 
 void put_predictions(JsonWriter& json, const std::vector<Prediction>& predictions) {
   if (predictions.empty()) return;
-  json.key("predictions");
-  json.begin_array();
-  for (const Prediction& p : predictions) {
-    json.begin_object();
+  json.objects("predictions", predictions, [&](const Prediction& p) {
     json.member("measurement", p.measurement);
     json.member("name", p.name);
     json.member("before", printed(p.before, p.quantity));
     json.member("predicted", printed(p.after, p.quantity));
     json.member("unit", unit_of(p.quantity).symbol);
-    json.end_object();
-  }
-  json.end_array();
+  });
 }
 
 /// Predictions, findings and notes of an output are written once, not with each of its files.
@@ -341,15 +315,10 @@ std::string results_json(const Evaluated& e, const reading::Context& context,
   json.member("nonio", context.version);
   put_campaign(json, e.campaign, e.purpose);
   json.member("status", to_text(e.status));
-  json.key("errors");
-  json.begin_array();
-  for (const Error& error : e.results.errors) put_error(json, error);
-  json.end_array();
-  json.key("analyses");
-  json.begin_array();
-  for (const Results::Analysed& a : e.results.analyses)
+  json.list("errors", e.results.errors, [&](const Error& error) { put_error(json, error); });
+  json.list("analyses", e.results.analyses, [&](const Results::Analysed& a) {
     put_analysis(json, a, e.results.conformity, context.templates);
-  json.end_array();
+  });
   put_conformity(json, e.results.conformity);
   put_followed(json, e.followed);
   put_control_tables(json, e.control_tables);

@@ -212,10 +212,8 @@ void note_oddities(const Measurement& m, std::string_view bytes, Observations& o
   if (o.missing > 0 && m.kind != "axis")  // of an axis its analyses state it
     o.notes.push_back(
         {"readings.not-taken", {{"missing", static_cast<double>(o.missing), Quantity::count}}});
-  // A path, a time and an angle have no targets to come back to; lengths are those of the artefact.
-  if (m.kind == "circle" || m.kind == "thermal" || m.kind == "spindle" || m.kind == "lengths" ||
-      m.kind.starts_with("artefact"))
-    return;
+  // Of an artefact its features are what readings come back to.
+  if (m.motion != Measurement::Motion::targets) return;
   if (const std::size_t moved = join_targets(o); moved > 0)
     o.notes.push_back(
         {"targets.joined", {{"readings", static_cast<double>(moved), Quantity::count}}});

@@ -118,13 +118,6 @@ class SchemaWriter {
   }
 
  private:
-  void list(std::string_view name, const Names& values) {
-    json_.key(name);
-    json_.begin_array();
-    for (const std::string& value : values) json_.value(std::string_view(value));
-    json_.end_array();
-  }
-
   void describe(const config::Key& key) {
     json_.member("description", std::string(key.help) +
                                     (key.unit.empty() ? "" : " In " + std::string(key.unit) + "."));
@@ -194,7 +187,7 @@ class SchemaWriter {
       put_pattern(key.text);
     } else {
       if (!key.required) names.emplace_back();  // an empty text is as good as none
-      list("enum", names);
+      json_.member("enum", names);
     }
     if (key.required && names.empty()) json_.member("minLength", std::int64_t{1});
     if (!meanings.empty()) put_meanings(meanings);
@@ -208,7 +201,7 @@ class SchemaWriter {
     json_.begin_object();
     json_.key("docs");
     json_.begin_object();
-    list("enumValues", meanings);
+    json_.member("enumValues", meanings);
     json_.end_object();
     json_.end_object();
   }
@@ -218,7 +211,7 @@ class SchemaWriter {
     if (rule.except.empty()) return;
     json_.key("not");
     json_.begin_object();
-    list("enum", Names(rule.except.begin(), rule.except.end()));
+    json_.member("enum", Names(rule.except.begin(), rule.except.end()));
     json_.end_object();
   }
 
@@ -293,7 +286,7 @@ class SchemaWriter {
     if (key.named == config::Named::effect)
       json_.member("pattern", "^[^:]+:.+$");
     else if (const Names& names = loaded_.names(key.named); !names.empty())
-      list("enum", names);
+      json_.member("enum", names);
     else if (!key.text.letters.empty())
       put_pattern(key.text);
   }
@@ -309,7 +302,7 @@ class SchemaWriter {
       if (key.required && key.only.key.empty()) required.emplace_back(key.name);
     }
     json_.end_object();
-    if (!required.empty()) list("required", required);
+    if (!required.empty()) json_.member("required", required);
     json_.member("additionalProperties", false);
     put_conditions(table, assumed);
   }
@@ -326,14 +319,11 @@ class SchemaWriter {
     json_.end_object();
     json_.key("then");
     json_.begin_object();
-    json_.key("allOf");
-    json_.begin_array();
-    for (const config::Key& key : table.keys) {
+    json_.list("allOf", table.keys, [&](const config::Key& key) {
       if (!key.needed.key.empty()) put_needed(key, assumed);
       if (!key.only.key.empty()) put_only(key, assumed);
       if (key.named == config::Named::effect && !loaded_.effects().empty()) put_effects(key);
-    }
-    json_.end_array();
+    });
     json_.end_object();
   }
 
@@ -347,10 +337,10 @@ class SchemaWriter {
     Names values(when.values.begin(), when.values.end());
     const bool unless_said = std::find(values.begin(), values.end(), assumed) != values.end();
     if (unless_said) values.emplace_back();
-    list("enum", values);
+    json_.member("enum", values);
     json_.end_object();
     json_.end_object();
-    if (!unless_said) list("required", {std::string(when.key)});
+    if (!unless_said) json_.member("required", Names{std::string(when.key)});
     json_.end_object();
   }
 
@@ -359,7 +349,7 @@ class SchemaWriter {
     put_when(key.needed, assumed);
     json_.key("then");
     json_.begin_object();
-    list("required", {std::string(key.name)});
+    json_.member("required", Names{std::string(key.name)});
     begin_rule_of(key);
     json_.member(key.holds == Holds::text ? "minLength" : "minProperties", std::int64_t{1});
     end_rule();
@@ -373,15 +363,15 @@ class SchemaWriter {
     if (key.required) {
       json_.key("then");
       json_.begin_object();
-      list("required", {std::string(key.name)});
+      json_.member("required", Names{std::string(key.name)});
       json_.end_object();
     }
     json_.key("else");
     json_.begin_object();
     begin_rule_of(key);
     // No value is right; the one that is offered states why.
-    list("enum", {"only where " + std::string(key.only.key) + " is " +
-                  std::string(key.only.values.front())});
+    json_.member("enum", Names{"only where " + std::string(key.only.key) + " is " +
+                               std::string(key.only.values.front())});
     end_rule();
     json_.end_object();
     json_.end_object();
@@ -392,7 +382,7 @@ class SchemaWriter {
     json_.begin_object();
     json_.key("if");
     json_.begin_object();
-    list("required", {"formula"});
+    json_.member("required", Names{"formula"});
     json_.end_object();
     json_.key("else");
     json_.begin_object();
@@ -524,14 +514,12 @@ class SchemaWriter {
     if (number && option.min) json_.member("minimum", *option.min);
     if (number && option.max) json_.member("maximum", *option.max);
     if (option.choices.empty()) return;
-    json_.key("enum");
-    json_.begin_array();
-    for (const std::string& choice : option.choices)
+    json_.list("enum", option.choices, [&](const std::string& choice) {
       if (option.default_value.index() == 1)
         json_.value(std::int64_t{std::strtoll(choice.c_str(), nullptr, 10)});
       else
         json_.value(std::string_view(choice));
-    json_.end_array();
+    });
   }
 
   template <class T>

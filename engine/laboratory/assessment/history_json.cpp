@@ -54,11 +54,11 @@ class HistoryWriter {
       json_.member("unit", unit_of(Quantity::length).symbol);
       json_.end_object();
     }
-    list("points", s.points, [&](const HistoryPoint& p) { put(p); });
+    json_.list("points", s.points, [&](const HistoryPoint& p) { put(p); });
     if (!s.model.empty()) {
       json_.member("model", s.model);
-      list("segments", s.segments, [&](const auto& g) { put(g); });
-      list("changes", s.changes, [&](const auto& c) { put(c); });
+      json_.list("segments", s.segments, [&](const auto& g) { put(g); });
+      json_.list("changes", s.changes, [&](const auto& c) { put(c); });
       json_.key("smallest_change");
       number_or_null(s.smallest_change);
       json_.key("forecast");
@@ -94,14 +94,6 @@ class HistoryWriter {
   }
 
  private:
-  template <class T, class Put>
-  void list(std::string_view name, const std::vector<T>& all, Put put_one) {
-    json_.key(name);
-    json_.begin_array();
-    for (const T& one : all) put_one(one);
-    json_.end_array();
-  }
-
   void number(std::string_view name, double si) {
     json_.key(name);
     number_or_null(si);
@@ -202,33 +194,22 @@ std::string history_json(const reports::SiteHistory& site, const LastRun& last_r
   json.member("schema", "nonio-history/1");
   json.member("night", last_run.run);
   json.member("date", last_run.date);
-  json.key("series");
-  json.begin_array();
-  for (const reports::MachineHistory& m : site.machines)
+  json.list("series", site.machines, [&](const reports::MachineHistory& m) {
     for (const HistorySeries& s : m.series) writer.put(m.id, s);
-  json.end_array();
-  json.key("machines");
-  json.begin_array();
-  for (const reports::MachineHistory& m : site.machines) put_machine(json, m, templates);
-  json.end_array();
+  });
+  json.list("machines", site.machines,
+            [&](const reports::MachineHistory& m) { put_machine(json, m, templates); });
   if (std::any_of(site.machines.begin(), site.machines.end(),
                   [](const auto& m) { return !m.tables_loaded.empty(); })) {
-    json.key("tables_loaded");
-    json.begin_array();
-    for (const reports::MachineHistory& m : site.machines)
+    json.list("tables_loaded", site.machines, [&](const reports::MachineHistory& m) {
       for (const reports::TableLoaded& t : m.tables_loaded) writer.put(m.id, t);
-    json.end_array();
+    });
   }
-  json.key("vanished");
-  json.begin_array();
-  for (const LastRun::Vanished& v : last_run.vanished) {
-    json.begin_object();
+  json.objects("vanished", last_run.vanished, [&](const LastRun::Vanished& v) {
     json.member("campaign", v.campaign);
     json.member("folder", v.folder);
     json.member("last_seen_night", v.last_seen_run);
-    json.end_object();
-  }
-  json.end_array();
+  });
   json.end_object();
   return json.take();
 }

@@ -192,7 +192,7 @@ void append_places(Part& part, const Observations& o, const Measurement& m) {
     if (const std::size_t k = coordinate_of(axis); k < 3) from[k] = to[k] = at;
   for (const auto& [axis, at] : m.to)
     if (const std::size_t k = coordinate_of(axis); k < 3) to[k] = at;
-  if (m.kind == "circle") return append_angles(part, o, m);
+  if (m.motion == Measurement::Motion::path) return append_angles(part, o, m);
   for (std::size_t i = 0; i < o.size(); ++i) {
     if (moved.size() == 1) {
       part.along.push_back(moved.front()->position[i]);

@@ -49,16 +49,16 @@ class Parts {
   void sort(std::size_t m) {
     const Observations& o = read_[m];
     if (o.size() == 0 || o.axes.empty() || !check(o)) return;
-    const std::string& kind = measurement(m).kind;
-    if (kind == "thermal" && measurement(m).axis.empty()) {
+    using Motion = Measurement::Motion;
+    const Measurement& own = measurement(m);
+    if (own.motion == Motion::time && own.axis.empty()) {
       kind_[m] = Kind::course;
       order_.push_back(m);
       return;
     }
-    // No effects of the model: the first two run over time and angle, the third has no places.
-    if (kind == "thermal" || kind == "spindle" || kind == "lengths") return;
-    if (kind.starts_with("artefact")) return;  // rigid-body contains its placement
-    if (kind == "ball-centres") {
+    // Effects of the model need places; rigid-body contains the placement of an artefact.
+    if (own.motion != Motion::targets && own.motion != Motion::path) return;
+    if (own.kind == "ball-centres") {
       kind_[m] = Kind::balls;
     } else if (sensed_along_one_axis(o)) {
       if (campaign_.machine.axis(o.axes.front().axis) == nullptr) return;

@@ -83,7 +83,8 @@ void put_time_constants(const Campaign& campaign, const std::vector<Observations
   std::map<std::string, std::vector<OfTest>> tests;
   for (std::size_t m = 0; m < std::min(campaign.measurements.size(), read.size()); ++m) {
     const Measurement& one = campaign.measurements[m];
-    if (one.kind != "thermal" || one.axis.empty() || read[m].size() == 0 || !check(read[m]))
+    if (one.motion != Measurement::Motion::time || one.axis.empty() || read[m].size() == 0 ||
+        !check(read[m]))
       continue;
     const Axis* axis = campaign.machine.axis(one.axis);
     if (axis == nullptr || axis->rotary) continue;

@@ -5,7 +5,7 @@ namespace nonio::artefacts_method {
 
 namespace {
 
-Method of_artefact(const char* name, const char* summary) {
+Method of_artefact(const char* name, const char* summary, Measurement::Motion motion) {
   return {.info = {name,
                    "1.0",
                    summary,
@@ -18,15 +18,18 @@ Method of_artefact(const char* name, const char* summary) {
                      .required = true,
                      .missing = "a name of the artefact, \"plate\"",
                      .expected = "expected up to 60 characters without / and \\",
-                     .forbidden = "/\\\n\t"}}}};
+                     .forbidden = "/\\\n\t"}}},
+          .motion = motion};
 }
 
 }  // namespace
 
 NONIO_PLUGIN(registry) {
-  registry.add(of_artefact("artefact", "Balls of an artefact, probed in one of its placements"));
-  registry.add(
-      of_artefact("artefact-certificate", "Calibrated positions of the balls of an artefact"));
+  registry.add(of_artefact("artefact", "Balls of an artefact, probed in one of its placements",
+                           Measurement::Motion::placements));
+  registry.add(of_artefact("artefact-certificate",
+                           "Calibrated positions of the balls of an artefact",
+                           Measurement::Motion::none));
 }
 
 }  // namespace nonio::artefacts_method

@@ -34,7 +34,8 @@ Method circle() {
                          "{ X = 400, Y = 300 }.",
                  .required = true,
                  .missing = "the axis positions at the centre of the circle, "
-                            "{ X = 400, Y = 300 }"}}}};
+                            "{ X = 400, Y = 300 }"}}},
+      .motion = Measurement::Motion::path};
 }
 
 }  // namespace

@@ -39,13 +39,16 @@ NONIO_PLUGIN(registry) {
                                  .help = "The linear axis that is exercised; without it the "
                                          "columns are those of sensors."},
                                 period(),
-                                sensor_distance()}}});
+                                sensor_distance()}},
+                      .motion = Measurement::Motion::time});
   registry.add(Method{.info = {"spindle",
                                "1.0",
                                "Displacement of a rotating test mandrel over its angle",
-                               {sensor_distance()}}});
+                               {sensor_distance()}},
+                      .motion = Measurement::Motion::none});
   registry.add(
-      Method{.info = {"lengths", "1.0", "Lengths of calibrated artefacts in the working space"}});
+      Method{.info = {"lengths", "1.0", "Lengths of calibrated artefacts in the working space"},
+             .motion = Measurement::Motion::none});
 }
 
 }  // namespace nonio::heat_method

@@ -99,10 +99,7 @@ std::string json_of(const Campaign& campaign, const std::vector<Line>& lines) {
   json.begin_object();
   json.member("schema", "nonio-rotary-vectors/1");
   json.member("campaign", campaign.id);
-  json.key("axes");
-  json.begin_array();
-  for (const Line& line : lines) {
-    json.begin_object();
+  json.objects("axes", lines, [&](const Line& line) {
     json.member("measurement", line.measurement);
     json.member("axis", line.axis);
     for (const auto* values : {&line.centre, &line.direction})
@@ -110,9 +107,7 @@ std::string json_of(const Campaign& campaign, const std::vector<Line>& lines) {
     put(json, "radius", line.radius);
     if (line.head) json.member("seen_from", "tool tip");
     json.member("compared_with", line.shares_reference);
-    json.end_object();
-  }
-  json.end_array();
+  });
   json.end_object();
   return json.take();
 }

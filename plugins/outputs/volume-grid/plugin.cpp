@@ -156,10 +156,7 @@ std::string json_of(const OutputInput& in, const Grid& g, OutputResult& result) 
   }
   for (const auto& [name, vectors] : {std::pair{"error_um", &g.error}, {"U_um", &g.U}}) {
     if (vectors->empty()) continue;
-    json.key(name);
-    json.begin_array();
-    for (const Vector& v : *vectors) put_numbers(json, v, Quantity::deviation);
-    json.end_array();
+    json.list(name, *vectors, [&](const Vector& v) { put_numbers(json, v, Quantity::deviation); });
   }
   json.key("predicted");
   json.begin_array();

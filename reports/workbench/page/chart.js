@@ -47,7 +47,8 @@ function nonioCharts({tip, words, number, zoomed, about, pick, brushed, said}) {
       if (high - low < 1e-9 * Math.max(Math.abs(low), Math.abs(high))) high = low;
       const side = 0.025 * (high - low) || 0.5;
       this.whole = this.whole || (lanes ? [0, lanes.length] : [low - side, high + side]);
-      [this.left, this.right] = zooms.get(k) || this.whole;
+      const part = zooms.get(k);
+      [this.left, this.right] = part && part[0] < this.whole[1] && part[1] > this.whole[0] ? part : this.whole;
       [this.low, this.high] = range;
       this.axes(kind, floor, empty);
       const {x, y, w, h} = this, inside = "chart-" + ++clips;
@@ -342,7 +343,8 @@ function nonioCharts({tip, words, number, zoomed, about, pick, brushed, said}) {
     },
     /// Other data: nothing is marked or enlarged.
     forget() {
-      [marked, spot, chosen] = [-1, null, new Set()];
+      hide();
+      [marked, chosen] = [-1, new Set()];
       zooms.clear();
     },
     get chosen() { return chosen; },

@@ -81,6 +81,7 @@ const measure = (() => {
     }
     charts = charts || nonioCharts({tip: by("tip"), words: () => words, number, zoomed: () => redraw()});
     charts.forget();
+    charts.keep(() => false);
     redraw = () => {
       const frame = new charts.Frame(picture, "new", p.position, {width: 640, to: 250, range: [low - edge, high + edge], said: {x: `${say("new.position")} / ${p.position_unit}`, y: unit}});
       for (const one of passes.values()) frame.line(one.map((i) => p.position[i]), one.map((i) => p.deviation[i]), "pass " + (p.direction[one[0]] < 0 ? "minus" : "plus"));

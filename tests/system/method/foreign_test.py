@@ -56,14 +56,14 @@ class ForeignMethod(unittest.TestCase):
         return plugin / "build"
 
     @classmethod
-    def plugins_observed_as(cls, kind):
-        """The plugin, built again as a method that observes a known kind."""
-        plugin = cls.work / ("as-" + kind)
+    def plugins_with(cls, name, statement):
+        """The plugin, built again as a method that also declares something."""
+        plugin = cls.work / name
         shutil.copytree(cls.work / "lever-gauge", plugin, ignore=shutil.ignore_patterns("build"))
         source = next(plugin.glob("*.cpp"))
         text = source.read_text()
         assert '  // m.observed_as = "axis"' in text
-        source.write_text(text.replace('  // m.observed_as = "axis"', f'  m.observed_as = "{kind}"; //'))
+        source.write_text(text.replace('  // m.observed_as = "axis"', "  " + statement + " //"))
         return cls.build(plugin)
 
     def setUp(self):
@@ -129,8 +129,13 @@ class ForeignMethod(unittest.TestCase):
 
     def test_effects_are_compared_and_explained(self):
         folder = self.campaign(manifest())
-        self.assertIn("axis X (X): 30 readings", self.nonio("model", "compare", folder))
+        self.assertIn("axis X (measurement X): 30 readings", self.nonio("model", "compare", folder))
         self.assertRegex(self.nonio("model", "explain", folder), r"backlash")
+
+    def test_effects_do_not_apply_where_no_axis_moved(self):
+        plugins = self.plugins_with("apart", "m.motion = nonio::Measurement::Motion::none;")
+        self.assertIn("this campaign has readings of another kind: lever-gauge",
+                      self.nonio("model", "compare", self.campaign(manifest()), plugins=plugins, status=1))
 
     def test_the_history_has_its_values(self):
         self.campaign(manifest())
@@ -163,7 +168,7 @@ class ForeignMethod(unittest.TestCase):
         self.assertEqual(measurement["properties"]["ratio"]["minimum"], 0.001)
 
     def test_a_method_that_observes_an_axis_is_evaluated_as_one(self):
-        plugins = self.plugins_observed_as("axis")
+        plugins = self.plugins_with("as-axis", 'm.observed_as = "axis";')
         self.campaign(manifest().replace("[[measurement]]", 'active_table = "none"\nactive_backlash_mm = "none"\n[[measurement]]').replace(
             'outputs = ["json"', 'outputs = ["linuxcnc", "json"'))
         self.nonio("run", self.site, "--out", self.out, plugins=plugins)

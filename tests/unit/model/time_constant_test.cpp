@@ -71,6 +71,7 @@ struct Visit {
            const std::vector<double>& places, double step, double duration) {
     Measurement one;
     one.id = id, one.kind = kind, one.axis = "X";
+    if (kind == "thermal") one.motion = Measurement::Motion::time;
     campaign.measurements.push_back(one);
     Observations o;
     o.measurement = id;

@@ -367,8 +367,7 @@ std::vector<Finding> implausible_readings(const Campaign& campaign, std::size_t 
   const Measurement& m = campaign.measurements[measurement];
   const Observations& o = all[measurement];
   if (o.size() == 0 || o.axes.empty() || o.axes.front().position.empty()) return out;
-  if (m.kind == "spindle" || m.kind == "lengths" || m.kind == "artefact-certificate")
-    return out;  // no axis of the machine moved
+  if (m.motion == Measurement::Motion::none) return out;
   const bool runs = along_one_axis(m) || m.kind == "diagonal";
   const bool steps = m.kind == "step-diagonal";
   for (const Observations& line : lines_of(o)) {

@@ -77,6 +77,28 @@ TEST(Manifest, EverythingArrivesInSi) {
   EXPECT_EQ(m->options.at("iso230-2").at("edition").line, 29u);
 }
 
+TEST(Manifest, AMeasurementHasTheMotionOfItsKind) {
+  using Motion = Measurement::Motion;
+  std::vector<Method> methods = own_methods();
+  methods.push_back({.info = {"gauge", "1.0.0", "Seen as a test over time"},
+                     .observed_as = "thermal",
+                     .motion = Motion::path});
+  for (const auto& [kind, motion] : {std::pair("axis", Motion::targets),
+                                     {"thermal", Motion::time},
+                                     {"spindle", Motion::none},
+                                     {"lengths", Motion::none},
+                                     {"gauge", Motion::time}}) {
+    std::string text = whole;
+    const std::string stated = "kind = \"axis\"\naxis = \"Y\"\n";
+    text.replace(text.find(stated), stated.size(),
+                 "kind = \"" + std::string(kind) + "\"\n" +
+                     (kind == std::string("axis") ? "axis = \"Y\"\n" : ""));
+    const auto m = config::parse_manifest(text, "campaign.toml", methods);
+    ASSERT_TRUE(m) << kind << ": " << m.error().front().message;
+    EXPECT_EQ(m->campaign.measurements[0].motion, motion) << kind;
+  }
+}
+
 TEST(Manifest, AMeasurementHasLimitsOfItsOwn) {
   std::string text = whole;
   const std::string kind = "kind = \"axis\"\n";

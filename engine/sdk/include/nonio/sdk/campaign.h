@@ -173,6 +173,15 @@ struct Measurement {
   /// The keys that the method declares, in the unit of the file, each with its value or its default.
   Settings settings{};
   std::string method{};  ///< its name, the key `kind`; empty: `kind` is the name
+  /// What its readings follow: which of them repeat at targets, and whether effects of a model apply.
+  enum class Motion {
+    targets,     ///< stops at targets, which the runs share
+    path,        ///< without stops, over an angle: a circle
+    time,        ///< over time, at rest or with an axis that is exercised
+    placements,  ///< features of an artefact in several placements
+    none         ///< no axis of the machine moved
+  };
+  Motion motion = Motion::targets;  ///< as the method declares it
 };
 
 inline const std::string& method_name(const Measurement& m) {

@@ -41,6 +41,24 @@ class JsonWriter {
     value(of);
   }
 
+  /// An array of what `put` writes of each item.
+  template <class Items, class Put>
+  void list(std::string_view name, const Items& items, const Put& put) {
+    key(name);
+    begin_array();
+    for (const auto& item : items) put(item);
+    end_array();
+  }
+  /// An array of objects, of which `put` writes the members.
+  template <class Items, class Put>
+  void objects(std::string_view name, const Items& items, const Put& put) {
+    list(name, items, [&](const auto& item) {
+      begin_object();
+      put(item);
+      end_object();
+    });
+  }
+
   /// What was written; in lines, with a newline at its end.
   std::string take();
 

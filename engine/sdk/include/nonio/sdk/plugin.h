@@ -153,6 +153,8 @@ struct Method {
   /// Optional: the kind whose observations these are, "axis". What applies to that kind (analyses,
   /// checks, tables, history) then applies to this one. Empty: a kind of its own.
   std::string observed_as{};
+  /// Of a kind of its own.
+  Measurement::Motion motion = Measurement::Motion::targets;
   std::vector<Column> columns{};  ///< none: readers of their own read its files
   /// Optional: readings -> observations. Without it, the roles of the columns determine them
   /// (`observe` in sdk/method.h).
