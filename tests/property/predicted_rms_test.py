@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""predicted_rms_test.py NONIO [--campaigns N] [--seed SEED]
+"""predicted_rms_test.py NONIO [--campaigns N] [--candidates N] [--seed SEED]
 
 `explain` predicts for each candidate the RMS with it in the model. The law: `model add` obtains it, within 2 %. Checked
 over random campaigns of several kinds (an axis, a rotary axis, two states of an axis, a gantry), in addition to empty
@@ -27,6 +27,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("nonio")
     parser.add_argument("--campaigns", type=int, default=4, help="of each kind")
+    parser.add_argument("--candidates", type=int, default=4, help="of each explanation, at most")
     parser.add_argument("--seed", type=int, default=None)
     args = parser.parse_args()
     seed = args.seed if args.seed is not None else random.SystemRandom().randrange(1 << 31)
@@ -40,7 +41,7 @@ def main():
                 for _ in range(3):
                     whole = said(args.nonio, "model", "explain", scratch)
                     candidates = [c for c in whole.get("candidates", []) if c.get("score", 0) > 0]
-                    for c in rng.sample(candidates, min(4, len(candidates))):
+                    for c in rng.sample(candidates, min(args.candidates, len(candidates))):
                         unit = next(key for key in c if key in ("rms_um", "rms_arcsec"))
                         after = said(args.nonio, "model", "add", scratch, c["effect"]).get("after")
                         if not after:

@@ -11,8 +11,9 @@ import unittest
 
 from nightly import NightTest, tree
 
-KILLS = int(os.environ.get("NONIO_KILLS", "8"))
-TERMS = int(os.environ.get("NONIO_TERMS", "12"))
+LONG = bool(os.environ.get("NONIO_LONG"))
+KILLS = int(os.environ.get("NONIO_KILLS", "8" if LONG else "4"))
+TERMS = int(os.environ.get("NONIO_TERMS", "12" if LONG else "6"))
 SEED = int(os.environ.get("NONIO_SEED", "20261121"))
 
 

@@ -15,7 +15,7 @@ import unittest
 
 from nightly import NONIO, NightTest, tree
 
-KILLS = int(os.environ.get("NONIO_KILLS", "4"))
+KILLS = int(os.environ.get("NONIO_KILLS", "4" if os.environ.get("NONIO_LONG") else "2"))
 SEED = int(os.environ.get("NONIO_SEED", "22"))
 SAMPLES = pathlib.Path(os.environ["NONIO_SAMPLES"])
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether the host takes manifests, many at a time: schema_reads campaign|site|machine|events|...,
-// the paths on stdin; a line for each, "ok" or the first error.
+// the texts on stdin, each with a NUL at its end; a line for each, "ok" or the first error.
 #include <iostream>
 #include <string>
 
@@ -9,7 +9,6 @@
 #include "campaign/config/site_logs.h"
 #include "certificates/users.h"
 #include "methods.h"
-#include "platform/storage/files.h"
 
 namespace {
 
@@ -42,9 +41,6 @@ std::string verdict_of(const std::string& file, const std::string& text) {
 int main(int argc, char** argv) {
   const std::string file = argc == 2 ? argv[1] : "";
   if (verdict_of(file, "").empty()) return 2;
-  for (std::string path; std::getline(std::cin, path);) {
-    const auto text = nonio::storage::read_file(path);
-    if (!text) return 1;
-    std::cout << verdict_of(file, *text) << "\n";
-  }
+  for (std::string text; std::getline(std::cin, text, '\0');)
+    std::cout << verdict_of(file, text) << "\n";
 }

@@ -19,8 +19,10 @@ def written(value):
     return repr(value)
 
 
-def document(data):
-    return "".join(f"{json.dumps(key)} = {written(value)}\n" for key, value in data.items())
+def document(data, known=None):
+    """`known`: texts of values by their id, for documents that share most of them."""
+    known = known or {}
+    return "".join(f"{json.dumps(key)} = {known.get(id(value)) or written(value)}\n" for key, value in data.items())
 
 
 def as_json(value):

@@ -62,17 +62,20 @@ std::string with(std::string text, const std::string& from, const std::string& t
   return text.replace(at, from.size(), to);
 }
 
+/// One in so many bytes is changed, another one in each run of the tests; each one with NONIO_LONG.
+std::size_t stride() { return std::getenv("NONIO_LONG") != nullptr ? 1 : 8; }
+
 /// Each byte in one other way of the 255. From `from` on; of a long row of zeros every 97th.
 void flip_every_byte(const std::string& good, std::size_t from = 0) {
-  constexpr unsigned seed = 20261123;
-  std::cout << "seed " << seed << '\n';
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 rng(seed);
   std::uniform_int_distribution<int> other(1, 255);
   const Scene& s = scene();
   ASSERT_TRUE(s.holds(good));
   std::string bytes = good;
   std::size_t accepted = 0;
-  for (std::size_t i = from; i < good.size(); ++i) {
+  for (std::size_t i = from + seed % stride(); i < good.size(); i += stride()) {
     if (from != 0 && i % 97 != 0 && good.compare(i, 64, std::string(64, '0')) == 0) continue;
     const int mask = other(rng);
     bytes[i] = static_cast<char>(bytes[i] ^ mask);
@@ -116,10 +119,12 @@ TEST(Tamper, EveryValueOfEveryByteOfTheSignature) {
   const std::size_t gap = s.stamped.find("/Contents <30") + 11;
   std::size_t end = s.stamped.find('>', gap);
   while (s.stamped.compare(end - 8, 8, "00000000") == 0) end -= 2;
-  std::mt19937 random(20261121);
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
   std::string bytes = s.stamped;
   constexpr std::string_view digits = "0123456789abcdef";
-  for (std::size_t i = gap; i < end; ++i) {
+  for (std::size_t i = gap + seed % stride(); i < end; i += stride()) {
     const char was = bytes[i];
     const char other = digits[random() % 16];
     if (other == was) continue;
