@@ -57,12 +57,20 @@ set(papers ${CMAKE_INSTALL_DATADIR}/doc/nonio)
 # Scripts that users adapt.
 install(PROGRAMS ${PROJECT_SOURCE_DIR}/cmake/package/slurm/nonio-night ${PROJECT_SOURCE_DIR}/cmake/package/slurm/nonio-shard.sbatch
         DESTINATION ${CMAKE_INSTALL_DATADIR}/nonio/slurm)
-# The same as pages with search, if they were made: cmake --build BUILD --target docs_site
+# The same as pages with search.
 find_program(MKDOCS mkdocs)
-if(MKDOCS)
-  add_custom_target(docs_site COMMAND ${MKDOCS} build --quiet --strict --site-dir ${CMAKE_BINARY_DIR}/site
-    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM)
-  install(DIRECTORY ${CMAKE_BINARY_DIR}/site/ DESTINATION ${papers}/site OPTIONAL)
+if(MKDOCS AND EXISTS /usr/share/mkdocs/themes/material)
+  file(GLOB_RECURSE pages CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/docs/* ${PROJECT_SOURCE_DIR}/plugins/README.md)
+  set(site ${CMAKE_BINARY_DIR}/site)
+  add_custom_command(OUTPUT ${site}/index.html
+    COMMAND ${MKDOCS} build --quiet --strict --site-dir ${site}
+    DEPENDS ${pages} ${PROJECT_SOURCE_DIR}/samples/README.md ${PROJECT_SOURCE_DIR}/mkdocs.yml
+            ${PROJECT_SOURCE_DIR}/scripts/documentation_links.py ${PROJECT_SOURCE_DIR}/scripts/documentation_search.py
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM COMMENT "Pages of the documentation")
+  add_custom_target(docs_site ALL DEPENDS ${site}/index.html)
+  install(DIRECTORY ${site}/ DESTINATION ${papers}/site)
+else()
+  message(STATUS "mkdocs-material not found: the documentation is installed without its pages")
 endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${papers} FILES_MATCHING PATTERN *.md PATTERN *.png PATTERN *.svg)
 foreach(folder IN LISTS NONIO_PLUGIN_FOLDERS)
