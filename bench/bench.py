@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""bench.py NONIO [--campaigns 1000] [--unchanged 10000]: what the nightly run costs, beside a Python
-pipeline with the same outputs in the same run; then where the time goes (bench_campaign, if it was built beside NONIO),
-and the limit: what writing the same files, their digests and the deflate of the pages cost alone (limit.py). Prints
-tables; asserts nothing. TMPDIR says on which disk."""
+"""bench.py NONIO [--campaigns 1000] [--unchanged 10000]: the cost of the nightly run, compared with that of a Python
+pipeline with the same outputs in the same session; then the time of each stage (bench_campaign, if it was built next to
+NONIO), and the limit: the cost of writing the same files, their digests and the deflate of the pages alone (limit.py).
+Prints tables; asserts nothing. TMPDIR selects the disk."""
 import argparse
 import json
 import os

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // bench_campaign SITE OUT PLUGINS TEMPLATES [ROUNDS]: CPU time of each stage of a campaign, all in this process: the
-// same calls as in a night, without its processes and channels. For profilers too: callgrind does not follow a night,
-// whose processes may open no file. Prints a line a stage: microseconds a campaign, share, name.
+// same calls as in `nonio run`, without its processes and channels. Also for profilers: callgrind cannot follow the
+// processes of a run, which are not allowed to open files. Prints one line per stage: microseconds per campaign, share,
+// name.
 #include <unistd.h>
 
 #include <algorithm>

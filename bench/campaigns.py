@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""campaigns.py PROGRAM [N]: nights of a site of N campaigns (default 100,000), TMPDIR says on which disk: first, unchanged, ten
-changed; and SIGTERM in every phase of a night, which the next run must finish. Time, peak memory of the main process, files."""
+"""campaigns.py PROGRAM [N]: runs over a site of N campaigns (default 100,000), on the disk of TMPDIR: first, unchanged, ten
+changed; and SIGTERM in every phase of a run, which the next run must finish. Time, peak memory of the main process, files."""
 import json
 import os
 import pathlib
@@ -109,7 +109,7 @@ def main():
     try:
         site, out = root / "site", root / "out"
         make(site, count)
-        os.sync()  # else the first flush of a night writes the whole site
+        os.sync()  # otherwise the first flush of a run writes the whole site
         command = [program, "run", str(site), "--out", str(out)]
 
         def show(name, seconds, peak, status, after=None):

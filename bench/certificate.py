@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""certificate.py BENCH_CERTIFICATE: CPU time of a certificate, beside ReportLab making the same pages in the same run.
+"""certificate.py BENCH_CERTIFICATE: CPU time of a certificate, and of ReportLab making the same pages in the same session.
 
 ReportLab is given what Nonio drew: every text, line, area and marker of its pages with its place, read before the
 clock starts. So it has no layout to do, no words to find and no numbers to print. Fonts are loaded once and embedded as

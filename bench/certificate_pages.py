@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Makes certificates as a laboratory issues them and renders every page, for somebody to look at: gantry with diagonals,
+"""Makes certificates as a laboratory issues them and renders every page for inspection by a person: gantry with diagonals,
 rotary axes from ball centres, step diagonals, straightness, one axis before and after an adjustment, six axes with long
-names; in five languages and in two at once, released, with the key of samples/certificates.
+names; in five languages and in two at once, approved, with the key of samples/certificates.
 
     bench/certificate_pages.py NONIO FOLDER [--dpi 70] [--only WORD ...] [--accredited] [--drafts | --amended]
 
---accredited: with a smallest uncertainty that counts; --drafts: as they wait for a release; --amended: each as the one that
+--accredited: with a smallest accredited uncertainty; --drafts: as they wait for an approval; --amended: each as one that
 replaces an earlier one.
 FOLDER/out/CAMPAIGN has the files, FOLDER/pages/CAMPAIGN-NN.png the pages, FOLDER/sheets contact sheets of eight pages. It
-says which first page has no frame for the signature and which certificate is missing, and then ends with status 1. Wanted:
-pdftoppm."""
+reports which first page has no frame for the signature and which certificate is missing, and then ends with status 1.
+Requires pdftoppm."""
 import argparse
 import json
 import pathlib
@@ -35,7 +35,7 @@ def without_run(text):
 
 
 def complete(text, languages, analyses, outputs='"json", "certificate", "pdf-report"'):
-    """Of a sample what a certificate needs beside its own keys."""
+    """The manifest of a sample with the additional keys that a certificate needs."""
     text = text.replace("[machine]\n", '[machine]\ndescription = "Machine tool"\ncondition = "In use"\n', 1)
     text = text.replace("[campaign]\n", '[campaign]\ncustomer_address = "Via degli Esempi 1, 10100 Torino"\n', 1)
     text = without_run(text)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// bench_confinement SITE PLUGINS TEMPLATES [ROUNDS]: nights over SITE with plugins confined and
-// not, in turn, in one run: what the confinement costs. Medians of CPU time (all processes) and
-// wall time of a night, and of the pairs.
+// bench_confinement SITE PLUGINS TEMPLATES [ROUNDS]: runs over SITE with plugins confined and not
+// confined, in turn: the cost of the confinement. Medians of CPU time (all processes) and wall time
+// of a run, and of the pairs.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>

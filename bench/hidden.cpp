@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well `explain` finds what the second generator (tests/support/hidden) has hidden:
-//   bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|grouped|beside|
-//                fixed-end|blank-temperatures|day-wave|short-misread|short-complete|smallest
-//                COUNT SEED
+//   bench_hidden KIND COUNT SEED
 //                [--size PERCENT]
 //                [--verbose] [--plugins FOLDER]
 //                [--write FOLDER] [--right PERCENT] [--wrong PERCENT]
 //                [--thermal PERCENT]: of linear axes with a thermal test, whose screw has so many %
 //                of the time constant of the runs'
 //                [--ar RHO] [--run-zero SIZE] [--walk SIZE] [--rough TIMES] [--digit SIZE]
-// Sizes in units of the noise: what makes the noise other than independent (hidden::Unrest).
+// KIND is a name of hidden::Kind, with dashes. Sizes are in units of the noise and make it dependent
+// (hidden::Unrest).
 // Campaigns of seeds SEED .. SEED+COUNT-1. Follows `missing` as `nonio model explain --auto` does. Fails
 // if fewer are right, or more named wrongly, than --right and --wrong say.
 #include <algorithm>

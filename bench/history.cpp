@@ -60,7 +60,7 @@ int update(const std::string& what, const char* out, const std::vector<std::stri
   return done->left_out.empty() ? 0 : 1;
 }
 
-/// As the end of a night makes it.
+/// The worklist, as at the end of a run.
 int morning(const char* out, const char* templates) {
   nonio::reading::Context context;
   auto read = nonio::config::read_templates({templates}, context.templates_sha256);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""How right and how fast the statistics of a history are, beside a peer (numpy) on the same series in the same run.
+"""Accuracy and speed of the statistics of a history, compared with numpy on the same series in the same session.
 
     python3 bench/history_statistics.py build/ci [TRIALS] [SERIES]
 

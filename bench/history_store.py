@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The history of many campaigns and the morning after: made again from nothing, and brought up to date after 100 new ones.
+"""The history of many campaigns and the worklist: made from nothing, and updated after 100 new campaigns.
 
     python3 bench/history_store.py build/ci [CAMPAIGNS] [FOLDER] [postgresql://...]
 
@@ -76,7 +76,7 @@ def main():
         subprocess.run([program, "rebuild", out], check=True)
         subprocess.run([program, "status", "--actions", out, TEMPLATES], check=True)
         new = [f"n{i:03}" for i in range(100)]
-        for campaign in new:  # measured after all others, as what comes to a night is
+        for campaign in new:  # measured after all others, as new campaigns are
             write(out, campaign, 2, rng, kinds, machines, "2026-03-19")
         subprocess.run([program, "update", out, *new], check=True)
         subprocess.run([program, "status", "--actions", out, TEMPLATES], check=True)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""limit.py OUT: what cannot be left out of a night that wrote OUT, as CPU time a campaign: the kernel's part of writing
-the same files as durably, SHA-256 of them, and the deflate of the reports' pages. Nothing else is done."""
+"""limit.py OUT: the least cost of a run that wrote OUT, as CPU time per campaign: the kernel's part of writing the same
+files as durably, their SHA-256, and the deflate of the reports' pages. Nothing else is done."""
 import ctypes
 import ctypes.util
 import hashlib
@@ -13,7 +13,7 @@ import tempfile
 import time
 import zlib
 
-BATCH = 64  # campaigns that share their flushes, as in a night
+BATCH = 64  # campaigns that share their flushes, as in a run
 TEMPORARY = ".nonio-tmp"
 
 

@@ -130,7 +130,7 @@ def interface(nonio, folder, trials):
     server.explained()
     out["explained, after the fit"] = time.perf_counter() - began
     clicks, pictures, explains, peak = [], [], [], [0.0, 0.0]
-    time.sleep(1.0)  # somebody looks at it
+    time.sleep(1.0)  # a person looks at the page
     for effect in CLICKS[:trials]:
         began = time.perf_counter()
         if server.ask("model", {"add": effect})[0] != 200:
@@ -198,7 +198,7 @@ def page(nonio, folder, trials, readings):
         out["page: opened to a picture"] = marked(d, "picture")
         out["page: opened to the model"] = marked(d, "fitted")
         d.execute_script("document.querySelector(\"details[data-key='rest']\")?.setAttribute('open', '')")
-        time.sleep(2.0 if readings < 500000 else 8.0)  # somebody looks at it
+        time.sleep(2.0 if readings < 500000 else 8.0)  # a person looks at the page
         clicks = []
         for _ in range(1 + trials):  # only the first is a model that was not fitted before
             at = clicked(d, f"input[data-effect='{EFFECT}']")

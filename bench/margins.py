@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""margins.py NONIO FILE...: how far files of readings lie from the bounds of docs/dev/wrong-inputs.md. Runs the program over
-each file (CSV of one axis, or .rtl) as a campaign of its own, prints its findings plausibility.*, and beside each bound that
-readings alone meet what the file that comes nearest to it has. Status 1 if a file is called implausible."""
+"""margins.py NONIO FILE...: how far files of readings are from the bounds of docs/dev/wrong-inputs.md. Runs the program over
+each file (CSV of one axis, or .rtl) as a campaign of its own, prints its findings plausibility.*, and for each bound on
+readings alone the value of the file that comes nearest to it. Status 1 if a file is called implausible."""
 import json
 import math
 import pathlib

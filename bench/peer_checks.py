@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What peer.py does beside the bare values: uncertainty, decisions, findings, control tables and their
-reading back. Micrometres and millimetres. Limits of tests are constants (1 %, 5 runs, 21 targets)."""
+"""What peer.py does in addition to the bare values: uncertainty, decisions, findings, control tables and
+their reading back. Micrometres and millimetres. Limits of tests are constants (1 %, 5 runs, 21 targets)."""
 import re
 
 import numpy as np

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What memory the plan of a night takes for so many campaigns:
+// The memory that the plan of a run takes for so many campaigns:
 //   bench_plan_memory COUNT SHARDS FOLDER [LENGTH]
-// The survey is simulated: names, one file of readings each, no results of nights before. What follows is what `nonio night
-// plan` does: the campaigns in order, those that share readings, the lists in FOLDER/.nonio/plan. Prints the
-// peak of the memory (VmHWM) after each step. LENGTH: characters of an id, 8 if it is not given; a folder has 6 more.
+// The survey is simulated: names, one file of readings each, no results of earlier runs. The rest is what `nonio run plan`
+// does: the campaigns in order, those that share readings, the lists in FOLDER/.nonio/plan. Prints the peak of the memory
+// (VmHWM) after each step. LENGTH: characters of an id, 8 if it is not given; a folder has 6 more.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>

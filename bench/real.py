@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""real.py NONIO                       what `explain` says of the real readings in bench/real, held against what a
+"""real.py NONIO                       result of `explain` for the real readings in bench/real, compared with what a
                                        person sees in them (bench/real/wanted.toml)
 real.py NONIO --hidden COUNT [--seed SEED]    an effect hidden in their scatter: whole passes, less the mean of each
                                        target from each side, in another order; how often it is named

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""rotary.py BENCH_ROTARY [POINTS]: circles per second on one core, beside numpy doing the same: plane by
-SVD, start by lstsq, Gauss-Newton by lstsq, covariance. CPU time of both, in the same run."""
+"""rotary.py BENCH_ROTARY [POINTS]: circles per second on one core, compared with numpy doing the same: plane
+by SVD, start by lstsq, Gauss-Newton by lstsq, covariance. CPU time of both, in the same session."""
 import os
 import re
 import subprocess

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What all rules of positioning cost beside ISO 230-2 and VDI/DGQ 3441 alone.
+// The cost of all rules of positioning compared with ISO 230-2 and VDI/DGQ 3441 alone.
 //
 //     bench_rules [--rounds N] [--most RATIO]
 //

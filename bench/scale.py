@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""scale.py PROGRAM [FEW MANY]: what a campaign more costs in each step of a night: calls of the file system (strace), CPU time,
+"""scale.py PROGRAM [FEW MANY]: the cost of one more campaign in each step of a run: calls of the file system (strace), CPU time,
 files, bytes and memory of the plan. Each is the difference of two sites of FEW and MANY campaigns (100 and 300; for the
-memory 100 times as many), divided by the difference of their numbers. The constants of docs/dev/scale.md; TMPDIR says on which disk."""
+memory 100 times as many), divided by the difference of their numbers. The constants of docs/dev/scale.md; TMPDIR selects the disk."""
 import collections
 import pathlib
 import re

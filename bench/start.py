@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""start.py NONIO [--trials 30]: what a short command costs: `explain` on 210 readings, beside loading all plugins, the
-program alone and an interpreter that does nothing. Least wall and CPU time of the trials, in ms, and ratios to the
+"""start.py NONIO [--trials 30]: the cost of a short command, `explain` on 210 readings, compared with loading all plugins,
+the program alone and an interpreter that does nothing. Least wall and CPU time of the trials, in ms, and ratios to the
 interpreter's, which a busy machine changes less."""
 import argparse
 import os

@@ -76,7 +76,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${papers} FILES_MATCHI
 foreach(folder IN LISTS NONIO_PLUGIN_FOLDERS)
   install(FILES ${PROJECT_SOURCE_DIR}/plugins/${folder}/README.md DESTINATION ${papers}/plugins/${folder})
 endforeach()
-# Named one by one: a key or a register that somebody made here to try things out stays here.
+# Named one by one, so that a key or a register made here for a trial is not installed.
 set(samples ${PROJECT_SOURCE_DIR}/samples)
 install(DIRECTORY ${samples}/site ${samples}/laboratory ${samples}/simulate ${samples}/tutorial DESTINATION ${papers}/examples)
 install(DIRECTORY ${samples}/certificates/adjusted DESTINATION ${papers}/examples/certificates)

@@ -42,7 +42,7 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "${NONIO_PACKAGE_CONTACT}")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")
 set(CPACK_VERBATIM_VARIABLES ON)
-# With DESTDIR, since /etc/default lies outside of the prefix.
+# With DESTDIR, because /etc/default is outside of the prefix.
 set(CPACK_SET_DESTDIR ON)
 set(CPACK_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)

@@ -15,8 +15,8 @@ function(nonio_add_plugin name)
 endfunction()
 
 # nonio_test_plugin(NAME [FOLDER]): `nonio plugin check`, and of each campaign of FOLDER a run that must give the files of
-# its folder `expected`, byte for byte. The folder is read, not listed: the campaigns are data of an engineer who copies
-# one beside the others, `plugin check` reads the same folder, and a campaign that a list forgot would go untested.
+# its folder `expected`, byte for byte. The folder is read, not listed: the campaigns are data that an engineer adds by
+# copying one, `plugin check` reads the same folder, and a campaign that is missing in a list would not be tested.
 function(nonio_test_plugin name)
   set(samples)
   set(manifests)

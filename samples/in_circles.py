@@ -6,10 +6,10 @@ from parts import MADE_UP, Noise, linear, manifest
 
 
 class Mill:
-    """Where the tool really is on a commanded circle: exact positions, no formula of the analysis.
+    """Actual positions of the tool on a commanded circle, computed without the formulas of the analysis.
 
-    Each axis follows as a first-order lag follows a sine; it comes back late by its play, over one and a half
-    degrees; it sticks at each reversal; Y stands askew; X and Y have scales."""
+    Each axis follows as a first-order lag follows a sine; it returns late by its play, over one and a half
+    degrees; it sticks at each reversal; Y is out of square; X and Y have scale errors."""
     R, feed = 150.0, 1000.0 / 60.0  # mm, mm/s
     scale = {"X": 24e-6, "Y": -9e-6}
     squareness = 38e-6              # C0Y
@@ -17,7 +17,7 @@ class Mill:
     lag = {"X": 22.00e-3, "Y": 21.60e-3}  # s
     sticks = {"X": 1.2e-3, "Y": 4.5e-3}
     pitch_wave = 0.9e-3             # mm, of X, pitch 10 mm
-    zero = (0.0183, -0.0071)        # where the ball of the bar stood
+    zero = (0.0183, -0.0071)        # place of the bar's ball
 
     def axis(self, name, t, d):
         """Position of one axis of the circle about 0, mm."""

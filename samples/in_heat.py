@@ -29,7 +29,7 @@ AXES = {"X": linear(800.0), "Y": linear(500.0), "Z": linear(450.0)}
 
 
 def at_rest():
-    """Twelve hours: the gate of the hall opens in the morning; the column follows the air."""
+    """Twelve hours: the gate of the hall is open for an hour; the column follows the air."""
     noise, rows = Noise(142), []
     column, frame = Body(2400.0), Body(9000.0)
     for i in range(145):

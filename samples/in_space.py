@@ -382,7 +382,7 @@ def step_readings(travel, n, curves, share):
 
 
 def set_up_readings(noise, travel, n, angle):
-    """What mirrors that stand askew by about `angle` (rad) add: nothing after a whole cycle."""
+    """Effect of mirrors that are misaligned by about `angle` (rad): zero after a whole cycle."""
     length = math.sqrt(sum(t * t for t in travel))
     out = {}
     for name, sign in DIAGONALS.items():

@@ -114,7 +114,7 @@ class Crooked:
     t, bow, angle, error = Rolling.t, Rolling.bow, Rolling.angle, Rolling.error
 
     def shown(self, place):
-        """Where the axes stand when the tool is at a place, mm."""
+        """Positions of the axes when the tool is at a place, mm."""
         at = list(place)
         for _ in range(4):
             at = [p - e / 1000.0 for p, e in zip(place, self.error(*at))]

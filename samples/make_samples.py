@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Makes samples/site: constructed campaigns, each with a story (see README.md beside this file).
+"""Makes samples/site: constructed campaigns, each with a story (see samples/README.md).
 
     make_samples.py [FOLDER]        default: the folder of this file
 
@@ -57,7 +57,7 @@ def constant_reversal():
     noise = Noise(102)
     places = targets(noise, 0.0, 1000.0, 13)
     m = len(places)
-    # B_mean = -8.143, max |B_i| = 8.943; the rest lies as closely as the scatter would have it.
+    # B_mean = -8.143, max |B_i| = 8.943; the others vary by the scatter only.
     reversal = [-8143 + round(230 * max(-2.0, min(2.0, noise.normal()))) for _ in places]
     reversal[5] = -8943
     for k in range(abs(-8143 * m - sum(reversal))):

@@ -22,7 +22,7 @@ class Reader {
       shear_(i, k) = day.uniform(bound);
   }
 
-  /// Exact centres as they are read, one after the other. Squareness moves what is beside `about`.
+  /// Exact centres as they are read, one after the other. Squareness errors are zero at `about`.
   void read(std::vector<math::BallCentre>& centres, const Eigen::Vector3d& about) {
     for (auto& centre : centres) {
       const Eigen::Vector3d p(centre.at[0], centre.at[1], centre.at[2]);

@@ -63,8 +63,8 @@ std::vector<Visit> there_and_back(std::size_t n, int runs);
 /// Once over n stops.
 std::vector<Visit> once(std::size_t n);
 
-/// One line: distances of its stops from the first, and where the machine stands there on the
-/// average, by direction of approach.
+/// One line: distances of its stops from the first, and the mean positions of the machine at them,
+/// by direction of approach.
 struct Line {
   std::vector<double> distance, mean;
   double reversal = 0.0;

@@ -72,14 +72,12 @@ int audit(const CertificateWish& wanted, const config::Numbering& numbering, con
                     {"last_sha256", a.last_sha256},
                     {"wrong", a.wrong}});
   } else {
-    for (const std::string& what : a.wrong) std::cout << "WRONG: " << what << "\n";
-    std::cout << "register " << a.id << ": " << a.entries << " entries, " << a.certificates
-              << " certificates, " << a.files << " files\n"
-              << "last entry " << a.last_at << ", SHA-256 " << a.last_sha256 << "\n"
-              << (a.wrong.empty()
-                      ? "nothing was changed, nothing was taken out before the last entry"
-                      : "this is not the register as it was written")
-              << "\n";
+    for (const std::string& what : a.wrong) std::cout << "error: " << what << "\n";
+    std::cout << (a.wrong.empty() ? "unchanged" : "changed after it was written") << ": register "
+              << a.id << " (entries: " << a.entries << ", certificates: " << a.certificates
+              << ", files: " << a.files << ")\n"
+              << "last entry " << a.last_at << ", SHA-256 " << a.last_sha256
+              << ": keep it, because a removal of the newest entries shows only by it\n";
   }
   return a.wrong.empty() ? exit_done : exit_failed;
 }

@@ -139,7 +139,9 @@ std::string no_command(const Program& program, const Found& at, const std::strin
   const std::string hint =
       at.path == program.name ? hint_for(program, word) : storage::suggestion(word, names);
   return at.path + ": there is no command \"" + word + "\"" +
-         (hint.empty() ? "; there are " + storage::listed(names) : hint);
+         (!hint.empty()                ? hint
+          : at.path == program.name ? ". `" + program.name + " help` lists the commands"
+                                    : "; there are " + storage::listed(names));
 }
 
 Found find(const Program& program, const Verb& top, const Words& typed) {

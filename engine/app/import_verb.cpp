@@ -85,7 +85,7 @@ void print(const importing::ImportReport& report) {
     }
     std::cout << c.id
               << (c.written   ? ": written"
-                  : c.whole() ? ": whole"
+                  : c.whole() ? ": complete"
                               : ": not written")
               << (c.whole() ? "" : ", something is missing") << "\n";
     for (const std::string& lack : c.lacks) std::cout << "  expected: " << lack << "\n";

@@ -382,12 +382,13 @@ int write_new(const std::vector<NewFiles>& all, const NewWish& wish, const std::
     std::cout
         << "The readings are an EXAMPLE: they were not measured. Put your own into the CSV.\n";
   if (what == "machine") return exit_done;
-  std::cout << "Next:  nonio " << (what == "site" ? "run " : "show ") << wish.folder
-            << (what == "site" ? " --out out\n" : "\n");
+  const bool is_empty_site = what == "site" && !example;
+  std::cout << "Next:  nonio " << (is_empty_site ? "new campaign " : what == "site" ? "run " : "show ")
+            << wish.folder << (is_empty_site ? "/NAME\n" : what == "site" ? " --out out\n" : "\n");
   return exit_done;
 }
 
-/// The folders and files of a campaign, after a trial.
+/// Folders and files of the new campaign, evaluated once in memory: if that fails, nothing is written.
 Expected<NewFiles> campaign_files(const NewWish& wish, const fs::path& folder,
                                   const std::optional<fs::path>& site, Questions& ask,
                                   bool& example, const Common& common) {

@@ -81,7 +81,8 @@ int list_drafts(const ReleaseVerbWish& wish, const Common& common) {
     return exit_done;
   }
   for (const WaitingDraft& d : *drafts) print(std::cout, d);
-  if (drafts->empty() && !common.quiet) std::cout << "nothing waits for a release\n";
+  if (drafts->empty() && !common.quiet) std::cout << "no draft waits for approval; `nonio run` makes drafts of campaigns "
+                                                     "with the output certificate\n";
   return exit_done;
 }
 

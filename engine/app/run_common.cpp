@@ -8,8 +8,7 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "laboratory/assessment/describe.h"
-#include "nonio/reports/number.h"
+#include "nonio/sdk/format.h"
 #include "platform/process/stop.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
@@ -26,12 +25,10 @@ namespace {
 std::string judged_value(const Json& line, const std::string& language) {
   const std::string kind = line.value("kind", ""), unit = line.value("unit", "");
   if ((kind != "out" && kind != "undecided") || !line.contains("value")) return {};
-  const Quantity q = quantity_of_unit(unit);
-  const auto si = [&](const char* key) { return line.at(key).get<double>() / unit_of(q).per_si; };
-  const reports::Printed shown = reports::printed_result(
-      si("value"), line.contains("u") ? std::optional(2.0 * si("u")) : std::nullopt, q, language);
-  return " " + shown.value + (shown.U.empty() ? "" : " ± " + shown.U) +
-         (unit.empty() ? "" : " " + unit);
+  const double value = line.at("value").get<double>();
+  const auto rounded = rounded_result(value, 2.0 * line.value("u", 0.0));
+  const std::string shown = rounded ? rounded->value + " ± " + rounded->U : short_text(value);
+  return " " + localised(shown, language) + (unit.empty() ? "" : " " + unit);
 }
 
 /// One line per campaign that requires action, as far as they fit a screen.

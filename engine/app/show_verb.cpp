@@ -10,7 +10,7 @@
 #include "campaign/config/terminal_words.h"
 #include "campaign/evaluation/record.h"
 #include "colour.h"
-#include "laboratory/store/reader.h"
+#include "nonio/sdk/withheld.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
@@ -50,8 +50,8 @@ void add_once(std::vector<std::string>& texts, const std::string& text) {
     texts.push_back(text);
 }
 
-/// What requires action comes first: results outside their tolerance, then those that cannot be
-/// decided, then those that conform, then those without tolerance.
+/// What requires action comes first: results outside their tolerance, then indeterminate ones, then
+/// those that conform, then those without tolerance.
 int rank_of(const Json& value) {
   const std::string decision = value.value("decision", "");
   if (decision.empty()) return 3;
@@ -83,7 +83,10 @@ class Page {
       notes(results);
     }
     outputs(results);
-    if (!all_) out_ << wrapped(say_("show.all"), 0, width_);
+    if (results.at("status") == "failed")
+      out_ << wrapped(say_("show.failed"), 0, width_);
+    else if (!all_)
+      out_ << wrapped(say_("show.all"), 0, width_);
   }
 
  private:
@@ -107,7 +110,7 @@ class Page {
       for (const Json& source : results.value(made, Json::array()))
         for (const Json& finding : source.value("findings", Json::array()))
           if (finding.value("severity", "") == "attention" &&
-              store::is_withholding(finding.value("id", "")))
+              is_withholding(finding.value("id", "")))
             return true;
     return false;
   }
@@ -162,11 +165,25 @@ class Page {
     return say_("measurement.range", {{"from", text(least)}, {"to", text(most)}, {"unit", unit}});
   }
 
+  /// The other measurements that an analysis used, the first of them by name.
+  std::string others(const Json& a) const {
+    constexpr std::size_t most = 4;
+    auto names = a.value("uses", std::vector<std::string>());
+    const std::size_t more = names.size() > most ? names.size() - most : 0;
+    names.resize(names.size() - more);
+    return joined_text({joined_text(names, ", "),
+                        more == 0 ? "" : say_("show.more", {{"count", std::to_string(more)}})},
+                       " ");
+  }
+
   void analysis(const Json& a, std::string& last) {
     const std::string measurement = a.value("measurement", "");
-    if (!measurement.empty() && measurement != last)
-      heading(joined_text({say_("measurement", {{"id", measurement}}), range(a)}, ", "));
-    last = measurement;
+    const std::string of_several = others(a);
+    if (!measurement.empty() && (measurement != last || !of_several.empty()))
+      heading(of_several.empty()
+                  ? joined_text({say_("measurement", {{"id", measurement}}), range(a)}, ", ")
+                  : say_("measurements", {{"ids", measurement + ", " + of_several}}));
+    last = of_several.empty() ? measurement : std::string();
     const Json& results = a.at("values");
     if (measurement.empty() && (all_ || !results.empty())) out_ << "\n";
     if (all_ || !results.empty())
@@ -220,9 +237,12 @@ class Page {
       return row.first.size() > 1 && (row.first.ends_with('+') || row.first.ends_with('-')) &&
              all.contains(row.first.substr(0, row.first.size() - 1));
     });
+    std::erase_if(rest, [](const auto& row) {  // of the test of a model
+      return row.first.starts_with("lack_of_fit") || row.first == "redundancy";
+    });
     std::string text;
     for (std::size_t i = 0; i < std::min(rest.size(), most_values); ++i)
-      text += (i == 0 ? "" : ", ") + rest[i].first + " " + result(rest[i].second);
+      text += (i == 0 ? "" : ", ") + say_.of("value", rest[i].first) + " " + result(rest[i].second);
     if (rest.size() > most_values)
       text += ", " + say_("show.more", {{"count", std::to_string(rest.size() - most_values)}});
     if (!text.empty()) out_ << wrapped(text, 4, width_);
@@ -411,8 +431,11 @@ int show(const ShowWish& wish, const Common& common) {
   if (holds == Holds::nothing && !fs::exists(folder) && what_holds(wish.out) == Holds::run)
     return show_machine(wish.out, wish.folder, common);
   if (holds == Holds::run)
-    return complain(folder.string() + " contains the results of a run; expected " +
-                    (folder / "ID").string() + " (summary.txt lists them)");
+    return complain(folder.string() + " contains the results of a run; choose a campaign, such as " +
+                    (folder / "ID").string() + ", or use `nonio status " + folder.string() + "`");
+  if (holds == Holds::nothing && !fs::exists(folder))
+    return complain("\"" + folder.string() + "\" is neither a folder nor a machine of the history in " +
+                    wish.out + " (--out; `nonio machine list " + wish.out + "` lists the machines)");
   if (holds == Holds::nothing) return complain(holds_nothing(folder));
   const auto shown =
       holds == Holds::campaign ? evaluated_now(folder, common) : of_run(folder, common);

@@ -87,7 +87,7 @@ void print_forecast(const tables::TableForecast& f) {
   if (f.scatter > 0.0)
     std::cout << "; E up to " << with_unit(f.E[1] + f.scatter, q)
               << " because the readings scatter (95 %)";
-  std::cout << (f.worse() ? "  WORSE\n" : "\n");
+  std::cout << (f.worse() ? "\n  error: E would grow\n" : "\n");
 }
 
 Expected<Loaded> load(const loader::Plugins& plugins, const std::string& files,

@@ -453,8 +453,8 @@ Expected<void> serve_here(const LiveWish& wish) {
     });
     std::cout << address_of(post) << (token.empty() ? "" : "#t=" + token) << std::endl;
     if (!wish.quiet)
-      std::cerr << "nonio live: open the address above in a browser on this computer"
-                << (token.empty() ? "" : "; it is the key, do not pass it on")
+      std::cerr << "nonio serve: open the address above in a browser on this computer"
+                << (token.empty() ? "" : "; it contains the access token, so do not pass it on")
                 << ". End with Ctrl-C.\n";
     int signal = 0;
     ::sigwait(&ends, &signal);

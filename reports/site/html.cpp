@@ -121,7 +121,7 @@ std::string also_text(const Page& page, const WorkItem& l) {
 
 std::string limit_text(const Page& page, const WorkItem& l) {
   const bool in_sentence = std::any_of(l.finding.evidence.begin(), l.finding.evidence.end(),
-                                       [](const Evidence& e) { return e.name == "limit"; });
+                                       [](const Number& e) { return e.name == "limit"; });
   if (!l.limit || in_sentence) return {};
   return ", " + page.words.get("site.limit", {{"limit", short_number(page, *l.limit, l.unit)}});
 }

@@ -1,6 +1,6 @@
 "use strict";
-// The lines of a worklist below `root`, until a signal says that they have gone: {signal}.
-// Filters of the lines stand in the address, so that they can be sent: index.html#customer=Rossi&kind=out
+// Filters and keys for the lines of a worklist below `root`; `until`: {signal} that ends them when the lines are removed.
+// The filters are in the address, so that they can be sent: index.html#customer=Rossi&kind=out
 function nonioLines(root, until = {}) {
   const rows = [...root.querySelectorAll("tr[data-kind]")];
   const filters = [...root.querySelectorAll(".filters select")];
@@ -33,7 +33,7 @@ function nonioLines(root, until = {}) {
     addEventListener("hashchange", readAddress, until);
     readAddress();
   }
-  // j and k go from line to line, Enter opens it.
+  // j and k move from line to line, Enter opens one.
   addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey || event.target.closest("select, input, textarea, dialog")) return;
     const visible = rows.filter((row) => !row.hidden);

@@ -23,7 +23,7 @@ class Path {
   double R() const { return get("radius_mm") * 1e-3; }
   double feed() const { return get("feed_mm_per_min") * 1e-3 / 60.0; }
 
-  /// angle: as commanded, or as the point really lies.
+  /// `actual`: the angle is that of the actual point, not the commanded one.
   CircleReading at(double t, int d, bool actual) const {
     constexpr double um = 1e-6;
     const double k = std::cos(t), s = std::sin(t), vx = -d * s, vy = d * k;

@@ -100,7 +100,7 @@ Turns turns_for(const Case& c, double sign = 1.0, double ball = 0.0, bool other_
   for (int i = 0; i < count; ++i) {
     const double t = i / n;
     k.angle.push_back(2.0 * std::numbers::pi * t);
-    // What the sensor sees of the ball: where it stands less where the ball has turned to.
+    // The sensor shows the ball's profile at the sensor's angle less the angle of spindle and ball.
     k.r.push_back(sign * sum_of(lists(c, "wave"), t) +
                   sum_of(lists(c, "ball"), (other_side ? 0.5 : 0.0) - t - ball));
   }

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What the program makes of samples/site, held against what is stored in expected/.
+"""Compares the program's results for samples/site with those stored in expected/.
 
     program_test.py build/ci/bin/nonio             compares; exit status 1 and a list where something differs
-    program_test.py build/ci/bin/nonio --accept    stores what it makes now, and prints what moved (so does NONIO_ACCEPT=1)
+    program_test.py build/ci/bin/nonio --accept    stores the present results, and prints what changed (so does NONIO_ACCEPT=1)
 
 expected/<campaign>/results.txt has a line for each value of results.json: its place and the value. A list of numbers
 is one line. Numbers agree where they differ by less than 1e-9 of the largest number of their line: the last digits belong to the
-processor. Versions of the program and digests of files are left out. All controller tables, as bytes, lie beside it.
+processor. Versions of the program and digests of files are left out. The same folder has all controller tables, as bytes.
 """
 import argparse
 import json

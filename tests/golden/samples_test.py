@@ -192,7 +192,7 @@ class Samples(unittest.TestCase):
         self.assertGreater(middle - statistics.fmean(points[0]["+"]), 4.0)
         self.assertGreater(middle - statistics.fmean(points[-1]["+"]), 4.0)
 
-    def test_gantry_diagonals_close_and_the_third_one_tells_the_axes_apart(self):
+    def test_gantry_diagonals_close_and_the_third_one_separates_the_axes(self):
         def mean(file):
             return [(statistics.fmean(p["+"]) + statistics.fmean(p["-"])) / 2.0
                     for p in readings("13-gantry-diagonals", file).values()]
@@ -291,7 +291,7 @@ class Samples(unittest.TestCase):
                 arm = [float(row[k + "_mm"]) - p for k, p in zip("xyz", point)]
                 along = sum(a * v for a, v in zip(arm, lean)) / size
                 radius = math.sqrt(sum(a * a for a in arm) - along * along)
-                # 1 um of noise; B's start lies 20 um nearer to its leaning line.
+                # 1 um of noise; the first place of B is 20 um nearer to its inclined axis line.
                 self.assertAlmostEqual(radius, 261.0, delta=0.03)
             self.assertEqual(len({row["angle_deg"] for row in rows}), count)
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# booted.sh ROOT COMMAND...: starts the systemd of a root file system in namespaces of its own, runs the command beside it, and
+# booted.sh ROOT COMMAND...: starts the systemd of a root file system in namespaces of its own, runs the command with it, and
 # ends both. Status 77: it does not start here. The devices are its own too; nothing is left outside of ROOT.
 set -euo pipefail
 root=$1

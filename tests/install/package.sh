@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Packs what the build tree has, and uses the packages as their users would, in a fresh Debian 12: the image of the
-# Containerfile, a night, a plugin of one's own, purge. Status 77: it cannot be done here, for the reason that it says.
+# Containerfile, a run, a user's plugin, purge. Status 77: it cannot be done here, for the reason that it prints.
 set -euo pipefail
 exec < /dev/null
 cpack=$1 build=$2 source=$3
@@ -44,7 +44,7 @@ dpkg-deb -c "$package" | grep -q 'doc/nonio/site/index\.html' || fail "the pages
 lintian --allow-root --fail-on error,warning --tag-display-limit 0 "$package" "$development" || fail "lintian says no"
 step "lintian"
 
-# The image of the Containerfile. A fresh Debian stands in for the base that an engine would fetch.
+# The image of the Containerfile. A fresh Debian replaces the base image that an engine would fetch.
 base=docker.io/library/debian:bookworm-slim
 images() { buildah --root "$store/images" --runroot "$work/images" --storage-driver vfs "$@"; }
 images inspect --type image $base > /dev/null 2>&1 || {
@@ -78,7 +78,7 @@ echo 'APT::Keep-Downloaded-Packages "true";' > "$root/etc/apt/apt.conf.d/test"
 cp /etc/resolv.conf "$root/etc/"
 step "the Containerfile's image, and nonio --help in it"
 
-# A night of the samples has the bytes of the build tree's.
+# A run over the samples has the same bytes as one of the build tree.
 as_user() { in_root "$root" setpriv --reuid nonio --regid nonio --clear-groups "$@"; }
 status() { local s=0; "$@" >&2 || s=$?; echo $s; }
 examples=/usr/share/doc/nonio/examples
@@ -93,7 +93,7 @@ diff -r --exclude=run.json --exclude=.nonio "$work/ours" "$root/srv/nonio/out" |
 [ "$(find "$root/srv/nonio/out" -name report.pdf | wc -l)" -ge 15 ] || fail "too few reports"
 step "a night: $(find "$root/srv/nonio/out" -type f | wc -l) files, the same bytes as from the build tree"
 
-# What is beside the program.
+# The files of the package other than the program.
 for file in howto-plugin.md pictures/long-tables.svg plugins/readers/long-table/README.md examples/site/02-constant-reversal/campaign.toml; do
   [ -s "$root/usr/share/doc/nonio/$file" ] || fail "the package lacks /usr/share/doc/nonio/$file"
 done

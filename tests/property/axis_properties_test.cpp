@@ -267,7 +267,7 @@ TEST_P(AxisProperties, OneDirectionGivesWhatItCanAndNoMore) {
 INSTANTIATE_TEST_SUITE_P(Random, AxisProperties, testing::Range<std::uint64_t>(1, 101));
 
 // Two passes: a common offset of a million metres leaves what doubles leave of micrometres.
-// Readings are multiples of 2^-30 m, so that they are exact beside the offset.
+// Readings are multiples of 2^-30 m, so that they stay exact with the offset added.
 TEST(Numbers, ALargeOffsetKeepsTheDigits) {
   const double grid = std::ldexp(1.0, -30);  // 0.93 nm
   made::Random random(7);

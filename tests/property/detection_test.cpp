@@ -164,7 +164,7 @@ TEST(Detection, AMisreadingIsNamedAndOnlyThat) {
   EXPECT_LE(others, campaigns * 3 / 100);
 }
 
-TEST(Detection, ATargetThatStandsApartIsNamed) {
+TEST(Detection, ATargetThatDiffersFromTheOthersIsNamed) {
   constexpr int campaigns = 300;
   int named = 0, others = 0;
   made::Random random(6);

@@ -24,7 +24,7 @@ def wide_lines(text):
             yield number
 
 
-# Each was read by somebody who had to read it twice.
+# Phrases that a reader had to read twice.
 RIDDLES = re.compile(r"""predecessors | \bhas\ a\ say\b | what\ comes\ of\ it | \bto\ be\ had\b | \bbad\ record\b
     | (held|hold|holds|holding)\ (\w+\ )?against\b | laws\ of\ (its|their|each)\ kind | verdict:\ nothing
     | deserves?\ (a\ look|their\ trust) | what\ is\ left\b | nobody\ (knows|says|pays|fills)

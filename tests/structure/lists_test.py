@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is built and tested stands in lists of CMake, and the lists are complete: no file(GLOB), no source, plugin, case
-or document that lies there and that no list names.
+"""What is built and tested is listed in CMake, and the lists are complete: no file(GLOB), and every source, plugin, case
+and document is in a list.
 
 lists_test.py SOURCE_FOLDER"""
 import pathlib
@@ -10,7 +10,7 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(sys.argv.pop(1))
-# What may read a folder. The reason stands beside it.
+# The files that are allowed to read a folder; each states the reason.
 READS_A_FOLDER = {"cmake/NonioCase.cmake": 1, "cmake/NonioPlugin.cmake": 1}
 PARTS = ("engine", "reports", "plugins", "templates", "tests", "cmake", "bench")
 

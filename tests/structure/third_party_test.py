@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What others wrote and lies in third_party is what its README says, file by file; every file has its digest there, its
-licence stands in the package's copyright and in docs/dev/architecture.md, and Nonio embeds its bytes unchanged.
+"""third_party contains exactly the files that its README lists with their digests; the licence of each is in the package's
+copyright file and in docs/dev/architecture.md, and Nonio embeds its bytes unchanged.
 
 third_party_test.py SOURCE_FOLDER BUILD_FOLDER"""
 import hashlib

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Texts for people use the terms of docs/terms.toml: no forbidden synonym and no private phrase in templates/words, in
-literals and comments of engine, plugins and reports (among them all texts of --help), in README.md, CONTRIBUTING.md and
-the pages for users and developers. The glossary is the one that the terms make.
+literals of engine, plugins and reports (among them all texts of --help), in comments and docstrings of all sources and
+scripts, in README.md, CONTRIBUTING.md and the pages for users and developers. The glossary is generated from the terms.
 
 words_test.py SOURCE_FOLDER"""
 import pathlib
@@ -36,6 +36,12 @@ def wrong(text, language="en"):
 
 RULES = {language: rules(language) for language in ("en", "de", "it")}
 LITERAL = re.compile(r'"((?:[^"\\]|\\.)*)"')
+LINES = r"(?:^|(?<=[ \t])){0}.*(?:\n[ \t]*{0}.*)*"  # comments on successive lines are one, because phrases are wrapped
+SLASHES, HASH, BLOCK = LINES.format("//"), LINES.format("#(?!!)"), r"/\*[\s\S]*?\*/"
+TEXT = r"""\"{3}[\s\S]*?\"{3}|'{3}[\s\S]*?'{3}"""
+COMMENT = {suffix: re.compile(pattern, re.M) for suffix, pattern in {  # group 1: a comment; otherwise a text that may contain "#"
+    ".h": f"({SLASHES})", ".cpp": f"({SLASHES})", ".js": f"({SLASHES}|{BLOCK})", ".css": f"({BLOCK})", ".sh": f"({HASH})",
+    ".cmake": f"({HASH})", **dict.fromkeys(("", ".py"), rf'(^[ \t]*"""[\s\S]*?"""|{HASH})|{TEXT}')}.items()}
 
 
 def words(language):
@@ -48,20 +54,33 @@ def words(language):
             yield path.name, re.sub(r"\{\w+\}", "{}", text)
 
 
-def sources():
-    for folder in ("engine", "plugins", "reports"):
+def kind(path):
+    """The suffix of a source, also of one that CMake or `nonio plugin new` fills in (.in)."""
+    name = pathlib.PurePath(path).name.removesuffix(".in")
+    return ".cmake" if name == "CMakeLists.txt" else pathlib.PurePath(name).suffix
+
+
+def sources(*folders):
+    """(path, text) of each file with comments; without a suffix it is a script."""
+    for folder in folders:
         for path in sorted((ROOT / folder).rglob("*")):
-            if path.suffix in (".h", ".cpp"):
+            if kind(path) in COMMENT and path.is_file() and (kind(path) or path.read_bytes()[:2] == b"#!"):
                 yield path.relative_to(ROOT).as_posix(), path.read_text(encoding="utf-8")
 
 
-def split(text):
-    """(literals that people read, comments); literals in succession are one, a name without a blank is none."""
-    comments = " ".join(re.findall(r"(?:^|\s)//+(.*)$", text, re.M))
+def literals(text):
+    """The literals that people read; literals in succession are one, a name without a blank is none."""
     code = re.sub(r"^\s*(//|#include).*$", "", text, flags=re.M)
     code = re.sub(r"[ \t]//[^\"\n]*$", "", code, flags=re.M)
     code = re.sub(r'"\s*\n\s*"', "", code)
-    return [literal for literal in LITERAL.findall(code) if " " in literal.strip()], comments
+    return [literal for literal in LITERAL.findall(code) if " " in literal.strip()]
+
+
+def comments(path, text):
+    """(line, text) of each comment and docstring of a source."""
+    for match in COMMENT[kind(path)].finditer(text):
+        if match[1]:
+            yield text.count("\n", 0, match.start()) + 1, re.sub(r"\n[ \t]*(//+|#+|\*)?[ \t]*", " ", match[1])
 
 
 def prose(text):
@@ -79,8 +98,22 @@ class Words(unittest.TestCase):
             self.assertTrue(list(wrong(text)), text)
         self.assertTrue(list(wrong("Alle Ablesungen", "de")))
         self.assertTrue(list(wrong("Le letture sono derivate", "it")))
-        self.assertEqual([(["a stands b"], " beside it")], [split('f("a stands "\n  "b");  // beside it\n')])
+        self.assertEqual(["a stands b"], literals('f("a stands "\n  "b");  // beside it\n'))
         self.assertEqual([], list(wrong("The number stands for the axis.")))
+
+    def test_a_planted_comment_is_found(self):
+        for path, text in (("a.h", "int a;  ///< GONE\n"), ("a.cpp", "f();\n// GONE\n"), ("a.js", "f();  // GONE"),
+                           ("a.js", "f(\n/* GONE */);"), ("a.css", "p { /* GONE */ }"), ("a.py", "def f():\n    '''GONE'''\n"),
+                           ("a.py", "f()  # GONE\n"), ("a.sh", "f  # GONE"), ("a", "#!/bin/sh\n# GONE"),
+                           ("CMakeLists.txt", "f()  # GONE"), ("a.cpp.in", "f();  // GONE")):
+            mark = next((m for m in ("///<", "//", "#") if m + " GONE" in text), "")
+            for gap in (" ", f"\n  {mark[:3]} "):
+                planted = text.replace("'''", '"' * 3).replace("GONE", f"it is{gap}gone")
+                found = [(line, phrase) for line, comment in comments(path, planted) for phrase, _ in wrong(comment)]
+                self.assertEqual([(text[:text.index("GONE")].count("\n") + 1, "is gone")], found, planted)
+        for path, text in (("a.cpp", 'f("https://is.gone");\n#include "is gone"'), ("a.py", "f('is gone')\n"),
+                           ("a.py", "TOML = '''\n# is gone\n'''\n"), ("a.css", "p:is(.gone) {}")):
+            self.assertEqual([], list(comments(path, text)), text)
 
     def test_terms_are_unique_and_forbid_no_term(self):
         for key in ("id", "en"):
@@ -99,8 +132,8 @@ class Words(unittest.TestCase):
         self.assertEqual("", "\n".join(found))
 
     def test_literals(self):
-        found = [f"{path}: {phrase!r} in {literal!r}; write {write}" for path, text in sources()
-                 for literal in split(text)[0] for phrase, write in wrong(literal)]
+        found = [f"{path}: {phrase!r} in {literal!r}; write {write}" for path, text in sources("engine", "plugins", "reports")
+                 if path.endswith((".h", ".cpp")) for literal in literals(text) for phrase, write in wrong(literal)]
         self.assertEqual("", "\n".join(found))
 
     def test_pages(self):
@@ -111,7 +144,9 @@ class Words(unittest.TestCase):
         self.assertEqual("", "\n".join(found))
 
     def test_comments(self):
-        found = [f"{path}: {phrase!r}; write {write}" for path, text in sources() for phrase, write in wrong(split(text)[1])]
+        folders = ("engine", "plugins", "reports", "templates", "tests", "bench", "samples", "scripts", "cmake")
+        found = [f"{path}:{line}: {phrase!r}; write {write}" for path, text in sources(*folders)
+                 for line, comment in comments(path, text) for phrase, write in wrong(comment)]
         self.assertEqual("", "\n".join(found))
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # What the products of the engine do without a process around it, one folder for each.
 add_executable(test_engine
-  batch/campaign_state_test.cpp batch/earlier_results_test.cpp batch/night_plan_test.cpp batch/store_test.cpp
+  batch/campaign_state_test.cpp batch/earlier_results_test.cpp batch/run_plan_test.cpp batch/store_test.cpp
   platform/storage/files_test.cpp
   campaign/config/causes_test.cpp campaign/config/formula_test.cpp campaign/config/keys_test.cpp campaign/config/machines_test.cpp campaign/config/manifest_test.cpp campaign/config/schema_test.cpp
   campaign/config/secrets_test.cpp campaign/config/site_logs_test.cpp campaign/config/upgrade_test.cpp campaign/config/words_test.cpp

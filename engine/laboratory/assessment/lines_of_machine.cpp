@@ -11,6 +11,7 @@
 #include "laboratory/assessment/open_values.h"
 #include "laboratory/statistics/forecast.h"
 #include "nonio/reports/quantity_words.h"
+#include "nonio/sdk/withheld.h"
 
 namespace nonio::assessment {
 
@@ -423,16 +424,16 @@ class OfMachine {
       const store::StoredCampaign& c = m_.stored.campaigns[w.campaign];
       const bool table = w.finding.starts_with("table.");
       WorkItem l = line(Kind::withheld,
-                        table                          ? "worklist.no-table"
-                        : is_calibration(w.finding)    ? "worklist.calibration"
-                        : store::is_refusal(w.finding) ? "worklist.no-result"
-                                                       : "worklist.certificate",
+                        table                            ? "worklist.no-table"
+                        : is_calibration(w.finding)      ? "worklist.calibration"
+                        : is_refusal(w.finding) ? "worklist.no-result"
+                                                         : "worklist.certificate",
                         c.id + (w.axis.empty() ? "" : ":" + w.axis));
       l.axis = w.axis, l.campaign = c.id, l.since = c.day;
       put_text(l, "campaign", c.id);
       auto& to = all.emplace(l.id, std::move(l)).first->second;
       add_to_list(to, "withheld", {w.finding});
-      if (table || store::is_refusal(w.finding)) add_to_list(to, "outputs", w.outputs);
+      if (table || is_refusal(w.finding)) add_to_list(to, "outputs", w.outputs);
     }
     for (auto& [id, l] : all) add(std::move(l));
   }

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "laboratory/assessment/describe.h"
+#include "nonio/sdk/withheld.h"
 
 namespace nonio::assessment {
 
@@ -125,7 +126,7 @@ std::vector<Withheld> withheld(const StoredMachine& m) {
       const bool is_table = f.id.starts_with("table.");
       const std::string axis = is_table ? axis_of_measurement(m, i, f.measurement) : std::string();
       if (is_table && is_measured_later(m, newest, i, axis)) continue;
-      if ((is_calibration(f.id) || (!is_table && store::is_refusal(f.id))) &&
+      if ((is_calibration(f.id) || (!is_table && is_refusal(f.id))) &&
           is_measured_later(m, newest, i, {}))
         continue;
       found[{i, axis, f.id}].insert(f.source);

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "laboratory/store/place.h"
+#include "nonio/sdk/withheld.h"
 
 namespace nonio::store {
 namespace fs = std::filesystem;
@@ -166,16 +167,6 @@ void read_findings(Database& database, std::size_t campaign, std::int64_t evalua
 }
 
 }  // namespace
-
-bool is_refusal(std::string_view finding) {
-  return finding.find(".refused") != std::string_view::npos || finding.ends_with("-needed");
-}
-
-bool is_withholding(std::string_view finding) {
-  return finding.starts_with("table.") || finding.starts_with("certificate.") ||
-         finding.starts_with("traceability.") || finding == "signature.not-released" ||
-         is_refusal(finding);
-}
 
 Expected<StoreReader> StoreReader::open(const fs::path& out) {
   auto database = open_store(out);

@@ -58,11 +58,6 @@ struct StoredTables {
   std::string json{};  ///< the member of `control_tables` of results.json
 };
 
-/// A finding with which an analysis gives no result: "diagonals.refused-place", "-yaw-needed".
-bool is_refusal(std::string_view finding);
-/// A finding of severity `attention` that requires action: a table or a certificate was not made, or is
-/// not to be used, the instrument had no valid calibration, or the readings gave no result.
-bool is_withholding(std::string_view finding);
 
 /// All that the store has of one machine, without failed campaigns, which measured nothing.
 struct StoredMachine {

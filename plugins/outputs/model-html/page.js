@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page from disk: its data stand in it. Keeps the pictures (draw.js) right while effects, directions and runs are
-// taken out and put back. What is out stands in the address after "#".
+// The page from disk, which contains its data. Updates the pictures (draw.js) while effects, directions and runs are
+// removed and put back. What is removed is in the address after "#".
 "use strict";
 (function () {
   const data = JSON.parse(document.getElementById("data").textContent);
@@ -12,8 +12,8 @@
   const {number, text, finite} = pictures;
   let residual = data.residual;
 
-  // ---- the residual without some effects: without one it comes from a fit of the others; without
-  // several their parts come back, and each measurement keeps a zero of its own ----
+  // ---- the residual without some effects: without one it comes from a fit of the others; without several
+  // their fitted parts are added to the residual, and each measurement keeps a zero of its own ----
   let refitted = null;
   function work() {
     const one = out.e.size === 1 ? data.effects[[...out.e][0]].without : null;
@@ -55,14 +55,14 @@
       (whole && finite(refitted.cv_rms) ? " " + text(words.without_cv, {rms: number(refitted.cv_rms, 2), unit: data.unit}) : "");
   }
 
-  // ---- what is in and what is out ----
+  // ---- the choice of effects, directions and runs: boxes, and the address ----
   function remember() {
     const list = [];
     for (const kind in out) for (const v of [...out[kind]].sort()) list.push(kind + v);
     try {
       history.replaceState(null, "", list.length ? "#" + list.join(",") : location.pathname);
     } catch (e) {
-      // a page from disk that may not change its address works without
+      // where a page from disk is not allowed to change its address, the choice is not stored
     }
   }
   function recall() {

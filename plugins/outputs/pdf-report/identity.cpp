@@ -3,6 +3,7 @@
 
 #include "nonio/reports/number.h"
 #include "nonio/reports/text.h"
+#include "nonio/sdk/withheld.h"
 #include "nonio/sdk/format.h"
 #include "report.h"
 
@@ -104,7 +105,7 @@ void add_conformity(const Source& source, std::vector<std::string>& lines) {
         w.get(c.decision == Decision::does_not_conform ? "status.does_not_conform"
                                                        : "status.cannot_be_decided",
               {{"name", symbol(c.name)},
-               {"value", shown.value},
+               {"value", shown.U.empty() ? shown.value : shown.value + " ± " + shown.U},
                {"unit", unit_text(c.quantity)},
                {"tolerance", plain_number(source, c.tolerance, c.quantity)},
                {"reason", w.get_or("results." + c.reason, c.reason)}});
@@ -161,17 +162,20 @@ void add_status(const Source& source, Blocks& blocks) {
     status = {};
   }
   add_conformity(source, status.lines);
+  bool requires_action = !status.lines.empty();
   bool of_laboratory = false;  // what only the part for the laboratory contains
   for (const Measured& m : measured(source.in)) {
     for (const Finding* f : m.findings)
       if (f->attention && is_for_laboratory(source, *f))
         of_laboratory = true;
-      else if (f->attention)
+      else if (f->attention) {
+        requires_action = requires_action || is_withholding(f->id);
         status.lines.push_back(
             w.get("status.of_measurement",
                   {{"measurement", m.measurement.id},
                    {"what",
                     typeset(finding_text(source.in.templates, source.language(), *f, "title"))}}));
+      }
     if (m.observations.size() == 0 && results.errors.empty())
       status.lines.push_back(
           w.get("status.of_measurement",
@@ -179,21 +183,24 @@ void add_status(const Source& source, Blocks& blocks) {
   }
   for (const Results::Analysed& a : results.analyses)
     for (const Finding& f : a.evaluation.findings)
-      if (a.measurement.empty() && f.attention)
+      if (a.measurement.empty() && f.attention) {
+        requires_action = requires_action || is_withholding(f.id);
         status.lines.push_back(w.get(
             "status.of_measurement",
             {{"measurement", w.get_or("analysis." + a.plugin, a.plugin)},
              {"what", typeset(finding_text(source.in.templates, source.language(), f, "title"))}}));
+      }
   for (const TableFinding& f : table_findings(source))
     if (f.finding->attention && has_laboratory_part(source))
       of_laboratory = true;
     else if (f.finding->attention)
-      status.lines.push_back(title_of(source, f));
+      requires_action = true, status.lines.push_back(title_of(source, f));
   if (status.lines.empty() && !results.errors.empty()) return;
   if (status.lines.empty())
     say_what_was_looked_at(source, status, of_laboratory);
   else
-    status.level = Level::attention, status.text = w.get("status.attention");
+    status.level = Level::attention,
+    status.text = w.get(requires_action ? "status.attention" : "status.warnings");
   blocks.push_back({std::move(status), "status"});
 }
 

@@ -1,4 +1,4 @@
-// ---- the error: now, floor, one bar a step; the verdict in one sentence ----
+// ---- the present error and the noise floor, one bar per step, and the verdict in one sentence ----
 const bar = (() => {
   const percent = (v, most) => `${most > 0 ? Math.min(100, (100 * v) / most) : 0}%`;
 
@@ -19,7 +19,7 @@ const bar = (() => {
       el("span", {class: "number", "data-value": finite(value) ? value : ""}, `${short(value)} ${unit}`));
   }
 
-  /// A displacement over time: its noise is that of successive readings.
+  /// A displacement over time: its noise floor comes from successive readings.
   const overTime = (shown) => shown.part.includes("/");
   function verdictOf(shown) {
     const {explain, fit} = shown;
@@ -49,7 +49,7 @@ const bar = (() => {
     return out.join(" ");
   }
 
-  /// The errors of a part as lines with the noise floor: `most` is the whole length.
+  /// The errors of a part as bars with the noise floor; `most` is the value of a full bar.
   function errors(part, most, unit, over_time) {
     const floor = {s: field(part, "noise_floor"), u: field(part, "noise_floor_u")};
     const cv = field(part, "cv_rms") === undefined ? field(part.model, "cv_rms") : field(part, "cv_rms");
@@ -57,7 +57,7 @@ const bar = (() => {
       el("p", {class: "muted"}, finite(floor.s) ? say(over_time ? "bar.floor_over_time" : "bar.floor", {s: withU(floor.s, floor.u)[0], U: withU(floor.s, floor.u)[1] || "\u2013", unit}) : say("bar.no_floor"))].filter(Boolean);
   }
 
-  /// One bar a step that was taken on this page: a button that goes there.
+  /// One bar per step that was taken on this page; each is a button that returns to its step.
   function trail(state, shown, most, floor, go) {
     const steps = state.steps.map((step) => {
       const of = (step.parts || {})[shown.part], rms = field(of, "rms"), cv = field(of, "cv_rms");

@@ -1,8 +1,8 @@
-// ---- what both pages have: a dialog, what is spoken, the alarm at the top ----
+// ---- parts of both pages: a dialog, the text for screen readers, the alarm at the top ----
 const box = (() => {
   const button = (id, word, more = {}) => el("button", {type: "button", id, ...more}, say(word));
   const places = () => [el("div", {id: "said", class: "unseen", "aria-live": "polite"}), el("dialog", {id: "dialog", "aria-labelledby": "dialog-title"})];
-  /// What has the focus, to be found again among elements that were made anew: itself, or the line of a list it stands in.
+  /// Identifies the element that has the focus, or its line of a list, so that it is found again after a redraw.
   function focused() {
     const e = document.activeElement, line = e && e.closest("tr[data-line]");
     return {key: e && e.dataset.key, line: line && line.dataset.line};
@@ -13,7 +13,7 @@ const box = (() => {
     if (again) again.focus({preventScroll: true});
   }
   let opener = {};
-  /// A dialog with a title; gives its body. Esc closes it, the focus returns, also to what was drawn anew meanwhile.
+  /// A dialog with a title; returns its element. When it closes, the focus returns to its opener, even if that was redrawn.
   function dialog(title, ...content) {
     const place = by("dialog");
     if (!place.open) {

@@ -7,12 +7,12 @@ const campaigns = (() => {
   const hrefOf = (folder) => "#to=" + encodeURIComponent("campaign/" + folder);
   const nameOf = (c) => c.machine || c.model || c.id || c.folder;
 
-  /// State and verdict: in words, and by a mark that needs no colour.
+  /// State and verdict: in words, and by a mark that is readable without colour.
   const marks = {new: "\u25CB", failed: "\u2716", attention: "!", ok: "\u2714", "does not conform": "\u2716", conforms: "\u2714"};
   function badge(state) {
     return state ? el("span", {class: "badge " + state.replace(/ /g, "-")}, `${marks[state] || "?"} ${wordOf(state)}`) : null;
   }
-  /// Files by what they are for: the report, the certificate or its draft, and the rest.
+  /// Files by purpose: the report, the certificate or its draft, and the rest.
   function documents(c, fetchFile) {
     const id = c.id, get = (file) => () => fetchFile(`${id}/${file}`), first = [], rest = [];
     for (const file of c.files) {
@@ -96,7 +96,7 @@ const campaigns = (() => {
         }))))];
   }
 
-  /// Instruments with their last calibration: the nearest end first, so that what is over is seen at once.
+  /// Instruments with their last calibration: the earliest end of validity first, so that expired ones are at the top.
   async function instruments(history) {
     const {instruments: all} = await net.ask("/api/instruments"), now = new Date().toISOString().slice(0, 10);
     const sorted = all.sort((a, b) => ((a.until || "9999") < (b.until || "9999") ? -1 : 1));
@@ -107,7 +107,7 @@ const campaigns = (() => {
           el("td", {}, el("details", {}, el("summary", {}, say("list.campaigns", {n: i.number})), el("ul", {class: "plain"}, ...i.campaigns.map((c) => el("li", {}, c.day || "\u2013", " ", el("a", {href: hrefOf(c.folder)}, entries.visible(c.machine || c.id || c.folder)))))))))))), el("p", {class: "muted"}, say("list.until_what")), history ? el("p", {}, el("a", {href: "#to=instruments.html"}, say("list.history"))) : null].filter(Boolean);
   }
 
-  /// What the site states of itself, to be read.
+  /// The settings of the site, read-only.
   async function settings() {
     const all = await net.ask("/api/settings");
     const shownAs = (name, v) => (v === null ? say("set.all") : v === true ? say("set.yes") : v === false ? say("set.no") : Array.isArray(v) ? v.join(", ") : name === "seconds" ? `${v} s` : name === "numbering" ? String(v).replace("{year}", "2026").replace(/\{number(?::(\d+))?\}/, (all_, digits) => "1".padStart(Number(digits || 1), "0")) : String(v)) || "\u2013";
@@ -118,7 +118,7 @@ const campaigns = (() => {
 
   // ---- one campaign ----
   const json = async (id, file) => JSON.parse(await (await net.ask(`/site/results/${encodeURIComponent(id)}/${file}`, {raw: true})).text());
-  /// What was decided, each value with its U and its limit; and the values of a test of positioning that have no limit.
+  /// Results with a decision, each with its U and its limit; and results of a positioning test without a limit.
   function decisions(results) {
     const decided = new Map((results.conformity || []).map((d) => [[d.plugin, d.measurement, d.name].join("\n"), d])), rows = [];
     for (const a of results.analyses || []) for (const [name, v] of Object.entries(a.values || {})) {
@@ -130,7 +130,7 @@ const campaigns = (() => {
     return [decided.size === 0 ? el("p", {}, say("one.no_limits")) : null, rows.length === 0 ? null :
       el("table", {id: "decisions"}, el("thead", {}, el("tr", {}, ...["value", "result", "limit", "decision"].map((w) => el("th", {scope: "col"}, say("one." + w))))), el("tbody", {}, ...rows))];
   }
-  /// Keys of campaign.toml that a certificate lacks, by the names that the form has for them.
+  /// Keys that campaign.toml lacks for a certificate, by their names in the form.
   function missing(results) {
     const keys = [];
     for (const f of [...(results.findings || []), ...(results.tables || []).flatMap((t) => t.findings || []), ...(results.analyses || []).flatMap((a) => a.findings || [])])

@@ -1,10 +1,10 @@
-// ---- certificates: files to verify, drafts to release ----
+// ---- certificates: files to verify, drafts to approve ----
 const certificates = (() => {
   const most = 32 << 20;
   const types = {pdf: "application/pdf", xml: "application/xml", json: "application/json"};
   const verified = []; // {name, state, answer}, the newest first
 
-  /// One file after the other, so that a folder of them takes no more memory than one.
+  /// One file after the other, so that many files take no more memory than one.
   async function verify(files, draw) {
     const mine = [...files].map((file) => ({file, name: file.name, state: "waits"}));
     verified.unshift(...mine);
@@ -33,7 +33,7 @@ const certificates = (() => {
     const key = "verify.verdict_" + one.answer.verdict.replace(/-/g, "_"), text = say(key);
     return one.answer.not_made && one.answer.verdict === "incomplete" ? `${text}: ${[...new Set(one.answer.not_made.map(nameOf))].join(", ")}` : text;
   }
-  /// A check in words; those of a DCC inside a PDF are those of a separate one. What a file of another version sends is its id.
+  /// A check in words; a DCC inside a PDF has the checks of a separate one. A check that this version does not know is shown by its id.
   function nameOf(id) {
     const word = (name) => words["check." + name.replace(/\./g, "_")];
     if (id === "dcc") return say("check.dcc_none");
@@ -41,7 +41,7 @@ const certificates = (() => {
     const what = rest ? word(id) || word("xml_" + rest) || word("certificate_" + rest) || word("signer_" + rest) || rest : word(id) || id;
     return rest ? say("check.dcc", {what}) : what;
   }
-  /// What it means that this check fails; nothing of a check of another version.
+  /// The meaning of a failure of this check; nothing for a check that this version does not know.
   function meaning(id) {
     const rest = id.startsWith("dcc.") ? id.slice(4) : "";
     const names = id === "dcc" ? ["dcc_none"] : rest ? ["dcc_" + rest, "xml_" + rest, "certificate_" + rest, "signer_" + rest] : [id];
@@ -104,7 +104,7 @@ const certificates = (() => {
     password ? el("label", {class: "wide"}, el("span", {}, say("release.password")), password) : null, confirmed ? el("label", {class: "wide"}, el("span", {}, say("release.confirm", {name: entries.visible(entries.me())})), confirmed) : null,
     el("p", {class: "muted"}, say("release.what")), problem, el("div", {class: "buttons"}, go));
   }
-  /// One draft; with `act` it can be released.
+  /// One draft; with `edit` it can be approved.
   function draft(one, edit, fetchFile, act) {
     const file = one.file.split("/").slice(-2).join("/"), info = one.findings.filter((f) => f.severity !== "attention");
     return el("li", {class: "draft", "data-campaign": one.campaign}, el("h3", {}, one.campaign),

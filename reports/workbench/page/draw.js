@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The readings with their model, and the nine pictures of residuals: the page from disk (model-html) and the live one
-// draw with this code. The caller brings the data, from the page itself or from the server, and says what is hidden and what is done with a reading.
+// draw with this code. The caller provides the data, what is hidden, and the functions that handle a chosen reading.
 "use strict";
-/// figure(k): the element of picture k, "fit" of that with the model; tip: what shows a reading; hidden: {d: directions, r: runs}, sets.
-/// Where a caller wants them: elsewhere(k) where it draws picture k itself, pick(row) and brushed(rows) when a reading or
-/// a region is chosen, said(lines) when a key moves to a reading, drawn(k, frame) after each picture, inTurn() after all
-/// of them; with it those in view come first. Circles have two pictures more, "polar" and "rest" (polar.js).
+/// figure(k): the element of picture k, or of the picture with the model if k is "fit"; tip: the element that shows a reading;
+/// hidden: {d: directions, r: runs}, sets. Optional: elsewhere(k) is true if the caller draws picture k itself; pick(row) and
+/// brushed(rows) are called when a reading or a region is chosen, said(lines) when a key moves to a reading, drawn(k, frame)
+/// after each picture, inTurn() after all; with inTurn visible pictures come first. Circles also have "polar" and "rest" (polar.js).
 function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, said, drawn}) {
   let data, words, n, wrong, residual, place, ends_of_lane, lines, ghost = null, named = "";
   let shown = [], range = [0, 1], pictures = [], marked = -1, by_key = false, printing = false, chosen = new Set(), turns = 0, looks = false;
@@ -48,7 +48,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
   const r1 = (v) => Math.round(v * 10) / 10;
 
   class Frame {
-    /// `options.from`, `to`: of the height, where another frame is in the same picture; `bare`: without a title below.
+    /// `options.from`, `to`: range of the height, if a picture has several frames; `bare`: without a title of the x axis.
     constructor(k, xs, options) {
       const holder = figure(options.in || k), {from = 0, to = 230, all = to, bare = false} = options;
       this.svg = holder.querySelector("svg");
@@ -61,7 +61,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
       let [low, high] = extremes(xs);
       this.empty = !(low <= high);
       if (this.empty) [low, high] = [0, 1];
-      // Values that differ by rounding alone are one value: no step would be small enough for ticks between them.
+      // Values that differ only by rounding are one value: no step is small enough for ticks between them.
       if (high - low < 1e-9 * Math.max(Math.abs(low), Math.abs(high))) high = low;
       const side = 0.025 * (high - low) || 0.5;
       this.lanes = options.lanes ? data.lanes : null;
@@ -105,8 +105,8 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
       const one = ([xs, ys]) => xs.map((v, i) => (i ? "L" : "M") + r1(this.px(v)) + " " + r1(this.py(ys[i]))).join("");
       if (all.length) put(this.g, "path", {class: "line " + look, d: all.map(one).join("")});
     }
-    /// Readings by direction; suspects that lie outside stand at the edge.
-    /// On paper they are drawn: sharp at any size. On the screen very many are painted, which takes a tenth of the time.
+    /// Readings by direction; suspects outside the range are drawn at its edge.
+    /// For print they are SVG, sharp at any size. On the screen very many are painted on a canvas, in a tenth of the time.
     scatter(rows, xs, ys) {
       const path = {plus: "", minus: "", other: ""}, many = rows.length > 1200, painted = many && !printing;
       const dots = {plus: [], minus: [], other: []};
@@ -145,7 +145,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     }
   }
 
-  // ---- places: lines in space stand side by side, each in a lane of width 1 ----
+  // ---- places: lines in space are side by side, each in a lane of width 1 ----
   function place_of(m, target) {
     if (!data.lanes) return target;
     const [low, high] = ends_of_lane[m], room = 0.08;
@@ -153,7 +153,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
   }
   const of_line = (rows, m) => rows.filter((i) => data.measurement[i] === m);
 
-  /// Of each value of the key, ascending: [key, readings that count, their mean].
+  /// For each value of the key, ascending: [key, readings with weight, their mean].
   function grouped(rows, key, values) {
     const map = new Map();
     for (const i of rows)
@@ -212,13 +212,13 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     return frame;
   }
 
-  // ---- readings of each pass with the model, and below what it leaves ----
+  // ---- readings of each pass with the model, and the residuals below ----
   function with_model() {
     const xs = shown.map((i) => place[i]), left = (i) => (named ? data.residual[i] : residual[i]), most_lines = 60;
     const model = data.deviation.map((v, i) => v - left(i));
     const [low, high] = extremes([0, ...extremes(shown.map((i) => data.deviation[i])), ...(looks ? [] : extremes(shown.map((i) => model[i])))]);
     const edge = 0.06 * (high - low) || 1;
-    // All of it is seen on a low screen, too.
+    // On a low screen the picture is smaller, so that all of it is visible.
     const is_low = !printing && window.innerHeight < 800, all_high = is_low ? 340 : 400, middle = is_low ? 190 : 232;
     const units = [...new Set((data.channels || []).map((c) => c.unit))], each = is_low ? 72 : 96;
     const both = {in: "fit", all: all_high + each * units.length, lanes: true};
@@ -249,7 +249,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     return [above, below, ...units.map((unit, k) => channels_of(unit, xs, {...both, from: all_high + each * k, to: all_high + each * (k + 1) + (k + 1 === units.length ? 0 : -6), bare: k + 1 < units.length}))];
   }
 
-  /// Temperatures, speeds or loads during the readings: those of the model by name, the others grey.
+  /// Temperatures, speeds or loads during the readings: those in the model with their names, the others grey.
   function channels_of(unit, xs, options) {
     const of = data.channels.filter((c) => c.unit === unit), used = of.filter((c) => c.used);
     const [low, high] = extremes(of.flatMap((c) => shown.map((i) => c.values[i]))), edge = 0.06 * (high - low) || 1;
@@ -269,7 +269,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     const edge = 0.06 * (high - low) || 1;
     const frame = new Frame(1, all("xs"), {range: [low - edge, high + edge], lanes: true});
     if (lines.length > 1 && data.floor) {
-      // One belt for all lines: bands would darken each other.
+      // One band for all lines: overlapping bands would be darker.
       const widest = Math.max(0, ...all("half"));
       put(frame.g, "rect", {class: "band", x: frame.x, y: r1(frame.py(widest)), width: frame.w,
                               height: r1(frame.py(-widest) - frame.py(widest))});
@@ -278,8 +278,8 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     return frame;
   }
 
-  /// mean(+) less mean(-) at each target of one measurement, and twice its standard deviation by the
-  /// floor.
+  /// mean(+) minus mean(-) at each target of one measurement, and twice its standard deviation according to the
+  /// noise floor.
   function reversal_of(m) {
     const rows = of_line(shown, m);
     const minus = by_key_of(grouped(rows.filter((i) => data.direction[i] < 0), data.target, residual));
@@ -343,7 +343,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     return frame;
   }
 
-  // ---- what an effect would take away, over what remains: means, as a thin line ----
+  // ---- what an effect would explain of the residuals: its means, as a thin line ----
   function ghost_line(frame, xs, group) {
     const sums = new Map();
     shown.forEach((i, j) => {
@@ -382,7 +382,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     }
   }
 
-  /// `values`: what is drawn, if not the residuals of the data; `name`: the title of its axis.
+  /// `values`: drawn instead of the residuals of the data; `name`: the title of the axis.
   function draw(values, name, only) {
     if (values) [residual, looks] = [values, only === true];
     named = name || "";
@@ -404,7 +404,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
       if (drawn) drawn(k, frame);
     };
     const all = drawers.map((_, k) => k).filter((k) => !data.pictures[k].none && !(elsewhere && elsewhere(k)));
-    // Of many readings what is in view comes first.
+    // With many readings the visible pictures are drawn first.
     const later = inTurn && n > 2000 && !printing ? all.filter((k) => !in_view(k)) : [];
     all.filter((k) => !later.includes(k)).forEach(one);
     const turn = ++turns;
@@ -455,7 +455,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
       if (point) put(frame.g, "circle", {class: "chosen", cx: r1(point[0]), cy: r1(point[1]), r: 5});
     }
   }
-  /// The same readings in every picture; the others step back.
+  /// Highlights the same readings in every picture.
   function select(rows) {
     chosen = new Set(rows);
     for (const frame of pictures) {
@@ -507,7 +507,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     show(best[2] >= 0 ? about(best[2]) : best[3], event.clientX, event.clientY);
   }
 
-  // ---- a region: drawn with the pointer; what lies in it is chosen in every picture ----
+  // ---- a region: drawn with the pointer; its readings are chosen in every picture ----
   let drag = null;
   function down(event) {
     hover(event);
@@ -543,7 +543,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     }
   }
 
-  // ---- the same with keys: a cursor that goes from reading to reading, in the picture that has the focus ----
+  // ---- the same with keys: a cursor that moves from reading to reading in the picture that has the focus ----
   function key(event) {
     const svg = event.target.closest && event.target.closest("figure svg");
     const frame = svg && pictures.find((f) => f.svg === svg);
@@ -575,7 +575,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     if (drag && drag.box) drag.box.remove();
     drag = null;
   });
-  // What a key has marked stays marked when the page moves under it.
+  // A reading marked by a key stays marked when the page scrolls.
   document.addEventListener("scroll", () => (by_key ? (tip.hidden = true) : hide()), {passive: true, capture: true});
   if (pick) document.addEventListener("keydown", key);
 
@@ -584,7 +584,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     clearTimeout(pending);
     pending = setTimeout(() => data && draw(), 100);
   });
-  // What is painted has no colours that follow a theme.
+  // The canvas does not follow a change of the colour scheme: it is painted again.
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => data && draw());
   for (const [event, now] of [["beforeprint", true], ["afterprint", false]])
     window.addEventListener(event, () => {
@@ -593,7 +593,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     });
 
   return {
-    /// What the page has of a part: model-html embeds it, GET /api/parts/X/fit sends it.
+    /// The data of a part: model-html embeds them, GET /api/parts/X/fit sends them.
     set(page) {
       const other = !data || data.residual.length !== page.residual.length || data.axis !== page.axis;
       data = page;
@@ -608,14 +608,14 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
       place = data.target.map((v, i) => place_of(data.measurement[i], v));
       lines = Array.from({length: Math.max(1, data.measurements)}, (_, m) => m);
     },
-    /// What an effect says of each reading, or nothing.
+    /// The value of an effect at each reading, or nothing.
     ghost(column) {
       const means = new Map();
       (column || []).forEach((v, i) => {
         const m = means.get(data.measurement[i]) || [0, 0];
         if (finite(v)) means.set(data.measurement[i], [m[0] + data.weight[i], m[1] + data.weight[i] * v]);
       });
-      // Each measurement has a zero of its own, which takes the mean.
+      // Each measurement has a zero of its own, which includes the mean of the effect.
       ghost = column && column.map((v, i) => v - means.get(data.measurement[i])[1] / means.get(data.measurement[i])[0]);
     },
     draw, mark, select, about, hide,

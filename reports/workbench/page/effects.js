@@ -1,14 +1,14 @@
-// ---- the effects: in the model, would help, no sign of, cannot be judged; and all about the one that is chosen ----
+// ---- the effects in four groups: in the model, would help, no sign of, cannot be judged; and details of the chosen one ----
 const effects = (() => {
   const cardOf = (state, effect) => (state.catalogue || []).find((c) => c.effect === nameOf(effect)) || {effect, card: {}};
   const ofPart = (state, shown) => (state.catalogue || []).filter((c) => c.part === shown.part && !c.library).map((c) => c.effect);
 
-  /// "squareness:XY = 12.3 arcsec" is a held effect, "heat:t4/x1+x2" one of these displacements only.
+  /// "squareness:XY = 12.3 arcsec" is an effect of fixed size, "heat:t4/x1+x2" one of the displacements x1 and x2 only.
   const nameOf = (entry) => entry.split(" = ")[0].split("/")[0];
   const isOf = (entry, part) => !entry.includes("/") || entry.split("/")[1].split("+").includes(part.split("/")[1]);
   const writtenOf = (state, shown, effect) => ((state.catalogue || []).find((c) => c.part === shown.part && c.effect === effect) || {}).written || effect;
 
-  /// The four groups. An effect stands in one of them only.
+  /// The four groups. Each effect is in exactly one of them.
   function groups(state, shown) {
     const model = state.model.filter((e) => isOf(e, shown.part)), taken = new Set(model.filter((e) => nameOf(e) !== e).map(nameOf));
     const own = ofPart(state, shown).filter((e) => !taken.has(e));
@@ -21,7 +21,7 @@ const effects = (() => {
     return {inModel, help, none, unseen, rest, descriptions: explain.descriptions || []};
   }
 
-  /// What an effect would take away, small: over the readings in their order.
+  /// A small picture of what an effect would explain of each reading, in the order of the readings.
   function spark(says, direction) {
     const width = 84, height = 26, values = says.filter(finite);
     const picture = svg("svg", {class: "spark", viewBox: `0 0 ${width} ${height}`, "aria-hidden": "true"});
@@ -77,13 +77,13 @@ const effects = (() => {
       rest.length ? el("details", {"data-key": "rest", open: shown.learning || null}, el("summary", {}, say(shown.learning ? "effects.all" : "effects.rest", {n: rest.length})), el("ul", {class: "effects-of"}, ...rest)) : null);
   }
 
-  /// The picture of an effect: what it says of each reading against what orders it best.
+  /// The picture of an effect: its value at each reading over the column that orders these values best.
   function fingerprint(shown, all) {
-    // Of many readings a sample that falls in step with nothing: the picture is small.
+    // The picture is small: of many readings a pseudo-random sample is enough, which no period of the readings can bias.
     const most = 1500, share = most / all.length, keep = (_, i) => share >= 1 || ((i * 2654435761) >>> 0) / 4294967296 < share;
     const thin = (column) => column && column.filter(keep), whole = shown.fit.page, says = thin(all);
     const data = {...whole, target: thin(whole.target), time: thin(whole.time), run: thin(whole.run), temperature: thin(whole.temperature), direction: thin(whole.direction)}, columns = [["position", data.target, data.position_unit], ["time", data.time, data.time_unit], ["run", data.run, ""], ["temperature", data.temperature, "\u00B0C"]].filter((c) => c[1]);
-    const score = ([, xs]) => { // share of the variance within 24 parts of x: small is orderly
+    const score = ([, xs]) => { // share of the variance within 24 parts of x: the smaller, the better ordered
       const parts = new Map(), usable = xs.map((x, i) => [x, says[i], data.direction[i]]).filter((p) => finite(p[0]) && finite(p[1]));
       if (usable.length < 4) return Infinity;
       const low = Math.min(...usable.map((p) => p[0])), high = Math.max(...usable.map((p) => p[0]));
@@ -101,7 +101,7 @@ const effects = (() => {
     const [name, xs, unit] = best, points = xs.map((x, i) => [x, says[i], data.direction[i]]).filter((p) => finite(p[0]) && finite(p[1]));
     const ends = (k) => [Math.min(...points.map((p) => p[k])), Math.max(...points.map((p) => p[k]))];
     const [x0, x1] = ends(0), [y0, y1] = ends(1), width = 270, height = 110;
-    const level = (y) => short(Math.abs(y) < 1e-6 * Math.max(-y0, y1) ? 0 : y); // 0 with its rounding is 0
+    const level = (y) => short(Math.abs(y) < 1e-6 * Math.max(-y0, y1) ? 0 : y); // rounding is shown as 0
     const px = (x) => 44 + ((width - 52) * (x - x0)) / (x1 - x0 || 1), py = (y) => 8 + (height - 34) * (1 - (y - y0) / (y1 - y0 || 1));
     const path = (d) => points.filter((p) => (d < 0 ? p[2] < 0 : p[2] >= 0)).map((p) => `M${px(p[0]).toFixed(1)} ${py(p[1]).toFixed(1)}h0`).join("");
     const picture = svg("svg", {viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": say("about.picture_alt", {x: say("x." + name), low: level(y0), high: level(y1), unit: shown.unit})},
@@ -149,7 +149,7 @@ const effects = (() => {
       plans.length ? [el("h4", {}, say("about.apart")), el("ul", {}, ...plans.map((p) => el("li", {}, typeset(p.says))))] : null);
   }
 
-  /// What to measure next, with what it costs and what it buys.
+  /// Proposed measurements, each with its number of readings and its power.
   function drawNext(state, shown) {
     const explain = shown.explain, box = by("next-what");
     if (!explain || shown.explainIsOld || shown.learning) return fill(box, el("p", {class: "muted"}, say("next.none")));
@@ -159,7 +159,7 @@ const effects = (() => {
     fill(box, table, next.length ? el("ul", {}, ...next.map((t) => el("li", {}, typeset(t)))) : null, ...(explain.warnings || []).map((t) => el("p", {}, typeset(t))),
       !plans.length && !next.length ? el("p", {class: "muted"}, say("next.nothing")) : null);
   }
-  /// What one run more would do, in each order of directions, to U of each parameter and to the evidence; on a terminal too.
+  /// The effect of one more run, in each order of directions, on U of each parameter and on the evidence; also for a terminal.
   function drawWhatIf(state, shown) {
     const explain = shown.explain, box = by("what-if"), all = shown.explainIsOld || shown.learning ? [] : shown.whatIf || [];
     if (!explain || !all.length) return fill(box);

@@ -1,13 +1,13 @@
-// ---- what people enter: acknowledgements, events; each by the verb that a terminal has ----
+// ---- entries of people: acknowledgements and events; each has a command for the terminal ----
 const entries = (() => {
   const day = (days) => {
     const d = new Date(Date.now() + 864e5 * days);
     return `${d.getFullYear()}-${String(d.getMonth() + 1).padStart(2, "0")}-${String(d.getDate()).padStart(2, "0")}`;
   };
-  /// Text of somebody else's file: what cannot be seen, or turns the direction of writing, is told by its number.
+  /// Text of an untrusted file: characters that are invisible or change the direction of writing are shown by their number.
   const visible = (text) => text.replace(/[\u0000-\u001F\u007F-\u009F\u00AD\u061C\u180E\u200B-\u200F\u2028-\u202E\u2060-\u2069\uFEFF\uFFF9-\uFFFB]/g,
     (c) => (c === "\n" ? c : "\\u" + c.charCodeAt(0).toString(16).padStart(4, "0")));
-  let account = ""; // the name of the user that is logged in: all entries are made under it
+  let account = ""; // the name of the user who is signed in: all entries are made under it
   const me = () => account || localStorage.getItem("nonio-by") || "";
   const remember = (by_) => account || localStorage.setItem("nonio-by", by_);
   let confirming = ""; // how an approval is confirmed: by the password, or by the name
@@ -20,7 +20,7 @@ const entries = (() => {
       ...(more.options || []).map(([value, text]) => el("option", {value, selected: value === more.value}, text)));
     return el("label", {class: "wide"}, el("span", {}, say(word)), input, note ? el("span", {class: "muted"}, note) : null);
   }
-  /// A form in a dialog; `send` gets its values and does it. It stays open with the words where it is refused.
+  /// A form in a dialog; `send` receives its values. If the server refuses, it stays open and shows the reason.
   function form(title, told, fields, done, send) {
     const problem = el("p", {class: "flag", role: "alert"}), write = el("button", {type: "submit", class: "strong", id: "dialog-write"}, done);
     const body = el("form", {onsubmit: async (event) => {
@@ -41,7 +41,7 @@ const entries = (() => {
   }
   const who = () => field("by", "entry.by", {required: true, maxlength: 100, ...mine()});
 
-  /// `line`: as `nonio status --actions --json` has it.
+  /// `line`: an element of `nonio status --actions --json`.
   function acknowledge(line, told, act) {
     form(say("ack.title"), el("p", {}, el("b", {}, [line.machine, line.axis].filter(Boolean).join(" ")), " ", told), [
       el("p", {class: "muted"}, say("ack.what")), who(),
@@ -52,7 +52,7 @@ const entries = (() => {
       return act("ack", {finding: line.id, machine: line.machine, ...v, why: v.why.trim()}, say("ack.done"));
     });
   }
-  /// `entry`: as `nonio machine ack --json` has it.
+  /// `entry`: an element of `nonio machine ack --json`.
   function withdraw(entry, act) {
     form(say("withdraw.title"), el("p", {}, el("b", {}, [entry.machine, entry.axis].filter(Boolean).join(" ")), " ", say("withdraw.known", {by: visible(entry.by), until: entry.until, why: visible(entry.why)})), [
       el("p", {class: "muted"}, say("withdraw.what")), who(), field("why", "withdraw.why", {maxlength: 500})],
@@ -78,7 +78,7 @@ const entries = (() => {
       return act("event", Object.fromEntries(Object.entries(v).map(([k, x]) => [k, x.trim()]).filter(([, x]) => x !== "")), say("event.done"));
     });
   }
-  /// The entry that makes a line known: the first of the file that fits it, as the run does.
+  /// The entry that acknowledges a line: the first match in the file, as in a run.
   function entryOf(line, all) {
     return all.find((a) => a.machine === line.machine && (!a.axis || a.axis === line.axis) && a.by === line.by && a.until === line.until && a.why === line.why);
   }

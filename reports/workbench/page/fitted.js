@@ -1,10 +1,10 @@
-// ---- the model of a campaign against its readings, on the page of the site: what its workbench draws, to be looked at ----
+// ---- the model of a campaign and its readings on the page of the site: the picture of the workbench, read-only ----
 const fitted = (() => {
   let pictures = null, turn = 0;
   const chosen = new Map(); // campaign: its part
   const places = (folder) => el("section", {id: "fitted", "data-folder": folder, "aria-labelledby": "fitted-title", hidden: true}, el("h2", {id: "fitted-title"}, say("one.fitted")), el("div", {id: "fitted-parts", class: "acts wide"}),
     el("div", {id: "picture-fit"}, el("figure", {}, svg("svg", {role: "img", "aria-labelledby": "fitted-title", "aria-describedby": "fitted-says"}), el("figcaption", {}, el("p", {id: "fitted-says", class: "muted"})))), el("div", {id: "fitted-errors"}));
-  /// Asks again while it is not known yet; nothing where the page shows something else meanwhile.
+  /// Repeats the request until the answer is ready; null if the page meanwhile shows something else.
   async function settled(mine, path, isThere) {
     for (;;) {
       let answer = null;
@@ -18,7 +18,7 @@ const fitted = (() => {
       await new Promise((done) => setTimeout(done, 150));
     }
   }
-  /// Into the place that the page has for it. What cannot be fitted is left out: findings and values report it.
+  /// Fills the section made by `places`. A campaign that cannot be fitted has none: findings and values report it.
   async function draw() {
     const place = by("fitted"), mine = ++turn;
     if (!place) return;

@@ -1,4 +1,4 @@
-// ---- learning: the page hides what it knows, the reader looks for the effect, and the page says when it is right ----
+// ---- learning: the page hides its findings, the reader looks for the effect, and the page reports whether it is right ----
 const learn = (() => {
   let on = sessionStorage.getItem("nonio-learn") === "1", before = null;
   function toggle() {
@@ -6,7 +6,7 @@ const learn = (() => {
     sessionStorage.setItem("nonio-learn", on ? "1" : "0");
     before = null;
   }
-  /// What the reader's last step did, held against what explain knows of it.
+  /// Judges the reader's last step by the result of explain: [kind, sentence].
   function judge(state, shown) {
     const {explain, fit} = shown;
     if (!explain || !fit || shown.explainIsOld) return ["wait", say("learn.wait")];

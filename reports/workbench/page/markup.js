@@ -1,5 +1,5 @@
-// ---- a page that the last run has written, as elements of this page: its drawing, words and numbers. Only
-// what is listed here is made; nothing is ever given to the browser as markup. ----
+// ---- static pages of the last run (worklist, machines) as elements of this page. Only the elements and attributes listed here
+// are made, and the browser never parses the text as markup, so that a page cannot run a script. ----
 const markup = (() => {
   const plain = new Set("a b code dd details div dl dt em h1 h2 h3 h4 label li main nav ol option p section select span strong summary table tbody td th thead tr ul".split(" "));
   const drawn = new Set("circle g line path polygon polyline rect svg text title tspan".split(" "));
@@ -8,7 +8,7 @@ const markup = (() => {
   const entities = {amp: "&", lt: "<", gt: ">", quot: "\"", apos: "'", nbsp: "\u00A0"};
   const decoded = (text) => text.replace(/&(#x?[0-9a-fA-F]+|[a-z]+);/g, (all, name) => name[0] !== "#" ? entities[name] || all
     : String.fromCodePoint(name[1] === "x" ? parseInt(name.slice(2), 16) : Number(name.slice(1))));
-  /// Only to what lies beside the page.
+  /// Only relative links are kept: null for one with a scheme or an absolute path.
   const address = (to) => (/^[A-Za-z][A-Za-z0-9+.-]*:|^\/|^\\/.test(to) ? null : to);
 
   function element(name, attributes, inside) {
@@ -25,7 +25,7 @@ const markup = (() => {
     if (node.dataset.to && is_drawn) node.setAttribute("href", "#to=" + encodeURIComponent(node.dataset.to));
     return node;
   }
-  /// The elements that `text` says, below a new <div>.
+  /// The elements of `text`, below a new <div>.
   function read(text) {
     const root = el("div");
     const open = [{name: "", node: root}];
@@ -45,12 +45,12 @@ const markup = (() => {
     }
     return root;
   }
-  /// What stands between the tags of that name, the first one.
+  /// The text between the first pair of tags of that name.
   function between(text, name) {
     const from = text.search(new RegExp(`<${name}[ >]`)), to = text.indexOf(`</${name}>`, from);
     return from < 0 || to < 0 ? "" : text.slice(text.indexOf(">", from) + 1, to);
   }
-  /// Of a whole page: what its main part says, its links to other pages, and what stands beside them.
+  /// Parts of a whole page: its main part, its links to other pages, and the text next to them.
   function page(text) {
     const header = read(between(text, "header"));
     const beside = header.querySelector("p");

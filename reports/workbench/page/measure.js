@@ -1,8 +1,8 @@
-// ---- a new campaign: a file is dropped, its curve is seen, the rest is stated by hand or taken from what the site knows ----
+// ---- a new campaign: a file is dropped, its curve is shown, and the rest is typed or taken from the records of the site ----
 const measure = (() => {
   const most = 31 << 20;
   let file = null, preview = null, records = null, columns = [], problem = "", busy = false, current = null, formOf = null;
-  // Table of campaign.toml, and its fields; "!": a certificate needs it. What a field is called is in the words.
+  // Tables of campaign.toml and their fields; "!": required for a certificate. The names of the fields are in the words.
   const sections = [
     ["machine", ["maker!", "model!", "serial!", "asset"]],
     ["campaign", ["customer!", "customer_address!", "site!", "operator", "date!"]],
@@ -26,7 +26,7 @@ const measure = (() => {
     try {
       preview = await net.ask("/api/preview", {body: body({name: file.name, columns, axis: fromName().axis}), type: "application/octet-stream"});
       if (!records) records = await net.ask("/api/records");
-      // The same names as in an earlier file mean the same.
+      // Columns with the names of an earlier file have the same meaning.
       const header = keysOf(preview.rows ? preview.rows[0].map((c) => c.trim()) : []);
       const earlier = columns.length === 0 && preview.error && records.columns.find((list) => list.every((one) => header.includes(nameIn(one))));
       if (earlier) {
@@ -98,7 +98,7 @@ const measure = (() => {
 
   // ---- columns that were not recognised ----
   const nameIn = (one) => one.slice(0, one.lastIndexOf("=")).trim();
-  /// How a column is stated: by its name, or by its number where it has none of its own.
+  /// The key of a column: its name, or its number if the name is empty or not unique.
   const keysOf = (names) => names.map((n, k) => (n !== "" && !/^#\d+$/.test(n) && names.indexOf(n) === names.lastIndexOf(n) ? n : `#${k + 1}`));
   const stated = (key, name) => {
     const one = columns.find((c) => nameIn(c) === key);
@@ -150,12 +150,12 @@ const measure = (() => {
     const d = new Date();
     return `${d.getFullYear()}-${String(d.getMonth() + 1).padStart(2, "0")}-${String(d.getDate()).padStart(2, "0")}`;
   };
-  /// What a name such as FP12_X_20240302.rtl states.
+  /// Date and axis from a file name such as FP12_X_20240302.rtl.
   function fromName() {
     const date = /(?:^|\D)(20\d\d)-?([01]\d)-?([0-3]\d)(?:\D|$)/.exec(file.name), axis = /(?:^|[_ .-])([XYZUVWABCxyzuvwabc])(?=[_ .-])/.exec(file.name);
     return {date: date ? `${date[1]}-${date[2]}-${date[3]}` : "", axis: axis ? axis[1].toUpperCase() : ""};
   }
-  /// What an operator typed into a laser's file: "Machine:Test bed; Serial No:17".
+  /// Values from the operator's text in a laser's file: "Machine:Test bed; Serial No:17".
   function fromText() {
     const of = new Map((preview.text || "").split("; ").map((one) => [one.slice(0, one.indexOf(":")).trim().toLowerCase(), one.slice(one.indexOf(":") + 1).trim()]));
     const day = /^20\d\d-[01]\d-[0-3]\d/.exec(of.get("date") || "");
@@ -231,7 +231,7 @@ const measure = (() => {
   function draw() {
     if (by("new-view")) by("new-view").replaceChildren(...content());
   }
-  /// The view, once: what is typed there is drawn again only where another file is dropped.
+  /// The view, made once: it is redrawn only when another file is dropped, so that typed text is kept.
   function view(with_) {
     tools = with_;
     return [el("div", {id: "new-view"}, ...content())];

@@ -1,23 +1,23 @@
-// ---- the server: every request has the token, which is never in an address or a cookie; or a session, where people
-// sign in ----
+// ---- the server: every request has the token, which is never in an address or a cookie, or, on a server with users,
+// the session of a user ----
 const net = (() => {
   const at = /(?:^|[#&])t=([0-9a-f]{32})(?:&|$)/.exec(location.hash);
   if (at) {
     sessionStorage.setItem("nonio-token", at[1]);
-    // The other parameters belong to the page: filters of a list.
+    // The rest of the address is kept: it has the filters of the worklist.
     const rest = location.hash.slice(1).split("&").filter((one) => !one.startsWith("t=")).join("&");
     history.replaceState(null, "", location.pathname + (rest ? "#" + rest : ""));
   }
-  // A site's server has each campaign at an address of its own: the calls go there too.
+  // The server of a site has an address for each campaign, to which the requests of its workbench go.
   const base = location.pathname.slice(0, location.pathname.lastIndexOf("/"));
   const token = () => sessionStorage.getItem("nonio-token") || "";
 
-  /// What the program says of a fit, and what people bring about: in the words of the page.
+  /// Messages of the program about a fit that the page translates.
   const known = [[/^not separable with these readings: (?<which>.+)$/, "apart"], [/^the readings cannot show (?<which>.+)$/, "not_shown"],
     [/^(?<n>\d+) readings cannot determine (?<unknowns>\d+) unknowns$/, "few"], [/^no reading of part (?<part>.+) is left$/, "none_left"],
     [/^no answer within (?<seconds>\d+) s/, "slow"], [/^a plugin brought the process down in which it ran/, "crashed"],
     [/^the process that calculates has ended/, "restarted"], [/^campaign\.toml has this model already/, "saved_already"]];
-  /// Whatever else the program says is English, as on a terminal; the page says so in its own language.
+  /// All other messages are English, as on a terminal; the page introduces them in its own language.
   function program(text) {
     for (const [form, name] of known) {
       const found = form.exec(text);
@@ -53,7 +53,7 @@ const net = (() => {
       answer = {error: text.slice(0, 500)};
     }
     if (!response.ok) {
-      // A campaign of a site: its first page has the sign-in.
+      // On the page of a campaign the session has ended: the page of the site has the form to sign in.
       if (answer.id === "signed_out" && base !== "") location.href = "/";
       throw new Refused(response.status, answer);
     }
@@ -61,8 +61,8 @@ const net = (() => {
     return answer;
   }
 
-  /// Reads the stream of events for ever: a lost connection is told, and tried again from where it was. A hidden tab
-  /// keeps none, since a browser has only six connections for all tabs.
+  /// Reads the stream of events forever: a lost connection is reported and resumed after the last event. A hidden tab
+  /// has no stream, because a browser has only six connections to a server for all tabs.
   async function listen({since, event, lost, found, path = "/api/events"}) {
     let wait = 500, stop = null, gone = false;
     document.addEventListener("visibilitychange", () => document.hidden && stop && stop.abort());
@@ -106,13 +106,13 @@ const net = (() => {
         try {
           data = JSON.parse(of("data") || "{}");
         } catch (e) {
-          // an event without data still says that something is new
+          // an event with damaged data still reports a change
         }
         event({type: of("event") || "state", id: Number(of("id")) || 0, data});
       }
     }
   }
-  /// A file of the server, as the browser stores one.
+  /// Stores a file of the server as a download of the browser.
   async function download(path, name) {
     const url = URL.createObjectURL(await ask(path, {raw: true}));
     const link = el("a", {href: url, download: name});

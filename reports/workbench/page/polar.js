@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Circles as a ball bar draws them: readings and model enlarged about a ring, and what remains about another; each
-// plane by itself, one below the other. The page from disk and the live one draw with this code.
+// Polar plots of circles, as of a ball bar: readings and model enlarged about a ring, and the residuals about another;
+// one plot per plane, one below the other. The page from disk and the live one draw with this code.
 "use strict";
-/// figure(name): "polar" or "rest", or nothing; put: as draw.js has it; value(i): what remains of reading i, NaN where
-/// there is no model yet; rows: the readings that are shown. Gives the two pictures, or none.
+/// figure(name): the element "polar" or "rest", or nothing; put: that of draw.js; value(i): residual of reading i, NaN if
+/// there is no model yet; rows: the readings that are shown. Returns the two pictures, or none.
 function nonioPolar({figure, data, rows, put, value, number, text}) {
   const finite = (v) => typeof v === "number" && isFinite(v), r1 = (v) => Math.round(v * 10) / 10;
   const radius = data.circles || [], of_circle = rows.filter((i) => radius[data.measurement[i]]);
   for (const name of ["polar", "rest"]) if (figure(name)) figure(name).hidden = of_circle.length === 0;
   if (of_circle.length === 0) return [];
 
-  /// Each run in each direction has its own centre and zero: what a circle through its readings says.
+  /// Each run in each direction has its own centre and zero, those of a circle through its readings.
   const paths = new Map();
   for (const i of of_circle) {
     const key = [data.measurement[i], data.run[i], data.direction[i]].join(" ");
@@ -50,7 +50,7 @@ function nonioPolar({figure, data, rows, put, value, number, text}) {
   if (!modelled) curves.model = curves.rest = [];
   const planes = [...new Set([...paths.values()].map((path) => path.plane))];
 
-  /// um of a ring: three rings hold the largest of them.
+  /// Distance of two rings in um: three rings contain the largest value.
   function division(all) {
     let largest = 0;
     for (const c of all) for (const v of c.r) if (finite(v)) largest = Math.max(largest, Math.abs(v));

@@ -1,11 +1,11 @@
-// ---- single readings: where each comes from, regions of them, leaving one out with a reason ----
+// ---- single readings: their origin, regions of readings, and exclusion with a reason ----
 const readings = (() => {
   let first = 0, columns = null;
-  /// The row of a reading as the files have it, of its place on the page.
+  /// The row in the files of the reading at place `i` of the page.
   const rowOf = (shown, i) => (shown.fit.page.row ? shown.fit.page.row[i] : i);
   const excludedIn = (state, shown) => (state.excluded || []).filter((e) => e.part === shown.part);
 
-  /// Form that leaves readings out: nothing goes without a reason.
+  /// A form that excludes readings; it requires a reason.
   function form(count, send) {
     const why = el("input", {"data-key": "why", maxlength: 200, autocomplete: "off", required: true, "aria-label": say("exclude.why")});
     const problem = el("p", {class: "flag", role: "alert"});
@@ -15,14 +15,14 @@ const readings = (() => {
       else send(why.value.trim());
     }}, el("label", {}, say("exclude.why") + " ", why), el("button", {type: "submit", class: "exclude-do"}, say("exclude.do", {n: count})), problem);
   }
-  /// The reading that was touched: file, line, values.
+  /// Details of the selected reading: file, line, values.
   function openOne(shown, pictures, i, act) {
     const data = shown.fit.page, lines = pictures.about(i);
     view.dialog(say("reading.title"), el("ul", {class: "plain"}, ...lines.map((t) => el("li", {}, t))), form(1, (why) => act.exclude([rowOf(shown, i)], why)),
       el("div", {class: "buttons"}, el("button", {type: "button", onclick: () => by("dialog").close()}, say("dialog.close"))));
   }
 
-  /// A region by its ends, for those who cannot drag.
+  /// A region by its ends, for people who cannot drag.
   function regionForm(shown, choose) {
     const names = {position: "target", time: "time", run: "run", temperature: "temperature", residual: "residual"};
     const kinds = Object.keys(names).filter((k) => shown.fit.page[names[k]]);
@@ -46,7 +46,7 @@ const readings = (() => {
       form(rows.length, (why) => act.exclude(rows.map((i) => rowOf(shown, i)), why)), el("button", {type: "button", id: "region-clear", onclick: () => act.select([])}, say("region.clear"))));
   }
 
-  /// Every reading in a table, 25 a page, and those that were left out.
+  /// All readings in a table of 25 per page, and the excluded ones.
   function drawTable(state, shown, act) {
     const box = by("readings-list");
     if (!shown.fit || shown.looks) return fill(box);
@@ -75,7 +75,7 @@ const readings = (() => {
     navigator.clipboard.writeText(["file,line,run,direction,target,deviation,residual", ...lines].join("\n")).then(() => (button.textContent = say("command.copied")));
   }
 
-  // ---- more readings than a page holds: the server sends least and greatest of each column of pixels ----
+  // ---- more readings than the page receives: the server sends the minimum and maximum for each column of pixels ----
   const big = new Map();
   const axes = {0: "target", 2: "time", 3: "run", 4: "phase", 5: "temperature", 6: "model"};
   const isBig = (shown, k) => shown.thinned && axes[k] !== undefined && !(shown.looks && axes[k] === "model");
@@ -92,7 +92,7 @@ const readings = (() => {
     const holder = el("div", {class: "big", role: "group", tabindex: 0, "aria-label": say("big.label", {n: series.n, low: short(Math.min(...series.min.filter(finite))), high: short(Math.max(...series.max.filter(finite))), unit: shown.unit})});
     const style = getComputedStyle(document.documentElement), colour = (name) => style.getPropertyValue(name).trim();
     const data = shown.fit.page, axis = {stroke: colour("--text"), grid: {stroke: colour("--rule"), width: 0.5}, font: "11px Liberation Sans, Arial, sans-serif", size: 34, values: (u, splits) => splits.map((v) => (v === null ? "" : local(String(Number(v.toPrecision(9))))))};
-    // The server's time is in seconds, whatever the sample's picture shows.
+    // The server's time is in seconds, also if the picture of the sample has another unit.
     const label = series.x_unit ? `${data.pictures[k].x.split(" / ")[0]} / ${shownUnit(series.x_unit)}` : data.pictures[k].x;
     drawing.classList.add("replaced");
     drawing.after(holder);
@@ -118,7 +118,7 @@ const readings = (() => {
     holder.after(el("div", {class: "zoom"}, zoom("big.in", ends[0] + span / 4, ends[1] - span / 4), zoom("big.out", ends[0] - span / 2, ends[1] + span / 2), zoom("big.left", ends[0] - span / 4, ends[1] - span / 4), zoom("big.right", ends[0] + span / 4, ends[1] + span / 4), zoom("big.all", NaN, NaN),
       el("span", {class: "muted"}, say("big.shown", {n: series.n}))));
   }
-  /// Where one was enlarged it stays so, whatever the model is.
+  /// An enlarged range is kept when the model changes.
   function drawAllBig(shown) {
     const data = shown.fit.page, all = [];
     for (let k = 0; k < 9; k++) {
@@ -134,7 +134,7 @@ const readings = (() => {
     }
     return Promise.all(all);
   }
-  /// Another part has other ranges.
+  /// Another part has other positions and times: enlarged ranges are reset.
   function forget() {
     for (const one of big.values()) one.range = [];
   }

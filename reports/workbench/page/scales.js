@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers behind the pictures of draw.js: marks of a scale, quantiles of the normal distribution.
+// Numbers for the pictures of draw.js: ticks of a scale, quantiles of the normal distribution.
 "use strict";
-/// Round numbers from low to high, about `count` of them: where, and number(value, digits) as the label. kind: "turn",
-/// degrees of a turn; "whole", no fractions.
+/// About `count` ticks at round numbers from low to high, each with number(value, digits) as the label. kind: "turn" for
+/// degrees of a turn, "whole" for integers.
 function nonioTicks(number, low, high, count, kind) {
   let raw = (high - low) / count, step = 0;
   if (kind === "turn" && raw > 10)

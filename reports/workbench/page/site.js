@@ -1,28 +1,28 @@
-// ---- the page of a site: the worklist that the last run has written, and what people do about it ----
+// ---- the page of a site: the worklist of the last run, and the actions of people ----
 (() => {
   let state = null, lines = [], known = [], gone = null, filters = "", drawn = "", asking = false, again = false, stale = true, dismissed = "", shown = "", released = null;
   const own = ["campaigns", "machines", "instruments", "certificates", "entries", "settings"];
   const isOwn = (name) => own.includes(name) || (name === "new" && (!state || state.edit)) || name.startsWith("campaign/");
   const isPage = (name) => /^(index|due|compare|instruments)\.html$|^machines\/[^/]+\.html$/.test(name);
   let pages = new Map(); // name: its text
-  let links = []; // of the pages that the run has written, in its words
+  let links = []; // to the static pages of the last run, with their titles
 
-  // ---- where we are: stands in the address, as do the filters of the lines ----
+  // ---- the view that is shown: it is in the address, as are the filters of the lines ----
   function view() {
     const to = new URLSearchParams(location.hash.slice(1)).get("to");
     return to && (isOwn(to) || isPage(to)) ? to : state && (!state.out || !state.night.last) ? "campaigns" : "index.html";
   }
   const hrefOf = (name) => (name === "index.html" ? "#" + filters : "#to=" + encodeURIComponent(name));
-  /// "../index.html" of "machines/S-1.html".
+  /// A link of a page as a path of the site: "../index.html" of "machines/S-1.html" is "index.html".
   function resolved(from, to) {
     const steps = from.split("/").slice(0, -1);
     for (const step of to.split("/")) if (step === "..") steps.pop(); else if (step !== ".") steps.push(step);
     return steps.join("/");
   }
 
-  // ---- asking ----
-  let denied = false; // by name and role: the address is right
-  /// In place of all else.
+  // ---- requests to the server ----
+  let denied = false; // the server refused this user's role: the address is right
+  /// Replaces the whole page.
   function only(name, ...content) {
     by("app").replaceChildren(el("main", {class: "lost"}, ...content));
     document.body.dataset.ready = name;
@@ -57,7 +57,7 @@
   }
   function lost(status) {
     if (!by("main") || (denied && status === 403)) return;
-    // A session may have ended, or a user was removed.
+    // The session may have ended, or the user was removed: the next request shows it.
     if (status === 403 && (!state || state.user)) return void refresh().catch(complain);
     box.alarm(status === 403 ? say("net.other") : say("site.lost", {at: new Date().toLocaleTimeString(language)}));
     document.body.classList.add("lost");
@@ -73,14 +73,14 @@
     await refresh();
     return answer;
   }
-  /// A file of the results, for the browser to keep.
+  /// Downloads a file of the results.
   const fetchFile = (path) => net.download("/site/results/" + path.split("/").slice(-2).map(encodeURIComponent).join("/"), path.split("/").slice(-2).join("-")).catch(complain);
   async function text(name) {
-    const of = pages; // what was asked before something changed does not come back among the new ones
+    const of = pages; // an answer requested before a change must not get into the new map
     if (!of.has(name)) of.set(name, await (await net.ask("/site/" + name.split("/").map(encodeURIComponent).join("/"), {raw: true})).text());
     return of.get(name);
   }
-  /// One after the other: what comes meanwhile makes it ask once more.
+  /// Runs one request at a time: a call in the meantime repeats it once.
   async function refresh(fresh = true) {
     stale = stale || fresh;
     again = true;
@@ -108,7 +108,7 @@
         const [worklist, all, index] = await Promise.all([has ? net.ask("/api/site") : {lines: []}, net.ask("/api/ack"), has ? text("index.html") : ""]);
         lines = worklist.lines;
         known = all.acknowledged;
-        // In the words of the run: the names of its pages, its number and date.
+        // The static pages have the titles of the pages, and the number and date of the run.
         const page = markup.page(index);
         links = page.links;
         by("beside").textContent = page.beside;
@@ -123,9 +123,9 @@
     document.body.dataset.version = state.version;
   }
 
-  // ---- a line of the worklist: what can be done about it ----
+  // ---- the actions of a line of the worklist ----
   const campaignOf = (line) => line.campaign || (line.link ? line.link.split("/").slice(-2)[0] : "");
-  /// Those of a machine that its history judges; what is lost or failed is no opinion.
+  /// Only judgements of a machine's history can be acknowledged; a lost or failed campaign is a fact.
   const canBeKnown = (line) => line.machine && line.state === "new" && ["out", "changed", "soon", "overdue", "withheld", "undecided", "information"].includes(line.kind);
   async function openCampaign(campaign) {
     try {
@@ -149,8 +149,8 @@
   }
   const machines = () => [...new Set([...lines.map((l) => l.machine), ...[...document.querySelectorAll("a[data-to*='machines/']")].map((a) => a.textContent)].filter(Boolean))].sort();
 
-  // ---- the pages of the run ----
-  /// What the run has drawn; its links lead to this page.
+  // ---- the static pages of the last run ----
+  /// The content of a static page, with links that open in this page.
   function adopted(root, name) {
     for (const a of root.querySelectorAll("a[data-to]")) {
       const to = resolved(name, a.dataset.to);
@@ -192,9 +192,9 @@
       el("ul", {class: "plain campaigns"}, ...[...seen].sort((a, b) => (a[1] < b[1] ? 1 : -1)).map(([id, date]) => el("li", {}, el("span", {class: "day"}, date), " ", el("b", {}, id), " ", ...campaignButtons(id, id))))));
   }
 
-  // ---- own pages ----
+  // ---- pages that this script draws ----
   const tools = () => ({edit: state.edit, approve: state.approve, out: state.out, running: state.running, buttons: campaignButtons, fetchFile, runAll: () => runAgain(""), complain, drop: measure.drop, release, released, releasedNote});
-  /// A new campaign is shown, and evaluated at once where there is a place for its results.
+  /// Shows a new campaign, and evaluates it at once if the server has an output folder.
   async function created(answer) {
     told(answer);
     if (state.out) await act("run", {campaign: answer.campaign}, say("run.begun"));
@@ -209,7 +209,7 @@
     if (!["issued", "approved"].includes(answer.state)) throw Object.assign(new Error(net.program(answer.why || answer.state)), {answer});
     released = answer.state === "issued" ? {folder: body.campaign, number: answer.number, files: answer.files.map((f) => f.split("/").slice(-2).join("/"))} : {folder: body.campaign, approved: true};
     const pdf = (released.files || []).find((f) => f.endsWith(".pdf"));
-    // What was issued is verified as its recipient would verify it.
+    // The issued certificate is verified in the same way as by its recipient.
     if (pdf) released.verdict = await certificates.verdictOf("/site/results/" + pdf.split("/").map(encodeURIComponent).join("/")).catch((e) => e.message);
     await refresh();
     if (by("released")) by("released").focus();
@@ -233,7 +233,7 @@
   function drawHead() {
     const n = state.night, r = state.run;
     const named = own.map((name) => [name, say("site." + name)]);
-    // The run's page of instruments is reached from the page of this server.
+    // The static page about instruments has no entry: the page "instruments" links to it.
     fill(by("nav"), ...[...named.slice(0, 3), ...(state.out && n.last ? links.filter(([to]) => to !== "instruments.html") : []), ...named.slice(3)].map(([to, label]) =>
       el("a", {href: hrefOf(to), "data-key": "nav-" + to, "aria-current": view() === to || (to === "campaigns" && /^(new$|campaign\/)/.test(view())) ? "page" : null}, label)));
     const night_ = n.state === "running" ? say(n.last ? "night.running" : "night.first", {n: n.night, last: n.last, date: n.last_date}) : n.state === "cut-short" ? say("night.cut", {n: n.night}) : n.state === "planned" ? say("night.planned", {n: n.night}) : "";
@@ -242,7 +242,7 @@
     drawRun(r);
   }
   const stages = ["begin", "survey", "campaigns", "history", "pages"];
-  /// 0 to 1: what is done before its campaigns takes a tenth, what comes after two tenths.
+  /// Progress of a run, 0 to 1: one tenth for the stages before the campaigns, two tenths for those after them.
   function shareOf(r) {
     const at = Math.max(0, stages.indexOf(r.stage));
     return at < 2 ? 0.05 * at : at > 2 ? 0.5 + 0.1 * at : 0.1 + 0.7 * (r.to_do ? r.done / r.to_do : 0);
@@ -271,7 +271,7 @@
       drawHead();
     }}, say("dialog.close"))));
   }
-  /// New content of the main part; what had the focus has it again.
+  /// Draws the main part of the page; the focus is kept.
   async function draw(moved = false) {
     const name = view();
     if (name === "index.html" && state.night.last === 0) return put([el("h1", {tabindex: -1}, say("site.worklist")), el("p", {}, say("night.none"))], name, moved);
@@ -290,7 +290,7 @@
     if (!moved && drawn === same) return;
     if (!moved && main.contains(focus) && ["INPUT", "SELECT"].includes(focus.tagName) && focus.type !== "file" && name !== "index.html") return;
     const before = main.contains(focus) ? box.focused() : {};
-    // What somebody has typed stays theirs.
+    // Typed text is kept.
     const id = (e) => e.id || `${e.name} ${e.dataset.finding || ""}`, typed_ = new Map();
     for (const e of main.querySelectorAll("input:not([type=file])")) if (!moved && e.value !== e.defaultValue) typed_.set(id(e), e.value);
     for (const e of next.querySelectorAll("input:not([type=file])")) if (typed_.has(id(e))) e.value = typed_.get(id(e));
@@ -314,7 +314,7 @@
     draw(true).catch(complain);
   }
   addEventListener("hashchange", moved);
-  // Filters change the address without a word.
+  // A filter changes the address by replaceState, which sends no event hashchange.
   document.addEventListener("change", (event) => {
     if (view() !== "index.html" || !event.target.closest(".filters")) return;
     filters = location.hash.slice(1);

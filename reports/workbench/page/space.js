@@ -10,8 +10,8 @@ const space = (() => {
     const x = c[0] * Math.cos(a) - c[1] * Math.sin(a), y = c[0] * Math.sin(a) + c[1] * Math.cos(a);
     return [x, -(c[2] * Math.cos(b) + y * Math.sin(b))];
   }
-  /// The machine as a chain of axes, bed - X - Y - Z - tool, as the model takes it: boxes [x0, x1, y0, y1, z0, z1] around the
-  /// volume, the tool at `tool`. Portals stand on both sides of it, every other structure on one.
+  /// The machine as a chain of axes, bed - X - Y - Z - tool, as in the model: boxes [x0, x1, y0, y1, z0, z1] around the
+  /// volume, with the tool at `tool`. Portals are on both sides of the volume, every other structure on one.
   function bodies(structure, size, tool, names) {
     const t = 0.05 * Math.max(...size), [x, y, z] = tool, [sx, sy, sz] = size;
     const ram = [...(names.includes("Z") ? [["Z", [x - 0.7 * t, x + 0.7 * t, y - 0.7 * t, y + 0.7 * t, z + 1.5 * t, sz + 5 * t]]] : []), ["tool", [x - 0.2 * t, x + 0.2 * t, y - 0.2 * t, y + 0.2 * t, z, z + 1.5 * t]]];
@@ -24,7 +24,7 @@ const space = (() => {
   }
   const cornersOf = (b) => [0, 1, 2, 3, 4, 5, 6, 7].map((k) => [b[k & 1 ? 1 : 0], b[k & 2 ? 3 : 2], b[k & 4 ? 5 : 4]]);
   const faces = [[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]];
-  /// Where the mean residual of a target is largest: there the tool stands.
+  /// The place with the largest mean residual of a target, where the tool is drawn.
   function worstPlace(lines, data) {
     let worst = null, most = -1;
     lines.forEach((line) => {
@@ -72,7 +72,7 @@ const space = (() => {
     const corner = corners.map(put);
     for (let k = 0; k < 8; k++) for (let i = 0; i < 3; i++) if (!(k & (1 << i)) && size[i] > 0) edge(corner[k], corner[k | (1 << i)]);
     const labels = [];
-    const label = (name, [x, y]) => {  // names that would lie on each other share one
+    const label = (name, [x, y]) => {  // names that would overlap share one label
       const near = labels.find((l) => Math.hypot(l.x - x, l.y - y) < 24);
       if (!near) labels.push({x, y, names: [name]});
       else if (!near.names.includes(name)) near.names.push(name);

@@ -1,4 +1,4 @@
-// ---- words, numbers and elements. Text reaches the page as text only: nothing is ever parsed as markup. ----
+// ---- words, numbers and elements. The page contains texts only as text nodes: nothing is ever parsed as markup. ----
 const words = JSON.parse(document.getElementById("words").textContent);
 const language = document.documentElement.lang;
 
@@ -10,32 +10,32 @@ function say(key, places = {}) {
 const finite = (v) => typeof v === "number" && isFinite(v);
 const comma = language === "de" || language === "it";
 const local = (text) => (comma ? text.replace(".", ",") : text).replace("-", "\u2212");
-/// Three digits, as a terminal shows it.
+/// Three significant digits, as on a terminal.
 function short(v) {
   if (!finite(v)) return "\u2013";
   if (v === 0) return "0";
   const digits = Math.max(0, 2 - Math.floor(Math.log10(Math.abs(Number(v.toPrecision(3))))));
   return local(digits > 9 ? v.toExponential(1) : v.toFixed(Math.min(digits, 9)));
 }
-/// A value and its expanded uncertainty, both to the second digit of U.
+/// A value and its expanded uncertainty U = 2 u, both to the second digit of U.
 function withU(value, u) {
   if (!finite(u) || u <= 0) return [short(value), ""];
   const digits = Math.min(9, Math.max(0, 1 - Math.floor(Math.log10(2 * u))));
   return [local(value.toFixed(digits)), local((2 * u).toFixed(digits))];
 }
-/// A field `rms_um` of an answer, or the same of an angle: `rms_arcsec`.
+/// A field of an answer by its name without the unit: `rms_um`, or `rms_arcsec` for an angle.
 const field = (object, name) => {
   if (!object) return undefined;
   for (const unit of ["_um", "_arcsec"]) if (finite(object[name + unit])) return object[name + unit];
   return undefined;
 };
 const shownUnit = (unit) => unit.replace(/^um/, "\u00B5m").replace(/\bum\b/g, "\u00B5m").replace(/^degC$/, "\u00B0C");
-/// A sentence of the engine with units and signs as they are printed.
+/// A sentence of the engine with typographic units, signs and quotes.
 const typeset = (sentence) => sentence.replace(/ um\b/g, " \u00B5m").replace(/ degC\b/g, " \u00B0C").replace(/(^|[\s(])-(?=\d)/g, "$1\u2212").replace(/`([^`]*)`/g, "\u201C$1\u201D");
-/// What people type: a point or a comma.
+/// The number in a typed text, with a decimal point or comma.
 const typed = (text) => (text.trim() === "" ? NaN : Number(text.trim().replace(",", ".").replace("\u2212", "-")));
 
-/// An element: attributes, `on...` functions, children. Strings become text.
+/// An element with attributes, functions `on...` for events, and children. Strings become text nodes.
 function el(name, attributes = {}, ...children) {
   const node = document.createElement(name);
   for (const [key, value] of Object.entries(attributes)) {
@@ -53,8 +53,8 @@ function svg(name, attributes = {}, ...children) {
   return node;
 }
 const by = (id) => document.getElementById(id);
-/// New content only where it differs, so that nothing moves between pressing and letting go of a button, and never under
-/// somebody's fingers: a field that has the focus stays.
+/// Replaces the content only if it differs and no button is pressed, so that nothing moves between press and release. A
+/// field that has the focus is not replaced.
 const filled = new WeakMap(), lost = new WeakMap(), waiting = new Map();
 let pressed = false;
 document.addEventListener("pointerdown", () => (pressed = true), {capture: true});
@@ -64,14 +64,14 @@ for (const end of ["pointerup", "pointercancel"])
     for (const [node, children] of waiting) fill(node, ...children);
     waiting.clear();
   }), {capture: true});
-let fresh = false; // after a refusal everything is drawn again, since a box may show what was not done
+let fresh = false; // after a refusal everything is redrawn, because a box may show a change that was refused
 function fill(node, ...children) {
   if (pressed) return void waiting.set(node, children);
   const wanted = el("div", {}, ...children), text = wanted.innerHTML;
   if (!fresh && filled.get(node) === text) return;
   children = [...wanted.childNodes];
   const focus = document.activeElement, inside = focus && node.contains(focus);
-  // Where the focus was: what had it may be away for a moment, while something is asked.
+  // The element that had the focus may be missing until an answer arrives: its key is kept.
   const waits = lost.get(node), key = inside ? focus.dataset.key : waits && (!focus || focus === document.body) ? waits : null;
   if (inside && focus.tagName === "INPUT" && focus.type !== "checkbox" && focus.type !== "radio") return;
   filled.set(node, text);

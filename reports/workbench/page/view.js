@@ -1,4 +1,4 @@
-// ---- the page's places, made once; what stands in them is drawn by the other modules ----
+// ---- the sections of the page, made once; the other modules draw their content ----
 const view = (() => {
   const button = box.button;
   function section(id, word, ...more) {
@@ -10,7 +10,7 @@ const view = (() => {
       svg("svg", {role: "application", "aria-labelledby": `picture-${k}-title`, "aria-describedby": "picture-help", tabindex: 0}),
       el("figcaption", {}, el("p", {id: `picture-${k}-says`})));
   }
-  /// Of circles; hidden where there are none.
+  /// A figure for circles, hidden if there are none.
   function polarFigure(name) {
     return el("figure", {id: "picture-" + name, hidden: true}, el("figcaption", {}, el("b")), svg("svg", {role: "application", "aria-describedby": "picture-help", tabindex: 0}), el("figcaption", {}, el("p")));
   }

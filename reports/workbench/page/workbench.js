@@ -1,21 +1,21 @@
-// ---- the page of a campaign: the server holds the state, this page shows it and asks for changes ----
+// ---- the page of a campaign: the server has the state, this page shows it and requests changes ----
 (() => {
   view.build();
   let state = null, busy = 0, job = null, again = false, asking = false;
-  /// What is shown: one part, its fit, what explain says of it.
+  /// What is shown: one part, its fit, and the result of explain.
   const shown = {part: sessionStorage.getItem("nonio-part"), effect: null, drawing: "residual", version: 0, fitted: [], unit: "", column: "residual", etags: {}, of: {},
-    /// What these readings could not separate when an effect was taken: the verdict "complete" does not settle that.
+    /// Effects that were not separable from an effect when it was added: also with the verdict "complete" they may be the cause.
     aliases: JSON.parse(sessionStorage.getItem("nonio-aliases") || "{}")};
   const hidden = {d: new Set(), r: new Set()};
   const pictures = nonioPictures({figure: (k) => by("picture-" + k), tip: by("tip"), hidden,
     inTurn: () => performance.mark("all"), elsewhere: (k) => readings.isBig(shown, k),
     pick: (i) => readings.openOne(shown, pictures, i, act), brushed: (rows) => region(rows), said: (lines) => view.speak(lines.join(", "))});
   const part = () => state.parts.find((p) => p.name === shown.part);
-  /// What a fit depends on beside the files: numbers of another trial are never shown as those of this one.
+  /// What a fit depends on: numbers of another trial are never shown as those of this one.
   const trial = () => JSON.stringify([state.campaign.read_at, state.model, (state.excluded || []).map((e) => [e.part, e.row]), state.period_mm]);
   const path = (what) => `/api/parts/${encodeURIComponent(shown.part)}/${what}`;
 
-  // ---- asking ----
+  // ---- requests to the server ----
   async function post(what, body, then) {
     outcome("");
     busy++;
@@ -45,7 +45,7 @@
     view.alarm(status === 403 ? say("net.other") : say("net.lost", {at: new Date().toLocaleTimeString(language)}));
     document.body.classList.add("lost");
   }
-  /// What "suggest" or "finish" came to, until the next thing is done: for those who see and those who hear.
+  /// The result of "suggest" or "finish" until the next action, as text and for screen readers.
   function outcome(text) {
     const place = by("outcome");
     place.hidden = text === "";
@@ -57,8 +57,8 @@
     by("cancel").hidden = n === null;
     for (const id of ["suggest", "finish"]) by(id).disabled = n !== null || Boolean(shown.none);
   }
-  /// One piece of what the server knows of this part and trial, for `take`; what belongs to another one meanwhile is
-  /// dropped. True if it is settled: there, or never to come.
+  /// Requests one result of the server for this part and trial, and gives it to `take`; an answer for another part or
+  /// trial is dropped. A request during one of the same result repeats it afterwards, unless it was answered.
   const under_way = new Map();
   async function piece(name, take, query = "") {
     const part_ = shown.part, of = trial(), key = [name, part_, of].join("\n");
@@ -81,7 +81,7 @@
       if (again && shown.of[name] !== of) piece(name, take, query).catch(complain);
     }
   }
-  /// The state; then what belongs to it, each piece as it comes. A newer event while it is asked makes it ask once more.
+  /// Requests the state and then the results that belong to it. An event during the request repeats it once.
   async function refresh() {
     if (asking) {
       again = true;
@@ -118,7 +118,7 @@
     else if (due("explain")) ask("explain", takeExplanation);
     else if (due("fingerprints")) ask("fingerprints", takeFingerprints);
   }
-  /// Until there is a fit: the readings as they were measured.
+  /// Shows the readings as measured until there is a fit.
   function takeLook(measured) {
     if (shown.fit) return;
     shown.looks = true;
@@ -139,7 +139,7 @@
     if (shown.fit.partial) piece("fit", takeRest, "?page=0").catch(complain);
     else others();
   }
-  /// Where it fails: of many readings after the picture.
+  /// The rest of the fit, with the places where it fails; for many readings it arrives after the picture.
   function takeRest(rest) {
     if (!rest) return;
     shown.fit = {...rest, page: shown.fit.page};
@@ -165,7 +165,7 @@
     if (shown.fit) drawPictures();
     draw();
   }
-  /// Draws the page that is there. A mark is set after the frame that shows it: what measurements take.
+  /// Sets a performance mark after the frame that shows the page; measurements of speed read it.
   const painted = (name) => requestAnimationFrame(() => setTimeout(() => performance.mark(name)));
   function show(version) {
     const page = shown.fit.page, all = shown.looks ? part().readings : shown.fit.compare.observations;
@@ -212,7 +212,7 @@
     const data = shown.fit.page, thinned = shown.thinned;
     by("legend").textContent = shown.looks ? say("legend.measured", {n: shown.all}) : [say("legend.all"), finite(data.floor) ? say("legend.floor", {s: short(data.floor), unit: data.unit}) : say("bar.no_floor"), data.suspects.length ? say("legend.suspects", {n: data.suspects.length}) : "", thinned ? say("legend.thinned", {n: data.residual.length, all: shown.all}) : ""].filter(Boolean).join(" ");
   }
-  /// Residual, deviation, or what a table of the control would leave.
+  /// Residual, deviation, or the deviation predicted after compensation by a table of the control.
   function values() {
     const data = shown.fit.page;
     if (shown.looks) return data.deviation;
@@ -251,7 +251,7 @@
     });
     fill(by("places-list"), shown.learning ? el("p", {class: "muted"}, say("learn.look")) : items.length ? el("ul", {class: "plain"}, ...items) : el("p", {class: "muted"}, compare ? say("places.nowhere") : say("verdict.fitting")));
   }
-  /// To the picture of a place that fails, with the readings of that place chosen.
+  /// Goes to the picture of a place that fails and selects the readings of that place.
   function goPlace(f, k) {
     const data = shown.fit.page, figure = by("picture-" + k);
     let rows = [];
@@ -270,7 +270,7 @@
     readings.drawRegion(state, shown, rows, act);
     view.speak(rows.length ? say("region.said", {n: rows.length}) : "");
   }
-  /// What a table in the control would do to what is printed: as nonio model compare says it.
+  /// Predicted results after compensation by a table, as `nonio model compare` prints them.
   function tableWouldDo() {
     const compare = shown.fit && !shown.fit.partial && !shown.looks && !shown.fitIsOld && shown.fit.compare, predicted = compare && compare.after_table;
     if (!compare) return null;
@@ -362,7 +362,7 @@
     document.body.dataset.ready = shown.none ? "none" : shown.fit && !shown.fitIsOld && !shown.fit.partial ? (explained ? "explained" : "fitted") : "";
   }
 
-  // ---- what a person does ----
+  // ---- actions of a person ----
   const steps = {go: (n) => post("goto", {n}), name: (n, name) => post("name", {n, name})};
   let later = 0;
   const act = {
@@ -439,7 +439,7 @@
     drawPictures();
     figure.querySelector("svg").focus();
   }
-  /// Effects by arrows: from tick to tick.
+  /// Moves from effect to effect with the arrow keys.
   function walk(event) {
     const ticks = [...document.querySelectorAll("#effects-list input[data-effect]")].filter((e) => e.getClientRects().length > 0), at = ticks.indexOf(document.activeElement);
     if (at < 0) return false;
@@ -485,7 +485,7 @@
     setTimeout(() => (by("copy").textContent = say("command.copy")), 2000);
   }).catch(() => getSelection().selectAllChildren(by("command"))));
 
-  // ---- what happens elsewhere: another tab, a job, a file ----
+  // ---- events from elsewhere: another tab, a job, a file ----
   let soon = 0;
   function event(e) {
     if (e.type === "failed") {

@@ -12,7 +12,7 @@ import live_browser
 from live_browser import SOURCE
 from live_site_test import DATE, MACHINES, nonio
 
-live_browser.PATIENCE = 120  # it is run by hand, beside other work
+live_browser.PATIENCE = 120  # it is run by hand, on a machine that also does other work
 AXE = os.environ.get("NONIO_AXE", "")
 LANGUAGES = ("en", "de", "it")
 # Width, height, scale: a PC; the same at 200 %; as narrow as WCAG 1.4.10 asks.
@@ -38,7 +38,7 @@ class Axe(live_browser.LivePage):
         print(f"nothing is wrong with {cls.judged} views of a page", flush=True)
 
     def judge(self, where, language):
-        """What is wrong with the page as it stands, in both colour schemes and each size."""
+        """What is wrong with the page in its present state, in both colour schemes and each size."""
         self.d.execute_script(self.axe)  # by the driver: the page's own policy lets nothing in
         for scheme in ("light", "dark"):
             self.media(prefers_color_scheme=scheme)

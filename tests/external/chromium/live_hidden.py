@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """live_hidden.py NONIO SOURCE_FOLDER BENCH_HIDDEN: twenty campaigns with hidden effects, solved on the page of `nonio serve`
-in a real browser by somebody who only clicks what the page suggests: the same model and verdict as `nonio model explain --auto`.
-By hand, a minute: test live.hidden asks the same of the interface every time."""
+in a real browser by clicking only what the page suggests: the same model and verdict as `nonio model explain --auto`.
+It is run by hand and takes a minute; ctest checks the same of the interface (live.hidden)."""
 import json
 import subprocess
 import sys

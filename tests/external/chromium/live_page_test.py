@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """live_page_test.py NONIO SOURCE_FOLDER: the page of `nonio serve` in a real browser, with the real server: the tutorial by
-mouse and by keys, undo, reload, two tabs, hostile names, a file edited beside it, a server that ends, widths, dark, motion,
-what hinders people. Its pictures and numbers have a test of their own (live_pictures_test.py).
+mouse and by keys, undo, reload, two tabs, hostile names, a file edited by another program, a server that ends, widths, dark
+colours, motion and accessibility. Pictures and numbers have a test of their own (live_pictures_test.py).
 
-Waits for states, never sleeps. On failure the screenshot and the browser's log are kept beside the test. With
+Waits for states, never sleeps. On failure the screenshot and the browser's log are kept in the test's folder. With
 NONIO_PICTURES=FOLDER the three pictures of README.md are written there."""
 import json
 import os
@@ -226,7 +226,7 @@ class Page(live_browser.CampaignPage):
         self.d.close()
         self.d.switch_to.window(first)
 
-    def test_a_file_edited_beside_the_page_is_told_and_not_overwritten(self):
+    def test_a_file_edited_by_another_program_is_reported_and_not_overwritten(self):
         folder = self.campaign()
         self.open(self.serve(folder, "--edit"))
         self.tick("zero-drift:X")
@@ -251,7 +251,7 @@ class Page(live_browser.CampaignPage):
         self.assertIn("may not write", self.text("dialog"))
         self.assertFalse(self.d.find_element(By.ID, "save-write").is_enabled())
 
-    def test_a_server_that_ends_and_comes_back_is_told(self):
+    def test_a_server_that_ends_and_comes_back_is_reported(self):
         folder = self.campaign()
         token = self.folder / "token"
         server = self.serve(folder, "--token-file", str(token))
@@ -360,7 +360,7 @@ class Page(live_browser.CampaignPage):
         self.assertAlmostEqual(self.rms(), said("compare", folder)["parts"][0]["rms_um"], 9)
         self.no_complaints()
 
-    def test_a_period_is_set_and_told(self):
+    def test_a_period_is_set_and_reported(self):
         folder = self.campaign()
         self.open(self.serve(folder))
         value = "document.getElementById('period-value')"
@@ -428,7 +428,7 @@ class Page(live_browser.CampaignPage):
         self.assertTrue(self.d.find_element(By.ID, "report").is_displayed())
         self.no_complaints()
 
-    def test_what_people_bring_about_is_told_in_their_language(self):
+    def test_messages_for_people_are_in_their_language(self):
         for language, apart, again in (("de", "können nicht unterscheiden", "schon im Modell"), ("it", "non distinguono", "già nel modello")):
             site = self.folder / language
             site.mkdir()

@@ -10,7 +10,7 @@ from live_browser import By, Keys, NONIO, SOURCE, said
 
 
 class Pictures(live_browser.CampaignPage):
-    def test_in_space_the_machine_stands_with_its_lines(self):
+    def test_in_space_the_machine_is_drawn_with_its_lines(self):
         source = SOURCE / "samples/site/13-gantry-diagonals"
         self.open(self.serve(self.campaign(source)))
         self.assertTrue(self.d.find_element(By.ID, "space").is_displayed())
@@ -92,7 +92,7 @@ class Pictures(live_browser.CampaignPage):
         self.no_complaints()
 
     def test_numbers_of_all_samples_are_those_of_compare_and_explain(self):
-        """Against the server's own answers, which test live.numbers holds against `nonio model compare` and `explain`."""
+        """With the server's own answers, which test live.numbers compares with `nonio model compare` and `explain`."""
         sources = [s for s in sorted((SOURCE / "samples/site").iterdir()) if (s / "campaign.toml").exists()]
         servers = {source: self.serve(self.campaign(source)) for source in sources}
         # Explanations of the large ones take seconds: they are found while the page shows the others.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""live_site_test.py NONIO SOURCE_FOLDER: the page of `nonio serve SITE` in a real browser, with the real server: the morning as
-the static pages have it, filters, entries by mouse and by keys, two tabs, read-only, a campaign opened and left, run again and
-cancelled, certificates verified and released, hostile names, a night that runs, a server that ends, widths, dark, motion, and
-what hinders people. Waits for states, never sleeps."""
+"""live_site_test.py NONIO SOURCE_FOLDER: the page of `nonio serve SITE` in a real browser, with the real server: the worklist as
+on the static pages, filters, entries by mouse and by keys, two tabs, read-only, a campaign opened and left, run again and
+cancelled, certificates verified and approved, hostile names, a run in progress, a server that ends, widths, dark colours,
+motion and accessibility. Waits for states, never sleeps."""
 import fcntl
 import json
 import os
@@ -25,7 +25,7 @@ def nonio(*arguments):
 
 
 class SitePage(live_browser.LivePage):
-    """Each test has a copy of a laboratory of which one night is done."""
+    """Each test has a copy of a laboratory after one run."""
 
     @classmethod
     def setUpClass(cls):
@@ -38,7 +38,7 @@ class SitePage(live_browser.LivePage):
 
     def setUp(self):
         super().setUp()
-        # A site is known by its folder: a moved one is the same site as long as its old folder is gone.
+        # A site is identified by its folder: a moved one is the same site if its old folder no longer exists.
         self.site, self.out = self.folder / "lab", self.folder / "out"
         shutil.copytree(self.laboratory / "lab", self.site)
         shutil.copytree(self.laboratory / "out", self.out)
@@ -263,7 +263,7 @@ class SitePage(live_browser.LivePage):
         self.d.close()
         self.d.switch_to.window(first)
 
-    def test_what_somebody_types_stays(self):
+    def test_typed_text_is_kept(self):
         self.open(self.serve_site("--edit"))
         line = self.first_new()
         self.push("ack-" + line["id"])
@@ -335,7 +335,7 @@ class SitePage(live_browser.LivePage):
         self.wait(lambda: "cancelled" in (self.js("(document.getElementById('run-end') || {}).textContent") or ""), "cancelled")
 
     # ---- what happens elsewhere ----
-    def test_a_night_runs_and_the_server_ends(self):
+    def test_a_run_goes_on_and_the_server_ends(self):
         server = self.serve_site("--port", "0", "--token-file", str(self.folder / "token"))
         port = server.address.rsplit(":", 1)[1].split("/")[0]
         self.open(server)

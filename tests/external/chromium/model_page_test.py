@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""model_page_test.py WRITE_MODEL_PAGES: the page model-html in a real browser: it asks for nothing
-but itself, draws its pictures, takes effects out as the numbers say, and shows a reading."""
+"""model_page_test.py WRITE_MODEL_PAGES: the page model-html in a real browser: it requests nothing
+but itself, draws its pictures, removes effects with the stated numbers, and shows a reading."""
 import json
 import math
 import pathlib

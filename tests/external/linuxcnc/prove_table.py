@@ -2,15 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """prove_table.py WRITER PLUGIN NONIO
 
-An invented axis is wrong by a known function, another one in each direction. Nonio's plugin writes
-its table; LinuxCNC itself, without display and real-time kernel, loads it and goes to the targets
-from both sides. The axis stands at motor + error(motor): it must be at the target, to 0.1 um, but for
-what the error is at the reference point (0), where the table is zero.
+A simulated axis has a known error, a different one in each direction. Nonio's plugin writes its table;
+LinuxCNC itself, without display and real-time kernel, loads it and moves to the targets from both sides.
+The actual position is motor + error(motor): it must be the target, to 0.1 um, except for the error at the
+reference point (0), where the table is zero.
 
-Types 0 and 1; an instrument that was not zeroed; a table that was on while it was measured (nonio
-apply); the two sides of a gantry, by the plugin and by a night, whose prediction is compared.
+Types 0 and 1; an instrument that was not zeroed; a table that was active during the measurement; the two
+sides of a gantry, by the plugin and by a run, whose prediction is compared.
 
-Exit status: 0 shown, 1 not so, 77 LinuxCNC is not here.
+Exit status: 0 proved, 1 not, 77 LinuxCNC is not installed.
 """
 import ctypes
 import json
@@ -346,7 +346,7 @@ def run(tables, file_type, private):
                                      stdout=log, stderr=log, preexec_fn=die_with_parent)
             try:
                 child.wait(80)
-            except BaseException as reason:  # also when this test is told to end
+            except BaseException as reason:  # also when this test is terminated
                 child.terminate()
                 try:
                     child.wait(15)
@@ -422,7 +422,7 @@ def renewed():
 
 
 def night_of_a_gantry():
-    """the tables of both sides by a night of the program, and what it predicts of each: {E, B} in um"""
+    """The tables of both sides from a run of the program, and its prediction for each: {E, B} in um."""
     with tempfile.TemporaryDirectory(prefix="nonio-gantry-") as folder:
         campaign = os.path.join(folder, "site", "c")
         os.makedirs(campaign)

@@ -253,7 +253,7 @@ class Probing(unittest.TestCase):
                 self.assertAlmostEqual(values["direction_" + axis]["value"], d, delta=1e-7)
 
 
-    # B on the bed carries C: lines with both at 0, C 0.03 mm beside B; five positions of B, six of C.
+    # B on the bed carries C: lines with both at 0, C at 0.03 mm from B; five positions of B, six of C.
     B_CENTRE, B_DIRECTION = (350.05, 0.0, -100.02), (2e-4, 1.0, -1e-4)
     TILTS, TURNS, STEM = (-60.0, -30.0, 0.0, 30.0, 60.0), [60.0 * i for i in range(6)], 4.0
 
@@ -325,7 +325,7 @@ class Probing(unittest.TestCase):
 
 
 class SignProbe(unittest.TestCase):
-    """Offsets that stand in the control (G54, G92) do not move the probe: it is in machine coordinates."""
+    """Offsets in the control (G54, G92) do not move the probe: it is in machine coordinates."""
 
     def test_offsets_do_not_move_it(self):
         with tempfile.TemporaryDirectory(prefix="nonio-rs274-") as name:

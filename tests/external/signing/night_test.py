@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A night that signs: what it leaves, what `nonio certificate verify` says of it, and what happens without key, time or life."""
+"""A run that signs: its output files, the result of `nonio certificate verify`, and what happens without a key, without a
+time server, and when the run is killed."""
 import json
 import os
 import pathlib
@@ -55,11 +56,11 @@ class SignedNight(SigningTest):
         self.assertEqual([p.name for p in (self.out / "c1").iterdir() if p.suffix in (".pdf", ".xml")], [])
         for text in [done.stdout, done.stderr, *(p.read_text(errors="replace") for p in self.out.rglob("*") if p.is_file())]:
             self.assertNotIn("hunter2", text)
-        # The next night has the right one: nothing in the site changed, and it is done.
+        # The next run has the right password: it signs although nothing in the site has changed.
         self.run_nonio(expect=0, env={**os.environ, "NONIO_TEST_KEY": PASSWORD})
         self.assert_holds(self.out / "c1" / "report.pdf")
 
-    def test_a_night_signs_nothing_that_nobody_has_released(self):
+    def test_a_run_signs_nothing_that_was_not_approved(self):
         keys = self.keys()
         for extra in ("[certificate]\nrelease = \"by-hand\"\n", '[certificate]\nrelease = "automatic"\naccept = []\n'):
             with self.subTest(extra):
@@ -120,7 +121,7 @@ class SignedNight(SigningTest):
         self.run_nonio(expect=0)
         self.assertEqual(before, (self.out / "c1" / "report.pdf").read_bytes())
 
-    def test_what_a_night_stamped_is_restamped(self):
+    def test_the_time_stamp_of_a_run_is_extended(self):
         keys = self.keys()
         server = keys.time_server()
         self.site_toml(keys, extra=f'time_stamp = "{server.url}"\n')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a night makes of a campaign that is not as its method wants it: either the paper says so, or there is none."""
+"""A campaign that deviates from its method: either the certificate states it, or no certificate is made."""
 import json
 import pathlib
 import re
@@ -14,7 +14,7 @@ NOTHING = "othing was added to the method"
 STANDARD = "ISO 230-2:2014, accuracy"
 ZEROS = ("U_fixed_um", "U_per_m_um", "misalignment_mm", "temperature_range_K", "temperature_difference_K",
          "expansion_range_um_per_m_K", "drift_um")
-# How the test was made: nobody has to say it.
+# How the test was made: these keys are optional.
 HOW = r"(?m)^(?:warm_up|sensors|feed_mm_per_min|dwell_s|over_travel_mm|at|tool_offset|workpiece_offset|compensation) = .*\n"
 
 
@@ -31,7 +31,7 @@ def put(key, value):
 
 @needs("pdftotext")
 class Paper(SigningTest):
-    """One campaign each, of which only the state after the adjustment is looked at; all in one night."""
+    """One campaign per case, of which only the state after the adjustment is checked; all in one run."""
 
     def setUp(self):
         super().setUp()

@@ -39,7 +39,7 @@ Wish time_server_wish();
 Holder renamed(const Holder& holder, const Wish& wish, const Holder& issuer);
 
 std::string pem(const Holder& holder);
-/// A revocation list of the issuer that names this certificate (or nobody).
+/// A revocation list of the issuer that names this certificate, or is empty.
 struct ListWish {
   sign::Time when = 0;  ///< revoked
   int reason = -1;      ///< of RFC 5280, 5.3.1; negative: none is stated

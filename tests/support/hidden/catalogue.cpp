@@ -260,7 +260,8 @@ bool shown_beside(const Made& m, Columns others, const Cycle& c, const Scenario&
   return true;
 }
 
-/// What the catalogue leaves of something outside of it stands out from the noise.
+/// Whether the part of an effect outside the catalogue that the catalogue cannot describe exceeds
+/// the noise.
 bool outside_shown(const Values& deviation, const Columns& model, const Cycle& c,
                    const Scenario& s) {
   Columns columns = model;

@@ -22,7 +22,7 @@ Projection project(std::vector<double> signal, const Columns& columns);
 /// Times as the file will give them: true ones, or the order of the readings.
 std::vector<double> file_times(const Cycle& cycle, const Scenario& scenario);
 
-/// Columns of an effect, its shape chosen to fit `signal` best beside a constant.
+/// Columns of an effect, its shape chosen to fit `signal` best together with a constant.
 Columns best_columns(const std::string& kind, const std::vector<double>& signal, const Cycle& cycle,
                      const Scenario& scenario);
 

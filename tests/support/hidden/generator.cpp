@@ -102,7 +102,7 @@ void state(Truth& truth, const Piece& piece, const Cause& cause, const Cycle& c,
                                                      : rms_about_mean(fitted.left) / s.noise);
 }
 
-/// What is added to each reading beside what it has by itself: a walk, a zero of each run.
+/// What is added to the readings' independent noise: a random walk, and a zero of each run.
 std::vector<double> wandering(const Scenario& s, const Cycle& c) {
   std::vector<double> out(c.size(), 0.0);
   if (s.unrest.walk > 0.0) {

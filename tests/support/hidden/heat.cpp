@@ -24,7 +24,7 @@ double integral_to(double p, double fixed, const std::vector<double>& T, double 
 
 std::vector<double> heated_screw(const Cycle& cycle, double fixed, double tau, Random random) {
   constexpr std::size_t cells = 60;
-  // The bearings stand a little outside the stretch.
+  // The bearings are a little outside the stretch.
   const double half = std::max(0.6 * cycle.length, std::fabs(fixed));
   const double dx = 2.0 * half / cells;
   const double bearing = random.uniform(0.01, 0.05) / tau;  // loss of an end cell, 1/s

@@ -70,8 +70,8 @@ Values meshing(const Cycle& c, double period, Random& random, double amplitude) 
   });
 }
 
-/// Friction builds up over a short way after turning (Dahl), then the nut lies at its flank:
-/// play and wind-up both trail behind. Sign: also a controller that gives too much against it.
+/// Friction builds up over a short way after a reversal (Dahl) until the nut touches its flank, so
+/// that play and wind-up both lag. Either sign: a control may overcompensate.
 Values trailing_nut(const Cycle& c, double play_share, Random& random, double amplitude) {
   const double way = 0.02 * c.length / random.uniform(6.0, 12.0);
   const double sign = random.flag(0.8) ? -1.0 : 1.0;
@@ -168,8 +168,8 @@ Cause optics_slip(const Cycle& c, Random& random, double amplitude) {
   return {std::move(s), (c.t[first - 1] + from) / 2.0};
 }
 
-/// The disc's centre circles about the axis at e; the head, at radius R, sees the line whose angle
-/// from the disc's centre is theta - psi; the axis stands still where that is the target.
+/// The disc's centre circles about the axis at e; the head, at radius R, reads the line whose angle
+/// from the disc's centre is theta - psi; the axis stops where that is the target.
 Values eccentric_scale(const Cycle& c, Random& random, double amplitude) {
   const double e_by_R = amplitude, towards = random.uniform(0.0, 2.0 * pi);
   return each(c, [&](std::size_t i) {

@@ -64,8 +64,8 @@ class Files(Temporary):
         readings = {p: c for p, c in first.items() if p.endswith(".csv")}
         self.assertEqual([p for p, c in readings.items() if other.get(p) == c], [])
 
-    def test_nights_follow_one_another(self):
-        """A campaign is there from its day on (or from when its files came), with the same bytes, until somebody takes it away."""
+    def test_runs_follow_one_another(self):
+        """A campaign exists from its day on (or from when its files arrived), with the same bytes, until it is removed."""
         lab = presets.build("mixed", 9)
         entered = {p.ident: p.entered for m in lab.machines for p in m.plans}
         gone = {p.ident for m in lab.machines if m.vanishes is not None for p in m.plans}
@@ -90,7 +90,7 @@ class Files(Temporary):
         for c in early["changes"]:
             self.assertIn(c["before"], ids)
 
-    def test_a_folder_of_somebody_else_is_left_alone(self):
+    def test_a_folder_of_another_program_is_left_alone(self):
         (self.folder / "site").mkdir()
         (self.folder / "site" / "site.toml").write_text("[laboratory]\nname = \"Earnest\"\n")
         with self.assertRaises(SystemExit):
@@ -163,7 +163,7 @@ class Laboratories(Temporary):
 
 class OfQuantities(unittest.TestCase):
     def test_weights_give_back_what_a_curve_is_made_of(self):
-        """Each coefficient comes back, and of what is not in the curve nothing: sinusoids are fitted beside all four shapes."""
+        """Each coefficient is recovered, and the others are zero: sinusoids are fitted together with all four shapes."""
         targets = [50.0 * i + 10.0 * (0.37 * i % 1.0) for i in range(21)]  # all phases of a period of 10 mm
         w = quantities.weights(targets, period=10.0)
         self.assertEqual(set(w), {"scale", "curve_2", "curve_3", "cyclic_cos", "cyclic_sin", "B_mean"})

@@ -13,8 +13,8 @@ ROOM = {"misalignment_mm": 0.3, "temperature_range_K": 0.2, "temperature_differe
 
 
 class Plan:
-    """One campaign as somebody meant it. `adjust`: axes whose error is taken out by a table, which is then measured (as left).
-    `role`: before or after, where found and left are two campaigns. `entered`: the day on which its files came into the site."""
+    """One campaign as it was planned. `adjust`: axes whose error is compensated by a table and measured again (as left).
+    `role`: before or after, where as found and as left are two campaigns. `entered`: the day on which its files came into the site."""
 
     def __init__(self, ident, day, instrument, operator, **more):
         self.ident, self.day, self.instrument, self.operator = ident, day, instrument, operator
@@ -64,7 +64,7 @@ class Centre:
 
 
 class Machine:
-    """`asset` may be None: then maker and serial name it. `events`: what somebody wrote into events.toml."""
+    """`asset` may be None: then maker and serial identify it. `events`: the entries of events.toml."""
 
     def __init__(self, asset, model, serial, axes, customer, place, structure="single-column", control=None, interval=182,
                  maker="Sample Machines", tolerance=None, squareness=None, centre=None, hall=None, story=(), folder=None):
@@ -98,7 +98,7 @@ class Measured:
 
 
 def places_of(seed, machine, axis, plan):
-    """Targets stay from campaign to campaign, as a programme does, unless somebody changes them."""
+    """Targets stay the same from campaign to campaign, as in a part program, unless the plan changes them."""
     first, last = (plan.span or {}).get(axis.name, axis.travel)
     count = plan.targets or axis.count
     share = 0.3 if not axis.rotary else 0.2
@@ -168,7 +168,7 @@ def diagonals(own, machine, when, set_up):
 
 
 def ball_centres(own, machine, when, plan):
-    """The ball stands somewhere else each time: only the centre of its circle is the machine's."""
+    """The ball is mounted at another place each time: only the centre of its circle belongs to the machine."""
     noise, centre = Noise(own + "/ball"), machine.centre
     at = centre.state(when)
     first, height = noise.uniform(0.0, 360.0), noise.uniform(-20.0, 20.0)

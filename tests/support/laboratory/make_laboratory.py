@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A made-up calibration laboratory over years: its site, and beside it what is true of it.
+"""Simulates a calibration laboratory over years: writes its site and, with --truth, the true values.
 
     make_laboratory.py PRESET SITE [--truth FILE] [--seed N] [--until DATE] [--machines N] [--count N] [--known]
 
@@ -8,13 +8,13 @@ PRESET   lab       60 machines, 510 campaigns, five years, twelve crashes of 4 u
          quiet     nothing happens to any machine
          drifting  wear by a straight line, nothing else
          mixed     a small site of everything
-         small     12 machines, each tells one story (samples/laboratory)
+         small     12 machines, each with one typical history (samples/laboratory)
          huge      5000 machines, 100,000 campaigns
---until  what was there on the night of that day (default: the laboratory's last): one call for each night makes a sequence of nights.
-         A site that is there is made anew; a folder that this program did not make is left alone.
---known  also writes the keys that only a program with a history knows ([campaign] purpose, [[alias]])
+--until  the site as it was at the end of that day (default: the laboratory's last): one call per day makes a sequence of runs.
+         An existing site is replaced; a folder that this program did not make is left alone.
+--known  also writes the keys that only a program with a history uses ([campaign] purpose, [[alias]])
 
-The same arguments give the same bytes. The seed stands in the truth.
+The same arguments give the same bytes. The file of --truth contains the seed.
 """
 import argparse
 import os
@@ -55,7 +55,7 @@ def clear(site):
 
 
 def write(lab, site, until, known=False):
-    """The site of that night. What is true, as truth.json has it."""
+    """Writes the site at the end of day `until` and returns the true values in the format of truth.json."""
     clear(site)
     site.mkdir(parents=True, exist_ok=True)
     (site / "site.toml").write_text(site_files.SITE % ", ".join('"%s"' % o for o in lab.outputs) + site_files.new_tables(lab, known))

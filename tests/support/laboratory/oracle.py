@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Jumps of the reversal value, out of results.json alone: nothing of the program's history, so that it can be held against it.
+"""Jumps of the reversal value from results.json alone: independent of the program's history, so that the two can be compared.
 
     oracle.py OUT [--truth FILE] [--least UM]
 

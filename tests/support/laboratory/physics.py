@@ -66,7 +66,8 @@ class Instrument:
 
 
 class Operator:
-    """How somebody sets up: share of the stated misalignment, of the stated sensor error that is new each time, and of the stated drift."""
+    """The quality of an operator's set-up: shares of the stated misalignment, of the stated sensor error that is new in each set-up, and
+    of the stated drift."""
 
     def __init__(self, name, misalignment=0.6, sensor=0.5, drift=0.3):
         self.name, self.misalignment, self.sensor, self.drift = name, misalignment, sensor, drift

@@ -9,7 +9,7 @@ OPERATORS = [Operator("A. Sample", 0.3, 0.3, 0.2), Operator("B. Invented", 0.9, 
 
 
 class Laboratory:
-    """`start`: first day; `night`: the day of its last night. `aliases`: two spellings and who owns them. `due`: rules of the
+    """`start`: first day; `night`: the day of the last run. `aliases`: two spellings and who owns them. `due`: rules of the
     site."""
 
     def __init__(self, preset, seed, start, night, decimals=2):
@@ -67,7 +67,7 @@ def common_machine(lab, k, calm=False, prefix="S", models=MODELS):
 
 
 def slots(noise, lab, count, of, jitter=12):
-    """`count` days of `of` evenly spaced ones: the others are the campaigns that nobody made."""
+    """`count` days of `of` evenly spaced ones: the others are campaigns that were not made."""
     step = (lab.night - lab.start) / of
     kept = list(range(of))
     while len(kept) > count:
@@ -108,7 +108,7 @@ def laboratory(seed, machines=60, count=8):
         campaigns(lab, machine, noise, count + k % 2, count + 3, instruments)
         if k in hit:
             axis, day = machine.axes[int(noise.uniform(0, len(machine.axes)))], between_plans(noise, machine, 3, 2)
-            axis.new |= {"s": noise.uniform(0.52, 0.58), "own": 0.0, "shared": 0.0, "rho": 0.0}  # so large a jump that nobody can miss it
+            axis.new |= {"s": noise.uniform(0.52, 0.58), "own": 0.0, "shared": 0.0, "rho": 0.0}  # so quiet that the jump is significant
             axis.wear = {"b": linear(-noise.uniform(0.3, 0.9))}
             axis.happens(day, "crash", add={"b": -4.0})
             if noise.random.random() < 0.33:

@@ -41,7 +41,7 @@ def legendre(targets, count):
 
 
 def sinusoid(targets, period, beside):
-    """Rows of cos and sin, or None where the targets do not tell them."""
+    """Rows of cos and sin, or None where they are not identifiable with these targets."""
     if len(targets) < FEWEST_FOR_SINUSOID or targets[-1] - targets[0] < period / 2.0:
         return None
     phases = [2.0 * math.pi * x / period for x in targets]

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A program's history of made-up laboratories held against what is true of them.
+"""Compares a program's history of simulated laboratories with the true values.
 
     score.py --site TRUTH HISTORY [HISTORY ...] [MORNING ...] [--site ...] [--json] [--check]
 
-HISTORY: what `nonio machine history OUT --json` printed (schema nonio-history/1), one file for each night in the order of the nights. The last one
-is held against TRUTH, of the day of that night (make_laboratory.py --until); of a quiet site every night is looked at. MORNING: what `nonio
-morning OUT --json` printed (schema nonio-morning/1), of each night too. Several sites are added up. All intervals are Wilson's, 95 %.
+HISTORY: output of `nonio machine history OUT --json` (schema nonio-history/1), one file per run in the order of the runs. The last one is
+compared with TRUTH of the same day (make_laboratory.py --until); for a quiet site every run is compared. MORNING: output of `nonio
+morning OUT --json` (schema nonio-morning/1), also one file per run. Several sites are added up. All intervals are Wilson's, 95 %.
 
---check: exit status 1 unless, as far as these numbers can tell, 95 % of the steps of 3 standard uncertainties or more are named, at most 5 %
-of quiet nights tell something and at most 1 % write a mail of it, 94 to 96 % of slopes and forecasts are covered, no instrument is taken for a machine, and what vanished is
-named.
+--check: exit status 1 if the intervals exclude one of these: 95 % of the steps of 3 standard uncertainties or more are named; at most 5 %
+of quiet runs report a change and at most 1 % mail it; 94 to 96 % of slopes and forecasts are covered; no change of an instrument is taken
+for one of a machine; vanished campaigns are named.
 """
 import argparse
 import bisect
@@ -64,7 +64,7 @@ def same_quantity(truth, told):
 
 
 class Site:
-    """A truth and one night's history."""
+    """The true values of a site, and the history after one run."""
 
     def __init__(self, truth, history):
         if truth.get("schema") != "laboratory-truth/1":
@@ -82,7 +82,7 @@ class Site:
             self.of_machine.setdefault(s["machine"], []).append(s)
 
     def series(self, machine, axis, quantity):
-        """What the history tells of it: none, one, or several where definitions changed."""
+        """Its series in the history: none, one, or several where definitions changed."""
         return [s for s in self.told.get(machine, []) if same_axis(axis, s["axis"]) and same_quantity(quantity, s["quantity"])]
 
     def true_series(self, s):
@@ -199,7 +199,7 @@ class Score:
 
     def add_vanished(self, site, before):
         wanted = {v["campaign"] for v in site.truth["vanished"]}
-        if before:  # what came and went between two nights nobody can miss
+        if before:  # a campaign that came and vanished between two runs cannot be detected
             wanted &= {p["campaign"] for night in before for s in night["series"] for p in s["points"]}
         told = {v["campaign"] for v in site.history.get("vanished", [])}
         for campaign in wanted:
@@ -207,7 +207,7 @@ class Score:
         self.vanished_wrong += sorted(told - wanted)
 
     def add_quiet(self, truth, nights):
-        """A night is false when it tells a change that the night before did not."""
+        """A run is false if it reports a change that no earlier run has reported."""
         before = set()
         for night in nights:
             told = {(s["machine"], s["axis"], s["quantity"], c["after"], c["before"]) for s, c in Site(truth, night).false_changes()}
@@ -215,7 +215,7 @@ class Score:
             before |= told
 
     def add_mails(self, mornings):
-        """Of nights of a quiet site: one is false when it mails a change that none before it did."""
+        """Runs of a quiet site: one is false if it mails a change that no earlier run has mailed."""
         before = set()
         for morning in mornings:
             if morning.get("schema") != "nonio-morning/1":
@@ -274,7 +274,7 @@ class Score:
 
 
 def look_for(site, c, quantity):
-    """The change that names it, or None and what was told instead."""
+    """The reported change that names it, or None and what was reported instead."""
     told = site.series(c["machine"], c["axis"], quantity)
     if not told:
         return None, "no such series"

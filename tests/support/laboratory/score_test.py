@@ -42,7 +42,7 @@ def told(truth, noise=None):
                                 "p": 1e-9, "p_adjusted": 1e-7, "cause": cause})
         segments = [{"from": g["from"], "to": g["to"], "value": 0.0, "u": 0.1, "slope_per_year": g["slope_per_year"] + blur(noise, 0.1),
                      "u_slope": 0.1} for g in s["segments"]]
-        date, value = s["later"][2] if s["later"] else (None, None)  # nobody measures it any more
+        date, value = s["later"][2] if s["later"] else (None, None)  # it is no longer measured
         out.append({"machine": s["machine"], "axis": s["axis"], "quantity": s["quantity"], "unit": "um", "points": [], "model": "drift",
                     "segments": segments, "changes": changes, "smallest_change": 1.0,
                     "forecast": {"date": date, "value": value + blur(noise, 0.2), "u": 0.2, "answer": "keep"} if date else None})
@@ -110,7 +110,7 @@ class OfKnownSites(unittest.TestCase):
                 self.assertEqual(result.missed, {"no such series": n})
                 self.assertEqual(len(result.false), n)
 
-    def test_a_parameter_of_a_model_may_tell_what_happened_to_the_machine_and_nothing_else(self):
+    def test_a_parameter_of_a_model_may_show_changes_of_the_machine_and_nothing_else(self):
         s, change = self.first_change()
         ids = self.neighbours(s)
         for at, false in (((change["after"], change["before"]), 0), ((ids[0], ids[1]), 1)):
@@ -118,7 +118,7 @@ class OfKnownSites(unittest.TestCase):
             history["series"].append(s | {"quantity": "backlash:X.b", "changes": [change | {"after": at[0], "before": at[1]}]})
             self.assertEqual(len(scored(self.truth, history).false), false)
 
-    def test_a_change_that_is_not_told_is_missed(self):
+    def test_a_change_that_is_not_reported_is_missed(self):
         s, _ = self.first_change()
         s["changes"], s["model"] = [], "level"
         result = scored(self.truth, self.history)
@@ -159,7 +159,7 @@ class OfKnownSites(unittest.TestCase):
         self.assertEqual(result.vanished_wrong, ["is-there"])
         self.assertTrue(any(f.startswith("vanished") for f in result.fails()))
 
-    def test_a_quiet_night_counts_once_when_it_tells_something_new(self):
+    def test_a_quiet_run_counts_once_when_it_reports_a_new_change(self):
         nothing = told(self.quiet)
         self.assertEqual([s["changes"] for s in nothing["series"] if s["changes"]], [])
         something = copy.deepcopy(nothing)
@@ -171,7 +171,7 @@ class OfKnownSites(unittest.TestCase):
         self.assertEqual(len(result.false), 1)
         self.assertEqual(scored(self.truth, told(self.truth)).quiet_nights.of, 0)
 
-    def test_a_mail_counts_once_when_it_tells_something_new(self):
+    def test_a_mail_counts_once_when_it_reports_a_new_change(self):
         def morning(*lines):
             return {"schema": "nonio-morning/1", "lines": [dict(zip(("id", "kind", "mail"), line)) for line in lines]}
 
@@ -188,7 +188,7 @@ class OfKnownSites(unittest.TestCase):
         result.add(self.truth, [told(self.truth)], [morning(one)])
         self.assertEqual(result.quiet_mails.of, 0)
 
-    def test_too_many_quiet_nights_fail(self):
+    def test_too_many_false_quiet_runs_fail(self):
         nights, quiet = [], told(self.quiet)
         ids = [p["campaign"] for p in self.quiet["series"][0]["points"]]
         for k in range(60):

@@ -100,7 +100,7 @@ def measurement(m, plan):
 
 
 def csv(m, set_up, decimals):
-    """As small as it may be: the machine's temperature stands in the comment's column only where an axis expands."""
+    """As small as possible: the column of the machine's temperature is written only where an axis expands."""
     lines = ["# " + MADE_UP]
     if m.kind == "ball-centres":
         lines += ["angle_deg,x_mm,y_mm,z_mm"] + ["%g,%.4f,%.4f,%.4f" % row for row in m.readings]

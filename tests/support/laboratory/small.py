@@ -60,7 +60,7 @@ def nothing(told, number, noise):
 
 
 def reversal(told, number, noise):
-    """Between July 2025 and January 2026 the reversal of X grew by 4.3 um. Nobody wrote down why."""
+    """Between July 2025 and January 2026 the reversal of X grew by 4.3 um. No event was recorded."""
     m = told.machine(number, "VM 2", [axis(noise, "X", 1000.0, b=-3.2), axis(noise, "Y", 600.0)], HALF_YEARS)
     m.axis("X").happens(day_of("2025-10-14"), "crash", add={"b": -4.3})
 
@@ -133,8 +133,8 @@ def edition(told, number, noise):
 
 
 def gantry(told, number, noise):
-    """A gantry: X1 and X2 are the two sides of X, and only the nut of X2 wears. In May 2025 a beam hit the guide: X
-    bends across, along Z, by some um more. Nobody wrote it down."""
+    """A gantry: X1 and X2 are the two sides of X, and only the nut of X2 wears. In May 2025 a beam hit the guide: the
+    straightness deviation of X in Z grew by some um. No event was recorded."""
     axes = [axis(noise, "X1", 2000.0), axis(noise, "X2", 2000.0, b=-2.0), axis(noise, "Y", 1600.0),
             axis(noise, "X-in-Z", 2000.0, lateral="Z", pitch=None, b=-0.3, cyclic=0.0)]
     m = told.machine(number, "PG 10", axes, HALF_YEARS[1:], structure="gantry")

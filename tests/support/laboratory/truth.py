@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is true of a made-up laboratory, for who holds a program's history against it (score.py).
+"""The true values of a simulated laboratory, with which score.py compares a program's history.
 
 truth.json:
   preset, seed, until
@@ -8,9 +8,9 @@ truth.json:
              is new in each campaign as the generator makes it, instrument, conditions), segments between changes (from, to, law none,
              linear or other, slope_per_year), later: (date, value) if nothing more happens
   changes    machine, axis, kinds, after and before (campaigns), declared, compensated, quantities: size, u of the difference of these
-             two campaigns, in_u; in_u_of_levels: by the u of the difference of the means of all campaigns from the change before to the
-             next one, which nobody can beat
-  instruments   machine, after, before: another instrument or calibration, size of what it makes of a scale (um/m)
+             two campaigns, in_u; in_u_of_levels: in units of the u of the difference of the means of all campaigns from the previous
+             change to the next one, which is the smallest possible u
+  instruments   machine, after, before: another instrument or calibration, size of the change of scale that it causes (um/m)
   breaks     machine, axis, campaign: first of another definition (edition, span, targets, compensation)
   vanished, moved   campaign, folder
 Units: um, arcsec, um/m, urad, centres mm.
@@ -55,7 +55,7 @@ class Truth:
 
     def add_axis(self, machine, axis, taken):
         happened = [h for h in axis.happened if h["day"] <= self.until]
-        later = tuple(h for h in axis.happened if h["day"] > self.until)  # nobody knows of these yet
+        later = tuple(h for h in axis.happened if h["day"] > self.until)  # not known at `until`
         grouped = intervals(happened, taken)
         self.add_changes(machine, axis, taken, grouped)
         points, first = {}, definition(*taken[0])
@@ -104,7 +104,7 @@ def declared(machine, axis, after, before, until):
 
 
 def intervals(happened, taken):
-    """[(k, what happened between measurements k and k + 1)]; what nobody measured after is left out."""
+    """[(k, what happened between measurements k and k + 1)]; what was not followed by a measurement is left out."""
     out = {}
     for h in happened:
         k = sum(m.day < h["day"] for _, m in taken)

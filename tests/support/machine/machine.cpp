@@ -44,7 +44,7 @@ Curve& Errors::operator[](const std::string& name) {
 Isometry3d pose(const Errors& e, const Vector& at) {
   const double x = at.x(), y = at.y(), z = at.z();
   // The frame of each carriage has its origin where the tool would be at x = y = z = 0, so the
-  // reference line of X lies at (0, y_ref, z_ref) in the frame of the X carriage.
+  // reference line of X is at (0, y_ref, z_ref) in the frame of the X carriage.
   const Isometry3d X = carriage({x + e.EXX(x), e.EYX(x), e.EZX(x)},
                                 turned(e.EAX(x), e.EBX(x), e.ECX(x)), {0.0, e.y_ref, e.z_ref});
   const Vector along_y = turned(0.0, 0.0, e.C0Y) * Vector(0.0, y, 0.0);

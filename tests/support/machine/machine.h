@@ -41,7 +41,7 @@ std::vector<double> interferometer(const Errors& errors, const std::vector<Vecto
                                    const Vector& tool = Vector::Zero(), double gap = 0.5);
 
 /// A flat mirror in the spindle, perpendicular to `beam` (unit vector) but for the small set-up
-/// turns `tilt` about two axes across it; the beam stands still in the bed's frame and meets the
+/// turns `tilt` about two axes across it; the beam is fixed in the bed's frame and meets the
 /// mirror at the first stop's tool point. Readings as above.
 std::vector<double> flat_mirror(const Errors& errors, const std::vector<Vector>& stops,
                                 const Vector& beam, const Eigen::Vector2d& tilt);

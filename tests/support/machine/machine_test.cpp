@@ -73,7 +73,7 @@ TEST(Machine, SquarenessMakesTheDiagonalsUnequal) {
   EXPECT_NEAR(d1[1] - d2[1], -2.0 * 12.0 * 9.0 * 10e-6 / 15.0, 2e-9);
 }
 
-TEST(Machine, AMirrorThatStandsAskewReadsAStepOfEachAxisWrong) {
+TEST(Machine, AMisalignedMirrorReadsAStepOfEachAxisWrong) {
   const Vector beam = Vector(0.8, 0.6, 0.6).normalized();
   const std::vector<Vector> stops{{0, 0, 0}, {0.02, 0, 0}, {0.02, 0.015, 0}, {0.02, 0.015, 0.015}};
   const auto read = flat_mirror({}, stops, beam, {0.3e-3, 0.0});

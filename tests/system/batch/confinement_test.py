@@ -100,7 +100,7 @@ class Confinement(NightTest):
                 pass
 
     def test_a_rounding_mode_of_one_changes_no_other(self):
-        """With plugins from beside the program a worker does many campaigns."""
+        """With plugins in the program's own folder a worker evaluates many campaigns."""
         wanted = self.reference()
         own = pathlib.Path(NONIO).resolve().parents[1]
         program = self.root / "program"
@@ -132,7 +132,7 @@ class Confinement(NightTest):
         done = self.run_nonio("--plugin-path", str(PLUGINS / f"on_load_{how}"), *args, expect=expect)
         return done, time.monotonic() - start
 
-    def test_harm_while_loading_is_refused_and_the_night_goes_on(self):
+    def test_harm_while_loading_is_refused_and_the_run_goes_on(self):
         self.campaign("a")
         for how, words in {"quits": "did not survive loading: ended the process",
                            "kills": "did not survive loading: tried what no plugin may do",
@@ -246,7 +246,7 @@ class Confinement(NightTest):
             self.assertEqual(tree(self.out), tree(reference))
         self.assertEqual(files(self.out), files(reference))
 
-    def test_a_verb_outlives_what_plugins_beside_the_program_do_while_they_are_loaded(self):
+    def test_a_verb_outlives_what_plugins_of_the_program_do_while_they_are_loaded(self):
         """They are not tried in a child first: the process is made anew, and then all are."""
         self.campaign("a")
         own = pathlib.Path(NONIO).resolve().parents[1]
@@ -264,7 +264,7 @@ class Confinement(NightTest):
             self.assertIn("did not survive loading: " + words, done.stderr, how)
             self.assertIn("noise floor", done.stdout)
 
-    def test_the_key_is_hidden_from_plugins_in_nights_and_verbs(self):
+    def test_the_key_is_hidden_from_plugins_in_runs_and_verbs(self):
         self.campaign("a", run=GOOD)
         folder = self.site / "keys"
         folder.mkdir()
@@ -278,7 +278,7 @@ class Confinement(NightTest):
             said = lambda *args: subprocess.run([NONIO, *map(str, args), "--plugin-path", reads], env=environment,
                                                 capture_output=True, text=True, timeout=120).stderr
             compare = ("compare", self.site / "a")
-            self.assertIn("it has the key", said(*compare))  # nobody has said that it is one
+            self.assertIn("it has the key", said(*compare))  # site.toml does not name it as the key
             (self.site / "site.toml").write_text(
                 '[signing]\npkcs12 = "keys/lab.p12"\npassword_file = "keys/password"\n')
             self.assertNotIn("it has the key", said(*compare))

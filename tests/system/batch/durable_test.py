@@ -84,7 +84,7 @@ class Durable(NightTest):
         with open(self.out / ".nonio" / "lock") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             self.assertIn("another run", self.run_nonio(expect=2).stderr)
-            self.assertEqual(0, self.status().returncode)  # the last night is complete
+            self.assertEqual(0, self.status().returncode)  # the last run is complete
 
     def test_readings_rewritten_in_place_are_of_one_state(self):
         folder = self.campaign("a", run='[run]\nanalyses = ["iso230-2"]\noutputs = ["json"]\n')
@@ -194,7 +194,7 @@ class Durable(NightTest):
         self.campaign("a")
         self.run_nonio(env=fault(f"fork:3:{errno.EAGAIN}:3"), expect=0)
 
-    def test_the_summary_says_which_night_it_is(self):
+    def test_the_summary_has_the_number_of_the_run(self):
         self.campaign("a")
         self.run_nonio("--date", "2026-11-03", expect=0)
         self.campaign("b")
@@ -226,7 +226,7 @@ class Durable(NightTest):
         self.assertIn("run 2", done.stdout)
         self.assertIn("did not end", done.stdout)
 
-    def test_kill_9_in_changed_and_forced_nights(self):
+    def test_kill_9_in_changed_and_forced_runs(self):
         """The place of each kill is a call that changes the disk: no timing can miss it."""
         rng = random.Random(SEED)
         print(f"seed {SEED}, {KILLS} kills", flush=True)
@@ -257,7 +257,7 @@ class Durable(NightTest):
 
     @unittest.skipIf("NONIO_TEST_NO_MEMORY_LIMIT" in os.environ, "malloc is the sanitizer's")
     def test_memory_that_is_refused_in_the_main_process(self):
-        """At places all over the night: a word and a status, never a crash, never other bytes with status 0."""
+        """At random places of a run: a message and a status, never a crash, never other bytes with status 0."""
         self.campaign("a", run='[run]\noutputs = ["json"]\n')
         self.run_nonio("--date", "2026-11-03", "--jobs", "1", expect=0)
         good = given_out(self.out)

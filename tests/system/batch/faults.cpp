@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loaded before the C library (LD_PRELOAD): the n-th call of one of its functions fails, counted
-// over all processes of a night. NONIO_FAULT = FUNCTION:N:ERRNO[:TIMES], or FUNCTION:N:KILL, which
-// ends the main process by SIGKILL instead, or rename:N:REPLAY, which does it and says ENOENT, as NFS does where an answer was
-// lost, or write:N:LOST, which says that it was written, or
-// write:N:LATE, of which the kernel finds out later that the disk did not take it: syncfs fails
-// then as Linux does it, once for each descriptor that was open before and for none that was opened
-// after. NONIO_FAULT_IN = main: only the calls of the main process count; = confining: only those
-// while a process that evaluates confines itself. NONIO_FAULT_COUNTS = FILE gets how often each was
-// called.
+// Loaded before the C library (LD_PRELOAD): the N-th call of one of its functions fails, counted
+// over all processes of a run. NONIO_FAULT is one of
+//   FUNCTION:N:ERRNO[:TIMES]  fails with this error, TIMES times
+//   FUNCTION:N:KILL           ends the main process by SIGKILL
+//   rename:N:REPLAY           renames and returns ENOENT, as NFS does if an answer was lost
+//   write:N:LOST              writes nothing and returns success
+//   write:N:LATE              writes, and a later syncfs fails as on Linux after an error of the
+//                             disk: once for each descriptor opened before, for none opened after
+// NONIO_FAULT_IN = main: only calls of the main process count; = confining: only those while a
+// process that evaluates confines itself. NONIO_FAULT_COUNTS = FILE receives the counts of calls.
 #include <dirent.h>
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -63,11 +64,11 @@ enum Function {
 std::atomic<long>* counts = nullptr;  // shared by the processes
 int wanted = -1;
 long from = 0, times = 1;
-constexpr int lost = 0x10000;              // of a disk that says it has what it has not
-constexpr int late = 0x20000;              // of a disk that says afterwards that it has not
-constexpr int replay = 0x40000;            // done, and said not to be
+constexpr int lost = 0x10000;              // not written, reported as written
+constexpr int late = 0x20000;              // written, reported by syncfs as failed
+constexpr int replay = 0x40000;            // renamed, reported as failed
 std::atomic<long>* disk_failed = nullptr;  // shared by the processes
-bool told[1024];                           // descriptors that do not hear of it (any more)
+bool told[1024];                           // descriptors whose syncfs reports no error (any more)
 int code = 0;                              // 0: kill
 bool main_only = false, confining_only = false, confining = false;
 pid_t main_pid = 0;

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Faults at random places of first, changed and forced nights: a call of the system fails, or the night is killed.
-Never status 0 with a missing, old or wrong byte, never a temporary file left, always a next night with the same bytes.
+"""Faults at random places of first, changed and forced runs: a system call fails, or the run is killed.
+Never status 0 with a missing, old or wrong byte, never a temporary file left, always a next run with the same bytes.
 
 NONIO_FAULTS and NONIO_SEED choose how many and which; NONIO_FAULT_REPEAT=NIGHT/FAULT (as they are printed) repeats one."""
 import collections
@@ -59,7 +59,7 @@ class Faults(NightTest):
             self.references[night] = tree(out)
 
     def begin(self, night, name):
-        """The site and the output folder as this night finds them."""
+        """The site and the output folder before this run."""
         for i, campaign in enumerate("abc"):
             new = night == "changed" and i < 2
             path = self.site / campaign / "x.csv"
@@ -80,7 +80,7 @@ class Faults(NightTest):
                               env={**os.environ, **fault, **({"LD_PRELOAD": SHIM} if fault else {})})
 
     def draw(self, rng):
-        """A night and FAULT@WHERE: in all processes, or in the main one only."""
+        """A run and FAULT@WHERE: in all processes, or in the main one only."""
         night = rng.choice(NIGHTS)
         # A confined process may send no signal, so only the main process kills itself.
         if rng.random() < 0.2:
@@ -115,7 +115,7 @@ class Faults(NightTest):
                 and self.results(files) == self.results(reference))
 
     def wrong(self, night, fault):
-        """What the fault brought about that must not be; and what became of the night."""
+        """The unacceptable effect of the fault, or none; and how the run ended."""
         out = self.begin(night, "out")
         fault, where = fault.split("@") if "@" in fault else (fault, "all")
         done = self.night(night, out, {"NONIO_FAULT": fault, "NONIO_FAULT_IN": where})
@@ -129,7 +129,7 @@ class Faults(NightTest):
             if status not in (0, 1, 2):
                 return f"the main process ended by {told}", ends
             left = [str(p) for p in out.rglob("*") if "nonio-tmp" in p.name]
-            # Where memory stays away, nothing is left to sweep with: the next night does, see below.
+            # While allocations fail, temporary files cannot be removed: the next run removes them, see below.
             if left and not fault.endswith(":1000"):
                 return f"left {left}, {told}", ends
             if status != 0 and not done.stderr.strip():
@@ -160,7 +160,7 @@ class Faults(NightTest):
         self.night("first", out, {"NONIO_FAULT": f"malloc:1:{errno.ENOMEM}:1000000", "NONIO_FAULT_IN": "confining"}, expect=0)
         self.assertEqual(tree(out), self.references["first"])
 
-    def test_the_last_calls_of_a_night(self):
+    def test_the_last_calls_of_a_run(self):
         """When all campaigns are done, and the register, the leftovers and the summary are left: every place."""
         bad = []
         for night, call, code, times in (("first", "open", errno.EIO, 10), ("first", "stat", errno.ESTALE, 1),
@@ -172,7 +172,7 @@ class Faults(NightTest):
         self.assertFalse(bad, "\n".join(bad))
 
     def test_a_rename_that_was_done_and_is_said_not_to_be(self):
-        """NFS sends a request again whose answer was lost, and finds nothing: every rename of a night, one of them, all of them."""
+        """NFS repeats a request whose answer was lost, and the file no longer exists: one rename of a run, or all of them."""
         bad = []
         for night in NIGHTS:
             n = self.counts[night, "all"]["rename"]

@@ -104,7 +104,7 @@ class FileSystems(NightTest):
                 fault(*told)
                 how = told[2]
                 words = "no answer within 2 s" if how == "hang" else os.strerror(how)
-                # A process that waits in the kernel for the share is left behind: neither this night waits for it, nor the next one.
+                # A process that waits in the kernel for the share is left behind: neither this run nor the next waits for it.
                 for _ in range(2 if how == "hang" else 1):
                     began = time.monotonic()
                     done = self.run_nonio(*DATE, "--quiet", expect=1)
@@ -146,7 +146,7 @@ class FileSystems(NightTest):
         self.assertEqual(made.returncode, 0, made.stderr)
 
     def told_and_made_good(self, done, words, make_room, reference):
-        """The night says what happened, and the next one has all."""
+        """The run reports what happened, and the next one has all results."""
         self.assertIn(done.returncode, (1, 2), done.stderr)
         self.assertRegex(done.stderr, words)
         make_room()

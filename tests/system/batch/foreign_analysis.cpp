@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An analysis of somebody else, which does not state what is followed, and calls a length like a squareness.
+// An analysis of a third party that does not state which results are followed, and gives a length the
+// name of a squareness.
 #include "nonio/sdk/plugin.h"
 
 using namespace nonio;

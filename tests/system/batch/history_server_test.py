@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The laboratory's memory on a PostgreSQL server: the same rows, whatever becomes of the server or of the night."""
+"""The store of results on a PostgreSQL server: the same rows, even if the server or the run is stopped."""
 import csv
 import io
 import json
@@ -63,7 +63,7 @@ class HistoryServerTest(NightTest):
         self.assertFalse((self.out / "history.sqlite").exists(), "it would grow old")
         return said
 
-    def test_nights_are_there_and_sqlite_says_the_same(self):
+    def test_runs_are_stored_and_sqlite_has_the_same_rows(self):
         for name in ("a", "b"):
             self.campaign(name)
         self.run_nonio("--date", "2026-03-01", expect=0)
@@ -144,7 +144,7 @@ class HistoryServerTest(NightTest):
             self.choose(URL)
             shutil.rmtree(copy)
 
-    def test_killed_nights(self):
+    def test_killed_runs(self):
         def check(what):
             self.query()
             self.run_nonio()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The laboratory's memory grows with the nights: the same rows as made again, whatever ends a night."""
+"""The store of results is updated by each run: the same rows as when made from nothing, however a run ends."""
 import os
 import shutil
 import sqlite3
@@ -46,7 +46,7 @@ class HistoryTest(NightTest):
             self.out = grown
             shutil.rmtree(copy)
 
-    def test_nights_leave_what_is_made_again(self):
+    def test_runs_leave_the_rows_of_a_store_made_again(self):
         for name in ("a", "b", "c"):
             self.campaign(name)
         self.run_nonio("--date", "2026-03-01", expect=0)
@@ -55,7 +55,7 @@ class HistoryTest(NightTest):
         first = self.rows()
         self.run_nonio("--date", "2026-03-02")
         self.assertEqual(self.rows(), first, "a night on which nothing changed")
-        # Other readings, other options, one that is gone.
+        # Other readings, other options, and a campaign that no longer exists.
         self.campaign("a", seed=9.0)
         self.campaign("b", extra="[options.iso230-2]\nedition = 2006\n")
         shutil.rmtree(self.site / "c")
@@ -80,7 +80,7 @@ class HistoryTest(NightTest):
             kept = dict(self.ask(f"SELECT quantity, value FROM result WHERE source = '{analysis['plugin']}'"))
             self.assertEqual(kept, {name: v["value"] for name, v in analysis["values"].items()})
 
-    def test_a_night_that_cannot_write_it_says_so_and_loses_nothing(self):
+    def test_a_run_that_cannot_write_the_store_reports_it_and_loses_nothing(self):
         self.campaign("a")
         self.run_nonio()
         before = self.rows()
@@ -112,7 +112,7 @@ class HistoryTest(NightTest):
         self.run_nonio()
         self.assertEqual(self.rows(), before)
 
-    def test_a_campaign_is_not_named_as_what_a_night_writes(self):
+    def test_a_campaign_has_no_name_of_an_output_file(self):
         self.campaign("a")
         for k, name in enumerate(("machines", "index.html", "history.sqlite", "history.sqlite-journal")):
             self.campaign(f"wrong{k}", name)
@@ -126,8 +126,8 @@ class HistoryTest(NightTest):
         self.run_nonio()
         self.assertEqual(self.rows(), self.made_again())
 
-    def test_killed_nights(self):
-        """At any moment: the night after it leaves the rows of a store that is made from nothing."""
+    def test_killed_runs(self):
+        """At any moment: the run after it leaves the rows of a store that is made from nothing."""
         def check(what):
             self.assertEqual(self.ask("PRAGMA integrity_check"), [("ok",)])
             self.run_nonio()

@@ -66,7 +66,7 @@ void append() {
 void make() { got(::open(path, O_WRONLY | O_CREAT, 0644) >= 0, "a new file"); }
 void kill_parent() { ::kill(::getppid(), SIGKILL); }
 void kill_thread() { ::syscall(SYS_tgkill, ::getppid(), ::getppid(), SIGKILL); }
-// The call is what is refused; where it is not, nobody else dies of this test.
+// The call must be refused; signal 0 ends no process if it is not.
 void kill_all() { ::kill(-1, 0); }
 void descriptors() {
   int open = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An analysis as it should be, and beside it an output that nobody can ask whether it applies.
+// A complete analysis, and an output without the function `applies`.
 #include "nonio/sdk/plugin.h"
 
 NONIO_PLUGIN(registry) {

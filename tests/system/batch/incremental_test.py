@@ -40,7 +40,7 @@ class Incremental(NightTest):
         self.assertEqual(tree(self.out), tree(other))
 
     def test_an_output_folder_is_of_one_site(self):
-        """Campaigns of two sites would be taken for one another's, and the summary tells of one only."""
+        """Otherwise campaigns of two sites would be mixed up, and the summary covers one site only."""
         self.run_nonio(expect=0)
         before = tree(self.out)
         other = self.root / "other-site"
@@ -99,7 +99,7 @@ class Incremental(NightTest):
     def test_force(self):
         self.assertEqual(self.changed_after(lambda: None, "--force"), dict.fromkeys("abc", "--force"))
 
-    def test_reason_stands_beside_the_result(self):
+    def test_the_reason_is_stored_with_the_result(self):
         self.run_nonio(expect=0)
         self.assertEqual(json.loads((self.out / "a" / "run.json").read_text())["reason"], "no earlier result")
 

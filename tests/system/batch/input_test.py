@@ -113,7 +113,7 @@ class Input(NightTest):
             self.assertEqual((file, found), ("campaign.toml", line), name + ": " + message)
             self.assertIn(words, message)
 
-    def test_mistakes_of_the_site_are_told_once_with_their_line(self):
+    def test_mistakes_of_the_site_are_reported_once_with_their_line(self):
         self.campaign("a")
         for text, line, words in (('[run]\nanalyses = ["iso230-3"]\n', 2, 'nearest: "iso230-2"'),
                                   ('[run]\noutputs = [\n"jsn"]\n', 2, 'nearest: "json"'),
@@ -125,7 +125,7 @@ class Input(NightTest):
             self.assertIn(words, done.stderr)
             self.assertFalse(self.out.exists())
 
-    def test_a_table_that_nobody_asked_for_does_not_fail_the_campaign(self):
+    def test_a_table_that_was_not_requested_does_not_fail_the_campaign(self):
         small = '[options.siemens-840d]\naxes = ["X number=1"]\nmax_points = 3\n'
         self.campaign("any", extra=small)
         self.campaign("asked", run='[run]\noutputs = ["siemens-840d"]\n', extra=small)
@@ -221,10 +221,10 @@ class Input(NightTest):
         for out in (self.site, folder, folder / "below"):
             done = self.run_nonio(out=out, expect=2)
             self.assertIn("expected another folder", done.stderr)
-        self.run_nonio(out=self.site.parent, expect=0)  # beside it is fine
+        self.run_nonio(out=self.site.parent, expect=0)  # the site's parent folder is accepted
         self.assertEqual((folder / "values.csv").read_text(), "mine")
 
-    def test_a_pipe_does_not_stop_the_night(self):
+    def test_a_pipe_does_not_stop_the_run(self):
         for name in ("x.csv", "campaign.toml"):
             folder = self.campaign("bad-" + name[0])
             (folder / name).unlink()

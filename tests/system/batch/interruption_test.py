@@ -69,7 +69,7 @@ class Interruption(NightTest):
             self.assertTrue(reference == tree(out), f"kill {k}: {self.differences(reference, tree(out))}")
 
     def test_sigterm_at_random_moments(self):
-        """Of first and of forced nights, in turn: the night ends soon and leaves nothing behind, the next one has the same bytes."""
+        """First and forced runs in turn: the run ends soon and leaves nothing behind, the next one has the same bytes."""
         print(f"seed {SEED}, {TERMS} SIGTERMs", flush=True)
         rng = random.Random(SEED)
         before = self.root / "before"

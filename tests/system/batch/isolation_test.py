@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A plugin that misbehaves costs its campaign, never the night."""
+"""A plugin that misbehaves fails its campaign, never the run."""
 import os
 import pathlib
 import shutil

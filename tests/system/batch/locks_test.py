@@ -63,7 +63,7 @@ class LockTest(NightTest):
         self.assertEqual([p.name for p in self.user.parent.iterdir() if "user" in p.name], ["user-fedcba98-abc"])
 
     @unittest.skipUnless(MACHINE, "this host has no /etc/machine-id")
-    def test_this_host_before_it_started_anew_is_known_to_be_gone(self):
+    def test_a_lock_of_this_host_before_its_restart_is_stale(self):
         self.left(host=os.uname().nodename, machine=MACHINE)
         self.run_nonio(expect=0)
         self.left(host="of the same image", machine=MACHINE)
@@ -89,7 +89,7 @@ class LockTest(NightTest):
         self.assertIn("it was used by process 17 on host elsewhere (job 7.0)", done.stderr)
         self.assertIn("the output folder is not in use", self.night(*ask).stderr)
 
-    def test_a_night_that_runs_is_named_and_not_unlocked_and_leaves_nothing(self):
+    def test_a_run_in_progress_is_named_and_not_unlocked_and_leaves_nothing(self):
         for i in range(8):
             self.campaign(f"c{i}")
         running = subprocess.Popen(self.command(), env={**os.environ, "NONIO_JOB": "5.0"}, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
@@ -116,7 +116,7 @@ class LockTest(NightTest):
         self.assertEqual(running.returncode, 0)
         self.assertFalse(self.user.exists())
 
-    def test_a_killed_night_goes_on(self):
+    def test_a_killed_run_is_resumed(self):
         running = subprocess.Popen(self.command(), stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
         while not self.user.exists() and running.poll() is None:
             pass

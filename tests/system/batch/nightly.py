@@ -117,8 +117,8 @@ def tree(folder):
 
 
 def given_out(folder):
-    """Without the mark of who uses the folder: one that was killed, or could not look at it, leaves its own, and the next
-    night takes it over (night.locks)."""
+    """Without the mark of the process that uses the folder: a run that was killed leaves its mark, and the next run
+    takes it over (night.locks)."""
     files = tree(folder)
     files.pop(".nonio/user", None)
     return files

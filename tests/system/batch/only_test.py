@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`nonio run --only`: one campaign of the last night again. The night stays what it was but for that campaign."""
+"""`nonio run --only`: one campaign of the last run again. The other campaigns of that run do not change."""
 import fcntl
 import json
 import pathlib
@@ -80,7 +80,7 @@ class OnlyTest(NightTest):
         self.assertEqual(self.rows(), rows)
         self.assertEqual((self.state()["state"], self.state()["night"], self.state()["date"]), ("complete", 1, "2026-03-01"))
 
-    def test_only_that_campaign_is_done_and_the_night_keeps_its_number(self):
+    def test_only_that_campaign_is_done_and_the_run_keeps_its_number(self):
         self.spoil("a"), self.spoil("b")
         self.campaign("d")
         before = self.whole()
@@ -92,7 +92,7 @@ class OnlyTest(NightTest):
         summary = json.loads((self.out / "summary.json").read_text())
         self.assertEqual((summary["night"], summary["counts"]["campaigns"]), (1, 3), "d came after the night")
         self.assertFalse((self.out / "d").exists())
-        # What it leaves is what a night of all would have left for b; the next night does the rest.
+        # For b it leaves what a complete run would have left; the next run does the rest.
         self.run_nonio("--date", "2026-03-02")
         self.assertEqual(self.state()["night"], 2)
         self.assertEqual((self.record("a")["night"], self.record("b")["night"], self.record("d")["night"]), (2, 1, 2))

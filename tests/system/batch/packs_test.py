@@ -82,7 +82,7 @@ class Packs(NightTest):
         copied = self.outside_packs(copy)
         self.assertEqual(sorted(k for k in whole.keys() | copied.keys() if whole.get(k) != copied.get(k)), [], what)
 
-    def test_nights_in_packs_equal_whole_nights(self):
+    def test_runs_in_packs_equal_whole_runs(self):
         """First; one changed; unchanged; forced; one that fails for a reason that may pass: in packs, whole, and in folders again."""
         self.some_campaigns()
         everything = ["c0", "c1", "c2", "c3", "twin", "wrong"]
@@ -97,7 +97,7 @@ class Packs(NightTest):
         self.night(2, "--date", "2026-11-03")
         self.same("unchanged", everything)
         self.assertEqual([p.name for p in self.packs()], names, "an unchanged night writes no pack")
-        # A night without shards, and one whose shards write folders, take what they change out of the packs.
+        # A run without shards, and one whose shards write folders, remove from the packs the campaigns that they change.
         self.campaign("c1", seed=7)
         for out in (self.out, self.parts):
             self.run_nonio("--date", "2026-11-04", out=out)
@@ -151,7 +151,7 @@ class Packs(NightTest):
         for name, mode, mtime, size, data in rows:
             self.assertEqual((mode, mtime, size), (0o100644, 0, len(data)))
             self.assertEqual(data, (self.out / name).read_bytes())
-        # A link of a page leads to a file once somebody has asked for it.
+        # A link of a page leads to a file after the file was exported.
         self.nonio("export", "c1", "--out", self.parts)
         self.assertEqual((self.parts / "c1" / "report.pdf").read_bytes(), (self.out / "c1" / "report.pdf").read_bytes())
 
@@ -281,7 +281,7 @@ class Packs(NightTest):
         self.assertEqual(pack.read_bytes(), sound)
         self.merge()
         self.same()
-        # After the merge: a report that was changed is made anew; a pack that is gone is no campaign without results.
+        # After the merge: a damaged report is made again; a missing pack fails its campaign, which is not taken for a new one.
         at = sound.index((self.out / "c1" / "report.pdf").read_bytes()[-200:])
         pack.write_bytes(sound[:at] + bytes([sound[at] ^ 1]) + sound[at + 1:])
         refused = self.nonio("export", "c1", "--out", self.parts, "--to", self.root / "to", expect=1).stderr
@@ -339,7 +339,7 @@ class Packs(NightTest):
         pack.unlink()
         pack.symlink_to("/etc/passwd")
         self.assertIn("is not a file", self.nonio("export", "c0", "--out", self.parts, "--to", to, expect=1).stderr)
-        # The folder that it is written to leads elsewhere: a link is no file of these bytes.
+        # A symbolic link in the folder of the export leads elsewhere: it is not followed.
         pack.unlink()
         pack.write_bytes(sound)
         (to / "c0").mkdir(parents=True)

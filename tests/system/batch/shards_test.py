@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A night in shards: the bytes of one run, whatever the order, number and end of the processes."""
+"""A run in shards: the bytes of an undivided run, whatever the order, number and end of the processes."""
 import json
 import os
 import pathlib
@@ -177,7 +177,7 @@ class Shards(NightTest):
         self.merge()
         self.assertEqual(self.summary()["night"], 1)
 
-    def test_a_plan_is_withdrawn_and_its_night_goes_on(self):
+    def test_a_plan_is_withdrawn_and_its_run_goes_on(self):
         self.some_campaigns()
         self.assertIn("no run is planned", self.nonio("run", "cancel", self.site, expect=2).stderr)
         self.plan(2, "--date", "2026-11-01")
@@ -187,8 +187,8 @@ class Shards(NightTest):
         self.run_nonio("--date", "2026-11-01", out=self.root / "one", expect=1)
         self.same(self.out, self.root / "one")
 
-    def test_the_site_changes_while_its_night_is_planned(self):
-        """Readings as they are when they are read; what came later, the next night; what is gone, failed."""
+    def test_the_site_changes_while_its_run_is_planned(self):
+        """Readings are those at the time of reading; a new campaign waits for the next run; a removed one has failed."""
         for name in ("a", "b", "c"):
             self.campaign(name)
         self.plan(2, "--date", "2026-11-01")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reports that show the history of their machine: a function of what their day knew, whatever the nights did."""
+"""Reports that show the history of their machine: it depends only on the campaigns up to their day, not on the order of runs."""
 import json
 import math
 import os
@@ -90,7 +90,7 @@ class ShownHistory(NightTest):
         for jobs in ("1", "4"):
             self.again(self.root / f"at once {jobs}").night("2026-11-03", "--jobs", jobs)
             self.assertEqual(self.reports(), one_by_one)
-        # Against the order of the days, each in a night of its own.
+        # In reverse order of the days, each in a run of its own.
         shutil.rmtree(self.site / "z"), shutil.rmtree(self.site / "y"), shutil.rmtree(self.site / "x")
         self.again(self.root / "backwards").night("2026-11-03")
         for number in (2, 0, 1):

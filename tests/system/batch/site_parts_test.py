@@ -128,7 +128,7 @@ class SiteParts(NightTest):
                     self.assertEqual(self.backlash(), self.tables)
                     self.assertEqual(self.lines(), [])
 
-    def test_every_part_that_is_lost_is_reported_until_somebody_has_removed_it(self):
+    def test_every_part_that_is_lost_is_reported_until_it_is_removed(self):
         before = tree(self.out)
         for name, text in self.parts.items():
             refused = name == "site.toml" or name.startswith("templates/")
@@ -175,7 +175,7 @@ class SiteParts(NightTest):
         (self.site / "acknowledged.toml").unlink()
         self.assertIn("acknowledged.toml is missing", self.night("2026-11-16", expect=1).stderr, "an older entry was for an earlier loss")
 
-    def test_a_folder_that_is_gone_is_one_line(self):
+    def test_a_missing_folder_is_one_line(self):
         (self.site / "machines").rename(self.site / "Machines")
         done = self.night("2026-11-11", expect=1)
         self.assertIn(f"machines none of its {MACHINES} files exists any more", done.stderr)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A night on a real Slurm with two nodes on this host: the scripts that are installed, run as a site runs them.
+"""A run on a real Slurm with two nodes on this host: the installed scripts, run as a site runs them.
 
 NONIO_SLURM_LONG=1: also what Slurm does after two minutes of waiting (a task put back, a node lost).
 NONIO_SLURM_KILLS=N: how often a task is killed (2; more by hand). NONIO_SEED: when."""
@@ -262,7 +262,7 @@ class SlurmTest(NightTest):
         parts = tree(self.parts)
         self.assertEqual([k for k in packed if one[k] != parts.get(k)], [])
 
-    def test_a_night_that_is_a_job_of_a_lost_host(self):
+    def test_a_run_that_is_a_job_of_a_lost_host(self):
         """Its output folder is taken over when Slurm no longer has the job, and not before."""
         self.plan()
         user = self.parts / ".nonio/user"
@@ -335,7 +335,7 @@ class SlurmTest(NightTest):
         said = merging.communicate()[1]
         self.assertIn(merging.returncode, (0, 1), said)
         print(f"seed {SEED}: power cuts: {of_shards} beside the shards, {cuts} beside the merge", file=sys.stderr)
-        # The next night finds what was left over, and nothing to do after that.
+        # The next run completes what was left over, and the one after it has nothing to do.
         self.run_nonio("--date", "2026-11-02", out=self.parts)
         done = self.run_nonio("--date", "2026-11-03", out=self.parts, expect=0)
         self.assertEqual(self.summary(self.parts)["done"], [], done.stderr)

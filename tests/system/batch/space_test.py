@@ -54,7 +54,7 @@ class Space(NightTest):
                     if (a["plugin"], a["measurement"]) == (plugin, measurement))
 
     def expect_refused(self, name, plugin, measurement, finding, *places):
-        """The finding is there with these words in its evidence, and no curve beside it."""
+        """The analysis has the finding, with these words in its evidence, and no curve."""
         a = self.evaluation(name, plugin, measurement)
         ids = [f["id"] for f in a["findings"]]
         self.assertIn(finding, ids, name)

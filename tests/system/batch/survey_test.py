@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What lies in a site is seen, or its absence is said: no folder, file or share drops a campaign in silence or ends the
-night."""
+"""Every campaign of a site is found or reported as missing: no folder, file or share drops a campaign silently or ends the
+run."""
 import errno
 import hashlib
 import json
@@ -102,7 +102,7 @@ class Survey(NightTest):
             stop.set()
             thread.join()
 
-    # 2. Files and shares that stop a night
+    # 2. Files and shares that stop a run
 
     def test_a_manifest_above_1_MB_is_refused_unread(self):
         self.campaigns("a")
@@ -156,7 +156,7 @@ class Survey(NightTest):
         return {**with_faults(rule), "KEY_PASSWORD": "secret", **({"NONIO_FAULTS_AFTER": str(after)} if after else {})}
 
     @can_inject
-    def test_SIGTERM_ends_a_night_whose_own_files_hang(self):
+    def test_SIGTERM_ends_a_run_whose_own_files_hang(self):
         """Also where they hung after they were read before."""
         self.campaigns("a", "b")
         (self.site / "templates").mkdir()
@@ -226,7 +226,7 @@ class Survey(NightTest):
         self.assertNotIn("campaign.id", words)
         self.assertLess(used.ru_maxrss, 150_000)  # kB; the message of each with all names: 200 MB more
 
-    def test_one_id_in_very_many_folders_is_told_shortly(self):
+    def test_one_id_in_very_many_folders_is_reported_briefly(self):
         for i in range(3000):
             folder = self.site / f"f{i:04}"
             folder.mkdir()
@@ -258,9 +258,9 @@ class Survey(NightTest):
         self.assertIn("not a file", self.run_nonio(expect=2).stderr)
         self.assertFalse(self.out.exists())
 
-    # 8. What was there and is gone
+    # 8. Campaigns that no longer exist
 
-    def test_campaigns_that_are_gone_are_named(self):
+    def test_vanished_campaigns_are_named(self):
         self.campaigns("a", "b", "c", "d")
         self.run_nonio(expect=0)
         kept = self.root / "kept"
@@ -275,7 +275,7 @@ class Survey(NightTest):
         self.assertEqual(self.summary()["counts"]["vanished"], 3)
         self.assertIn("MISSING SINCE AN EARLIER RUN", (self.out / "summary.txt").read_text())
         self.assertEqual(self.ids("unchanged"), ["d"])
-        self.run_nonio(expect=1)  # until it is meant, or mended
+        self.run_nonio(expect=1)  # until the campaign is removed from the output folder or restored
         shutil.rmtree(self.out / "a")
         (kept / "b").rename(self.site / "b")
         (kept / "campaign.toml").rename(self.site / "c" / "campaign.toml")
@@ -382,7 +382,7 @@ class Survey(NightTest):
 
     # 10. Names and files that confuse
 
-    def test_names_that_the_night_uses_itself(self):
+    def test_names_that_the_run_uses_itself(self):
         self.campaigns("list.nonio-tmp", "b")
         self.campaign("c", campaign_id="summary.json", run=QUICK)
         self.campaign("summary.txt", text="[[[")

@@ -75,7 +75,7 @@ class Certificates(NumberedTest):
         self.assertEqual((self.root / "all" / f"{number(1)}.pdf").read_bytes(), first)
         self.assertEqual((self.root / "all" / f"{number(2)}.pdf").read_bytes(), self.pdf("c1").read_bytes())
         self.assertIn("amended by " + number(2), self.certificates().stdout)
-        # What has no say in the results changes nothing, what has changes it.
+        # A key without effect on the results changes nothing; one with effect makes an amendment.
         self.site_with(extra='[limits]\nseconds = 100\n')
         self.night()
         self.assertEqual(self.printed("c1", "number"), number(2))
@@ -223,7 +223,7 @@ class Certificates(NumberedTest):
         self.assertEqual(self.issued_files(), before)
         self.assertEqual(self.ids("attention"), ["c1"])
 
-    def test_a_register_that_is_lost_stops_the_night(self):
+    def test_a_register_that_is_lost_stops_the_run(self):
         self.signed_campaign("c1")
         self.night()
         register = self.site / "certificates.sqlite"
@@ -251,7 +251,7 @@ class Certificates(NumberedTest):
         self.site_with(extra='[certificate]\nnumbering = "{month}"\n')
         self.assertIn("numbering", self.night(expect=2).stderr)
 
-    def test_two_nights_at_once_issue_each_certificate_once(self):
+    def test_two_runs_at_once_issue_each_certificate_once(self):
         names = [f"c{i}" for i in range(8)]
         for name in names:
             self.signed_campaign(name)
@@ -278,7 +278,7 @@ class Certificates(NumberedTest):
         self.plugins_are_loaded_where_a_signature_holds(self.pdf("c1"))
 
     def test_each_verdict_has_its_words_and_its_status(self):
-        """What a customer must tell apart: a forged file, one whose signer is not known, one that is not a certificate."""
+        """A customer must be able to distinguish a forged file, one whose signer is not known, and one that is not a certificate."""
         self.signed_campaign("c1")
         self.night()
         honest = self.pdf("c1")

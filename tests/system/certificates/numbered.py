@@ -24,7 +24,7 @@ AUTOMATIC = f'release = "automatic"\naccept = [{{ finding = "{KNOWN}", reason = 
 
 
 class NumberedTest(SigningTest):
-    """Campaigns whose certificates are made by a plugin that prints what it is told."""
+    """Campaigns whose certificates are made by a plugin that prints its input."""
 
     def setUp(self):
         super().setUp()

@@ -169,7 +169,7 @@ class Register(NumberedTest):
         return answer
 
     def rechained(self):
-        """What somebody can do who knows how the chain is made."""
+        """A forgery by a person who knows how the chain of digests is made."""
         import hashlib
         with sqlite3.connect(self.site / "certificates.sqlite") as register:
             before = ""

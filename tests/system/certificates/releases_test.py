@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A night makes drafts, a person releases them: who, why, and what an amendment says."""
+"""A run makes drafts, a person approves them: who, why, and the text of an amendment."""
 import json
 import os
 import sqlite3
@@ -71,7 +71,7 @@ class Releases(NumberedTest):
         for name in ("Ada Neri", "ada neri.", "AdaNeri"):
             self.assertEqual(self.release_verb("--by", name, "--as", "authoriser").returncode, 2)
 
-    def test_a_night_makes_a_draft_and_a_person_releases_it(self):
+    def test_a_run_makes_a_draft_and_a_person_approves_it(self):
         self.by_hand()
         self.signed_campaign("c1")
         self.night()
@@ -214,7 +214,7 @@ class Releases(NumberedTest):
         self.key.p12.write_bytes(key)
         self.release_verb("--by", "B", "--out", moved, expect=0)
         self.assert_holds(self.pdf("c1", out=moved))
-        # Another output folder had the draft too; its next night gives what was issued.
+        # Another output folder had the draft too; its next run stores the issued certificate.
         self.night()
         self.assertEqual(self.pdf("c1").read_bytes(), self.pdf("c1", out=moved).read_bytes())
 

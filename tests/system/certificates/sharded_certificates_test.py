@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Certificates of a night in shards: no shard has key or register; the merge draws and signs."""
+"""Certificates of a run in shards: no shard has key or register; the merge draws and signs."""
 import json
 import os
 import pathlib
@@ -64,12 +64,12 @@ class ShardedCertificates(NightTest):
         self.run_nonio("--date", "2026-11-04", expect=1)
         self.assertEqual(self.night_in_parts(3, "--date", "2026-11-04"), 3)
         one, parts = tree(self.out), tree(self.parts)
-        # The folder of the site stands in it.
+        # The file contains the path of the site, which differs.
         for state in (one, parts):
             self.assertIn(b'"site"', state.pop(".nonio/night.json"))
         self.assertEqual(sorted(k for k in one.keys() | parts.keys() if one.get(k) != parts.get(k)), [])
         self.assertEqual([d["campaign"] for d in json.loads(parts["summary.json"])["drafts"]], ["c0", "c1", "c2"])
-        # The next night sends what is known to need the register to the merge at once.
+        # The next run sends campaigns that need the register to the merge at once.
         self.assertEqual(self.night_in_parts(2, "--date", "2026-11-05", "--force"), 0)
         self.run_nonio("--date", "2026-11-05", "--force", expect=1)
         self.assertEqual(tree(self.out)["summary.json"], tree(self.parts)["summary.json"])

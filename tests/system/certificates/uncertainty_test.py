@@ -119,7 +119,7 @@ class Uncertainty(SigningTest):
         of = [self.evaluation(n, "rotary-kinematics", "B")["values"]["distance_C"]["U"] for n in ("whole", "loud")]
         self.assertAlmostEqual(of[0], of[1], places=9)
 
-    def test_a_contribution_that_nobody_stated(self):
+    def test_a_contribution_that_was_not_stated(self):
         """Only the repeatability of the fit, under its own name; and no certificate."""
         self.site_toml(self.keys())
         site = self.site / "site.toml"

@@ -72,7 +72,7 @@ class Machine:
         return self.e(x) + (0.0 if d == "+" else self.lost)
 
     def changed(self, x, d):
-        """What changes if it is no table."""
+        """The change of the axis if no table was loaded: one of several other causes."""
         r, L = self.size, self.length
         return {"scale": r * 1e-3 * x, "reversal": 0.0 if d == "+" else r, "nothing": 0.0,
                 "wear": abs(r) * math.sin(6.283 * x / (L * self.other) + r), "growth": 0.3 * self.e(x),

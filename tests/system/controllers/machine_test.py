@@ -81,7 +81,7 @@ class Number(MachineTest):
         self.tables("fanuc")
         self.assertIn("N3620A2P", self.file("fanuc-Z.prm"))
 
-    def test_linuxcnc_names_no_joint_that_nobody_said(self):
+    def test_linuxcnc_names_no_joint_that_was_not_stated(self):
         self.measured("linuxcnc")
         self.tables("linuxcnc")
         ini = self.file("linuxcnc-Z.ini")
@@ -201,7 +201,7 @@ class WhatWasOn(MachineTest):
             files[1].write_text("%%_N_AX3_TEA_INI\nCHANDATA(1)\n$MA_BACKLASH[0,AX3]=%g\nM17\n" % backlash)
         return ",".join(map(str, files))
 
-    def test_the_night_takes_off_what_was_on(self):
+    def test_the_run_removes_the_active_compensation(self):
         self.comp(self.folder / "backup/z.comp", lambda x: -half(x))
         self.measured("linuxcnc", plus=half, minus=half, options="[options.linuxcnc]\ntype = 1\n",
                       of_axis='active_table = "backup/z.comp"\nactive_backlash_mm = "none"\n')
@@ -215,7 +215,7 @@ class WhatWasOn(MachineTest):
         self.assertAlmostEqual(predicted["E"]["before"], E, places=4)
         self.assertLess(predicted["E"]["predicted"], 0.02)
         self.assertIn("the table of backup/z.comp was active", self.file("linuxcnc-Z.txt"))
-        # It is an input of the night.
+        # The file is an input of the run: a change of it is noticed.
         self.comp(self.folder / "backup/z.comp", lambda x: 0.0)
         self.tables("linuxcnc")
         rows = [list(map(float, l.split())) for l in self.file("linuxcnc-Z.comp").splitlines()]
@@ -279,7 +279,7 @@ class WhatWasOn(MachineTest):
             self.assertEqual(error["file"], "campaign.toml", error)
             self.assertGreater(error.get("line", 0), 0, error)
 
-    def test_apply_asks_for_the_backlash_that_stands_in_another_file(self):
+    def test_apply_requires_the_backlash_of_another_file(self):
         """10 um in the parameter, 3 um still lost: 13 um. Taken as 0 it would be 3."""
         self.record(["X", "Y", "Z"])
         self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0, of_axis="")
@@ -295,7 +295,7 @@ class WhatWasOn(MachineTest):
         for wrong in ("much", "11", "X=0.01", "Z="):
             self.nonio("table", "predict", table, self.folder, "--active-table", "--active-backlash", wrong, expect=2)
         self.nonio("table", "predict", table, self.folder, "--active-backlash", "0", expect=2)
-        # The file beside it, the campaign, or the record of the machine say it too; not two things at once.
+        # The backup, the campaign or the record of the machine may state it instead; two different values are refused.
         both = self.eec("z.ini", 0.010)
         self.nonio("table", "predict", both, self.folder, "--active-table", "--out", new)
         self.assertIn("]=0.013\n", (new / "siemens-840d-Z-backlash.ini").read_text())
@@ -358,7 +358,7 @@ class Merge(MachineTest):
                 self.assertTrue(points <= set(range(low, high + 1)), points)
                 self.assertFalse(points & ({*range(0, 9)} | {*range(20, 25)}), "numbers of X and Y")
                 self.assertEqual((now[3624, 3], now[3620, 3] - low), (50000, now[3620, 3] - low))
-                # The lines in which nothing of Z stands are the same bytes, in the same order.
+                # The lines without a value of Z are the same bytes, in the same order.
                 kept = [l for l in before.split(b"\n") if b"A3P" not in l and not l.startswith(b"N100")]
                 self.assertEqual(kept, [l for l in after.split(b"\n") if b"A3P" not in l and not l.startswith(b"N100")])
                 self.assertEqual(before.count(b"\r"), before.count(b"\n") if end == "\r\n" else 0)
@@ -446,7 +446,7 @@ class Merge(MachineTest):
         self.assertIn("MD32450", done.stderr)
         self.assertFalse((self.site / "load2").exists())
 
-    def test_siemens_direction_tables_beside_a_sag_table(self):
+    def test_siemens_direction_tables_with_a_sag_table(self):
         def cec(t, i, o, direction, size):
             return ("".join("$AN_CEC[%d,%d]=%.4f\n" % (t, k, size * k) for k in range(3)) +
                     "$AN_CEC_INPUT_AXIS[%d]=(AX%d)\n$AN_CEC_OUTPUT_AXIS[%d]=(AX%d)\n$AN_CEC_STEP[%d]=200.0\n$AN_CEC_MIN[%d]=0.0\n"
@@ -465,7 +465,7 @@ class Merge(MachineTest):
             self.assertEqual({int(n) for n in re.findall(r"AN_CEC_DIRECTION\[(\d+)\]=-?1\n", after)}, numbers)
             self.assertEqual({(t["output"], tuple(t["by"])): t["largest_um"] > 0 for t in found["tables"]},
                              {("Z", ("AX2",)): False, ("Z", ("Z",)): True})
-        # Without a backup the record keeps the sag table's number free, or the words say that nobody looked.
+        # Without a backup the record keeps the sag table's number free, or the text states that no backup was read.
         self.record(["X", "Y", "Z"], 'taken = ["4"]\n')
         error = self.tables("siemens-840d")[1]["errors"][0]["message"]
         self.assertIn("CEC tables 4 to 5 would meet those in use (4 to 4)", error)

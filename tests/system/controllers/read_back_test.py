@@ -170,7 +170,7 @@ class Axis(BenchTest):
         return motor, span, values
 
     def test_pmac_by_the_printed_numbers(self):
-        # The maker's example: the load stands at these counts where the motor is at 500, 1000, ...
+        # The maker's example: the load is at these counts when the motor is at 500, 1000, ...
         load = [0, 510, 995, 1492.5, 1994, 2497.5, 3003.5, 3500.5]
         e = {0.5 * i: load[i] - 500.0 * i for i in range(8)}  # counts = um at 1000 counts/mm
         self.travel = "travel = [0.0, 3.5]\n"  # no entries that hold the ends
@@ -317,7 +317,7 @@ class Planes(BenchTest):
         self.gantry("klipper")
         lengths = re.match(r"SET_SKEW XY=([\d.]+),([\d.]+),([\d.]+)\n", self.file("klipper-skew.cfg"))
         ac, bd, ad = (float(lengths[i]) for i in (1, 2, 3))
-        self.assertEqual(ad, 1200.0)  # A to D lies along X
+        self.assertEqual(ad, 1200.0)  # A to D is parallel to X
         xy = self.factor(ac, bd, ad)
         # +Y leans towards -X by C0Y: going up by y moves by -C0Y y in X, and -xy y must undo it
         self.assertAlmostEqual(-xy * 900.0 - self.SQUARE * 900.0, 0.0, delta=3e-5)
@@ -350,7 +350,7 @@ class Planes(BenchTest):
 
 
 class Chosen(BenchTest):
-    def test_only_the_four_are_tried_where_nobody_says_the_control(self):
+    def test_only_the_four_are_tried_where_the_control_is_not_stated(self):
         self.one_axis(TARGETS, wave, lambda x: wave(x) + LOST)
         tried = {o["plugin"] for o in self.run_site()["outputs"]}
         self.assertEqual(tried & NEW, set())

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""controllers, diff, apply and plan sign-probe, on tables written by hand or by the night."""
+"""controllers, diff, apply and plan sign-probe, on tables written by hand or by a run."""
 import json
 import math
 import unittest
@@ -272,7 +272,7 @@ class Tables(BenchTest):
             self.assertEqual(found["control"], control)
             E = found["predictions"][0]
             self.assertLess(E["after"]["M_um"], 0.35 * E["before"]["M_um"], control + options)
-            # What is promised is what the files do, but not less than U of the reversal that they take away.
+            # The prediction is the effect of the files, but at least U of the reversal that they compensate.
             self.assertLess(E["after"]["E_um"], written["E"] + 1e-6, control + options)
             self.assertLess(written["E"], E["after"]["E_um"] + 0.05, control + options)
 
@@ -313,7 +313,7 @@ class Probe(BenchTest):
         self.nonio("table", "probe", self.folder, "--out", self.site / "p", "--control", "gcode")
         self.assertIn("G21 ", (self.site / "p" / "sign-probe-X.nc").read_text())
 
-    def test_the_probe_tells_a_wrong_sign(self):
+    def test_the_probe_finds_a_wrong_sign(self):
         """The readings that it promises, from an axis with the table that it is about."""
         self.one_axis(TARGETS, wave, wave)
         p = self.json_of("table", "probe", self.folder)["probes"][0]
@@ -357,7 +357,7 @@ class Probe(BenchTest):
     def test_no_program_for_a_control_without_gcode(self):
         for control in ("ecmc", "pmac", "twincat-nc-ptp"):
             self.one_axis(TARGETS, wave, wave, control=control)
-            self.nonio("table", "probe", self.folder)  # the moves are told
+            self.nonio("table", "probe", self.folder)  # the moves are printed
             done = self.nonio("table", "probe", self.folder, "--out", self.site / "p", expect=2)
             self.assertIn("runs no part programs in G-code", done.stderr)
             self.assertFalse((self.site / "p").exists())

@@ -3,16 +3,16 @@
 """Runs the commands of documents, those of each in one new folder that holds a copy of samples/, as in one terminal.
 
 ```console  lines `$ COMMAND`; the lines below each are its output and errors, byte for byte
-```sh       a command a line
-A line that ends with \\ goes on in the next. Status 0 is wanted, or 1 where `# status 1` stands behind the command.
+```sh       one command per line
+A line that ends with \\ goes on in the next. Status 0 is required, or 1 if `# status 1` follows the command.
 
-Comments, which nobody sees who reads the page:
+Comments, which a reader of the page does not see:
 <!-- not run: REASON -->        the next block is not run
 <!-- file: PATH -->             the next block is put into this file
-<!-- here: PATH is SOURCE -->   a copy of a file or folder of the project is there
+<!-- here: PATH is SOURCE -->   PATH is a copy of a file or folder of the project
 
 A block of data in which a line looks like a command is a fault, and so is an indented block. In a tutorial the figures of
-the text that have a decimal point or stand before a % must occur in some output.
+the text that have a decimal point or are followed by % must occur in some output.
 
     NONIO=build/dev/bin/nonio tests/system/docs/run_document.py [--update] [--keep FOLDER] DOCUMENT...
 """

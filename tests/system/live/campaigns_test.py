@@ -200,7 +200,7 @@ class CampaignsOfASite(LiveTest):
                 self.assertIn("points", self.send(s, "/api/preview", {"name": "x.csv", "axis": axis}, text), axis)
 
     # ---- what may not be done ----
-    def test_nothing_is_overwritten_and_nobody_waits_for_another(self):
+    def test_nothing_is_overwritten_and_no_request_waits_for_another(self):
         with self.serve("--edit") as s, concurrent.futures.ThreadPoolExecutor(8) as pool:
             made = list(pool.map(lambda n: self.create(s, text_of(readings(seed=SEED + n)).encode())["campaign"], range(8)))
             self.assertEqual(8, len(set(made)))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Steps, undo, names; saving with If-Match; a file that changes beside the page."""
+"""Steps, undo, names; saving with If-Match; a file that another program changes."""
 import json
 import math
 import random
@@ -179,11 +179,11 @@ class Changes(LiveTest):
             now = s.fit("Z")["compare"]
             self.assertEqual((now["rms_um"], now["observations"]), (tried["rms_um"], tried["observations"]))
             self.assertEqual(json_of("compare", self.folder)["parts"][0]["rms_um"], tried["rms_um"])
-            # A second time: the list grows, the reasons stand behind each other.
+            # A second time: the list grows, the reasons are joined.
             s.post("/api/exclude", {"part": "Z", "rows": [0], "why": "tap"})
             diff = s.get("/api/save")["diff"]
             self.assertIn('interrupted\\"; tap"', diff)
-            # Beside the page somebody writes: nothing of it is overwritten.
+            # Another program changes the manifest: its change is not overwritten.
             self.manifest.write_text(self.manifest.read_text() + "# mine\n")
             self.assertEqual(s.post("/api/save", expect=412, headers=self.match(s))["status"], 412)
             self.assertIn("# mine", self.manifest.read_text())
@@ -211,7 +211,7 @@ class Changes(LiveTest):
             s.post("/api/save", headers=self.match(s))
             self.assertEqual(json_of("compare", self.folder)["model"]["effects"], ["scale:Z", "backlash:Z"])
 
-    def test_readings_that_change_are_told_and_content_decides(self):
+    def test_readings_that_change_are_reported_and_content_decides(self):
         file = self.folder / "z.csv"
         with Server(self.folder) as s:
             s.opened()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Campaigns with hidden effects (bench/hidden.cpp, fixed seeds), solved by somebody who knows nothing and only takes what
-the page suggests: the same model and the same verdict as `nonio model explain --auto`."""
+"""Campaigns with hidden effects (bench/hidden.cpp, fixed seeds), solved by following only the suggestions of the page: the
+same model and the same verdict as `nonio model explain --auto`."""
 import json
 import os
 import pathlib

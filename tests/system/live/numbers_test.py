@@ -33,7 +33,7 @@ class Numbers(LiveTest):
             got = server.fit(name)
             self.assertEqual(got["compare"], wanted, name)
             self.assertEqual(len(got["page"]["residual"]), wanted["observations"])
-            # A file that was changed beside it may be noticed meanwhile.
+            # The server may meanwhile notice a file that was changed by another program.
             self.assertGreaterEqual(got["version"], state["version"])
             self.assertLessEqual(got["version"], server.get("/api/state")["version"])
             if name in explained:
@@ -172,7 +172,7 @@ class Numbers(LiveTest):
                 if kind == "fit" and data["version"] > since:
                     break
             self.assertIn("picture", kinds)
-            # What comes first is final: all of it stands in the whole answer.
+            # The first answer is final: the whole answer contains all of it.
             self.assertEqual(picture["page"], fit["page"])
             for name in ("rms_um", "cv_rms_um", "noise_floor_um", "model"):
                 self.assertEqual(picture["compare"][name], fit["compare"][name], name)
@@ -218,7 +218,7 @@ class Numbers(LiveTest):
             for mine, theirs in zip(says["scale:Z"], scale):
                 self.assertAlmostEqual(mine, theirs, delta=0.02)  # explain weighs by the noise it has found
 
-    def test_page_and_report_are_those_of_a_night(self):
+    def test_page_and_report_are_those_of_a_run(self):
         folder = self.campaign("02-constant-reversal")
         nonio("model", "add", folder, "backlash:Z")
         site = self.site.parent / "alone"

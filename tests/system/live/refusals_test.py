@@ -81,7 +81,7 @@ class Refusals(unittest.TestCase):
         for site in ("cross-site", "same-site", "", "same-origin, none"):
             with self.subTest(site):
                 self.refused(403, "another site", fields=[("Sec-Fetch-Site", site)])
-        # Also for what has no token: nobody else embeds the page's script.
+        # Also for paths without a token: no other site can embed the page's script.
         self.refused(403, "another site", path="/app.js", fields=[("Sec-Fetch-Site", "same-site")], token=False)
 
     def test_token(self):
@@ -95,7 +95,7 @@ class Refusals(unittest.TestCase):
         self.refused(403, "", path=f"/api/state?t={token}", token=False)
         self.refused(403, "", path=f"/?t={token}#t={token}" if False else f"/api/state?token={token}", token=False)
         self.refused(403, "", fields=[("Cookie", f"t={token}; X-Nonio-Token={token}")], token=False)
-        # Without a token nobody learns what is there and what is not.
+        # Without a token the answer does not show which paths exist.
         for path in ("/api/state", "/api/nothing", "/etc/passwd", "/api/parts/Z/fit"):
             self.refused(403, "", path=path, token=False)
         self.assertNotIn(token, self.server.words())
@@ -177,7 +177,7 @@ class Refusals(unittest.TestCase):
         self.assertEqual((SAMPLES / "02-constant-reversal/campaign.toml").read_bytes(), before)
         self.server.post("/api/undo")
 
-    def test_slow_heads_keep_nobody_waiting(self):
+    def test_slow_heads_delay_no_other_request(self):
         """Slowloris: more connections than threads that send a byte now and then, or nothing at all."""
         slow = [socket.create_connection(("127.0.0.1", self.server.port)) for _ in range(60)]
         try:
@@ -239,7 +239,7 @@ class Tokens(unittest.TestCase):
             self.assertRegex(one.line, r"^http://127\.0\.0\.1:\d+/#t=[0-9a-f]{32}\n$")
             self.assertEqual(one.request("GET", "/api/state", headers={"X-Nonio-Token": two.token})[0], 403)
 
-    def test_the_token_stands_on_no_command_line(self):
+    def test_the_token_is_on_no_command_line(self):
         with Server(SAMPLES / "02-constant-reversal") as one:
             for pid, _ in [(one.process.pid, 0), *one.pids()]:
                 for what in ("cmdline", "environ"):

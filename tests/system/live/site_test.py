@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`nonio serve SITE`: the morning, entries, certificates, runs, and the workbench of each campaign."""
+"""`nonio serve SITE`: the worklist, entries, certificates, runs, and the workbench of each campaign."""
 import fcntl
 import json
 import pathlib
@@ -36,7 +36,7 @@ class Sites(LiveTest):
     def until_run_ends(self, s):
         return s.until("/api/site/state", lambda state: not state["running"], "done")
 
-    def test_the_morning_is_that_of_the_terminal(self):
+    def test_the_worklist_is_that_of_the_terminal(self):
         self.night()
         with Server(self.small, "--out", self.out) as s:
             got = s.get("/api/site")
@@ -177,7 +177,7 @@ class Sites(LiveTest):
             self.assertEqual(state()["state"], "new")
             stream.close()
 
-    def test_what_the_page_shows_is_what_the_next_night_says(self):
+    def test_the_page_shows_what_the_next_run_reports(self):
         self.laboratory()
         lines = json_of("morning", self.out, expect=None)["lines"]
         line = next(l for l in lines if l.get("machine") and l["state"] == "new" and l["kind"] not in ("lost", "failed"))
@@ -218,7 +218,7 @@ class Sites(LiveTest):
             s.post("/api/run", {"campaign": "02-constant-reversal"}, expect=202)
             state = self.until_run_ends(s)
             self.assertEqual((state["run"]["state"], state["run"]["same_results"], state["night"]["night"]), ("done", False, 1))
-            # Somebody else's run: it is refused, in the words of the verb.
+            # While another process runs the site, a run is refused with the message of the verb.
             with open(self.out / ".nonio/lock") as lock:
                 fcntl.flock(lock, fcntl.LOCK_EX)
                 s.post("/api/run", {"campaign": "02-constant-reversal"}, expect=202)
@@ -238,7 +238,7 @@ class Sites(LiveTest):
             nonio("run", self.site, "--out", self.out, "--quiet", expect=None)
             self.assertEqual(json.loads((self.out / ".nonio/night.json").read_text())["state"], "complete")
 
-    def test_a_night_that_runs_meanwhile_is_told(self):
+    def test_a_run_in_the_meantime_is_reported(self):
         self.night()
         with Server(self.small, "--out", self.out) as s:
             file = self.out / ".nonio/night.json"

@@ -13,7 +13,7 @@ CAMPAIGN = "02-constant-reversal"
 
 
 class Streams(unittest.TestCase):
-    def test_a_change_is_told_to_all_who_listen(self):
+    def test_a_change_is_sent_to_all_who_listen(self):
         with Server(SAMPLES / CAMPAIGN) as s:
             s.opened()
             s.fit("Z")

@@ -27,7 +27,7 @@ class Words(unittest.TestCase):
     }
 
     def test_what_the_program_says_of_a_fit_is_what_the_page_looks_for(self):
-        """The page knows these sentences by their words: those must stand in the program's sources."""
+        """The page recognises these sentences by their words, which the program's sources must therefore contain."""
         script = (SOURCE / "reports/workbench/page/net.js").read_text()
         forms = re.findall(r"\[/\^(.*?)/, \"(\w+)\"\]", script)
         self.assertEqual(8, len(forms))

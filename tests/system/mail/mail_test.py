@@ -211,7 +211,7 @@ class Mail(unittest.TestCase):
         self.assertEqual(self.send(self.trusted(server) + self.login())[:2], (0, ""))
         self.check_letter(server.letters[0])
 
-    def test_a_server_that_nobody_knows_gets_nothing(self):
+    def test_a_server_that_is_not_trusted_gets_nothing(self):
         for wrapped in (False, True):
             way = "tls = \"tls\"\n" if wrapped else ""
             stranger = self.server(certificate=self.certificate, wrapped=wrapped)
@@ -250,12 +250,12 @@ class Mail(unittest.TestCase):
         self.assertNotIn("\x1b", said)
         self.assertLess(len(said), 500)
 
-    def test_nobody_waits_for_a_server_that_hangs_or_is_not_there(self):
+    def test_a_server_that_hangs_or_is_missing_delays_no_run(self):
         hanging = self.server(offers=(), says={"MAIL": None})
         status, said, seconds = self.send(self.at(hanging, "tls = \"none\""), "4")
         self.assertEqual(status, 1, said)
         self.assertLess(seconds, 15)
-        with socket.socket() as free:  # bound, and nobody listens
+        with socket.socket() as free:  # bound, but not listening
             free.bind(("127.0.0.1", 0))
             status, said, _ = self.send(f"smtp = \"localhost\"\nport = {free.getsockname()[1]}\ntls = \"none\"\n")
         self.assertEqual(status, 1)

@@ -151,8 +151,8 @@ class Truth(unittest.TestCase):
         printed = {}
         known = {a["plugin"] for a in results["analyses"]}
         for line in shown.splitlines():
-            if line.startswith("Measurement "):
-                measurement = line.split(" ", 1)[1].strip()
+            if line.startswith(("Measurement ", "Measurements ")):  # of several, results.json names the first
+                measurement = line.split(" ", 1)[1].split(",")[0].strip()
             head = re.match(r"  (\S+) \d+\.\d+\.\d+(?: (\S+))?$", line)
             if head:
                 plugin, part = head[1] if head[1] in known else None, head[2]

@@ -114,7 +114,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   return tables;
 }
 
-/// What stands in the file is spoiled; it is read as it should be.
+/// The file is spoiled; the reader of the file is correct.
 Expected<std::vector<Artifact>> files(const controllers::Sheet& given) {
   controllers::Sheet s = given;
   const auto both = [&](const auto& change) {

@@ -23,7 +23,7 @@ bool recognises(std::string_view head) {
   return head.starts_with("spoiled\n");
 }
 
-/// A line, as it stands there.
+/// A line of the file, in its units.
 struct Row {
   std::uint32_t run = 1, line = 0;
   int direction = 1;

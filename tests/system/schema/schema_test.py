@@ -20,7 +20,7 @@ NONIO, READS = os.environ["NONIO"], os.environ["NONIO_SCHEMA_READS"]
 PROJECT = pathlib.Path(__file__).resolve().parents[3]
 WRONG = [7, -7, 0, 2.5, 1e12, True, "some text", "X", "2025-01-02", "", "a\tb", datetime.date(2025, 1, 2),
          datetime.time(12, 0), [], [1, 2], ["a"], {}, {"a": 1}, {"X": 1}, [{"a": 1}], [[1]], [1, "a"]]
-# In JSON, and for taplo, these are texts: the schema cannot tell them from a text that is wanted.
+# In JSON, and for taplo, these are texts: the schema cannot distinguish them from a required text.
 DAYS = [f"= {toml.written(value)}" for value in WRONG if isinstance(value, (datetime.date, datetime.time))]
 # Where the schema accepts what the program refuses: (place, why).
 ONLY_PROGRAM = [
@@ -204,7 +204,7 @@ class Schema(unittest.TestCase):
             self.assertGreater(refused, {"campaign": 500, "site": 500, "machine": 100}.get(file, 20))
         self.assertEqual({*ONLY_PROGRAM, *ONLY_SCHEMA} - used, set(), "they do not differ there")
 
-    def test_what_stands_in_several_tables_is_left_to_the_program(self):
+    def test_rules_over_several_tables_are_left_to_the_program(self):
         data = whole.campaign()
         plan = {**data, "measurement": []}
         twice = copy.deepcopy(data)
@@ -233,8 +233,8 @@ class Schema(unittest.TestCase):
         done = subprocess.run([PROJECT / "scripts" / "generate-docs", "--check", NONIO], capture_output=True, text=True, timeout=120)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
-    def test_what_is_told_of_every_key(self):
-        """A sentence or two; options are told of by their plugins."""
+    def test_every_key_has_a_description(self):
+        """A sentence or two; options are described by their plugins."""
         for s in SCHEMAS.values():
             for path, value in places(s):
                 if path[-1] == "description" and not isinstance(value, dict) and "options" not in path:

@@ -336,7 +336,7 @@ class Circles(unittest.TestCase):
         self.assertEqual((len(rows), {r[1] for r in rows}), (720, {"-"}))
         self.assertEqual((rows[0][2], rows[-1][2]), ("359.7500", "0.2500"))
         self.assertAlmostEqual(float(rows[-1][4]), 2 * 3.14159265 * 150 / 1000 * 60 * 719 / 720, delta=0.01)
-        # Squareness and servo mismatch are one column; what can be told is told.
+        # Squareness and servo mismatch have one column and are not identifiable; B_X is.
         values = next(a["values"] for a in self.results()["analyses"] if a["plugin"] == "circle")
         self.assertNotIn("C0Y", values)
         self.assertLess(abs(values["B_X"]["value"] + 5.0), values["B_X"]["U"])

@@ -38,7 +38,7 @@ class Compare(VerbTest):
         self.assertEqual(part["fails"], [])
         self.assertEqual(part["warnings"], [])
 
-    def test_a_held_value_is_known_and_the_others_are_fitted_beside_it(self):
+    def test_a_fixed_value_is_known_and_the_others_are_fitted_with_it(self):
         """As if the effect had been taken off the readings by hand."""
         data = readings(scale=20, backlash=-6)
         self.campaign(manifest(["backlash:X = -5 um", "scale:X"]), x=data)
@@ -167,7 +167,7 @@ class Compare(VerbTest):
             self.assertEqual(told["parts"], [])
             self.assertRegex(told["errors"][0]["message"], "^effects explain runs of an axis.*: spindle$")
 
-    def test_what_is_left_is_told_once_each_beside_those_before_it(self):
+    def test_each_remaining_dependence_is_reported_once_in_addition_to_those_before_it(self):
         self.campaign(manifest([]), x=readings(runs=4, drift=6, wave=3, backlash=-4))
         part = self.part()
         self.assertGreater(sum(place["share"] for place in part["fails"]), 1)  # run and time are nearly one

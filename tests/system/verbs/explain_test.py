@@ -210,7 +210,7 @@ class Explain(VerbTest):
         self.assertIn("verdict: missing backlash:X", shown)
         self.assertIn("#####", shown)
 
-    def test_what_there_is_no_sign_of_stands_on_one_line_with_the_size_that_would_be_seen(self):
+    def test_effects_without_a_sign_are_on_one_line_with_the_size_that_would_be_seen(self):
         self.campaign(manifest(["scale:X"]), x=readings(scale=20, backlash=-6))
         shown = self.nonio("model", "explain", self.folder).stdout
         line = next(l for l in shown.splitlines() if l.startswith("  No sign of: "))
@@ -239,7 +239,7 @@ class Explain(VerbTest):
                     step += 1
         return "\n".join(rows) + "\n"
 
-    def test_a_drift_is_certain_beside_what_no_effect_of_place_explains(self):
+    def test_a_drift_is_significant_with_a_rest_that_no_effect_of_place_explains(self):
         self.campaign(manifest([]), x=self.real_like(drift=-8))
         e = self.explain()
         self.assertEqual(e["verdict"]["kind"], "unknown")
@@ -268,7 +268,7 @@ class Explain(VerbTest):
         e = self.explain()
         self.assertEqual(e["verdict"]["kind"], "nothing")
 
-    def test_what_one_run_more_would_do_is_told_if_asked(self):
+    def test_the_effect_of_one_more_run_is_reported_on_request(self):
         self.campaign(manifest(["scale:X"]), x=readings(scale=20, backlash=-6))
         self.assertNotIn("what_if", self.explain())
         e = self.explain("--what-if")
@@ -384,11 +384,11 @@ class Explain(VerbTest):
             self.nonio("model", "add", self.folder, d["effect"])
         e = self.explain()
         self.assertEqual((e["verdict"]["kind"], e["descriptions"]), ("nothing", []))
-        # Beside a description an effect says what it says alone, wherever it stands in the list.
+        # With a description in the model an effect is fitted as it is alone, in any order of the list.
         self.nonio("model", "add", self.folder, "backlash:X")
         self.assertIn("backlash:X", self.explain()["model"]["effects"])
 
-    def test_what_is_certain_is_named_beside_what_is_not(self):
+    def test_a_significant_effect_is_named_in_addition_to_a_description(self):
         rows = self.uneven_reversal().splitlines()
         drift = [rows[0]]
         for k, row in enumerate(rows[1:]):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""compare, explain and model on campaigns that nobody would wish for: an answer or an error, never a crash or NaN."""
+"""compare, explain and model on degenerate campaigns: an answer or an error, never a crash or NaN."""
 import json
 import unittest
 

@@ -39,7 +39,7 @@ class Import(unittest.TestCase):
     def tree(self):
         return sorted(str(p.relative_to(self.root)) for p in self.root.rglob("*"))
 
-    def test_a_campaign_for_each_machine_and_day_that_a_night_can_run(self):
+    def test_a_campaign_for_each_machine_and_day_that_can_be_run(self):
         self.file("week1/FP12_X_20240302.rtl", rtl([1, 2, 3]))
         self.file("week1/FP12_Y_20240302.rtl", rtl([1, 2, 4]))
         self.file("week2/FP14_X_2024-03-09.rtl", rtl([3, 2, 3]))

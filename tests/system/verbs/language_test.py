@@ -40,7 +40,7 @@ class Languages(VerbTest):
                     self.assertIn(words["title"], shown)
                     self.assertIn(words["value"], shown)
 
-    def test_json_of_a_night_is_english_in_every_language(self):
+    def test_json_of_a_run_is_english_in_every_language(self):
         titles = set()
         for language in WORDS:
             self.speak(language)

@@ -43,7 +43,7 @@ class Model(VerbTest):
         falls = [line.split("</div>")[0] for line in page.split('class="label">')[1:]]
         self.assertEqual(falls, ["no effects", "+ scale:X", "+ zero-drift:X", "+ backlash:X"])
 
-    def test_a_curve_is_told_by_what_it_says(self):
+    def test_a_curve_is_described_by_its_shape(self):
         self.campaign(manifest(["pitch-curve:X"]), x=readings(wave=2, noise=0.1))
         shown = self.nonio("model", "show", self.folder).stdout
         self.assertRegex(shown, r"pitch-curve:X +curve: RMS [\d.]+ um, from -[\d.]+ um \(at \d+ mm\) to [\d.]+ um \(at \d+ mm\)")
@@ -71,7 +71,7 @@ class Model(VerbTest):
             self.assertEqual(self.text(), text)
         self.assertFalse((self.folder / "model-history.jsonl").exists())
 
-    def test_an_effect_that_cannot_be_told_from_the_model_is_not_added(self):
+    def test_an_effect_that_is_not_separable_from_the_model_is_not_added(self):
         text = manifest(["scale:X", "backlash:X"])
         self.campaign(text, x=readings(runs=1, targets=[0.0, 50.0]))
         done = self.nonio("model", "add", self.folder, "backlash-slope:X", expect=None)

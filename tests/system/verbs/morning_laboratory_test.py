@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The mornings of a laboratory of 60 machines with twelve crashes of 4 um: short, and each crash is in it. Fewer campaigns than the
-laboratory of bench and documents (five or six of a machine, not eight or nine), so that it takes seconds."""
+"""The worklists of a laboratory of 60 machines with twelve crashes of 4 um: they are short, and each crash is reported. The machines
+have fewer campaigns than in bench and documents (five or six each, not eight or nine), so that the test takes seconds."""
 import email
 import email.policy
 import json
@@ -67,7 +67,7 @@ class Mornings(unittest.TestCase):
         for summary in self.summaries:
             self.assertLessEqual(len(summary.splitlines()), MOST_LINES, summary)
 
-    def test_a_good_night_on_which_nothing_changed_is_one_line(self):
+    def test_a_good_run_without_changes_is_one_line(self):
         self.quiet.night("2026-11-22")
         summary = self.quiet.night("2026-11-23")
         self.assertEqual(len(summary.splitlines()), 1, summary)

@@ -165,7 +165,7 @@ class Asked(VerbTest):
             until(b": ")
             seen = len(shown)
             os.write(terminal, answer.encode() + b"\n")
-            until(b"\n")  # its echo; the next question may stand behind it already
+            until(b"\n")  # its echo; the next question may already follow it
             seen = shown.index(b"\n", seen) + 1
         if end is not None:
             until(b": ")

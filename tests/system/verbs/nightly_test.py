@@ -19,7 +19,7 @@ class Nightly(VerbTest):
 
     RUN = '[run]\noutputs = ["json"]\n'
 
-    def test_a_good_model_is_a_quiet_night(self):
+    def test_a_good_model_is_a_quiet_run(self):
         self.campaign(manifest(["scale:X", "backlash:X"], self.RUN), x=readings(scale=20, backlash=-6))
         fit = self.fits(self.night())[0]
         self.assertEqual(fit["measurement"], "X")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What does not conform, cannot be decided, was withheld or failed is in the lines of the morning: random sites."""
+"""Results that do not conform, are indeterminate, were withheld or failed are in the worklist: random sites."""
 import json
 import os
 import pathlib
@@ -35,7 +35,7 @@ def identity(machine):
 
 
 class Site:
-    """Campaigns of machines with and without a name; some are out of their limits, undecided, broken, withheld."""
+    """Campaigns of machines with and without a name; some are out of their limits, indeterminate, broken, withheld."""
 
     def __init__(self, folder, rng):
         self.folder, self.rng = folder, rng

@@ -312,8 +312,8 @@ class Probing(VerbTest):
                          [f"G1 X{x} Y250.0 F1000" for x in ("270.0", "350.0", "430.0")])  # +Z turns towards +X
 
     def test_two_axes(self):
-        """C on B, the ball 180 mm from C and 60 mm below it: with B at 90 C lies along X, so that the ball, at C 90, is at
-        X = 350 + (-60 + 100), Y = 250 + 180, Z = -100. Its stem goes to -X then: no touch comes from there."""
+        """C on B, the ball 180 mm from C and 60 mm below it: with B at 90 C is parallel to X, so that the ball, at C 90, is at
+        X = 350 + (-60 + 100), Y = 250 + 180, Z = -100. Its stem points to -X then: no touch comes from there."""
         two = {"carried_by": "B", "carrier_centre_mm": "350,0,-100", "carrier_deg": "0,90"}
         _, files = self.wrote(**two)
         lines = files["program-probing-BC.ngc"]
@@ -440,8 +440,8 @@ class Programs(VerbTest):
         self.assertEqual(list(files), ["program-siemens-X2.mpf"])
         self.assertIn("\nG1 X2=1.0 F2000\n", files["program-siemens-X2.mpf"])
 
-    def test_a_rotary_axis_is_measured_as_the_nights_findings_ask(self):
-        """The plan of every travel, measured as written, gets no plan.* finding: one night of them all."""
+    def test_a_rotary_axis_is_measured_as_the_findings_require(self):
+        """The plan of every travel, measured as written, gets no plan.* finding: one run over all of them."""
         made = {}
         for travel in ((0, 360), (-5, 365), (0, 90), (-100, 100), (-30, 120), (10, 370)):
             for setting in ("seed=1", "seed=2", "interval_deg=120"):

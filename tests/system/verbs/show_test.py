@@ -177,7 +177,7 @@ class Open(Nights):
         (self.out / "c" / "report.pdf").unlink()
         self.assertIn("report.pdf", self.open(self.out / "c", expect=1).stderr)
 
-    def test_a_night_without_a_report_opens_its_summary(self):
+    def test_a_run_without_a_report_opens_its_summary(self):
         self.broken()
         self.night(expect=1)
         listed = self.open(self.out)
@@ -199,7 +199,7 @@ class Colours(Nights):
             self.assertNotIn(b"\033[1m", on_terminal(*words, NO_COLOR="1")[0], words)
             self.assertNotIn(b"\033[3", on_terminal(*words, TERM="dumb")[0], words)
 
-    def test_the_colour_tells_the_status(self):
+    def test_the_colour_shows_the_status(self):
         self.broken()
         shown, status = on_terminal("run", self.site, "--out", self.out)
         self.assertEqual(status, 1)

@@ -135,7 +135,7 @@ class Space(VerbTest):
         self.assertEqual(names, {("centre:C", "c1"), ("centre:C", "c2"), ("direction:C", "d1"), ("direction:C", "d2")})
         self.assertEqual(parts["C"]["model"]["effects"], [])
 
-    def test_the_night_evaluates_the_model_in_space(self):
+    def test_the_run_evaluates_the_model_in_space(self):
         self.sample("17-straight-or-square")
         out = self.folder.parent / "out"
         shutil.rmtree(out, ignore_errors=True)

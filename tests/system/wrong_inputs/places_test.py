@@ -47,8 +47,8 @@ class Places(unittest.TestCase):
         done = subprocess.run([NONIO, "table", "controls", "--json"], capture_output=True, text=True, timeout=60, check=True)
         return {c["name"]: c for c in json.loads(done.stdout)["controllers"]}
 
-    def test_a_sign_that_nobody_knows(self):
-        """The maker does not state which sign: asked for as a control, in [run], beside another option."""
+    def test_a_sign_that_is_not_known(self):
+        """The maker does not state the sign: requested as a control, in [run], and with another option."""
         unknown = ("fagor-8055", "haas-classic", "twincat-volumetric")
         for name in unknown:
             self.campaign(f"control-{name}", lambda t, n=name: t.replace('serial = "1"', f'serial = "1"\ncontrol = "{n}"', 1))

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every finding plausibility.* keeps back the controller tables and the certificate's number; each is let stand by a
-person with a reason, and only so: in the manifest for tables, at the release for the number. The findings are those of
+"""Every finding plausibility.* withholds the controller tables and the certificate's number until a person accepts it with a
+reason: in the manifest for tables, at the approval for the number. The findings are those of
 templates/words, so that a new one without a case here fails. Skipped without openssl."""
 import datetime
 import json
@@ -179,7 +179,7 @@ def cases():
 
 
 class Stopped(unittest.TestCase):
-    """One night makes drafts of all; then each is released, or refused."""
+    """One run makes drafts of all; then each is approved, or refused."""
 
     @classmethod
     def setUpClass(cls):
@@ -208,7 +208,7 @@ class Stopped(unittest.TestCase):
                         data = data + "\n" if data.startswith("HEADER") else "# stands\n" + data
                     (folder / name).write_text(data, newline="")
         cls.night()
-        for finding in cls.cases:  # what it has is let stand, whatever else the slip shows
+        for finding in cls.cases:  # all its findings are accepted, also others that the slip causes
             manifest = cls.site / f"{finding}-stands" / "campaign.toml"
             doubts = cls.doubts(f"{finding}-stands")
             manifest.write_text(manifest.read_text() + "".join(
@@ -279,7 +279,7 @@ class Stopped(unittest.TestCase):
         never = {"day-to-come", "calibrated-later", "unknown-axis", "readings-all-equal"}  # see below
         for finding in self.cases:
             with self.subTest(finding=finding):
-                name = f"{finding}-stands"  # that tables may stand is no word for the certificate
+                name = f"{finding}-stands"  # accepting the tables does not accept the certificate
                 attention = self.waiting(name)
                 doubt = "plausibility." + finding
                 if attention:

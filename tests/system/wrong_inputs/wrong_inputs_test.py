@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""wrong_inputs_test.py [--count N] [--seed S] [--list]: N mutants of manifests and readings, each held against its own
+"""wrong_inputs_test.py [--count N] [--seed S] [--list]: N mutants of manifests and readings, each compared with its
 original. A mutant is refused, remarked (it has a finding or note that the original has not) or accepted. One that is
 accepted must be named in docs/dev/wrong-inputs.md, with the reason, or have the numbers of the original.
 The whole: --count 1200. `NONIO` is the program, `NONIO_DOCS` the folder of the documents."""

@@ -40,7 +40,7 @@ struct Site {
   }
 };
 
-TEST(Vanished, ResultsOfAFolderThatIsGoneAreNamed) {
+TEST(Vanished, ResultsOfAMissingFolderAreNamed) {
   Site site;
   const auto gone = site.vanished({{"c", "2026/c", 7, false}});
   ASSERT_EQ(gone.size(), 1U);
@@ -68,7 +68,7 @@ TEST(Vanished, FoldersAreFoundByTheirTextToo) {
   EXPECT_TRUE(site.vanished({{"2024", "2024", 7, true}}).empty());
 }
 
-TEST(Vanished, WhatLiesInAnUnlistedFolderWasNotSeen) {
+TEST(Vanished, FilesOfAnUnlistedFolderWereNotSeen) {
   Site site;
   const auto gone = site.vanished({{"d", "2024/d", 7, false}});
   ASSERT_EQ(gone.size(), 1U);

@@ -34,7 +34,7 @@ TEST(Recomputed, AnyDifferenceIsSaid) {
   EXPECT_NE(why(R"({"analyses": []})", R"({"analyses": []})"), "");
 }
 
-/// Ours reads the last one, others the first: nobody may see two values in one document.
+/// Our parser reads the last one, others the first: a document must not have two values of one key.
 TEST(Recomputed, AKeyTwiceIsNoResult) {
   const std::string once = results("11.96");
   const std::string twice = results(R"(1.0, "value": 11.96)");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What only a register in a file has: its place in the site, and the file that SQLite writes beside it.
+// What only a register in a file has: its place in the site, and the second file that SQLite writes.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>

@@ -162,8 +162,9 @@ class Client {
   Error why_;
 };
 
-/// With -9 a process of the server that serves somebody: all the others are then ended, and it
-/// recovers from its log. Every third time it is stopped as by a power cut, and started.
+/// Kills with SIGKILL a process of the server that serves a client: the server then ends all others
+/// and recovers from its log. One time in three it stops the server as a power cut does, and starts
+/// it.
 template <class Raw>
 void kill_server(const Raw& raw, std::mt19937& random) {
   if (random() % 3 == 0) {

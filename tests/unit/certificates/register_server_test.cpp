@@ -51,7 +51,7 @@ TEST_F(RegisterServerTest, AnotherSitesRegisterIsRefused) {
   EXPECT_EQ(refused(other), "");
 }
 
-TEST_F(RegisterServerTest, ARegisterThatIsGoneIsNotMadeAgain) {
+TEST_F(RegisterServerTest, AMissingRegisterIsNotMadeAgain) {
   drawn(*std::make_unique<certificates::Register>(open()), "c1", first_data);
   lose_schema();
   expect_words(refused(site_), "restore it from the backup");
@@ -106,7 +106,7 @@ TEST_F(RegisterServerTest, AServerThatIsAwayIsWaitedForAndOneThatRefusesIsNot) {
   EXPECT_FALSE(storage::is_locked(unknown.error())) << unknown.error().message;
 }
 
-/// A writer that does not end holds up nobody for longer than the patience.
+/// A writer that does not end blocks the others for no longer than their patience.
 TEST_F(RegisterServerTest, WhoeverFindsItLockedWaitsForItsPatience) {
   open();
   storage::Database other = raw();

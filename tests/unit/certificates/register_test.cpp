@@ -44,7 +44,7 @@ TEST_F(RegisterTest, WhatWasIssuedComesBackAsItWas) {
 }
 
 /// The name is stated; the account is the operating system's.
-TEST_F(RegisterTest, TheAccountIsNotedBesideTheName) {
+TEST_F(RegisterTest, TheAccountIsNotedWithTheName) {
   certificates::Register r = open();
   evaluation::Certificate c = drawn(r, "c1", first_data);
   c.output = "certificate", c.results = "{}";

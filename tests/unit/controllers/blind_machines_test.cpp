@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A machine that nobody knows (any curve, reversal, zero of the instrument, backlash already on,
-// one axis of several, from minus to plus, a turn) is measured; its control, as models.h has it,
-// loads the table: what is left is what was predicted, and the table is zero where it says.
+// A random machine (any curve, reversal, zero of the instrument, backlash already active, one axis
+// of several, from minus to plus, a turn) is measured, and its control, simulated by models.h, loads
+// the table: the remaining error is the predicted one, and the table is zero where it states so.
 //   NONIO_MACHINES=1000 test_controllers --gtest_filter='BlindMachines.*'
 //
-// The same with a table already on, of another curve, that the control goes on reading while the
-// axis is measured: the engine takes it off (active_compensation), and the new one takes its place.
+// The same with an active table of another curve during the measurement: the engine removes its
+// effect from the readings (active_compensation), and the new table replaces it.
 #include <cstdlib>
 #include <numbers>
 
@@ -26,7 +26,7 @@ struct Kind {
   double step, step_deg;  ///< of an entry: m, rad; 0: takes no rotary axis
   models::Control (*control)(const models::Files&, const models::Axis&);
   bool from_zero = false;  ///< counts from its own zero
-  bool below = false;      ///< and lies below it
+  bool below = false;      ///< and is below it
   std::string more{};      ///< of option axes
 };
 
@@ -210,8 +210,8 @@ Options with(const Kind& k, const std::string& axes) {
   return options;
 }
 
-/// What the axis does beside what it was told, with this in the control. A reversal of the machine
-/// is in `m`; of what the parameter adds half goes to each direction, the other half is homing's.
+/// Deviations of the axis with this in the control. A reversal of the machine is in `m`; half of the
+/// parameter is added in each direction, because homing takes the other half.
 Measured under(const Measured& m, const models::Control& control, double present) {
   Measured out = m;
   const auto of = [&](const Curve& e, bool up) {
@@ -276,8 +276,8 @@ std::optional<Renewed> renewed(const Kind& k, const Controller& output, const Bl
   return r;
 }
 
-/// What it makes that tables are taken off at the target, and that the error is that of where the
-/// axis then stands: what was added times the slope, of the second order.
+/// The error of second order, what was added times the slope: tables are removed at the target, but
+/// the axis has the error of its actual position.
 double second_order(const Renewed& r, const math::ErrorCurve& curve) {
   double slope = 0.0, added = std::fabs(r.was);
   for (std::size_t i = 0; i < curve.position.size(); ++i)

@@ -87,7 +87,7 @@ const Remark* note(const OutputResult& r, const std::string& id, const std::stri
 }
 
 // Zero where all other tables are: at the reference point of the axis by which it is looked up, and
-// not at the first point, where the axis may never stand when the table is switched on.
+// not at the first point, where the axis may never be when the table is switched on.
 TEST(Cross, ZeroAtTheReferencePointAndSaid) {
   struct Kind {
     Controller output;

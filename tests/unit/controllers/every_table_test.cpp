@@ -270,7 +270,7 @@ TEST(EveryTable, WarnsOfSuspectReadings) {
   }
 }
 
-// A place in the manifest is no number of the control.
+// The order of axes in the manifest does not give their numbers in the control.
 TEST(EveryTable, NumberIsNeverGuessed) {
   std::mt19937 random(11);
   Bench b(random_axis(random, false));
@@ -408,7 +408,7 @@ TEST(EveryTable, PresentBacklashIsCounted) {
   EXPECT_TRUE(contains(file(*f, "fanuc-X.prm"), "N1851A1P13\n"));
   const auto h = b.write(heidenhain_plugin(), {{"axes", present}});
   EXPECT_TRUE(contains(file(*h, "heidenhain-tnc-X.txt"), "backLash = +0.0130\n"));
-  // LinuxCNC drops its BACKLASH beside a table: -5 um of it come into one column, +5 into the other
+  // LinuxCNC ignores BACKLASH if there is a table: -5 um of it go into one column, +5 into the other
   const auto l = b.write(linuxcnc_plugin(), {{"axes", present}});
   EXPECT_EQ(lines(file(*l, "linuxcnc-X.comp"))[0], "0.00000000 -0.00650000 0.00650000");
 }

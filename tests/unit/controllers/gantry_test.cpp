@@ -161,7 +161,7 @@ Text siemens_text(const OutputResult& result) {
 
 struct Left {
   double D1 = 0.0, D2 = 0.0,
-         apart = 0.0;  ///< ranges; largest distance of what both sides are told, pitch aside
+         apart = 0.0;  ///< ranges; largest difference of the sides' corrections without pitch
 };
 
 /// The beam is rigid: at y it moves by what both sides move, in proportion to the distances.

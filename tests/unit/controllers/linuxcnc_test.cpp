@@ -45,7 +45,7 @@ TEST(LinuxCnc, TypeOneHasTheOppositeSign) {
   EXPECT_LT(prediction(*r, "E").after, 0.05 * um);
 }
 
-// The reader stops at the first line that is not three numbers: nothing else may stand there.
+// The reader stops at the first line that is not three numbers: no other lines are allowed.
 TEST(LinuxCnc, EveryLineIsThreeNumbers) {
   const auto r = Bench(invented()).write(linuxcnc_plugin());
   ASSERT_TRUE(r);

@@ -133,7 +133,7 @@ inline Control linuxcnc(const Files& files, const Axis& a, bool type_1) {
     t.minus.push_back((type_1 ? r.at(2) : r.at(0) - r.at(2)) * a.unit());
   }
   Control c = one_table(t);
-  c.backlash = 0.0;  // BACKLASH is dead beside a table
+  c.backlash = 0.0;  // BACKLASH has no effect if there is a table
   return c;
 }
 

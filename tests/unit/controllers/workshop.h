@@ -165,7 +165,7 @@ struct Bench {
   std::vector<Observations> observations;
   Results results;
   Templates templates;
-  bool numbered = true;       ///< somebody says how the control counts the axes
+  bool numbered = true;       ///< the numbers of the axes in the control are stated
   bool active_stated = true;  ///< no table and no backlash value were active
 
   Bench() {

@@ -81,7 +81,7 @@ const Remark* note(const OutputResult& r, const std::string& id) {
 
 }  // namespace
 
-// A sensor whose zero stands at 50.14 mm: the motor must not be sent there.
+// A sensor whose zero is at 50.14 mm: a table must not move the motor there.
 TEST(ZeroRule, TheInstrumentsZeroGoesIntoNoTable) {
   for (const Kind& k : kinds()) {
     const Options o = with(k, "");
@@ -151,7 +151,7 @@ TEST(SizeRule, TheMakersLimitsAreKept) {
   }
 }
 
-// Also where nobody stated a limit: no entry is larger than the readings explain.
+// Also without a stated limit: no entry is larger than the readings explain.
 TEST(SizeRule, WhatTheReadingsDoNotExplainIsRefused) {
   controllers::AxisJob job;
   job.axis = job.measurement = "X";
@@ -246,7 +246,7 @@ TEST(Cut, AShorterFileIsNoTable) {
       for (std::size_t n = 40; n < a.bytes.size(); ++n) {
         const bool line_end = a.bytes[n - 1] == '\n';
         std::vector<Artifact> files{{a.name, a.bytes.substr(0, n)}};
-        if (line_end && name == "linuxcnc")  // only the words beside it know
+        if (line_end && name == "linuxcnc")  // only the text file next to it shows the cut
           for (const Artifact& other : r->artifacts)
             if (other.name != a.name) files.push_back(other);
         // An END_VAR without its line end is whole.

@@ -130,8 +130,8 @@ TEST(BallEffects, AGoodTableOnAGoodMachineReadsZero) {
   for (const double d : measured({}).table.deviation) EXPECT_NEAR(d, 0.0, 1e-12);
 }
 
-// The model moves the circle: a table whose deviations are told from a circle that is 3 um and
-// -2 um away, and 4 and 5 urad askew.
+// The model moves the circle: the deviations of the table refer to a circle that is shifted by 3 um
+// and -2 um and tilted by 4 and 5 urad.
 TEST(BallEffects, CentreAndDirectionAreWhereTheCircleIs) {
   for (const std::string name : {"A", "B", "C"}) {
     const RotaryTable t = turning_about(name);
@@ -191,7 +191,7 @@ TEST(BallEffects, RunOutIsWhereTheAxisWanders) {
   EXPECT_LT(left(measured(t), "radial-run-out", "C", {2 * um, 0.0, 0.0, -um}, {2.0}), 2e-3);
 }
 
-// n - 3 values are left beside the circle, half of which may be looked at.
+// The circle leaves n - 3 values, half of which may be used for waves.
 TEST(BallEffects, WavesOfARunOutFollowFromTheAngles) {
   const auto waves = [](int places) {
     RotaryTable t;

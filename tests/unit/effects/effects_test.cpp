@@ -115,7 +115,7 @@ class ByHandTest : public testing::TestWithParam<ByHand> {};
 
 // Linear: 0, 0.4, 1.0 m; p = -0.5, -0.1, 0.5; d = +, +, -; t = 0, 60, 180 s; K = -0.2, -0.1, 0.3.
 // Rotary: 0, 90, 210 deg; p = -105, -15, 105 deg.
-TEST_P(ByHandTest, ZeroWhereTheAxisStood) {
+TEST_P(ByHandTest, ZeroWhereTheAxisDidNotMove) {
   const ByHand& c = GetParam();
   const Axis axis = c.turns ? rotary(6) : linear();
   const double unit = c.turns ? pi / 180.0 : 1.0;

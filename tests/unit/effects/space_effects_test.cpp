@@ -302,7 +302,7 @@ TEST(SpaceEffects, OnASingleColumnTheWayIsTheIntegralOfTheAngle) {
   EXPECT_EQ(line->size(), 1u);
 }
 
-TEST(SpaceEffects, WhereNobodySaidAnAxisStoodThereIsNoLever) {
+TEST(SpaceEffects, WithoutTheStatedPositionOfAnAxisThereIsNoLever) {
   Observations o = table(two_diagonals());
   constexpr std::size_t x_unknown = 3, y_unknown = 25;
   o.axes[0].position[x_unknown] = nan;

@@ -46,7 +46,7 @@ inline const Names ball_kinds = {"radial-run-out", "axial-run-out", "linear-squa
 
 enum class Optics {
   along,    ///< an interferometer along the line
-  lateral,  ///< a straightedge or beam beside it
+  lateral,  ///< a straightedge or beam along the line
   mirror    ///< an interferometer and a flat mirror on the tool
 };
 

@@ -63,7 +63,7 @@ TEST(LiveEvents, TheEndWakesAll) {
   EXPECT_EQ(events.listen(0), nullptr);
 }
 
-TEST(LiveEvents, ManyTellAndListenAtOnce) {
+TEST(LiveEvents, ManySendAndListenAtOnce) {
   Events events;
   std::vector<std::thread> all;
   for (int t = 0; t < 4; ++t)

@@ -40,7 +40,7 @@ TEST(LiveSession, StepsGoBackAndForth) {
   EXPECT_FALSE(s.undo());
   ASSERT_TRUE(s.drop("a:X").has_value() == false);
   ASSERT_TRUE(s.add("c:X"));
-  EXPECT_EQ(s.steps().size(), 2U);  // what was undone is gone
+  EXPECT_EQ(s.steps().size(), 2U);  // an undone step is discarded
   EXPECT_FALSE(s.go_to(2));
 }
 

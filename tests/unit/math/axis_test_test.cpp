@@ -23,7 +23,7 @@ Observations mixed() {
   made::add(o, 0.1, 1, 2, 1);
   made::add(o, 0.2, -1, 7, 1);
   made::add(o, 0.1, -1, 3, 1);
-  made::add(o, 0.2, 0, 9, 1);  // stood still: not part of the test
+  made::add(o, 0.2, 0, 9, 1);  // no approach: not part of the test
   return o;
 }
 
@@ -61,7 +61,7 @@ TEST(AxisTest, EmptyAndOddInput) {
   EXPECT_TRUE(AxisTest::arrange({}).targets.empty());
   EXPECT_EQ(AxisTest::arrange({}).least_approaches(), 0U);
   Observations no_approach = mixed();
-  no_approach.axes[0].approach.clear();  // the axis stood still throughout
+  no_approach.axes[0].approach.clear();  // the axis never moved
   EXPECT_TRUE(AxisTest::arrange(no_approach).targets.empty());
   Observations odd;
   made::add(odd, -0.0, 1, 1.0, 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The budget of readings: each input by hand, what is common, what nobody stated.
+// The budget of readings: each input by hand, common inputs, and inputs that were not stated.
 #include "nonio/math/budget.h"
 
 #include <gtest/gtest.h>
@@ -78,8 +78,8 @@ TEST(Budget, WhatOneInstrumentHasInCommonDropsOutOfADifference) {
     EXPECT_GT(share(m, id, difference), 0.1 * um) << id;
     EXPECT_NEAR(share(m, id, difference), share(m, id, sum), 1e-15) << id;
   }
-  // Nobody says whether lines share a sensor and a temperature: each its own in a difference, one
-  // for both in a sum.
+  // It is not stated whether lines share a sensor and a temperature: the larger u is taken, that of
+  // separate ones in a difference and of a common one in a sum.
   const std::vector<double> one_line{0, 0, 1, 0, 0, 0};
   for (const char* id : {"temperature", "expansion"}) {
     const double each = share(m, id, one_line);
@@ -165,7 +165,7 @@ TEST(Budget, CoverageFactorOfTheEffectiveDegreesOfFreedom) {
   EXPECT_EQ(budget.expand(3 * um, shares).k, 2.0);
 }
 
-/// P within U of a rectangle, of two alike (a triangle), and of a rectangle beside a normal part.
+/// P within U of a rectangle, of two equal ones (a triangle), and of a rectangle with a normal part.
 TEST(Budget, CoverageFactorOfRectangles) {
   EXPECT_EQ(shape_factor(0.0), 1.0);
   EXPECT_NEAR(2.0 * shape_factor(-1.2), 0.9545 * std::sqrt(3.0), 1e-4);
@@ -186,7 +186,7 @@ TEST(Budget, CoverageFactorOfRectangles) {
   EXPECT_NEAR(budget.expand(1000 * um, shares).k, 2.0, 0.001);
 }
 
-/// A walk goes through the visits: there and back, a slope of it is gone from the means.
+/// A random walk runs through the visits: there and back, its slope cancels in the means.
 TEST(Budget, DriftGoesThroughTheVisits) {
   const Campaign c = stated();
   BudgetLine there = line(c, 0, BudgetLine::Kind::length);
@@ -222,8 +222,8 @@ TEST(Budget, DriftInTheScatterCountsOnce) {
   EXPECT_NEAR(drift(1.2 * um, "readings"), std::sqrt(u * u - 0.44 * um * um), 1e-15);
 }
 
-/// Residuals of 0.6 um hold what each reading has for itself, 1 um of it or less: only the rest
-/// counts beside them; of lines that are not among the residuals all of it.
+/// Residuals contain the independent part of each reading: only the part that exceeds them is added;
+/// for lines that are not among the residuals it is added completely.
 TEST(Budget, WhatResidualsShowCountsOnce) {
   const Campaign c = stated();
   BudgetLine other = line(c, 1);

@@ -30,7 +30,7 @@ TEST(Distributions, ClosedForms) {
   EXPECT_NEAR(t_two_sided(3.3554, 8.0), 0.01, 1e-6);
 }
 
-// "Not significant" is a statement, and of what is not a number nobody can make it.
+// The probability of a NaN is NaN: 1 would state that it is not significant.
 TEST(Distributions, WhatIsNotANumberIsNotPassedOver) {
   const double nan = std::nan(""), infinite = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(std::isnan(f_upper(nan, 2, 2)));

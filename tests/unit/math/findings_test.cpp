@@ -72,7 +72,7 @@ TEST(Findings, WithoutAnyScatter) {
   EXPECT_TRUE(findings.empty());
 }
 
-// A significant reversal that is small against A is told, not shouted.
+// A significant reversal that is small compared with A is information and requires no action.
 TEST(Findings, ATinyReversalIsNoReasonToAct) {
   made::Random random(2);
   made::Plan plan{{0.0, 0.11, 0.19, 0.31, 0.43, 0.5}, 5};

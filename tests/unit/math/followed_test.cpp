@@ -95,7 +95,7 @@ TEST(Followed, ASinusoidIsTwoNumbersWhereThePhasesAreSpread) {
   const FollowedAxis all = follow(spread, truth, {.reading = 1e-9}, random, c);
   EXPECT_NEAR(of(all, "cyclic_cos").value, 2 * um, 5e-9);
   EXPECT_NEAR(of(all, "cyclic_sin").value, -3 * um, 5e-9);
-  // Every target at one phase of the screw: nobody can tell.
+  // Every target at one phase of the screw: a cyclic error is not identifiable.
   const FollowedAxis blind = follow({even_targets(21, 1.0)}, truth, {.reading = 1e-9}, random, c);
   EXPECT_FALSE(has(blind, "cyclic_cos"));
 }

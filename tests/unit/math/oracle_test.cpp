@@ -26,7 +26,7 @@ fs::path data() {
   return named != nullptr ? fs::path(named) : fs::path(NONIO_SHARED_DATA);
 }
 
-// run,direction,target,deviation; the numbers as they stand, so that the results are in the
+// run,direction,target,deviation; the numbers are not converted, so that the results are in the
 // unit of the file.
 Observations read(const fs::path& file) {
   std::ifstream in(file);
@@ -106,7 +106,7 @@ int compare(const json& wanted, const std::map<std::string, double>& found, doub
   return compared;
 }
 
-/// Every CSV of a folder beside its expected results; how many.
+/// Compares every CSV of a folder with its expected results; returns how many there are.
 int compare_folder(const fs::path& folder, double relative) {
   int files = 0, compared = 0;
   for (const auto& entry : fs::directory_iterator(folder)) {

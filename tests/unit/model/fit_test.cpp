@@ -74,8 +74,8 @@ TEST(Fit, AReadingCountsByItsUncertainty) {
   EXPECT_NEAR(g->parameters[0].value, h->parameters[0].value, 1e-12);
 }
 
-// Nobody measured times: a drift is so much from one reading to the next, and no um/h.
-TEST(Fit, TimesThatNobodyMeasuredAreNotHours) {
+// Without measured times a drift is in um per reading, not in um/h.
+TEST(Fit, TimesThatWereNotMeasuredAreNotHours) {
   Effect drift = line_effect(false);
   drift.linear = {{"z", "", Quantity::deviation_per_time, Quantity::angle_per_time}};
   Observations o = points({0, 1, 2, 3, 4}, {1, 3, 2, 5, 4});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is predicted of one run more is held against that run, measured.
+// The prediction for one more run is compared with that run, simulated.
 #include <gtest/gtest.h>
 
 #include <algorithm>

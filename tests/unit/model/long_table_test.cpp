@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables that are told from means of their readings.
+// Long tables, which are tested by means of their readings.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -277,7 +277,7 @@ Effect drift_effect() {
 
 }  // namespace
 
-/// Each of few runs has its zero: a drift lies within 2 u as often as 2 u says, or has no u.
+/// Each of few runs has its own zero: a drift is within 2 u in 95 % of the tables, or has no u.
 TEST(Noise, few_runs_with_zeros_of_their_own_leave_u_large_or_open) {
   std::mt19937_64 random(81);
   std::normal_distribution<double> normal;

@@ -267,7 +267,7 @@ TEST(Parts, DiagonalsAndTheirAxesAreOnePart) {
   EXPECT_EQ(axes(part), (Ids{"X", "Y"}));
   EXPECT_EQ(part.table.structure, "gantry");
   EXPECT_EQ(part.table.axes[1].position[0], 0.5);                                // X1: at
-  EXPECT_TRUE(std::isnan(part.table.axes[0].position[std::size_t{6} * stops]));  // Y: nobody said
+  EXPECT_TRUE(std::isnan(part.table.axes[0].position[std::size_t{6} * stops]));  // Y: not stated
   EXPECT_EQ(part.table.axes[0].approach[std::size_t{6} * stops], 0);
   EXPECT_TRUE(has_unstated_position(part));
   expect_traceable(part, t);
@@ -361,7 +361,7 @@ TEST(Parts, TheKeyOfTheStateCountsBeforeTheId) {
   EXPECT_EQ(parts[1].measurements, (Ids{"X 1", "Y1", "D1b", "D2b"}));
 }
 
-// What was measured beside the deviation is there in the part, NaN where a measurement has none.
+// Everything measured in addition to the deviation is in the part, NaN if a measurement has none.
 TEST(Parts, NoColumnIsLost) {
   Visit t;
   t.run("X1", "X", {1, 0, 0});

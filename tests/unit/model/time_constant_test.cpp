@@ -107,7 +107,7 @@ Made other_test(double tau = 20.0 * minute) {
   return {.tau = tau, .w = -45.0 * um, .level = 30.0 * um, .fixed = 0.4, .clock = 5000.0};
 }
 
-/// A start that is warm is a scale beside a smaller warm-up.
+/// A warm start is a scale and a smaller warm-up.
 Expected<Fit> fitted(const Part& part, const Machine& machine) {
   static const std::vector<Effect> effects{scale(), warm_up()};
   auto terms = terms_of(part, machine, {"scale:X", "warm-up:X"}, effects);

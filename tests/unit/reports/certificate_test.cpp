@@ -14,7 +14,7 @@ bool has(const std::string& text, const std::string& what) {
   return text.find(what) != std::string::npos;
 }
 
-/// One side by side with another stands in another place of the file: all words of `what` in order.
+/// Whether a page contains `what`, which may be wrapped over lines.
 bool says(const std::string& text, const std::string& what) {
   std::string plain;
   for (const char c : text) plain += c == '\n' ? ' ' : c;
@@ -190,7 +190,7 @@ TEST_F(Certificate, ABudgetOfZerosIsNone) {
   EXPECT_TRUE(lacks(c)[0].starts_with("environment.drift_um (0"));
 }
 
-TEST_F(Certificate, TheBudgetStandsInIt) {
+TEST_F(Certificate, ItContainsTheBudget) {
   Case c = whole();
   for (const char* language : {"en", "it", "de", "es", "zh"}) {
     c.campaign.certificate.languages = {language};
@@ -270,7 +270,7 @@ TEST_F(Certificate, WithoutABudgetItsKeysAreMissing) {
   EXPECT_FALSE(there("environment.misalignment_mm"));
 }
 
-TEST_F(Certificate, NoValueStandsWithoutItsUncertainty) {
+TEST_F(Certificate, NoValueIsPrintedWithoutItsUncertainty) {
   Case c = whole();
   for (auto& a : c.results.analyses)
     if (a.plugin == "iso230-2")
@@ -304,7 +304,7 @@ TEST_F(Certificate, NumbersAreRoundedToTheirUncertainty) {
   EXPECT_FALSE(has(page, "4.568"));
 }
 
-TEST_F(Certificate, TwoLanguagesStandSideBySide) {
+TEST_F(Certificate, TwoLanguagesAreSideBySide) {
   Case c = whole();
   decide(c, "iso230-2", "A", 1e-6, Decision::does_not_conform);
   c.campaign.certificate.languages = {"it", "en"};
@@ -376,7 +376,7 @@ TEST_F(Certificate, ADraftSaysSoOnEveryPageAndIsNotSigned) {
   }
 }
 
-TEST_F(Certificate, WhoReleasedItStandsOnIt) {
+TEST_F(Certificate, WhoApprovedItIsPrintedOnIt) {
   Case c = whole();
   EXPECT_TRUE(says(text(c), "B. Verdi (by the rules of the laboratory for automatic release)"));
   issue.released_by = "C. Neri";
@@ -422,7 +422,7 @@ TEST_F(Certificate, WhatTheCustomerStatedIsMarked) {
   EXPECT_TRUE(has(complaint(c), "machine.colour"));
 }
 
-TEST_F(Certificate, BeforeAndAfterAdjustmentAreToldApart) {
+TEST_F(Certificate, BeforeAndAfterAdjustmentAreDistinguished) {
   Case c = whole();
   Measurement after = c.campaign.measurements.front();
   c.campaign.measurements.front().adjustment = "before";
@@ -461,7 +461,7 @@ TEST_F(Certificate, TheAddressOfTheCodeIsAnAddress) {
   }
 }
 
-TEST_F(Certificate, ALogoStandsAboveTheLaboratory) {
+TEST_F(Certificate, ALogoIsAboveTheLaboratory) {
   auto& values = templates.tables["certificate"].values;
   values["logo.file"] = std::string("logo.png");
   values["logo.height_mm"] = 14.0;
@@ -476,7 +476,7 @@ TEST_F(Certificate, ALogoStandsAboveTheLaboratory) {
   EXPECT_TRUE(has(with->artifacts.front().bytes, "/Subtype /Image"));
 }
 
-TEST_F(Certificate, AWordWithAPlaceThatNobodyFillsIsAnError) {
+TEST_F(Certificate, AWordWithAPlaceholderThatIsNotFilledIsAnError) {
   templates.tables["words/en/certificate"].values["title.issued"] = std::string("Issued on {day}");
   EXPECT_TRUE(has(complaint(whole()), "{day}"));
 }

@@ -70,7 +70,7 @@ struct Truth : testing::Test {
 
 constexpr const char* unchanged = "othing was added to the method";
 
-TEST_F(Truth, NobodyStatesByDefaultThatNothingWasChanged) {
+TEST_F(Truth, ThatNothingWasChangedIsNotStatedByDefault) {
   Case c = whole_case(plugins);
   EXPECT_FALSE(has(page(c), unchanged));
   EXPECT_TRUE(has(page(c), "The evaluation of the readings found none."));
@@ -281,7 +281,7 @@ TEST_F(Truth, ASuspectThatCountsIsSaid) {
   EXPECT_TRUE(has(page(c), "The results include a suspected misreading: run "));
 }
 
-TEST_F(Truth, HowTheTestWasMadeIsSaidAndWhatNobodySaidToo) {
+TEST_F(Truth, HowTheTestWasMadeIsPrintedAndWhatWasNotStatedToo) {
   Case c = whole_case(plugins);
   const std::string before = page(c);
   for (const char* what : {"Not stated: feed, dwell, over-travel", "positions of the other axes",
@@ -436,7 +436,7 @@ TEST_F(Truth, TheFirstPageSaysItAll) {
     EXPECT_TRUE(has(first, what)) << what;
 }
 
-/// A limit that nothing was held against is not passed over; a test in one direction has results.
+/// A limit with which no result was compared is stated; a test in one direction has results.
 TEST_F(Truth, LimitsThatNothingWasHeldAgainstAreSaid) {
   Behaviour one;
   one.minus = false;
@@ -457,7 +457,7 @@ TEST_F(Truth, LimitsThatNothingWasHeldAgainstAreSaid) {
   EXPECT_TRUE(has(page(c), "X: no decision on B; a limit"));
 }
 
-/// However many they are: a decision that a paper lacks is one that nobody can object to.
+/// However many there are: a customer could not object to a decision that is not printed.
 TEST_F(Truth, EveryDecisionIsPrinted) {
   Case c = whole_case(plugins);
   for (int i = 1; i <= 8; ++i) {
@@ -494,7 +494,7 @@ TEST_F(Truth, TwoMethodsSayForWhichMeasurementsTheyHold) {
 }
 
 /// The frame's page is the first one, however long names, tables and changes are.
-TEST_F(Truth, TheSignatureStandsOnTheFirstPageWhateverIsAboveIt) {
+TEST_F(Truth, TheSignatureIsOnTheFirstPageWhateverIsAboveIt) {
   const std::string name(90, 'N');
   for (const std::vector<std::string>& languages :
        {std::vector<std::string>{"en"}, {"de", "en"}, {"it", "en"}, {"es", "zh"}}) {
@@ -525,7 +525,7 @@ TEST_F(Truth, TheSignatureStandsOnTheFirstPageWhateverIsAboveIt) {
   EXPECT_TRUE(has(read_pdf(files(plain)[0]).pages[0], "18.8")) << "the results begin there too";
 }
 
-TEST_F(Truth, TheRegistersIdentityStandsInBothWithTheSameWords) {
+TEST_F(Truth, TheRegistersIdentityIsInBothWithTheSameWords) {
   Case c = whole_case(plugins);
   c.campaign.certificate.languages = {"it", "en"};
   issue.register_id = "0f0e0d0c-1111-2222-3333-444455556666";

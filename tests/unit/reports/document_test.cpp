@@ -186,7 +186,7 @@ TEST(Layout, AHeadingDoesNotStayBehindAlone) {
   }
 }
 
-TEST(Layout, WhatStandsSideBySideDoesNotStayBehindAloneEither) {
+TEST(Layout, PartsSideBySideDoNotStayBehindAloneEither) {
   for (int lines = 60; lines < 75; ++lines) {
     std::vector<Block> blocks;
     for (int i = 0; i < lines; ++i) blocks.push_back({Paragraph{"line"}});

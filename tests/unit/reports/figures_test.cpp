@@ -7,7 +7,7 @@
 namespace nonio::fixtures::figures_test {
 namespace {
 
-/// Figures against the table of targets and the results that stand beside them.
+/// Figures compared with the table of targets and with the printed results.
 struct Figures : testing::Test {
   Plugins plugins;
   Templates templates = read_templates(NONIO_TEMPLATES);
@@ -84,8 +84,7 @@ struct Figures : testing::Test {
     }
   }
 
-  /// A band may stand only at targets whose row has the scatter, and a bracket is as long as the
-  /// result of its name.
+  /// A bracket is as long as the result of its name.
   void hold(const Case& c) {
     for (const auto& [kind, plugin] : {std::pair("iso", "iso230-2"), {"vdi", "vdi-dgq-3441"}}) {
       const Evaluation& e = of(c, plugin);

@@ -208,7 +208,7 @@ inline Case simple_case() {
   return c;
 }
 
-/// Holds results against limits, as the host does.
+/// Compares a result with a limit, as the host does.
 inline void decide(Case& c, const std::string& plugin, const std::string& name, double tolerance,
                    Decision decision, const std::string& reason = "") {
   c.results.conformity.push_back({c.campaign.measurements.front().id,

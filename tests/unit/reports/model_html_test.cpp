@@ -101,7 +101,7 @@ TEST_F(ModelHtml, CommandsInASentenceAreCode) {
   }
 }
 
-TEST_F(ModelHtml, CandidatesCardsSizesAndWhatToMeasureStandOnIt) {
+TEST_F(ModelHtml, CandidatesCardsSizesAndWhatToMeasureAreOnIt) {
   const std::string text = page(with_candidates(made_model()));
   for (const char* what :
        {"scale:X <b>significant</b>", "0.150 \u00b5m", "<summary>scale:X</summary>",

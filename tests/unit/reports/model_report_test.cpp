@@ -56,7 +56,7 @@ bool has(const std::string& text, const std::string& what) {
 MadeModel bare() { return {false, false, false, false, false, 11, 1, false}; }
 MadeModel turn() { return {true, true, true, false, true, 25, 3, true}; }
 
-TEST_F(ModelReport, NinePicturesStandOnOnePageInBothLanguagesWhateverTheDataAre) {
+TEST_F(ModelReport, NinePicturesAreOnOnePageInBothLanguagesWhateverTheDataAre) {
   for (const MadeModel& made : {MadeModel{}, bare(), turn()})
     for (const char* language : {"de", "en", "it"}) {
       const std::string page = pictures(made_model(made), language);
@@ -97,7 +97,7 @@ TEST_F(ModelReport, SaysWhatAParameterIsIfThereAreWords) {
   EXPECT_TRUE(has(italian, "backlash:X b errore di inversione")) << italian;
 }
 
-TEST_F(ModelReport, ValuesOfTheFitStandInWordsAndWithUnits) {
+TEST_F(ModelReport, ValuesOfTheFitAreInWordsAndWithUnits) {
   Results::Analysed fitted{"model-fit", "1", "X", {}};
   fitted.evaluation.values = {{"rms", 0.6e-6, Quantity::deviation},
                               {"cv_rms", 0.61e-6, Quantity::deviation},
@@ -127,7 +127,7 @@ TEST_F(ModelReport, PlacesAreSaidInTheLanguageOfTheReport) {
   }
 }
 
-TEST_F(ModelReport, CurvesAreToldByWhatTheySay) {
+TEST_F(ModelReport, CurvesAreDescribedByTheirShape) {
   ModelFit fit = made_model();
   fit.effects.push_back({"pitch-curve:X", true, std::vector<double>(fit.size(), 0.0),
                          ModelFit::Curve{0.7e-6, -1.1e-6, 0.9e-6, 0.21, 0.64}});
@@ -141,7 +141,7 @@ TEST_F(ModelReport, CurvesAreToldByWhatTheySay) {
   EXPECT_TRUE(has(flat(read_pdf(pdf(fit, "it")).all()), "minimo, a 210 mm -1,10"));
 }
 
-TEST_F(ModelReport, CandidatesTheSizesOfOthersAndWhatToMeasureStandInIt) {
+TEST_F(ModelReport, CandidatesTheSizesOfOthersAndWhatToMeasureAreInIt) {
   const std::string text = flat(read_pdf(pdf(with_candidates(made_model()))).all());
   for (const char* what :
        {"scale:X – significant 81.5 0.600 µm 0.620 µm 0.150 µm",

@@ -92,7 +92,7 @@ TEST_F(PdfReport, LimitsOfAxesThatWereNotMeasuredAreNamedOnce) {
 }
 
 /// Tables that were refused, models and advice are no business of a customer.
-TEST_F(PdfReport, WhatIsForTheLaboratoryStandsInItsPartAlone) {
+TEST_F(PdfReport, WhatIsForTheLaboratoryIsInItsPartAlone) {
   Case c = usual();
   for (auto& a : c.results.analyses) a.evaluation.findings.clear();
   decide(c, "iso230-2", "A", 50e-6, Decision::conforms);
@@ -186,7 +186,7 @@ TEST_F(PdfReport, NothingNeedsAttentionOnlyWhereSomethingWasJudged) {
   decide(judged, "iso230-2", "A", 50e-6, Decision::conforms);
   EXPECT_TRUE(has(text(judged), green));
   EXPECT_FALSE(has(text(judged), "conformity was not assessed"));
-  // Beside it a measurement that nobody looked at: not green.
+  // With a measurement that was not evaluated it is not green.
   Case part = judged;
   part.results.notes.push_back({"measurement.not-evaluated", {}, {{"kind", "angle"}}, "yaw"});
   EXPECT_FALSE(has(text(part), green));
@@ -226,7 +226,7 @@ TEST_F(PdfReport, WhatItSaysOfTheCampaignIsSo) {
   not_evaluated.results.analyses.clear();  // of a diagonal, say: no mean is drawn
   EXPECT_FALSE(has(text(not_evaluated), "mean of each direction"));
   EXPECT_TRUE(has(text(not_evaluated), "Readings by run"));
-  // Values that have no U by what they are: nobody has left anything out.
+  // Values that have no U by definition: no statement is missing.
   const std::string not_stated = "the data for an uncertainty budget were not stated";
   Case without = usual();
   for (auto& a : without.results.analyses) {
@@ -240,7 +240,7 @@ TEST_F(PdfReport, WhatItSaysOfTheCampaignIsSo) {
 }
 
 // What the table refuses, the figure does not show.
-TEST_F(PdfReport, NoBracketStandsForAResultThatIsNotThere) {
+TEST_F(PdfReport, NoBracketIsDrawnForAMissingResult) {
   Case c = usual();
   const auto marks = [&](const std::string& name) { return has_line(text(c), name); };
   ASSERT_TRUE(marks("E"));

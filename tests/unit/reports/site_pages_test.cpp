@@ -135,7 +135,7 @@ TEST(SitePages, ABrowserUsesTheirStyleAndScript) {
   }
 }
 
-TEST(SitePages, AQuietNightIsOneSentence) {
+TEST(SitePages, AQuietRunIsOneSentence) {
   SiteHistory site = made_site();
   site.lines.clear();
   EXPECT_TRUE(has(pages_of(site).at("index.html"), "No action required."));

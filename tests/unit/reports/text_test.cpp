@@ -32,7 +32,7 @@ Glyphs shaped(std::string_view text, bool bold = false) {
   return glyphs ? *glyphs : Glyphs{};
 }
 
-TEST(Sentences, WhatStandsBetweenBackquotesIsQuotedOrCode) {
+TEST(Sentences, TextBetweenBackquotesIsQuotedOrCode) {
   EXPECT_EQ(typeset("as `nonio model drop` does, by -8.1 um"),
             "as \"nonio model drop\" does, by \u22128.1 \u00b5m");
   EXPECT_EQ(typeset_html("from `a<b` to `c -1 um`, -1 um & more"),
@@ -82,7 +82,7 @@ std::array<int, 4> box(const Font& font, std::uint16_t glyph) {
   return out;
 }
 
-TEST(Shaping, AnAccentStandsOverTheMiddleOfItsLetter) {
+TEST(Shaping, AnAccentIsOverTheMiddleOfItsLetter) {
   for (const bool bold : {false, true}) {
     const Font& font = fonts().weight(bold);
     for (const char* letter : {"\u0430", "\u0414", "\u044E", "\u0444"}) {

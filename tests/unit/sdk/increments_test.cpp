@@ -18,7 +18,7 @@ ControlTable table(ControlTable::Zero zero) {
   return t;
 }
 
-/// Entries at -100, 0, 100, 200 mm; the change over each interval stands at its end.
+/// Entries at -100, 0, 100, 200 mm; the change over each interval is at its end.
 RawTable drawn() {
   RawTable raw;
   raw.axis.name = "X";
@@ -33,7 +33,7 @@ void expect_um(const std::vector<double>& found, const std::vector<double>& want
   for (std::size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR(found[i] * 1e6, wanted[i], 1e-9) << i;
 }
 
-TEST(Increments, StandAtTheEndOfTheirIntervalAndAreZeroAtTheReference) {
+TEST(Increments, AreAtTheEndOfTheirIntervalAndZeroAtTheReference) {
   const auto read = controllers::loaded(table(ControlTable::Zero::reference), drawn());
   ASSERT_TRUE(read);
   expect_um(read->plus, {-4.0, 0.0, -2.0, 3.0});

@@ -161,7 +161,7 @@ TEST_F(LongTerm, ListsFromBeforeTheSignatureOnlyWhileTheyAreOfUse) {
   const auto data = sign::prolong(before, how(now + 20 * day, old));
   ASSERT_TRUE(data) << data.error().message;
   EXPECT_TRUE(sign::verify_pdf(data->bytes, verifier(now + 21 * day)).holds());
-  // Nobody proves that it was put in while it was of use.
+  // There is no proof that the list was added while it was valid.
   const auto verified = sign::verify_pdf(data->bytes, verifier(now + 26 * day));
   EXPECT_EQ(check_of(verified, "updates.needed").state, Check::State::fails) << all_of(verified);
 }
@@ -194,7 +194,7 @@ TEST_F(LongTerm, ARevokedKeyIsNotProlonged) {
       prolong(issued(false), now + 6 * day, list(now + 5 * day, &ada, now + 4 * day), time));
 }
 
-TEST_F(LongTerm, NothingIsWrittenWhereNobodySaysWhetherAKeyWasRevoked) {
+TEST_F(LongTerm, NothingIsWrittenWithoutTheStateOfAKeysRevocation) {
   const auto done = prolong(issued(), now + 2 * day, "", time);
   ASSERT_FALSE(done);
   EXPECT_NE(done.error().message.find("nothing states whether"), std::string::npos);

@@ -322,7 +322,7 @@ TEST(TimeStamp, ATimeInTheFutureIsRefused) {
 
 /// What a stranger sends is not read: the first line that says no is that of the signature, and
 /// nothing is looked at behind it.
-TEST(Verify, ReadsNothingThatNobodyTrustedSigned) {
+TEST(Verify, ReadsNothingWithoutATrustedSignature) {
   const std::string good = signed_by(issue({}, &root()));
   auto verifier = trusting("CN=Somebody Else");
   const auto verified = sign::verify_pdf(good, verifier);

@@ -162,7 +162,7 @@ TEST(Tamper, WhatIsPutIntoThePadding) {
   bytes = s.plain;
   bytes.replace(end - 20, 20, ">/Extra (smuggled) <");
   EXPECT_NE(s.fails(bytes), "none");
-  // Fewer zeros, with the offsets mended by hand, are still inside what is signed.
+  // Fewer zeros, with the offsets corrected by hand, are still inside what is signed.
   bytes = s.plain;
   bytes.erase(end - 2, 2);
   EXPECT_EQ(s.fails(bytes), "signature.range");
@@ -178,7 +178,7 @@ TEST(Tamper, TheCertificateIsAnother) {
   const Scene& s = scene();
   Wish eve;
   eve.name = "Eve";
-  // Somebody else of the same authority: only the expected signer tells.
+  // Another person with a certificate of the same authority: only the expected signer shows it.
   EXPECT_EQ(s.fails(s.make(open(issue(eve, &s.root), s.root), {})), "signer.expected");
   // A namesake by himself.
   const Holder namesake = issue({});
@@ -283,8 +283,8 @@ TEST(Tamper, AnExpiredCertificate) {
   EXPECT_TRUE(sign::verify_pdf(s.stamped, later).holds());
 }
 
-/// Seen: OpenSSL reads the tag of a SET that is not marked as made of others, and mends it before
-/// it checks the signature, so that another file passed (2026-11-21).
+/// Observed: OpenSSL accepts the tag of a SET that is not marked as constructed, and corrects it
+/// before it checks the signature, so that a different file passed (2026-11-21).
 TEST(Tamper, AnAttributeThatIsNoConstructedSetIsRefused) {
   const Scene& s = scene();
   constexpr const char* digest_attribute = "06092a864886f70d01090431";

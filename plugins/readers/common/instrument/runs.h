@@ -23,8 +23,8 @@ Error at_line(std::uint64_t line, std::string message);
 /// The fields of a line with blanks between them.
 std::vector<std::string_view> by_blanks(std::string_view line);
 
-/// The fields of a line of a table whose separator a user named: ' ' stands for blanks, '|' may
-/// stand at both ends too. Nothing where a quote is not closed.
+/// The fields of a line of a table whose separator a user named: ' ' is any number of blanks, '|'
+/// is accepted at both ends too. Nothing where a quote is not closed.
 std::optional<std::vector<std::string_view>> by_separator(std::string_view line, char separator);
 
 /// Numbers of one file: a decimal point everywhere, or a decimal comma everywhere.

@@ -146,8 +146,8 @@ struct Plot {
   std::string empty_text{};  ///< what is stated where there is nothing to draw
 };
 
-/// Horizontal bars over one scale that begins at 0, in rows of one bar or more, and a line to hold
-/// them against.
+/// Horizontal bars over one scale that begins at 0, in rows of one bar or more, and a line with
+/// which they are compared.
 struct BarChart {
   struct Series {
     std::string legend;  ///< empty: of one series the title of the axis states it

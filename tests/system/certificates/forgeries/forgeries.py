@@ -69,7 +69,7 @@ class Keys:
 
 
 def issue(root, keys):
-    """The sample's certificate, as a night makes it and a person releases it."""
+    """The sample's certificate, made by a run and approved by a person."""
     site = root / "site"
     shutil.copytree(SAMPLE, site, ignore=shutil.ignore_patterns("keys", "*.sqlite"))
     (site / "keys").mkdir()
@@ -92,7 +92,7 @@ def sha256(data):
 
 
 def parts(xml):
-    """What stands before the signature, the signature, what stands behind it."""
+    """The text before the signature, the signature, the text after it."""
     at, end = xml.index("<Signature "), xml.index("</Signature>") + len("</Signature>")
     return xml[:at], xml[at:end], xml[end:]
 
@@ -545,7 +545,7 @@ def others_accept(root, keys, pdf, xml):
 
 
 def check_terminal(root, site, keys, pdf, xml):
-    """Names in a file that nobody vouches for, and of it, do not speak to the terminal."""
+    """Neither the names in an untrusted file nor the file's own name send control characters to the terminal."""
     evil = "B. Sample\u202e\u200b: VALID"
     keys.issue("evil", evil, "strange-root")
     file = root / "x.pdf: VALID\n\x1b[2J\x9by.pdf"

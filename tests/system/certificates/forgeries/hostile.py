@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files that nobody signed and that are made to be expensive: what `nonio certificate verify` spends on each.
+"""Unsigned files that are made to be expensive: what `nonio certificate verify` spends on each.
 
     NONIO=build/dev/bin/nonio python3 tests/system/certificates/forgeries/hostile.py [--measure]
 
-Exit status 0 only if each is refused within 5 times the processor time of the honest certificate and 200 MB of memory.
+Exit status 0 only if each is refused within 5 times the processor time of the genuine certificate and 200 MB of memory.
 --measure: figures only."""
 import argparse
 import itertools

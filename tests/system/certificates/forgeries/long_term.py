@@ -42,7 +42,7 @@ FIELDS = b"/AcroForm << /Fields [ "
 
 
 class Authority:
-    """What stands behind the addresses in its certificates: /tsa, /ocsp, /root.crl."""
+    """The services at the addresses in its certificates: /tsa, /ocsp, /root.crl."""
 
     def __init__(self, keys, leaf):
         self.keys, self.asked = keys, []
@@ -138,7 +138,7 @@ class Authority:
 
 
 class Update:
-    """The last update of a file: objects by number, and what stands before it."""
+    """The last update of a file: objects by number, and the bytes before it."""
 
     def __init__(self, data, authority):
         self.authority = authority
@@ -513,7 +513,7 @@ def forgeries(pdf, made, authority):
     yield "time stamp's field shows the signature", change("put", field, re.sub(
         rb"/V \d+ 0 R", b"/V %d 0 R" % base.signature(), whole.objects[field]))
 
-    # Tables, trailers, and what stands between.
+    # Tables, trailers, and the bytes between them.
     for text in (b"/Encrypt 1 0 R", b"/XRefStm 100", b"/Evil 1", b"/Root 1 0 R", b"/Prev 9"):
         update = whole.copy()
         update.trailer = update.trailer.replace(b"<<\n", b"<<\n" + text + b"\n", 1)

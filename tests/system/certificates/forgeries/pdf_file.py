@@ -47,7 +47,7 @@ def sign_cms(key, certificate, *more, data):
 
 
 class Pdf:
-    """Objects by number, each as it stands in the file, from its number to the line after endobj."""
+    """Objects by number, each with its bytes in the file, from its number to the line after endobj."""
 
     def __init__(self, data):
         table = int(re.search(rb"startxref\n(\d+)\n%%EOF\n$", data)[1])

@@ -101,14 +101,14 @@ std::string answer(const Evaluation& e) {
   return {};
 }
 
-/// The table takes away what was measured: its own scatter is in the machine afterwards.
+/// The table compensates the measured error, so that its scatter is in the machine afterwards.
 struct Story {
   const char* wanted;
   double kept;  ///< share of the error that is left
   Curve more = [](double) { return 0.0; };
 };
 
-TEST(BeforeAfter, TellsWhatTheTableDidInTwoThousandCampaigns) {
+TEST(BeforeAfter, NamesTheEffectOfTheTableInTwoThousandCampaigns) {
   std::cout << "seed " << seed << "\n";
   const std::vector<Story> stories{
       {"worked", 0.0},
@@ -382,7 +382,7 @@ TEST(BeforeAfter, RefusesWhatItCannotCompare) {
   directions.directions = {-1};
   directions.line("after", error_of);
   EXPECT_EQ(answer(directions.evaluate()), "directions");
-  Shop small;  // nothing to take away
+  Shop small;  // no error to compensate
   const Curve none = [](double) { return 0.0; };
   small.line("before", none), small.line("after", none);
   EXPECT_EQ(answer(small.evaluate()), "cannot-tell");

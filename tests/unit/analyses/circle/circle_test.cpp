@@ -249,7 +249,7 @@ TEST(Circle, ACalibratedBarGivesDAndF) {
   EXPECT_GE(value(e, "F_max")->value - value(e, "F_min")->value, value(e, "G_b")->value - 1e-12);
 }
 
-TEST(Circle, AnArcThatIsTooShortSaysWhatItCannotTell) {
+TEST(Circle, AnArcThatIsTooShortNamesWhatIsNotIdentifiable) {
   std::mt19937_64 random(5);
   const exact::Mill m = mill();
   auto readings = exact::circle(m, {0.1e-6, 0.0, 0.0}, random);
@@ -285,7 +285,7 @@ TEST(Circle, TheZoneIsNeverWiderThanAboutTheLeastSquaresCentre) {
 TEST(Circle, SpikesAreWhereTheAxisSticks) {
   std::mt19937_64 random(8);
   exact::Mill m = mill();
-  // Play that is taken up over an arc stands out behind the reversal too: X has none here.
+  // Play that is taken up over an arc also shows as a peak after the reversal: X has none here.
   m.axis[1].stick = 8e-6, m.axis[0].stick = m.axis[0].play = 0.0;
   const auto e = evaluated(test_of(m, exact::circle(m, {0.05e-6, 0.0, 0.0}, random)), options());
   ASSERT_TRUE(finding(e, "circle.spikes"));

@@ -10,10 +10,10 @@
 
 #include "nonio/math/circle.h"
 
-/// Circles of a machine that knows no formula of the decomposition: two axes that follow a command
-/// as first-order lags follow a sine, come back late by their play over an arc, stick at a reversal,
-/// travel on an arc, stand askew and have scales and waves of their drives. What is read is the
-/// distance of the point from where the bar stood.
+/// Circles of a machine, computed without the formulas of the decomposition. The two axes follow a
+/// command as first-order lags follow a sine, return late by their play over an arc, stick at a
+/// reversal, travel on an arc, are out of square, and have scale errors and waves of their drives.
+/// A reading is the distance of the point from the place of the bar's ball.
 namespace exact {
 
 constexpr double pi = std::numbers::pi, deg = pi / 180.0;

@@ -54,7 +54,7 @@ inline std::vector<std::size_t> down(std::size_t n) {
   return out;
 }
 
-/// Positioning of X on the line y: the interferometer beside the beam.
+/// Positioning of X on the line y, measured by an interferometer.
 inline PitchLine pitch_x(const Errors& e, const Rectangle& r, double y) {
   PitchLine out;
   out.across = y;

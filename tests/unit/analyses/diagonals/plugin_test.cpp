@@ -136,7 +136,7 @@ struct Workpiece {
     straight("SX turned", [edge](double x) { return -edge(x); });
     campaign.measurements.back().reversal_of = "SX";
   }
-  /// Both axes against a square that leans by g, as it stands and turned over about X.
+  /// Both axes on a square whose error is g, as set up first and turned over about X.
   void square(double g) {
     campaign.squares.push_back({.name = "Q", .error = {}, .U = {}});
     for (const double sign : {1.0, -1.0})
@@ -537,7 +537,7 @@ TEST(DiagonalPlugin, AYThatCarriesXIsTheMirrorImage) {
   }
 }
 
-TEST(DiagonalPlugin, AYOnTwoLinesOfWhichNobodySaysThatItCarriesXIsRefused) {
+TEST(DiagonalPlugin, AYOnTwoLinesWithoutAStatementThatItCarriesXIsRefused) {
   Workpiece w({12.0, 9.0, 10});
   w.everything();
   Workpiece image = mirror_image(w);

@@ -305,7 +305,7 @@ TEST(WorstLine, EachValueIsThatOfItsWorstLine) {
   for (const Finding& f : e.findings)
     if (f.id == "worst-line.which" && f.texts.front().second == "E")
       EXPECT_EQ(f.texts.back().second, "steep");
-  // They stand with the first line only.
+  // Only the first line has these values.
   EXPECT_TRUE(evaluated(worst(), m, 1).values.empty());
 }
 

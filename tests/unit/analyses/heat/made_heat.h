@@ -52,7 +52,7 @@ struct MadeSpindle {
   double tau = 0.0, end = 0.0, range = 0.0, c = 0.0;
 };
 
-/// Noise white, or with air that wanders beside it.
+/// White noise, and correlated motions of the machine that the air causes.
 inline MadeSpindle warming(Random& r, double noise, double wander, int readings = 241,
                            double step = 60.0) {
   MadeSpindle out;
@@ -184,7 +184,7 @@ inline MadeLengths gauging(Random& r, double scale, int positions = 7, int lengt
   for (int p = 0; p < positions; ++p) {
     o.lines.push_back({"E0 " + std::to_string(p + 1), {}});
     const double own = scale * uniform(r, -1.0, 1.0);
-    // The far end lies up to 0.4 mm beside the line: each length is short by the same share.
+    // The far end is up to 0.4 mm off the line: each length is short by the same share.
     const double aside = uniform(r, 0.0, 0.4e-3), longest = 0.1 * lengths;
     for (int l = 1; l <= lengths; ++l)
       for (int k = 1; k <= repeats; ++k) {

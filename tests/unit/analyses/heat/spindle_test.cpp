@@ -66,7 +66,7 @@ TEST(Spindle, RotatingSensitiveDirectionDoesNotSeeTheSetUp) {
   EXPECT_NEAR(value(evaluated(spindle(), oval), "sync_R")->value, 2e-6, 1e-12);
 }
 
-TEST(Spindle, TheEccentricityTellsTheSenseOfRotation) {
+TEST(Spindle, TheEccentricityShowsTheSenseOfRotation) {
   const auto made = [](double sense, double eccentricity) {
     Made t = empty();
     const auto r = [](double a) { return 1e-6 * std::cos(2.0 * a) + 0.4e-6 * std::cos(3.0 * a); };

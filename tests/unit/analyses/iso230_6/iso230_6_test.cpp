@@ -249,7 +249,7 @@ TEST(Iso230_6, FewerDiagonalsFacesAndRuns) {
   EXPECT_EQ(finding(of_face, "fewer")->texts[1].second, "PP");
   EXPECT_NEAR(*value(of_face, "R"), 4.0 * std::sqrt(0.3) * um, 1e-10) << "4 s of 1 0 1 0 1";
   for (auto* ends : {&shop.campaign.measurements[2].from, &shop.campaign.measurements[2].to})
-    (*ends)["Z"] = 0.1;  // stands still: a face all the same
+    (*ends)["Z"] = 0.1;  // Z does not move: still a face diagonal
   const Evaluation at_a_height = shop.evaluate(2);
   ASSERT_NE(finding(at_a_height, "fewer"), nullptr);
   EXPECT_EQ(finding(at_a_height, "fewer")->texts[1].second, "PP");

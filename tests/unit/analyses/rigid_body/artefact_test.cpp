@@ -120,7 +120,7 @@ Evaluation done(const Workshop& w) {
   return e ? *e : Evaluation{};
 }
 
-TEST(Artefact, APlateInNinePlacesTellsTheVolume) {
+TEST(Artefact, APlateInNinePlacesDeterminesTheVolume) {
   std::mt19937_64 random(20261130);
   for (int i = 0; i < 3; ++i) {
     const Truth t = smooth_machine(random, 10, 15);
@@ -276,7 +276,7 @@ TEST(Artefact, PlacementsThatShareTooFewBallsAreNotLinked) {
   EXPECT_TRUE(artefact_lines(a, 0, 0));
 }
 
-/// X towards Y and Y towards X on one square that stands askew, then turned over.
+/// X towards Y and Y towards X on one square that is misaligned, then turned over.
 void add_square(Workshop& w, const Truth& t, double g, double askew, double askew_turned,
                 const Noise& noise, bool turned) {
   const auto add = [&](const char* id, std::size_t axis, std::size_t across, double leans,
@@ -296,7 +296,7 @@ void add_square(Workshop& w, const Truth& t, double g, double askew, double aske
   add("QY-over", 1, 0, -askew_turned - g, true);
 }
 
-TEST(Squares, ASquareTellsC0YTurnedOverOrByItsCertificate) {
+TEST(Squares, ASquareDeterminesC0YTurnedOverOrByItsCertificate) {
   std::mt19937_64 random(20261134);
   const Truth t = smooth_machine(random, 10, 0);
   for (const bool turned : {true, false}) {
@@ -317,7 +317,7 @@ TEST(Squares, ASquareTellsC0YTurnedOverOrByItsCertificate) {
   }
 }
 
-TEST(Squares, WithoutItsErrorASquareTellsNothing) {
+TEST(Squares, WithoutItsErrorASquareDeterminesNothing) {
   std::mt19937_64 random(20261135);
   const Truth t = smooth_machine(random, 10, 0);
   Workshop w;

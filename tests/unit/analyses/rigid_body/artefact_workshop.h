@@ -22,7 +22,7 @@ namespace rigid_workshop {
 using machine::Vector;
 using nonio::Observations;
 
-/// Where the axes stand when the tool is at a place: the inverse of the exact machine.
+/// Positions of the axes when the tool is at a place: the inverse of the exact machine.
 inline Vector commanded(const machine::Errors& errors, const Vector& place) {
   Vector at = place;
   for (int i = 0; i < 8; ++i) at -= machine::point(errors, at) - place;

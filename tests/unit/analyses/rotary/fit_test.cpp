@@ -146,7 +146,7 @@ TEST(RotaryFit, ShearOfTheLinearAxes) {  // D.4: exact, with a sheared machine
   EXPECT_NEAR(shift(0.5, full_turn(3), 40 * urad, 0.7), 10.000 * um, 0.002 * um);
   for (const int n : {4, 5, 8, 11})
     EXPECT_LT(shift(0.5, full_turn(n), 40 * urad, 0.7), 0.002 * um) << n;
-  // Arcs of 11 points: the smaller and the larger shift as the shear lies along the arc or not.
+  // Arcs of 11 points: the least and the largest shift over all directions of the shear.
   const struct {
     double span, least, most;
   } expected[] = {{180, 3.6, 10.4}, {150, 5.2, 13.1}, {90, 8.3, 17.8}};
@@ -225,7 +225,7 @@ TEST(RotaryFit, DoubleWaveIsTheEllipse) {
     square += wave_here * wave_here;
   }
   EXPECT_NEAR(product / square, its.amplitude, 0.4 * its.amplitude);
-  // An arc cannot tell an ellipse from a shift.
+  // On an arc an ellipse is not separable from a shift.
   const auto part = t.at(arc(0, 150 * deg, 11));
   EXPECT_EQ(math::double_wave(*fit_rotary(part, false), part, fit->radial).p, 1.0);
 }

@@ -108,7 +108,7 @@ std::vector<math::BallCentre> noisy(const Table& t, const std::vector<double>& a
   return noise.on(t.at(angles), sigma);
 }
 
-/// Where another axis turned too, the centres are of no circle; where it stood, they are.
+/// If another axis also turned, the centres are not on a circle; if it did not, they are.
 void other_axis(Workshop& shop, double turned) {
   Observations& o = shop.all.front();
   o.axes.push_back({"B", true, std::vector<double>(o.size(), 0.5), {}});

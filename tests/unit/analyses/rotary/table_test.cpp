@@ -82,7 +82,7 @@ TEST(RotaryTable, ScatterOnArcsIsThatOfTheTable) {
     Table t;
     t.direction = {0, 0, 1};
     t.phase = 0.0;
-    // The middle of the arc lies along the arm of angle 0.
+    // The middle of the arc is in the direction of the arm at angle 0.
     const Eigen::Vector3d towards = t.direction.unitOrthogonal();
     const Eigen::Vector3d across = t.direction.cross(towards);
     const auto fit = fit_rotary(t.at(arc(-row.span / 2 * deg, row.span / 2 * deg, 11)), false);

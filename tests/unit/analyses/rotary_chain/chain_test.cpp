@@ -92,7 +92,7 @@ TEST(RotaryChainPlugin, GivesBothLinesAndHowTheyLie) {
   EXPECT_NE(found(as_stated, "rotary-chain.offset-as-stated"), nullptr) << ids(as_stated);
 }
 
-TEST(RotaryChainPlugin, NamesWhatIsNotTold) {
+TEST(RotaryChainPlugin, NamesWhatIsNotIdentifiable) {
   Builder builder(12);
   const Machine m = builder.tables();
   const Evaluation e = said(shop_of(m, grid({0}, turns), builder));
@@ -105,7 +105,7 @@ TEST(RotaryChainPlugin, NamesWhatIsNotTold) {
   EXPECT_NE(value(e, "centre_x_C"), nullptr);
   EXPECT_EQ(value(e, "centre_x_B"), nullptr);
   EXPECT_EQ(value(e, "distance"), nullptr);
-  // Where B stands elsewhere, C at 0 is not told either.
+  // With B fixed at another angle, C at 0 is not identifiable either.
   const Evaluation away = said(shop_of(m, grid({30}, turns), builder));
   EXPECT_EQ(value(away, "direction_i_C"), nullptr);
   EXPECT_NE(found(away, "rotary-chain.not-identifiable"), nullptr) << ids(away);
@@ -213,7 +213,7 @@ TEST(RotaryChainPlugin, APivotNeedsAStatedTool) {
   EXPECT_EQ(value(e, "tool_i"), nullptr);
   ASSERT_NE(value(e, "radius_B"), nullptr);
   EXPECT_NEAR(value(e, "radius_B")->value, (m.centre(1)).norm(), 10 * um);
-  // One tool of stated length, as upright as nobody knows.
+  // One tool of stated length and unknown inclination.
   shop.campaign.measurements[0].tool_offset["Z"] = -length;
   EXPECT_EQ(value(said(shop), "pivot_B"), nullptr) << "without U of the length";
   e = said(shop.with("tool_U_um", 4.0));

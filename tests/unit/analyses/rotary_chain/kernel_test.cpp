@@ -41,7 +41,7 @@ TEST(RotaryChain, ExactReadingsGiveTheExactLines) {
 }
 
 /// Rows of one axis only: what the fit of that axis says, to rounding.
-TEST(RotaryChain, WhileOneStandsAtZeroItIsTheFitOfTheOther) {
+TEST(RotaryChain, WithOneFixedAtZeroItIsTheFitOfTheOther) {
   Builder builder(3);
   for (const bool tilting : {false, true}) {
     const Machine m = builder.tables();
@@ -80,7 +80,7 @@ TEST(RotaryChain, WhileOneStandsAtZeroItIsTheFitOfTheOther) {
   }
 }
 
-TEST(RotaryChain, WhereTheCarryingAxisStandsElsewhereNothingAtZeroIsTold) {
+TEST(RotaryChain, WithTheCarryingAxisFixedElsewhereNothingAtZeroIsIdentifiable) {
   const Machine m = Builder(5).tables();
   const auto fit = math::fit_chain(readings(m, grid({30}, turns)), order_of(m));
   ASSERT_TRUE(fit);
@@ -125,7 +125,7 @@ TEST(RotaryChain, RefusesByName) {
   EXPECT_EQ(error(all), ChainRefusal::not_finite);
 }
 
-TEST(RotaryChain, ABallOnAnAxisDoesNotTellItsDirection) {
+TEST(RotaryChain, ABallOnAnAxisDoesNotDetermineItsDirection) {
   Machine m = Builder(8).tables();
   m.ball = m.tables[1].point;
   const auto fit = math::fit_chain(readings(m, grid(tilts, turns)), order_of(m));

@@ -92,7 +92,7 @@ Share turning(int trials, unsigned seed, int n, double arc, double U_gauge = U_f
   return share;
 }
 
-/// One gauge that stands still, on the ball of a head whose place is known within U.
+/// One fixed gauge, on the ball of a head whose place is known within U.
 Share standing(int trials, unsigned seed, int n) {
   Share share;
   for (int t = 0; t < trials; ++t) {

@@ -13,8 +13,8 @@
 
 extern "C" const nonio::PluginEntry nonio_plugin;
 
-/// A machine whose rotary axis and linear axes move exactly, and a control that has another axis:
-/// quaternions, nothing of the kernel's formulas.
+/// A machine whose rotary axis and linear axes move exactly, and a control with a wrong axis line:
+/// computed by quaternions, without the kernel's formulas.
 namespace nonio::rtcp_test {
 
 using Vector = Eigen::Vector3d;
@@ -24,7 +24,7 @@ struct Machine {
   Vector centre{0.3, 0.2, 0.1}, direction{0.0, 0.0, 1.0};  // of the control
   Vector true_centre = centre, true_direction = direction;
   bool head = false;
-  Eigen::Matrix3d linear = Eigen::Matrix3d::Zero();  // what the linear axes add beside `about`
+  Eigen::Matrix3d linear = Eigen::Matrix3d::Zero();  // errors of the linear axes, zero at `about`
   Vector about = centre;
 
   Vector turned(const Vector& v, const Vector& n, double angle) const {

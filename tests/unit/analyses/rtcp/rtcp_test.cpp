@@ -47,8 +47,8 @@ Evaluation evaluated(const Workshop& shop) {
   return *e;
 }
 
-/// By hand: the axis lies 10 um further along X than the control has it. After half a turn the ball
-/// is at -radius + 20 um and the tool at -radius: -20 um against the workpiece.
+/// By hand: the axis is 10 um further along X than in the control. After half a turn the ball is at
+/// -radius + 20 um and the tool at -radius: -20 um relative to the workpiece.
 TEST(Rtcp, half_a_turn_shows_twice_the_error) {
   const Machine m = wrong_by(10, 0, 0, 0);
   EXPECT_NEAR(m.moved(m.centre + 0.1 * ex, Vector::Zero(), std::numbers::pi)[0], -20 * um, 1e-12);

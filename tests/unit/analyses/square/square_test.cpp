@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The plugin against exact transforms: an indicator in the spindle reads the planes of a square that
-// stands askew. The truth is the angle between straight lines through the exact points of the tool.
+// The plugin compared with exact transforms: an indicator in the spindle reads the planes of a
+// misaligned square. The true value is the angle between straight lines through the exact points of
+// the tool.
 #include "nonio/math/square.h"
 
 #include <gtest/gtest.h>

@@ -66,7 +66,7 @@ Eigen::MatrixXd reference(const Volume& v, bool zeros) {
     }
   for (const int f : {1, 2, 5}) {  // EYX, EZX, EZY
     rows.push_back(Eigen::VectorXd::Zero(size));
-    rows.back()[f * n + n - 1] = 1e3;  // exact beside readings
+    rows.back()[f * n + n - 1] = 1e3;  // exact compared with readings
   }
   Eigen::MatrixXd N = Eigen::MatrixXd::Zero(size, size);
   for (const auto& row : rows) N += row * row.transpose();
@@ -137,7 +137,7 @@ TEST(StepNoise, UncertaintyCoversTheTruth) {
       for (int k = 0; k < campaigns; ++k) {
         const auto e = random_errors(rng, v, 20 * um);
         const bool fitted = method == "least squares";
-        // Averaging turns a set-up angle into false errors: it is for a mirror that stands square.
+        // Averaging turns a set-up angle into false errors: it requires a mirror that is square.
         auto d = measured(e, v, random_set_up(rng, fitted ? 0.2e-3 : 0.0, true));
         shake(d, rng, u);
         auto axes = lengths(e, v, "XYZ", u_axis);

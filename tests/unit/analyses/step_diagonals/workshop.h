@@ -23,7 +23,7 @@ struct Volume {
   std::size_t n = 40;
 };
 
-/// How the optics stand in one pass: the mirror against the beam, the beam against the diagonal.
+/// Alignment of the optics in one pass: the mirror to the beam, the beam to the diagonal.
 struct Optics {
   Eigen::Vector2d mirror{0, 0}, beam{0, 0};  ///< rad
 };

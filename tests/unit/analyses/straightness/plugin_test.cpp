@@ -122,7 +122,7 @@ TEST(StraightnessPlugin, AReversalTakesOutTheStraightedge) {
 }
 
 TEST(StraightnessPlugin, ALevelSeesTheGuideThatItWasMovedOn) {
-  // The foot stands with its middle at x: the angle is the slope between its ends.
+  // The middle of the foot is at x: the angle is the slope between its ends.
   const Plan plan{.stops = 10, .from = 0.15, .step = 0.08};
   const auto angle = [&](double x) { return (bow(x + 0.04 - 0.01) - bow(x - 0.04 - 0.01)) / 0.08; };
   for (const bool pitch : {false, true}) {

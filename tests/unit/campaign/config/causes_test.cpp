@@ -115,7 +115,7 @@ TEST(Causes, ANameInTwoPlacesNamesBoth) {
             "already; give one of them another name");
 }
 
-TEST(Causes, WhatIsWrongInASitesFileIsToldWithItsLine) {
+TEST(Causes, AMistakeInASitesFileIsReportedWithItsLine) {
   const std::string name = "causes/site/shop.toml";
   const std::string key = message(with(name, changed("prior =", "sise = 1\nprior =")));
   EXPECT_NE(key.find("causes/shop.toml:11"), std::string::npos) << key;

@@ -156,7 +156,7 @@ TEST(Manifest, ComplaintsNameLineFoundAndWanted) {
   }
 }
 
-TEST(Manifest, WhereTheOtherAxesStoodStill) {
+TEST(Manifest, PositionsOfTheOtherAxes) {
   const auto parse = [](const std::string& at) {
     std::string text = whole;
     return config::parse_manifest(text.replace(text.find("file = "), 0, "at = " + at + "\n"),
@@ -296,7 +296,7 @@ TEST(Manifest, Signing) {
   ASSERT_TRUE(good);
   EXPECT_EQ(good->signing->pkcs12, "k.p12");
   EXPECT_TRUE(good->signing->time_stamp_required);
-  // What goes into a certificate has a say in the results, and nothing of the key.
+  // Settings that a certificate prints are inputs of the results; those of the key are not.
   EXPECT_NE(good->settings.find("csv"), std::string::npos);
   EXPECT_EQ(good->settings.find("k.p12"), std::string::npos);
   EXPECT_FALSE(parse(key));

@@ -17,8 +17,8 @@ std::string loaded_library(const std::string& name) {
   return {};
 }
 
-// A password is wiped by a call that no compiler leaves out: a plain fill of a string that nobody
-// reads again is a dead store, and gone at -O2. The library imports the call.
+// A password is wiped by a call that no compiler leaves out: a plain fill of a string that is not
+// read again is a dead store, which -O2 removes. The library imports the call.
 TEST(Secrets, ThePasswordIsWipedByWhatIsNotLeftOut) {
   const std::string path = loaded_library("libnonio_engine.so");
   ASSERT_FALSE(path.empty());

@@ -96,7 +96,7 @@ std::string sources() {
   return text.str();
 }
 
-/// What stands between quotes in a source, line by line.
+/// The texts between quotes in a source, line by line.
 std::set<std::string> quoted(const std::string& source) {
   std::set<std::string> out;
   bool inside = false;
@@ -134,7 +134,7 @@ bool said(const std::set<std::string>& quotes, const std::string& id) {
          quotes.count(id.substr(x + 3));
 }
 
-// Words that nobody says are left over from something; a place that nobody fills would be seen.
+// A text that no source uses is a leftover; a placeholder that is never filled would be printed.
 TEST(WordFiles, EveryFindingIsSaidAndFilled) {
   const auto quotes = quoted(sources());
   std::size_t count = 0;

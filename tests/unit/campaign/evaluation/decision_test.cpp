@@ -129,7 +129,7 @@ TEST(Format, PrintedGivesBackTheDecimalThatWasRead) {
   EXPECT_EQ(printed(-0.0, Quantity::length), 0.0);
 }
 
-TEST(Format, ShortTextHasNoExponentWhereNobodyExpectsOne) {
+TEST(Format, ShortTextHasNoUnexpectedExponent) {
   EXPECT_EQ(short_text(0.0), "0.00");
   EXPECT_EQ(short_text(5.5784), "5.58");
   EXPECT_EQ(short_text(-12.34), "-12.3");
@@ -145,7 +145,7 @@ TEST(Format, ShortTextHasNoExponentWhereNobodyExpectsOne) {
   EXPECT_EQ(fixed_text(123456.789, 2), "123456.79");
 }
 
-/// The quick ways to digits give what the slow ones give, also beside ties and powers of ten.
+/// The fast conversions to digits agree with the slow ones, also near ties and powers of ten.
 TEST(Format, QuickWaysGiveTheSameDigits) {
   const std::uint64_t seed = std::random_device{}();
   SCOPED_TRACE("seed " + std::to_string(seed));

@@ -33,7 +33,7 @@ std::size_t significant(const std::vector<assessment::AssessedMachine>& machines
   return n;
 }
 
-TEST(MorningChanges, AStepIsNamedAtItsPlaceAndWhatItDidBeside) {
+TEST(WorklistChanges, AStepIsNamedAtItsPlaceWithItsOtherEffects) {
   std::mt19937_64 random(11);
   std::cout << "seed 11\n";
   auto machines = quiet(random, 12);
@@ -57,7 +57,7 @@ TEST(MorningChanges, AStepIsNamedAtItsPlaceAndWhatItDidBeside) {
   EXPECT_EQ(significant({m}), 2U);
 }
 
-TEST(MorningChanges, WhatIsKnownIsNotSaidToBeUnknown) {
+TEST(WorklistChanges, WhatIsKnownIsNotSaidToBeUnknown) {
   std::mt19937_64 random(12);
   std::cout << "seed 12\n";
   auto machines = quiet(random, 12);
@@ -72,7 +72,7 @@ TEST(MorningChanges, WhatIsKnownIsNotSaidToBeUnknown) {
   EXPECT_EQ(s.trend.changes[0].cause, Cause::event);
 }
 
-TEST(MorningChanges, AnInstrumentIsNotTheMachine) {
+TEST(WorklistChanges, AnInstrumentIsNotTheMachine) {
   std::mt19937_64 random(13);
   std::cout << "seed 13\n";
   std::size_t blamed = 0;
@@ -92,8 +92,8 @@ TEST(MorningChanges, AnInstrumentIsNotTheMachine) {
   EXPECT_EQ(blamed, 0U);
 }
 
-TEST(MorningChanges, QuietNightsTellNothing) {
-  // The share of nights with any news is 5 %; of 200 nights at most 18 with a chance of 0.995.
+TEST(WorklistChanges, QuietRunsReportNothing) {
+  // The share of runs with any change is 5 %; of 200 runs at most 18 with a probability of 0.995.
   std::mt19937_64 random(14);
   std::cout << "seed 14\n";
   int runs = 0;
@@ -105,7 +105,7 @@ TEST(MorningChanges, QuietNightsTellNothing) {
   EXPECT_LE(runs, 18);
 }
 
-TEST(MorningChanges, ScatterAndSlopesAreLearnedFromTheLaboratory) {
+TEST(WorklistChanges, ScatterAndSlopesAreLearnedFromTheLaboratory) {
   std::mt19937_64 random(15);
   std::cout << "seed 15\n";
   std::vector<assessment::AssessedMachine> machines;
@@ -127,7 +127,7 @@ TEST(MorningChanges, ScatterAndSlopesAreLearnedFromTheLaboratory) {
   EXPECT_LT(learned.at("ln_s um").spread, 0.05);
 }
 
-TEST(MorningChanges, OfVeryManyCampaignsTheNewestWait) {
+TEST(WorklistChanges, OfVeryManyCampaignsTheNewestWait) {
   // 100,000 campaigns or more are judged by the first 100,000, until there are 110,000.
   EXPECT_EQ(assessment::learned_from(100'000), 100'000U);
   EXPECT_EQ(assessment::learned_from(109'999), 100'000U);
@@ -136,7 +136,7 @@ TEST(MorningChanges, OfVeryManyCampaignsTheNewestWait) {
   EXPECT_GE(assessment::learned_from(9'999), 1'000'000'000U);
 }
 
-TEST(MorningChanges, WhatCameLaterTeachesNothing) {
+TEST(WorklistChanges, WhatCameLaterTeachesNothing) {
   std::mt19937_64 random(17);
   std::cout << "seed 17\n";
   auto values = around(random, 8, 0.1);
@@ -162,8 +162,8 @@ TEST(MorningChanges, WhatCameLaterTeachesNothing) {
   EXPECT_EQ(assessment::lesson_of(series(values), fits, 0).slope.has_value(), false);
 }
 
-TEST(MorningChanges, ANightChargesATestOnce) {
-  // What one night asked of many machines is a family; a later night of one machine is another.
+TEST(WorklistChanges, ARunChargesATestOnce) {
+  // The tests of one run over many machines are a family; a later run over one machine is another.
   std::mt19937_64 random(16);
   std::cout << "seed 16\n";
   const auto values = around(random, 8, 0.1, 4, 0.3);
@@ -183,8 +183,8 @@ TEST(MorningChanges, ANightChargesATestOnce) {
   EXPECT_GE(1000.0 * p, 0.05);
 }
 
-TEST(MorningChanges, AMailIsSurerThanAList) {
-  // The same history, in nights that asked more and more: told below 5 %, mailed below 1 %.
+TEST(WorklistChanges, AMailIsSurerThanAList) {
+  // The same history in runs with more and more tests: reported below 5 %, mailed below 1 %.
   std::mt19937_64 random(17);
   std::cout << "seed 17\n";
   const auto values = around(random, 8, 0.1, 4, 0.5);
@@ -209,7 +209,7 @@ TEST(MorningChanges, AMailIsSurerThanAList) {
   }
 }
 
-TEST(MorningChanges, AMailCountsAllThatItCouldTell) {
+TEST(WorklistChanges, AMailCountsAllThatItCouldReport) {
   // Holm over both families: of two news alike the list is as sure as of one, the mail is not.
   const assessment::SeriesTests said{1, true, {{1e-3, true, false}}},
       unsaid{1, true, {{2e-3, false, false}}}, quiet{1, true, {}};

@@ -10,7 +10,7 @@ namespace nonio::test::curves_test {
 namespace {
 namespace fs = std::filesystem;
 
-TEST(MorningCurves, AreThoseOfTheResults) {
+TEST(WorklistCurves, AreThoseOfTheResults) {
   const fs::path out = fs::temp_directory_path() / ("nonio-curves-" + std::to_string(::getpid()));
   const auto write = [&](const std::string& campaign, const std::string& text) {
     fs::create_directories(out / campaign);

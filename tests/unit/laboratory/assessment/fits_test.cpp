@@ -10,7 +10,7 @@
 namespace nonio::test::fits_test {
 namespace {
 
-class MorningFits : public ::testing::Test {
+class WorklistFits : public ::testing::Test {
  protected:
   /// What a site says of itself, by what is kept.
   std::size_t run(std::uint64_t seed, std::size_t more = 0) {
@@ -46,7 +46,7 @@ class MorningFits : public ::testing::Test {
   std::ostringstream said_;
 };
 
-TEST_F(MorningFits, AreComputedOnceAndChangeNothing) {
+TEST_F(WorklistFits, AreComputedOnceAndChangeNothing) {
   const std::size_t first = run(21);
   const std::string said = said_.str();
   EXPECT_GE(first, 12U);
@@ -57,19 +57,19 @@ TEST_F(MorningFits, AreComputedOnceAndChangeNothing) {
   EXPECT_EQ(said_.str(), said);
 }
 
-TEST_F(MorningFits, OneNewCampaignIsOneNewTrend) {
+TEST_F(WorklistFits, OneNewCampaignIsOneNewTrend) {
   run(21);
   EXPECT_EQ(run(21, 1), 2U);  // its trend and its slope
 }
 
-TEST_F(MorningFits, WhatNobodyAsksForIsNotKept) {
+TEST_F(WorklistFits, WhatIsNotRequestedIsNotKept) {
   run(21);
   const std::size_t size = kept_.size();
   run(22);
   EXPECT_LT(kept_.size(), 2 * size - 1000);
 }
 
-TEST_F(MorningFits, WhatIsCutOffIsNone) {
+TEST_F(WorklistFits, WhatIsCutOffIsNone) {
   const std::size_t first = run(21);
   const std::string said = said_.str(), whole = kept_;
   for (const std::size_t size :

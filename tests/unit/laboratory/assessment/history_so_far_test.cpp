@@ -102,7 +102,7 @@ TEST_F(HistorySoFarTest, EventsAliasesAndRules) {
   EXPECT_EQ(h.events.back().text, "of this one");
 }
 
-TEST_F(HistorySoFarTest, TheSameWhateverTheNights) {
+TEST_F(HistorySoFarTest, TheSameWhateverTheRuns) {
   const std::vector<std::tuple<std::string, std::string, double>> campaigns = {
       {"a", "2023-01-10", -5.0}, {"b", "2023-07-10", -5.1}, {"c", "2024-01-10", -4.9},
       {"d", "2024-07-10", -9.1}, {"e", "2025-01-10", -9.0}, {"f", "2025-07-10", -9.2}};

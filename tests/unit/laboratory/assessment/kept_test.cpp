@@ -16,7 +16,7 @@ namespace {
 namespace batch = batch;
 namespace morning = assessment;
 
-/// Every page and all that the night says, by name.
+/// Every page and output of a run, by name.
 using Said = std::map<std::string, std::string>;
 
 class KeptMachinesTest : public ::testing::Test {
@@ -33,7 +33,7 @@ class KeptMachinesTest : public ::testing::Test {
     changed_.push_back(made.id);
   }
 
-  /// A night that knows what the last ones have kept, beside one that knows nothing.
+  /// Compares a run that uses the stored machines of earlier runs with one that has none.
   Said end_run(const std::string& date) {
     const auto stored = store::update(out_.root(), false, changed_, records_, nothing);
     EXPECT_TRUE(stored) << stored.error().message;
@@ -93,7 +93,7 @@ class KeptMachinesTest : public ::testing::Test {
   std::uint64_t run_ = 1;
 };
 
-TEST_F(KeptMachinesTest, ChangeNoByteOfAnyNight) {
+TEST_F(KeptMachinesTest, ChangeNoByteOfAnyRun) {
   constexpr std::uint64_t seed = 1923;
   std::cout << "seed " << seed << '\n';
   std::mt19937_64 random(seed);
@@ -161,19 +161,19 @@ TEST_F(KeptMachinesTest, ChangeNoByteOfAnyNight) {
         records_.aliases = k < 12 ? std::vector<config::Alias>{{"S-7", "S-1", "one plate"}}
                                   : std::vector<config::Alias>{};
         break;
-      case 8:  // a certificate, and a report beside old results
+      case 8:  // a certificate, and a report with old results
         campaigns.back().certificate = "2025-" + std::to_string(k);
         store(campaigns.back(), "r" + campaigns.back().id.substr(1));
         Output::write(out_.root() / campaigns[any(20)].id / "report.pdf", "%PDF");
         break;
-      case 9:  // a machine that is new, and one that is gone on purpose
+      case 9:  // a new machine, and one that was removed
         measure(8 + static_cast<std::size_t>(k), 60 + k / 2, 0.0);
         if (k < 12)
           for (const Made& made : campaigns)
             if (made.asset == "S-4")
               records_.logs.forgotten.push_back({"2025-05-01", made.id, "B", "sold", 4});
         break;
-      case 10:  // somebody has changed a page, and one is not there
+      case 10:  // a page was changed, and one was deleted
         Output::write(out_.root() / "machines" / "S-0.html", "what somebody wrote");
         fs::remove(out_.root() / "machines" / "S-2.html");
         break;
@@ -199,7 +199,8 @@ TEST_F(KeptMachinesTest, AFailedCampaignMovesNoDueDate) {
   EXPECT_EQ(after["due.ics"].find("20261105"), std::string::npos) << after["due.ics"];
 }
 
-/// Whatever byte of the file is another: what a night says is the same, and the next one uses it again.
+/// Any damaged byte of the file: the output of the run is the same, and the next run uses the file
+/// again.
 TEST_F(KeptMachinesTest, DamagedTheyChangeNoByte) {
   constexpr std::uint64_t seed = 1926;
   std::cout << "seed " << seed << '\n';
@@ -231,7 +232,7 @@ TEST_F(KeptMachinesTest, AreUsed) {
            .asset = k % 2 == 0 ? "S-0" : "S-1"},
           "r" + std::to_string(k));
   end_run("2026-01-01");
-  end_run("2026-01-02");  // what came last night is not told as new any more
+  end_run("2026-01-02");  // campaigns of the last run are no longer reported as new
   const fs::path page = out_.root() / "machines" / "S-0.html";
   const auto written = fs::last_write_time(page);
   // A machine of which nothing is new is not read: the store may have lost its numbers.

@@ -81,7 +81,7 @@ config::Acknowledgement acknowledged(const std::string& finding, const std::stri
   return {date, finding, "S-42", "X", "", "2024-12-31", {}, {}, "B. Sample", "nut is ordered", 1};
 }
 
-TEST(MorningLines, OneCauseIsToldOnce) {
+TEST(WorklistLines, OneCauseIsReportedOnce) {
   Laboratory lab;
   lab.machines.push_back(hit());
   const auto lines = lab.lines();
@@ -101,7 +101,7 @@ TEST(MorningLines, OneCauseIsToldOnce) {
   EXPECT_NEAR(*l.limit, 8e-6, 1e-12);
 }
 
-TEST(MorningLines, WhatHasNoAxisIsOneLineForEachAnalysis) {
+TEST(WorklistLines, WhatHasNoAxisIsOneLineForEachAnalysis) {
   Laboratory lab;
   MadeMachine m("S-42");
   m.judge("", "G_ccw", flat(9.0, 9.0), "circle");
@@ -115,7 +115,7 @@ TEST(MorningLines, WhatHasNoAxisIsOneLineForEachAnalysis) {
   EXPECT_EQ(lines[0].axis + lines[1].axis, "");
 }
 
-TEST(MorningLines, WhatConformsAndChangedIsAChange) {
+TEST(WorklistLines, WhatConformsAndChangedIsAChange) {
   Laboratory lab;
   lab.machines.push_back(hit(6.0, -5.5));
   const auto lines = lab.lines();
@@ -125,7 +125,7 @@ TEST(MorningLines, WhatConformsAndChangedIsAChange) {
   EXPECT_EQ(text_of(lines[0], "also"), "curve_2");
 }
 
-TEST(MorningLines, AChangeThatIsNotSureIsNotMailed) {
+TEST(WorklistLines, AChangeThatIsNotSureIsNotMailed) {
   Laboratory lab;
   MadeMachine m("S-42");
   m.follow("X", "B_mean", flat(-4.0, -4.35), 0.1);
@@ -151,7 +151,7 @@ TEST(MorningLines, AChangeThatIsNotSureIsNotMailed) {
   EXPECT_TRUE(batch::is_reason_for_mail(lost, config::Mail::On::lost));
 }
 
-TEST(MorningLines, OutNamesTheEventOfItsChange) {
+TEST(WorklistLines, OutNamesTheEventOfItsChange) {
   Laboratory lab;
   lab.machines.push_back(hit());
   lab.machines[0].events() = {{"2022-03-01", "S-42", "X", "crash", "hit the vice", "", 1}};
@@ -161,14 +161,14 @@ TEST(MorningLines, OutNamesTheEventOfItsChange) {
   EXPECT_EQ(text_of(lines[0], "event"), "crash: hit the vice");
 }
 
-TEST(MorningLines, ARepairEndsAChange) {
+TEST(WorklistLines, ARepairEndsAChange) {
   Laboratory lab;
   lab.machines.push_back(hit(6.0, -5.5));
   lab.machines[0].events() = {{"2022-09-01", "S-42", "X", "repair", "new nut", "", 1}};
   EXPECT_TRUE(lab.lines().empty());
 }
 
-TEST(MorningLines, ALimitThatIsExceededWithoutAChangeSaysNoChange) {
+TEST(WorklistLines, ALimitThatIsExceededWithoutAChangeSaysNoChange) {
   Laboratory lab;
   MadeMachine m("S-42");
   m.judge("X", "A", {8.6, 8.7, 8.8, 8.9, 9.0, 9.1, 9.2, 9.3});
@@ -179,7 +179,7 @@ TEST(MorningLines, ALimitThatIsExceededWithoutAChangeSaysNoChange) {
   EXPECT_EQ(lines[0].since, "2020-01-15");
 }
 
-TEST(MorningLines, AcknowledgedIsKnownUntilItMoves) {
+TEST(WorklistLines, AcknowledgedIsKnownUntilItMoves) {
   Laboratory lab;
   lab.machines.push_back(hit());
   for (const char* finding : {"worklist.out:S-42:X", "worklist.out-changed", "worklist.out"}) {
@@ -211,7 +211,7 @@ TEST(MorningLines, AcknowledgedIsKnownUntilItMoves) {
   EXPECT_EQ(lab.lines()[0].state, State::known) << "from what was acknowledged";
 }
 
-TEST(MorningLines, WhatConformsAgainTonightIsFixed) {
+TEST(WorklistLines, WhatConformsAgainInThisRunIsFixed) {
   Laboratory lab;
   MadeMachine m("S-42");
   m.judge("X", "B", {9, 9, 9, 9, 9, 9, 9, 5});
@@ -224,7 +224,7 @@ TEST(MorningLines, WhatConformsAgainTonightIsFixed) {
   EXPECT_TRUE(lab.lines().empty());
 }
 
-TEST(MorningLines, ARepairThatIsPlannedHasMendedNothing) {
+TEST(WorklistLines, ARepairThatIsPlannedHasFixedNothing) {
   Laboratory lab;
   lab.machines.push_back(hit(6.0, -5.5));
   lab.machines[0].events() = {{"2024-06-02", "S-42", "X", "repair", "nut is ordered", "", 1}};
@@ -234,7 +234,7 @@ TEST(MorningLines, ARepairThatIsPlannedHasMendedNothing) {
   EXPECT_TRUE(lab.lines().empty());
 }
 
-TEST(MorningLines, ACampaignDatedAfterTheNightIsNamed) {
+TEST(WorklistLines, ACampaignDatedAfterTheRunIsNamed) {
   Laboratory lab;
   MadeMachine m("S-42");
   m.judge("X", "B", {5, 5, 5, 5, 5, 5, 5, 5});
@@ -251,7 +251,7 @@ TEST(MorningLines, ACampaignDatedAfterTheNightIsNamed) {
   EXPECT_EQ(lines[0].finding.id, "worklist.later-several");
 }
 
-TEST(MorningLines, AnotherDefinitionOrAWiderLimitMendsNothing) {
+TEST(WorklistLines, AnotherDefinitionOrAWiderLimitFixesNothing) {
   const auto significant = [](auto change) {
     Laboratory lab;
     MadeMachine m("S-42");
@@ -271,7 +271,7 @@ TEST(MorningLines, AnotherDefinitionOrAWiderLimitMendsNothing) {
             "worklist.judged-anew");
 }
 
-TEST(MorningLines, MicrometresAreNoArcseconds) {
+TEST(WorklistLines, MicrometresAreNoArcseconds) {
   Laboratory lab;
   MadeMachine m("S-42");
   m.judge("C", "B", {9, 9, 9, 9, 9, 9, 5, 5});  // as a linear axis it did not conform
@@ -298,7 +298,7 @@ TEST(MorningLines, MicrometresAreNoArcseconds) {
   EXPECT_EQ(lab.lines()[0].state, State::known);
 }
 
-TEST(MorningLines, NamesThatNoCampaignHasAreSaid) {
+TEST(WorklistLines, NamesThatNoCampaignHasAreSaid) {
   Laboratory lab;
   EXPECT_TRUE(lab.lines().empty());
   lab.unknown = {"S-4Z (events.toml:7)"};
@@ -334,7 +334,7 @@ MadeMachine with_table(double E_left, std::size_t campaign = 7) {
   return m;
 }
 
-TEST(MorningLines, ATableThatDidNotDoWhatItPromisedIsADecision) {
+TEST(WorklistLines, ATableThatDidNotDoWhatItPromisedIsADecision) {
   const auto table_lines = [](const MadeMachine& m) {
     Laboratory lab;
     lab.machines.push_back(m);
@@ -361,7 +361,7 @@ TEST(MorningLines, ATableThatDidNotDoWhatItPromisedIsADecision) {
   EXPECT_TRUE(table_lines(old).empty());
 }
 
-TEST(MorningLines, OfGoodTablesOneInAHundredIsDoubtedAtMost) {
+TEST(WorklistLines, OfGoodTablesOneInAHundredIsDoubtedAtMost) {
   std::cout << "seed 20261123\n";
   std::mt19937_64 random(20261123);
   for (const int runs : {2, 5})
@@ -392,7 +392,7 @@ TEST(MorningLines, OfGoodTablesOneInAHundredIsDoubtedAtMost) {
     }
 }
 
-TEST(MorningLines, LostMotionThatConformsIsInformation) {
+TEST(WorklistLines, LostMotionThatConformsIsInformation) {
   Laboratory lab;
   MadeMachine m("S-42");
   m.judge("X", "B", {5, 5, 5, 5, 5, 5, 5, 5});
@@ -402,7 +402,7 @@ TEST(MorningLines, LostMotionThatConformsIsInformation) {
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_EQ(lines[0].kind, Kind::information);
   EXPECT_FALSE(lines[0].finding.attention);
-  // Where nobody stated a limit nothing was judged, and that is said.
+  // Without a tolerance nothing was judged, which a line states.
   for (auto& r : lab.machines[0].stored().results) r.tolerance.reset(), r.decision.clear();
   lines = lab.lines();
   ASSERT_EQ(lines.size(), 1U);
@@ -410,7 +410,7 @@ TEST(MorningLines, LostMotionThatConformsIsInformation) {
   EXPECT_EQ(text_of(lines[0], "machines"), "S-42");
 }
 
-TEST(MorningLines, StandInTheirOrder) {
+TEST(WorklistLines, AreInTheirOrder) {
   Laboratory lab;
   lab.last_run.vanished = {{"gone", "gone", 4, "not there"}};
   lab.last_run.failed = {{"bad", "bad", "x.csv:17: \"1O8.9\" is no number", ""}};
@@ -428,7 +428,7 @@ TEST(MorningLines, StandInTheirOrder) {
                                Kind::overdue, Kind::undecided, Kind::information}));
 }
 
-TEST(MorningLines, TheWorstLineOfAnAxisDecidesAndWhatWasLeft) {
+TEST(WorklistLines, TheWorstLineOfAnAxisDecidesAndWhatWasLeft) {
   Laboratory lab;
   MadeMachine m("S-42");
   m.judge("X", "B", {9, 9});  // out, at Y = 100; conforms at Y = 500, named later
@@ -445,7 +445,7 @@ TEST(MorningLines, TheWorstLineOfAnAxisDecidesAndWhatWasLeft) {
   EXPECT_TRUE(lab.lines().empty());
 }
 
-TEST(MorningLines, ACampaignWithoutTheLimitReplacesNothing) {
+TEST(WorklistLines, ACampaignWithoutTheLimitReplacesNothing) {
   Laboratory lab;
   MadeMachine m("S-42", 4);
   m.judge("X", "A", {5, 9, 9, 5});
@@ -468,7 +468,7 @@ TEST(MorningLines, ACampaignWithoutTheLimitReplacesNothing) {
   EXPECT_EQ(lab.lines().size(), 1U);
 }
 
-TEST(MorningLines, OneOfTwoCampaignsOfADayReplacesTheOtherOnlyAsLeft) {
+TEST(WorklistLines, OneOfTwoCampaignsOfADayReplacesTheOtherOnlyAsLeft) {
   Laboratory lab;
   MadeMachine m("S-42", 0);
   m.add_campaign("2024-01-15", 1), m.add_campaign("2024-01-15", 1);
@@ -497,7 +497,7 @@ MadeMachine worn() {
   return m;
 }
 
-TEST(MorningLines, SoonIsTheLastValueWithItsForecast) {
+TEST(WorklistLines, SoonIsTheLastValueWithItsForecast) {
   Laboratory lab;
   lab.machines.push_back(worn());
   lab.last_run.date = "2023-07-20", lab.due = "2024-03-01";
@@ -522,7 +522,7 @@ TEST(MorningLines, SoonIsTheLastValueWithItsForecast) {
   for (const WorkItem& l : lab.lines()) EXPECT_NE(l.kind, Kind::soon);
 }
 
-TEST(MorningLines, ManyOfOneKindAreOneLine) {
+TEST(WorklistLines, ManyOfOneKindAreOneLine) {
   Laboratory lab;
   for (int i = 0; i < 212; ++i) {
     const std::string id = "c" + std::to_string(i);
@@ -619,24 +619,24 @@ TEST(Forecasts, AValueHasTheUOfItsCampaign) {
   }
 }
 
-TEST(MorningLines, ListAllThatIsOpenOfAnAxis) {
+TEST(WorklistLines, ListAllThatIsOpenOfAnAxis) {
   Laboratory lab;
   MadeMachine m("S-42", 2);
   m.judge("X", "A", {9, 9});
   m.judge("X", "B", {9, 12});
-  m.judge("X", "E", {9, 8});  // cannot be decided
+  m.judge("X", "E", {9, 8});  // indeterminate
   m.judge("X", "R", {9, 5});  // a newer measurement replaced it
   m.stored().without_value = {{1, "", "X", "M", "um", 5.0}, {1, "", "Y", "A", "um", 5.0}};
   lab.machines.push_back(m);
   const auto lines = lab.lines();
-  ASSERT_EQ(lines.size(), 1U);  // nobody has measured Y
+  ASSERT_EQ(lines.size(), 1U);  // Y was not measured
   EXPECT_EQ(open_of(lines[0]), (std::vector<std::string>{"B", "A", "E?", "M without value"}));
   EXPECT_NEAR(*lines[0].also[0].value, 9e-6, 1e-12);
   EXPECT_NEAR(lines[0].also[0].limit, 8e-6, 1e-12);
   EXPECT_EQ(lines[0].also[0].campaign, "S-42-2");
 }
 
-TEST(MorningLines, ALaterCircleOfAnotherPlaneReplacesNone) {
+TEST(WorklistLines, ALaterCircleOfAnotherPlaneReplacesNone) {
   Laboratory lab;
   MadeMachine m("S-42", 2);
   m.judge("", "G", {9}, "circle");
@@ -652,7 +652,7 @@ TEST(MorningLines, ALaterCircleOfAnotherPlaneReplacesNone) {
   EXPECT_EQ(lines[0].measurement, "XY");
 }
 
-TEST(MorningLines, ACampaignWithoutAMachineHasItsLines) {
+TEST(WorklistLines, ACampaignWithoutAMachineHasItsLines) {
   Laboratory lab;
   MadeMachine m("", 1);
   m.judge("X", "B", {9});
@@ -666,7 +666,7 @@ TEST(MorningLines, ACampaignWithoutAMachineHasItsLines) {
   EXPECT_EQ(lines[1].campaigns, std::vector<std::string>{"-1"});
 }
 
-TEST(MorningLines, WhatWasWithheldIsALine) {
+TEST(WorklistLines, WhatWasWithheldIsALine) {
   Laboratory lab;
   MadeMachine m("S-42", 3);
   for (const char* axis : {"X", "Y"}) m.follow(axis, "scale", {1, 1}, 0.1);
@@ -692,7 +692,7 @@ TEST(MorningLines, WhatWasWithheldIsALine) {
                      "worklist.no-result:S-42:S-42-2", "worklist.no-table:S-42:S-42-2:Y"}));
 }
 
-TEST(MorningLines, AnAcknowledgementCoversWhatWasOpenOnItsDay) {
+TEST(WorklistLines, AnAcknowledgementCoversWhatWasOpenOnItsDay) {
   Laboratory lab;
   MadeMachine m("S-42", 2);  // 2020-01-15, 2020-07-15
   m.judge("X", "B", {9, 9});
@@ -708,7 +708,7 @@ TEST(MorningLines, AnAcknowledgementCoversWhatWasOpenOnItsDay) {
   EXPECT_EQ(open_of(lines[1]), (std::vector<std::string>{"A", "B"}));
 }
 
-TEST(MorningLines, TheCampaignsOfAMachineThatVanishedAreOneLine) {
+TEST(WorklistLines, TheCampaignsOfAMachineThatVanishedAreOneLine) {
   Laboratory lab;
   for (const char* id : {"a", "b"}) {
     lab.last_run.vanished.push_back({id, id, 4, "not there"});
@@ -729,7 +729,7 @@ Templates words_of(const std::string& language) {
   return out;
 }
 
-TEST(MorningLines, EachHasWordsInEachLanguage) {
+TEST(WorklistLines, EachHasWordsInEachLanguage) {
   Laboratory lab;
   lab.last_run.vanished = {{"gone", "gone", 4, "not there"}, {"a", "a", 4, ""}, {"b", "b", 4, ""}};
   lab.machine_of_campaign = {{"a", "S-1"}, {"b", "S-1"}};

@@ -117,7 +117,7 @@ inline std::vector<double> around(std::mt19937_64& random, std::size_t n, double
 
 inline void not_asked() {}
 
-/// Learned and judged, as a night does it.
+/// Learned and judged, as in a run.
 inline void judge_all(std::vector<assessment::AssessedMachine>& machines) {
   assessment::Fits fits;
   assessment::learn(machines, fits);

@@ -117,18 +117,18 @@ TEST(Proposals, AreRefusedByName) {
   MadeMachine free = yearly("S-1", {5, 5, 5});
   for (auto& r : free.stored().results) r.tolerance.reset(), r.decision.clear();
   EXPECT_EQ(refusal(free), "interval.not-judged");
-  // Hit before the last campaign: nobody knows what comes.
+  // Hit before the last campaign: no forecast is possible.
   MadeMachine hit = yearly("S-1", {5, 5, 5, 5, 5, 5, 5, 6});
   hit.follow("X", "B_mean", {-3, -3.1, -2.9, -3, -3.1, -2.9, -3, -6}, 0.1);
   EXPECT_EQ(refusal(hit), "interval.change-not-explained");
-  // It wears by 1 um a year and stands at 7.95 of 8 um.
+  // It wears by 1 um per year and has reached 7.95 of 8 um.
   MadeMachine worn = yearly("S-1", {0.95, 1.95, 2.95, 3.95, 4.95, 5.95, 6.95, 7.95});
   worn.follow("X", "B_mean", {-0.95, -1.95, -2.95, -3.95, -4.95, -5.95, -6.95, -7.95}, 0.02);
   EXPECT_EQ(refusal(worn), "interval.out-already");
 }
 
 TEST(Proposals, WhatNoTestConfirmedIsNoReasonToRefuse) {
-  // A step that alone would be one in a hundred, among many that were asked in that night.
+  // A step with p of about 0.01 alone is not significant among the many tests of one run.
   std::mt19937_64 random(21);
   MadeMachine odd = yearly("S-1", {5, 5, 5, 5, 5, 5, 5, 5});
   odd.follow("X", "B_mean", {-3, -3.1, -2.9, -3, -3.1, -2.9, -3, -3.39}, 0.1);

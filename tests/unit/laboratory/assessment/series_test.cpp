@@ -14,7 +14,7 @@ using Kind = nonio::statistics::Declared::Kind;
 
 const std::vector<double> eight{1.0, 1.1, 0.9, 1.0, 1.05, 0.95, 1.0, 1.02};
 
-TEST(MorningSeries, SpansThatAreAlikeAreOne) {
+TEST(WorklistSeries, SpansThatAreAlikeAreOne) {
   MadeMachine m("S-1");
   m.follow("X", "scale", eight, 0.1);
   for (std::size_t i = 4; i < 8; ++i)
@@ -25,7 +25,7 @@ TEST(MorningSeries, SpansThatAreAlikeAreOne) {
   EXPECT_TRUE(series[0].apart.empty());
 }
 
-TEST(MorningSeries, AnotherSpanBeginsASeriesThatSaysWhy) {
+TEST(WorklistSeries, AnotherSpanBeginsASeriesThatSaysWhy) {
   MadeMachine m("S-1");
   m.follow("X", "scale", eight, 0.1);
   for (std::size_t i = 5; i < 8; ++i)
@@ -41,7 +41,7 @@ TEST(MorningSeries, AnotherSpanBeginsASeriesThatSaysWhy) {
   EXPECT_EQ(series[1].apart[0].why, "span");
 }
 
-TEST(MorningSeries, OtherPlacesAndModelsAreOthers) {
+TEST(WorklistSeries, OtherPlacesAndModelsAreOthers) {
   MadeMachine m("S-1", 4);
   m.follow("X", "scale", {1, 1, 1, 1}, 0.1, R"({"from":0.0,"to":800.0,"at":"Y=100"})");
   m.follow("X", "scale", {2, 2, 2, 2}, 0.1, R"({"from":0.0,"to":800.0,"at":"Y=500"})");
@@ -52,7 +52,7 @@ TEST(MorningSeries, OtherPlacesAndModelsAreOthers) {
   EXPECT_EQ(std::count_if(series.begin(), series.end(), [](const auto& s) { return s.ended; }), 0);
 }
 
-TEST(MorningSeries, LargestValuesOfCirclesHaveNoLineAndTheWorstOfADayCounts) {
+TEST(WorklistSeries, LargestValuesOfCirclesHaveNoLineAndTheWorstOfADayCounts) {
   MadeMachine m("S-1");
   for (const char* of_path : {"G_ccw", "G_cw", "G_b", "H", "D", "F_max", "F_min"})
     m.judge("XY", of_path, eight, "circle");
@@ -73,7 +73,7 @@ TEST(MorningSeries, LargestValuesOfCirclesHaveNoLineAndTheWorstOfADayCounts) {
   }
 }
 
-TEST(MorningSeries, CirclesStandBesideDiagonalsAndAreComparedWithTheirLike) {
+TEST(WorklistSeries, CirclesAreSeparateFromDiagonalsAndComparedWithTheirLike) {
   MadeMachine m("S-1");
   m.follow("XY", "squareness:XY", {1, 1, 1}, 0.1, "{}");
   m.follow("XY", "squareness:XY.circle", eight, 0.1,
@@ -99,7 +99,7 @@ TEST(MorningSeries, CirclesStandBesideDiagonalsAndAreComparedWithTheirLike) {
   EXPECT_EQ(m.series()[1].kinds, std::vector<std::string>{"crash"});
 }
 
-TEST(MorningSeries, ATableIsAStepThatIsKnown) {
+TEST(WorklistSeries, ATableIsAStepThatIsKnown) {
   MadeMachine m("S-1");
   m.follow("X", "scale", eight, 0.1);
   auto& results = m.stored().results;
@@ -117,7 +117,7 @@ TEST(MorningSeries, ATableIsAStepThatIsKnown) {
   EXPECT_EQ(series[0].series.declared[1].kind, Kind::table);
 }
 
-TEST(MorningSeries, WhatChangesWithinACampaignIsItsOwnWork) {
+TEST(WorklistSeries, WhatChangesWithinACampaignIsItsOwnWork) {
   MadeMachine m("S-1");
   m.follow("X", "scale", eight, 0.1);
   auto& results = m.stored().results;
@@ -133,7 +133,7 @@ TEST(MorningSeries, WhatChangesWithinACampaignIsItsOwnWork) {
   EXPECT_EQ(series[0].series.declared[0].kind, Kind::table);
 }
 
-TEST(MorningSeries, EventsStandBetweenTheirCampaigns) {
+TEST(WorklistSeries, EventsAreBetweenTheirCampaigns) {
   MadeMachine m("S-1");
   m.follow("X", "scale", eight, 0.1);
   m.follow("Y", "scale", eight, 0.1);
@@ -150,7 +150,7 @@ TEST(MorningSeries, EventsStandBetweenTheirCampaigns) {
   EXPECT_EQ(series[1].kinds[0], "moved");
 }
 
-TEST(MorningSeries, AnotherInstrumentIsKnown) {
+TEST(WorklistSeries, AnotherInstrumentIsKnown) {
   MadeMachine m("S-1");
   m.follow("X", "scale", eight, 0.1);
   for (std::size_t i = 0; i < 8; ++i)
@@ -161,7 +161,7 @@ TEST(MorningSeries, AnotherInstrumentIsKnown) {
   EXPECT_EQ(series[0].series.declared[0].kind, Kind::instrument);
 }
 
-TEST(MorningSeries, TheOrderOfRowsIsNone) {
+TEST(WorklistSeries, TheOrderOfRowsIsNone) {
   MadeMachine m("S-1");
   m.follow("X", "scale", eight, 0.1);
   const auto first = m.series();
@@ -173,7 +173,7 @@ TEST(MorningSeries, TheOrderOfRowsIsNone) {
     EXPECT_EQ(first[0].series.points[i].value, second[0].series.points[i].value);
 }
 
-TEST(MorningSeries, WhatIsNotSureIsNoPoint) {
+TEST(WorklistSeries, WhatIsNotSureIsNoPoint) {
   MadeMachine m("S-1");
   m.follow("X", "scale", eight, 0.1);
   m.stored().results[2].u_repeat.reset();
@@ -182,7 +182,7 @@ TEST(MorningSeries, WhatIsNotSureIsNoPoint) {
   EXPECT_EQ(m.series()[0].results.size(), 5U);
 }
 
-TEST(MorningSeries, AnEventMayNameTheSerialNumberOfOneMachine) {
+TEST(WorklistSeries, AnEventMayNameTheSerialNumberOfOneMachine) {
   const auto state = [](const char* name, const char* serial) {
     return store::MachineState{{name, {"", "M", "V", serial}, 1}, 1, {serial}};
   };

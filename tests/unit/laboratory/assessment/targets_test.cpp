@@ -106,7 +106,7 @@ TEST(Targets, AVisitUnlikeTheOthersIsLessCertain) {
 TEST(Targets, OfFewVisitsOrOtherKindsAllCounts) {
   EXPECT_NEAR(of_targets(visits(3, 1.0, 0.0, 1), 0, 1), std::sqrt(2.0 * 0.25), 0.05);
   std::vector<PointTargets> all = visits(8, 1.0, 0.0, 1);
-  for (std::size_t k = 4; k < 8; ++k) all[k].fit.dof -= 2.0;  // sinusoids beside the curve
+  for (std::size_t k = 4; k < 8; ++k) all[k].fit.dof -= 2.0;  // sinusoids in addition to the curve
   EXPECT_GT(of_targets(all, 3, 4), 0.6);
   EXPECT_NEAR(of_targets(all, 4, 5), 0.0, 1e-9);
   for (PointTargets& t : all) t.fit.residuals.clear();  // of an older version

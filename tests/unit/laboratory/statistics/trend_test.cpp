@@ -272,7 +272,7 @@ TEST(ExcessScatter, IsThatOfTheLaboratory) {
   EXPECT_EQ(excess_of_ratios(ratios), 1.0);  // too few to say
 }
 
-TEST(SpreadOfSlopes, HoldsASlopeWhereAStepIsAskedAndNotWhereItIsTold) {
+TEST(SpreadOfSlopes, HoldsASlopeWhereAStepIsTestedAndNotWhereItIsKnown) {
   Series s = reference_series();
   s.spread = 0.3;
   s.declared = {{4, Declared::Kind::event}};
@@ -340,7 +340,7 @@ TEST(SpreadOfSlopes, SlopesAndForecastsAreCoveredWhateverTheOthersDo) {
     for (int i = 0; i < series; ++i) {
       auto s = made_series(6, 0.3, random, [&](std::size_t, double time) { return wear * time; });
       s.spread = 0.4;
-      s.steps.emplace();  // what is covered beside steps that are none: bench/history_statistics
+      s.steps.emplace();  // none are sought: their coverage is in bench/history_statistics
       const auto trend = trend_of(s);
       ASSERT_TRUE(trend);
       const double ahead = s.points.back().time + 0.5;

@@ -21,7 +21,7 @@
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
 
-/// An output folder as nights leave it, made without a night.
+/// An output folder as runs leave it, made without a run.
 namespace nonio::test {
 namespace fs = std::filesystem;
 namespace history = store;
@@ -129,7 +129,7 @@ class Output {
     std::ofstream(path, std::ios::binary) << bytes;
   }
 
-  /// As a worker of night `night` stores it. `readings`: digest of the file. False: refused.
+  /// As a worker of run `run` stores it. `readings`: digest of the file. False: refused.
   bool store(const Made& made, std::uint64_t run, const std::string& readings,
              const std::string& version = "1.0", bool retry = false) {
     const fs::path folder = root_ / made.id;

@@ -35,7 +35,7 @@ TEST(HistoryServer, SaysWhatSqliteSaysToTheLastDigit) {
   ASSERT_TRUE(store::rebuild(out.root(), {}, nothing));
   EXPECT_EQ(rows_of(out.root()), on_the_server);
   EXPECT_TRUE(fs::exists(out.root() / store::store_name));
-  // Back again: it is still ours, and the file does not grow old beside it.
+  // Back on the server: the schema is still the site's, and the outdated file is removed.
   ASSERT_TRUE(store::note_place(out.root(), place->server).value());
   EXPECT_FALSE(store::note_place(out.root(), place->server).value());
   ASSERT_TRUE(store::update(out.root(), false, {}, {}, nothing));
@@ -123,7 +123,7 @@ TEST(HistoryServer, LosesTheConnectionAtAnyMomentAndIsTheOldOne) {
   EXPECT_EQ(ask(out.root(), "SELECT COUNT(*) FROM evaluation"), "4;");
 }
 
-TEST(HistoryServer, OneThatForgotNightsIsMadeAgain) {
+TEST(HistoryServer, OneThatForgotRunsIsMadeAgain) {
   Output out("restored");
   two_campaigns(out, 1, 1.0);
   ASSERT_TRUE(store::update(out.root(), false, {"a", "b"}, {}, nothing));
@@ -139,7 +139,7 @@ TEST(HistoryServer, OneThatForgotNightsIsMadeAgain) {
   EXPECT_EQ(rows_of(out.root()), before);
 }
 
-TEST(HistoryServer, ReadersSeeOneNightWhileItIsMadeAgain) {
+TEST(HistoryServer, ReadersSeeOneRunWhileItIsMadeAgain) {
   Output out("readers");
   for (int i = 0; i < 20; ++i) ASSERT_TRUE(out.store({.id = "c" + std::to_string(i)}, 1, "r1"));
   ASSERT_TRUE(store::rebuild(out.root(), {}, nothing));

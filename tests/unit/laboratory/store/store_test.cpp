@@ -32,8 +32,8 @@ store::SiteRecords records() {
   return t;
 }
 
-/// Five nights in which everything changes that may; after each the store is brought up to date.
-/// `after` sees each night.
+/// Five runs in which everything changes that can; after each the store is updated and `after` is
+/// called.
 void live(Output& out, const std::function<void(std::uint64_t)>& after = {}) {
   const auto run = [&](std::uint64_t n, const std::vector<std::string>& campaigns) {
     const auto done = store::update(out.root(), false, campaigns, records(), nothing);
@@ -200,7 +200,7 @@ TEST(HistoryStore, DamagedOrBehindIsMadeAgain) {
   EXPECT_EQ(ask(out.root(), "SELECT evaluation FROM evaluation WHERE campaign = 'aa'"), "5;");
 }
 
-TEST(HistoryStore, WhichNightItKnowsIsKeptBesideIt) {
+TEST(HistoryStore, TheRunThatItKnowsIsKeptWithIt) {
   Output out("known");
   EXPECT_EQ(store::known_run(out.root()).value(), std::nullopt);
   ASSERT_TRUE(store::note_known_run(out.root(), 41));
@@ -367,8 +367,8 @@ TEST(HistoryStore, AFailureThatStaysIsKeptBehindOneThatMayPass) {
             "1|ok|;2|failed|1;5|ok|2;");
 }
 
-// Largest values of a path (ISO 230-4) are shown and held against limits, never followed; of a cyclic
-// error its two linear parts are followed, not the amplitude.
+// Largest values of a path (ISO 230-4) are shown and compared with limits, never followed; of a
+// cyclic error its two linear parts are followed, not the amplitude.
 TEST(HistoryStore, OfCirclesLargestValuesAreShownAndLinearOnesFollowed) {
   std::string values, followed;
   for (const char* name : {"G_ccw", "G_cw", "G_b", "H", "D", "F_max", "F_min", "spike_X",

@@ -117,7 +117,7 @@ TEST_F(Files, PublishWritesWholeFilesAndNothingElse) {
 
 TEST_F(Files, PublishRenamesNothingWhenOneCannotBeWritten) {
   ASSERT_TRUE(storage::publish(folder_, {{"one", "old"}}));
-  fs::create_directory(folder_ / ".two.nonio-tmp");  // stands in the way of the second file
+  fs::create_directory(folder_ / ".two.nonio-tmp");  // blocks the second file
   EXPECT_FALSE(storage::publish(folder_, {{"one", "new"}, {"two", "2"}}));
   EXPECT_EQ(*storage::read_file(folder_ / "one"), "old");
   EXPECT_FALSE(fs::exists(folder_ / ".one.nonio-tmp"));

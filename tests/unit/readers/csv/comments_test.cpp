@@ -30,7 +30,7 @@ std::vector<Doubt> doubts(const std::string& text, const std::string& axis = "X"
   m.file = "m1.csv";
   if (axis == "Y") m.side = "slave";
   const Settings options;
-  std::string bytes = text;  // as the host's: what is reported as done is gone
+  std::string bytes = text;  // like the host's: what is reported as done is overwritten
   const auto obs = read({bytes, campaign, m, options,
                          [&bytes](std::size_t done) { std::fill_n(bytes.begin(), done, '#'); }});
   EXPECT_TRUE(obs) << obs.error().message;

@@ -24,7 +24,7 @@ struct NumberCase {
 
 class Numbers : public testing::TestWithParam<NumberCase> {};
 
-TEST_P(Numbers, AreReadAsTheyStand) {
+TEST_P(Numbers, AreReadWithoutConversion) {
   const NumberCase& c = GetParam();
   const Field n = parse_number(c.text, c.comma_allowed);
   EXPECT_EQ(n.kind, c.kind) << c.text;
@@ -134,7 +134,7 @@ TEST(Fields, SplitTrimsAndUnquotes) {
   EXPECT_FALSE(split("a,\"b\"\"", ',', f));
 }
 
-TEST(Fields, Utf8IsToldFromOtherBytes) {
+TEST(Fields, Utf8IsDistinguishedFromOtherBytes) {
   for (const char* good : {"", "abc", "per\xC3\xB2", "\xE2\x82\xAC", "\xF0\x9F\x98\x80"})
     EXPECT_TRUE(is_utf8(good)) << good;
   for (const char* bad :

@@ -91,7 +91,7 @@ TEST(Circle, ArcsBeforeAndBehindTheTurnAreNotEvaluated) {
   std::string rows = "direction,angle_deg,deviation_um\n";
   for (int i = -30; i <= 390; i += 10) rows += "+," + std::to_string(i) + ",1\n";
   Measurement m = circle_of("XY");
-  EXPECT_FALSE(read_text(rows, m));  // more than a turn, and nobody said why
+  EXPECT_FALSE(read_text(rows, m));  // more than a turn, without over_travel
   m.over_travel = 30.0 * std::numbers::pi / 180.0;
   const auto obs = read_text(rows, m);
   ASSERT_TRUE(obs) << obs.error().message;
@@ -205,7 +205,7 @@ TEST(BallCentres, EachCentreIsThreeReadings) {
   EXPECT_FALSE(read_text("angle_deg;x_mm;y_mm;z_mm\n0;1,5;2.5;3\n", "ball-centres"));
 }
 
-/// Beside the axis of the measurement; the others keep their places.
+/// In addition to the axis of the measurement; the other axes keep their columns.
 TEST(BallCentres, MayHaveTheAngleOfAnotherAxis) {
   const auto obs =
       read_text("angle_deg,B_deg,x_mm,y_mm,z_mm\n0,-60,1,2,3\n90,30,4,5,6\n", "ball-centres");

@@ -25,7 +25,7 @@ TEST(Spindle, ASetUpIsALine) {
   ASSERT_TRUE(obs) << obs.error().message;
   ASSERT_EQ(obs->lines.size(), 4U);
   EXPECT_EQ(obs->lines[2].name, "X ball 180 sensor 180");
-  EXPECT_NEAR(obs->lines[2].sense[0], -1.0, 1e-12);  // it stands on the other side
+  EXPECT_NEAR(obs->lines[2].sense[0], -1.0, 1e-12);  // it is on the other side
   EXPECT_NEAR(obs->lines[1].sense[1], 1.0, 1e-12);
   EXPECT_EQ(obs->size(), 5U);
   EXPECT_EQ(obs->missing, 1U);
@@ -36,7 +36,7 @@ TEST(Spindle, ASetUpIsALine) {
 TEST(Spindle, PulsesDivideATurnEvenly) {
   const auto obs = read_text("index,x_um\n0,9\n1,1\n0,2\n0,3\n0,4\n1,5\n0,6\n1,7\n0,8\n");
   ASSERT_TRUE(obs) << obs.error().message;
-  ASSERT_EQ(obs->size(), 7U);  // one before the first pulse, one behind the last
+  ASSERT_EQ(obs->size(), 7U);  // one before the first pulse, one after the final one
   ASSERT_EQ(obs->notes.size(), 1U);
   EXPECT_EQ(obs->notes[0].id, "csv.outside-pulses");
   EXPECT_NEAR(obs->axes[0].position[1], 2.0 * std::numbers::pi / 4.0, 1e-12);

@@ -21,13 +21,13 @@
 ///    uneven targets, or than 2.3 distances of even ones, or longer than a third of the stretch;
 ///  - a measured temperature that runs along with time;
 ///  - two causes that act alike: warm-up, growth and temperature exclude each other;
-///  - an effect that, beside the others of its campaign, stands out by less than
-///    `seen_from` standard deviations, or less than `told_from` from its look-alike (a warm-up from
-///    a steady growth, a jump from a drift);
+///  - an effect that, with the others of its campaign in the model, is significant by less than
+///    `seen_from` standard deviations, or differs by less than `told_from` from the most similar
+///    effect (a warm-up from a steady growth, a jump from a drift);
 ///  - a slip within the first or last tenth of the readings;
 ///  - something outside the catalogue that the catalogue can nearly describe (a random walk that
 ///    happens to be a jump).
-/// Idealised so that a name of the catalogue is the truth: screws stand at the middle of the
+/// Idealised so that a name of the catalogue is correct: screws are fixed at the middle of the
 /// stretch (at a bearing in `fixed_end`) and start cold at the first reading; the controller's
 /// backlash value takes out the constant part of a wind-up; the shop is at 20 degC in the mean.
 /// Measurements without times have no pauses, so that the order of the readings is nearly the time.
@@ -36,7 +36,7 @@ namespace nonio::hidden {
 inline constexpr double seen_from = 7.0;
 inline constexpr double told_from = 5.0;
 
-/// Physical causes. Beside each the kind of the catalogue, or "outside".
+/// Physical causes, each with its kind in the catalogue, or "outside".
 enum class Source {
   wrong_scale,         ///< laser out of line, or wrong pitch: scale
   ground_pitch,        ///< pitch errors of grinding, accumulated: pitch-curve
@@ -45,7 +45,7 @@ enum class Source {
   preload_loss,        ///< nut whose second flank has come free: backlash
   screw_wind_up,       ///< friction against the stiffness of a long screw: backlash-slope
   dead_path_air,       ///< refractive index of the uncompensated path: zero-drift
-  leaning_instrument,  ///< stand that warms slowly: zero-drift
+  leaning_instrument,  ///< tripod that warms slowly: zero-drift
   screw_heating,       ///< heat equation in a screw that levels off: warm-up
   slow_heating,        ///< two bodies much slower than the measurement: growth-drift
   wrong_expansion,     ///< coefficient wrong, temperature follows the room: temperature
@@ -71,7 +71,7 @@ enum class Kind {
   one,                 ///< one hidden effect, 3.5 to 9 times the noise
   several,             ///< two or three, 1.6 to 4 times the noise, 1 % misreadings
   complete,            ///< the model holds all that is there
-  outside,             ///< something outside the catalogue, beside up to two effects of the model
+  outside,             ///< something outside the catalogue, with up to two effects of the model
   wave_under_curve,    ///< a lead error; the model holds the screw's ground pitch
   screw_and_curve,     ///< both hidden
   beside,              ///< one of 6 to 9 times the noise, and something outside of 2.5 to 4

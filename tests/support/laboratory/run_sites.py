@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The nights of many made-up laboratories, and how a program did on them.
+"""Runs a program over many simulated laboratories and scores its results.
 
-    nights.py PROGRAM FOLDER [--preset mixed] [--sites 200] [--seed 1] [--nights 2] [--machines N] [--count N] [--known] [--plain]
+    run_sites.py PROGRAM FOLDER [--preset mixed] [--sites 200] [--seed 1] [--nights 2] [--machines N] [--count N] [--known] [--plain]
 
-For each site (seed, seed + 1, ...): its last nights, one month apart, each made as it was then and run (PROGRAM run SITE --out OUT), and
-`PROGRAM history OUT --json` and `PROGRAM morning OUT --json` after each (--plain: plain.py judges instead). FOLDER/<seed>/ has truth.json,
-history-<night>.json and morning-<night>.json; sites and results are removed. Prints what score.py says of all of them. FOLDER must be empty or not there. What vanishes does so in the last night:
-it takes two to see it.
+For each site (seed, seed + 1, ...): the site as it was on each of its last dates, one month apart, a run (PROGRAM run SITE --out OUT),
+then `PROGRAM history OUT --json` and `PROGRAM morning OUT --json` (--plain: plain.py judges instead). FOLDER/<seed>/ has truth.json,
+history-<number>.json and morning-<number>.json; sites and results are removed. Prints the score of score.py over all sites. FOLDER must
+be empty or missing. Campaigns vanish before the last run, so that at least two runs are needed to detect it.
 """
 import argparse
 import json

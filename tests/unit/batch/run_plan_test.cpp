@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "batch/state/run_plan.h"
+
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
@@ -6,16 +8,14 @@
 #include <fstream>
 #include <string>
 
-#include "batch/state/run_plan.h"
-
-namespace nonio::batch::night_plan_test {
+namespace nonio::batch::run_plan_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-class NightPlanTest : public ::testing::Test {
+class RunPlanTest : public ::testing::Test {
  protected:
-  NightPlanTest() {
+  RunPlanTest() {
     std::string pattern = (fs::temp_directory_path() / "nonio-plan-XXXXXX").string();
     out_ = ::mkdtemp(pattern.data());
     for (int i = 100; i < 150; ++i) {
@@ -35,7 +35,7 @@ class NightPlanTest : public ::testing::Test {
     plan_.run = {4, "2026-01-01"};
     plan_.shards.resize(7);
   }
-  ~NightPlanTest() override { fs::remove_all(out_); }
+  ~RunPlanTest() override { fs::remove_all(out_); }
 
   fs::path list(const char* name) const { return out_ / ".nonio" / "plan" / plan_.id / name; }
 
@@ -44,7 +44,7 @@ class NightPlanTest : public ::testing::Test {
   RunPlan plan_;
 };
 
-TEST_F(NightPlanTest, EveryCampaignIsOnTheListOfItsShardOrOnTheRest) {
+TEST_F(RunPlanTest, EveryCampaignIsOnTheListOfItsShardOrOnTheRest) {
   ASSERT_TRUE(write_plan(out_, plan_, campaigns_));
   EXPECT_EQ(plan_.seen, 50U);
   EXPECT_EQ(plan_.to_do, 48U);
@@ -83,7 +83,7 @@ TEST_F(NightPlanTest, EveryCampaignIsOnTheListOfItsShardOrOnTheRest) {
   EXPECT_EQ((*rest)[1].campaign.errors[1].message, "and why");
 }
 
-TEST_F(NightPlanTest, NothingButListsAndPlanIsLeft) {
+TEST_F(RunPlanTest, NothingButListsAndPlanIsLeft) {
   ASSERT_TRUE(write_plan(out_, plan_, campaigns_));
   std::size_t files = 0;
   for (const auto& entry : fs::directory_iterator(out_ / ".nonio" / "plan" / plan_.id)) {
@@ -93,7 +93,7 @@ TEST_F(NightPlanTest, NothingButListsAndPlanIsLeft) {
   EXPECT_EQ(files, 8U);
 }
 
-TEST_F(NightPlanTest, AListThatWasChangedIsRefused) {
+TEST_F(RunPlanTest, AListThatWasChangedIsRefused) {
   ASSERT_TRUE(write_plan(out_, plan_, campaigns_));
   std::ofstream(list("shard-0002.jsonl"), std::ios::app) << "\n";
   const auto part = read_shard_list(out_, plan_, 2);
@@ -102,7 +102,7 @@ TEST_F(NightPlanTest, AListThatWasChangedIsRefused) {
       << part.error().message;
 }
 
-TEST_F(NightPlanTest, WithoutAPlaceToWriteThereIsNoPlan) {
+TEST_F(RunPlanTest, WithoutAPlaceToWriteThereIsNoPlan) {
   std::ofstream(out_ / ".nonio") << "a file";
   const auto written = write_plan(out_, plan_, campaigns_);
   ASSERT_FALSE(written);
@@ -110,4 +110,4 @@ TEST_F(NightPlanTest, WithoutAPlaceToWriteThereIsNoPlan) {
 }
 
 }  // namespace
-}  // namespace nonio::batch::night_plan_test
+}  // namespace nonio::batch::run_plan_test
