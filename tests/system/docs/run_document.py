@@ -47,7 +47,6 @@ class Terminal:
         self.folder = folder
         self.state = folder.parent / "state"
         self.environment = {"PATH": f"{programs}:{os.environ['PATH']}", "HOME": str(folder), "LC_ALL": "C", "NONIO_ALLOW_ROOT": "1", "NO_COLOR": "1", "TERM": "dumb",
-                           
                             "TMPDIR": str(folder.parent), "CMAKE_GENERATOR": "Ninja", "PYTHONDONTWRITEBYTECODE": "1",
                             "PYTHONPATH": str(programs.parent / "lib/python3/dist-packages")}
         for name in ("CXX", "CMAKE_CXX_COMPILER_LAUNCHER"):
