@@ -27,8 +27,8 @@ def wide_lines(text):
 
 
 def lost_lists(text):
-    """Numbers of the lines that Python-Markdown takes for running text: an item without a blank line before the list, and
-    a block or paragraph of an item that is indented by 1 to 3."""
+    """Numbers of the lines that Python-Markdown takes for running text: an item without a blank line before the list, or
+    after a block of the last item, and a block or paragraph of an item that is indented by 1 to 3."""
     code, in_list, before = False, False, ""
     for number, line in enumerate(text.splitlines(), 1):
         fence = re.match(r" *```\S*$", line)
@@ -37,7 +37,7 @@ def lost_lists(text):
         if fence:
             code = not code
         elif not code and ITEM.match(line):
-            if not in_list and before.strip() and not before.startswith(("#", "|")):
+            if before.startswith("    ") or not in_list and before.strip() and not before.startswith(("#", "|")):
                 yield number
             in_list = True
         elif not code and line.strip() and not line.startswith(" "):
@@ -149,6 +149,7 @@ class Documents(unittest.TestCase):
     def test_lists_are_lists_on_the_built_pages(self):
         self.assertEqual([2], list(lost_lists("text\n- an item\n")))
         self.assertEqual([3], list(lost_lists("1. an item\n\n   ```sh\n   true\n   ```\n")))
+        self.assertEqual([4], list(lost_lists("1. an item\n\n    of two paragraphs\n2. another\n")))
         self.assertEqual([], list(lost_lists("text\n\n- an item\n- another\n\n    ```sh\n    - no\n    ```\n")))
         pages = [*PAGES, *(ROOT / "plugins").rglob("README.md")]
         lost = [f"{page.relative_to(ROOT)}:{n}" for page in pages for n in lost_lists(page.read_text())]
