@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
 #include <iostream>
 #include <memory>
 
 #include "certificates/certificate_list.h"
 #include "platform/storage/json_values.h"
+#include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -47,12 +50,13 @@ std::string person_text(const char* what, const std::string& by, const std::stri
 }
 
 void print(const RegisterEntry& e) {
-  std::cout << e.number << "  " << e.state;
+  std::string line = e.number + "  " + (e.state == "drawn" ? "reserved" : e.state);
   if (!e.replaced_by.empty())
-    std::cout << (e.state == "amended" ? " by " : ", replaced by ") << e.replaced_by;
-  std::cout << "  " << e.campaign << "  " << e.date << (e.reason.empty() ? "" : "  " + e.reason)
-            << person_text("released", e.released_by, e.released_account, e.released_user)
-            << person_text("withdrawn", e.withdrawn_by, e.withdrawn_account) << "\n";
+    line += (e.state == "amended" ? " by " : ", replaced by ") + e.replaced_by;
+  line += "  " + e.campaign + "  " + e.date + (e.reason.empty() ? "" : "  " + e.reason) +
+          person_text("approved", e.released_by, e.released_account, e.released_user) +
+          person_text("withdrawn", e.withdrawn_by, e.withdrawn_account);
+  std::cout << wrapped(line, 0, sentence_width(STDOUT_FILENO), 4);
 }
 
 int refuse(const Error& error) { return complain(text_of(error)); }

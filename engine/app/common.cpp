@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common.h"
 
+#include <unistd.h>
+
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -9,6 +11,7 @@
 #include <sstream>
 
 #include "platform/storage/json_values.h"
+#include "text_layout.h"
 
 namespace nonio::app {
 namespace fs = std::filesystem;
@@ -101,7 +104,7 @@ bool is_day(const std::string& text) {
 }
 
 int complain(const std::string& message, int status) {
-  std::cerr << command_words() << ": " << message << "\n";
+  std::cerr << wrapped(command_words() + ": " + message, 0, sentence_width(STDERR_FILENO), 2);
   return status;
 }
 

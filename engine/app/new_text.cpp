@@ -8,6 +8,7 @@
 
 #include "campaign/schema/schema.h"
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/json.h"
 #include "nonio/sdk/splitmix64.h"
 
 namespace nonio::app {
@@ -78,11 +79,7 @@ std::string axis_text(const NewAxis& a) {
   const Quantity at = position_of(axis.rotary);
   std::string text = "\n[machine.axes." + axis.name + "]\nkind = \"" +
                      (axis.rotary ? "rotary" : "linear") + "\"\n";
-  const auto number = [&](double si) {
-    std::string n;
-    append_shortest(n, printed(si, at));
-    return n;
-  };
+  const auto number = [&](double si) { return json_number(printed(si, at)); };
   const std::string unit(unit_of(at).symbol);
   text += axis.travel
               ? "travel = [" + number(axis.travel->first) + ", " + number(axis.travel->second) + "]"
@@ -250,8 +247,8 @@ std::string machine_text(const NewMachine& m) {
             "# reference_" +
             unit + " = 0.0  # position of the reference point\n";
     if (a.travel)
-      text += "travel = [" + short_text(a.travel->first * per, 9) + ", " +
-              short_text(a.travel->second * per, 9) + "]\n";
+      text += "travel = [" + json_number(a.travel->first * per) + ", " +
+              json_number(a.travel->second * per) + "]\n";
     text += "# largest_" + small +
             " = 100.0  # limits of the maker: largest entry of a table, largest slope\n"
             "# slope_" +

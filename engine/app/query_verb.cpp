@@ -190,33 +190,34 @@ int query(const QueryWish& wish, const Common& common) {
 Verb machine_list_verb(Common& common) {
   auto wish = std::make_shared<QueryWish>();
   store::Query& q = wish->query;
-  return {.name = "list",
-          .summary = "Results of all campaigns of a machine, from the history of an output folder",
-          .arguments = joined(
-              {required(existing(Argument::Takes::folder,
-                                 {"OUT", &wish->out, "Output folder of `nonio run`"})),
-               {"MACHINE", &q.machine,
-                "Its asset, or maker and serial with a space between them; default: all machines"},
-               {"--axis", &q.axis, "As the control names it: X, or X1 and X2 of a gantry"},
-               {"--quantity", &q.quantity, "scale, B_mean, ln_s, A, R, ... as in results.json"},
-               {"--source", &q.source,
-                "\"followed\" (with covariance, for trends), or an analysis: iso230-2"},
-               {"--from", &q.from, "First day of the campaigns, YYYY-MM-DD"},
-               {"--to", &q.to, "Last day, YYYY-MM-DD"},
-               {"--superseded", &q.superseded,
-                "Also replaced results: other readings, other options, another version"},
-               {"--csv", &wish->csv, "Comma-separated, all columns, for a spreadsheet"}},
-              common_arguments(common)),
-          .footer =
-              "With OUT alone: lists the machines, and names that may be one machine. u is the "
-              "standard uncertainty of the contributions that are new in each campaign, U the "
-              "expanded one (k = 2); the contributions that campaigns share (the instrument, the "
-              "expansion) are u_common in --csv and --json. The values are those of results.json, "
-              "digit for digit. The history is OUT/history.sqlite, or a schema on the PostgreSQL "
-              "server of [database] in site.toml; any tool for them reads it: tables `evaluation`, "
-              "`result`, ..., view `point`.",
-          .examples = {"nonio machine list out S-0042 --axis X --quantity B_mean --csv"},
-          .run = [wish, &common] { return query(*wish, common); }};
+  return {
+      .name = "list",
+      .summary = "Results of all campaigns of a machine, from the history of an output folder",
+      .arguments = joined(
+          {required(existing(Argument::Takes::folder,
+                             {"OUT", &wish->out, "Output folder of `nonio run`"})),
+           {"MACHINE", &q.machine,
+            "Its asset, or maker and serial with a space between them; default: all machines"},
+           {"--axis", &q.axis, "As the control names it: X, or X1 and X2 of a gantry"},
+           {"--quantity", &q.quantity, "scale, B_mean, ln_s, A, R, ... as in results.json"},
+           {"--source", &q.source,
+            "\"followed\" (with covariance, for trends), or an analysis: iso230-2"},
+           {"--from", &q.from, "First day of the campaigns, YYYY-MM-DD"},
+           {"--to", &q.to, "Last day, YYYY-MM-DD"},
+           {"--superseded", &q.superseded,
+            "Include results that were replaced: other readings, other options, another version"},
+           {"--csv", &wish->csv, "Comma-separated, all columns, for a spreadsheet"}},
+          common_arguments(common)),
+      .footer =
+          "With OUT alone: lists the machines, and names that may be one machine. u is the "
+          "standard uncertainty of the contributions that are new in each campaign, U the "
+          "expanded one (k = 2); the contributions that campaigns share (the instrument, the "
+          "expansion) are u_common in --csv and --json. The values are those of results.json, "
+          "digit for digit. The history is OUT/history.sqlite, or a schema on the PostgreSQL "
+          "server of [database] in site.toml; any tool for them reads it: tables `evaluation`, "
+          "`result`, ..., view `point`.",
+      .examples = {"nonio machine list out S-0042 --axis X --quantity B_mean --csv"},
+      .run = [wish, &common] { return query(*wish, common); }};
 }
 
 }  // namespace nonio::app

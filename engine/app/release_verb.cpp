@@ -81,8 +81,9 @@ int list_drafts(const ReleaseVerbWish& wish, const Common& common) {
     return exit_done;
   }
   for (const WaitingDraft& d : *drafts) print(std::cout, d);
-  if (drafts->empty() && !common.quiet) std::cout << "no draft waits for approval; `nonio run` makes drafts of campaigns "
-                                                     "with the output certificate\n";
+  if (drafts->empty() && !common.quiet)
+    std::cout << "no draft waits for approval; `nonio run` makes drafts of campaigns "
+                 "with the output certificate\n";
   return exit_done;
 }
 
@@ -175,7 +176,7 @@ Verb approve_verb(Common& common) {
           {required(existing(Takes::folder, {"CAMPAIGN", &wanted->folder,
                                              "Folder of the campaign; with --list also a site"})),
            {"--by", &wanted->by,
-            "Name of the person who releases it, printed on the certificate. It is a statement, "
+            "Name of the person who approves it, printed on the certificate. It is a statement, "
             "not an authentication; the register also keeps the account (user@host)"},
            {"--user", &wanted->user,
             "Instead of --by: account of SITE/users.toml with the role approve; its name is "
@@ -183,15 +184,16 @@ Verb approve_verb(Common& common) {
             "Its password is read from the terminal, or from a line of standard input; the "
             "register "
             "keeps the account, and two of them are two persons"},
-           one_of({"author", "authoriser"},
-                  {"--as", &wanted->role,
-                   "author: approves the draft; an authoriser then releases it. Default: author if "
-                   "the site requires two persons, otherwise authoriser"}),
+           one_of(
+               {"author", "authoriser"},
+               {"--as", &wanted->role,
+                "author: signs off the draft; an authoriser then approves it. Default: author if "
+                "the site requires two persons, otherwise authoriser"}),
            {"--reason", &wanted->reasons,
             "FINDING=TEXT: reason why the certificate may be issued in spite of this finding. "
             "FINDING as printed by --list, or its id for all measurements"},
            {"--list", &wanted->list,
-            "List the drafts that wait, with their findings; release nothing"},
+            "List the drafts that wait for approval, with their findings; approve nothing"},
            takes(Takes::folder,
                  {"--out", &wanted->out, "Output folder of the nightly run, if it was moved"}),
            templates_argument(common)},

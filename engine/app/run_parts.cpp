@@ -187,7 +187,7 @@ Verb plan_part(Common& common) {
           "Reads the site and the register of numbers; needs no key. The shard of a campaign is "
           "the SHA-256 of its id (first 8 bytes) modulo S. Re-planning replaces a plan that was "
           "not merged; finished shards are kept. Until the merge, `nonio "
-          "run` without --shard is refused.",
+          "run` without --shard is rejected.",
       .examples = {"nonio run plan site --out out --shards 4"},
       .run = [wish, &common] { return plan_run(*wish, common); }};
 }
@@ -225,7 +225,8 @@ Verb cancel_part(Common& common) {
           .summary = "Withdraws a plan; the results of finished shards are kept",
           .arguments = joined({out_argument(*wish)}, common_arguments(common)),
           .footer =
-              "Refused while a shard is running. The run stays open: `nonio run` without --shard, "
+              "The command is rejected while a shard is running. The run stays open: `nonio run` "
+              "without --shard, "
               "or another plan, continues it.",
           .examples = {"nonio run cancel out"},
           .run = [wish, &common] { return cancel_run(*wish, common); }};

@@ -432,9 +432,10 @@ Verb session_verb(Common& common) {
           "Each call prints the steps that are done, the one that is missing, and the next "
           "command. "
           "The steps: backup, state during the measurement, new table, sign probe, loading, check "
-          "campaign, verdict on pitch and reversal. The session keeps no file of its own: where it "
-          "is follows from the files, the record of the machine and the campaigns of the site. It "
-          "does what `table insert`, `table probe` and the analysis before-after do.\n\nExit "
+          "campaign, verdict on pitch and reversal. The session stores no state: each call "
+          "determines the next step from the files, the record of the machine and the campaigns of "
+          "the site. It does what `table insert`, `table probe` and the analysis before-after "
+          "do.\n\nExit "
           "status: 0 the next step is known, or the table worked; 1 a step was refused, or the "
           "table did not work; 2 usage or configuration.",
       .examples = {"nonio table session site/2026-11-rossi --backup backup/CNCPARAM.TXT --axis Z",

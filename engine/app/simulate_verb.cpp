@@ -68,7 +68,8 @@ Verb simulate_verb(Common& common) {
   return {
       .name = "simulate",
       .summary =
-          "Makes a campaign from a machine with known effects and stores the truth separately",
+          "Simulates a campaign of a machine with known effects and stores the true values "
+          "separately",
       .arguments = joined(
           {required(existing(
                Takes::file,

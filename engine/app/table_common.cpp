@@ -80,14 +80,15 @@ TableJson forecast_json(const tables::TableForecast& f) {
 
 void print_forecast(const tables::TableForecast& f) {
   const Quantity q = deviation_of(f.rotary);
-  std::cout << "axis " << f.axis << ", measurement " << f.measurement << ":";
+  std::string text = "axis " + f.axis + ", measurement " + f.measurement + ":";
   for (const auto& [name, v] : {std::pair{"E", f.E}, {"B", f.B}, {"M", f.M}})
     if (std::isfinite(v[0]) && std::isfinite(v[1]))
-      std::cout << "  " << name << " " << with_unit(v[0], q) << " -> " << with_unit(v[1], q);
+      text += std::string("  ") + name + " " + with_unit(v[0], q) + " -> " + with_unit(v[1], q);
   if (f.scatter > 0.0)
-    std::cout << "; E up to " << with_unit(f.E[1] + f.scatter, q)
-              << " because the readings scatter (95 %)";
-  std::cout << (f.worse() ? "\n  error: E would grow\n" : "\n");
+    text +=
+        "; E up to " + with_unit(f.E[1] + f.scatter, q) + " because the readings scatter (95 %)";
+  sentence(std::cout, 0, text);
+  if (f.worse()) sentence(std::cout, 2, "error: E would grow");
 }
 
 Expected<Loaded> load(const loader::Plugins& plugins, const std::string& files,

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <iostream>
@@ -11,6 +13,7 @@
 #include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
 #include "printable.h"
+#include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -103,7 +106,8 @@ void print(std::ostream& out, const std::string& file, const sign::Verified& v, 
   if (quiet) return;
   for (const sign::Check& c : v.checks)
     if (verbose || c.state == sign::Check::State::fails)
-      out << name << ": " << c.id << " " << to_text(c.state) << ": " << printable(c.says) << "\n";
+      out << wrapped(std::string(c.id) + " " + to_text(c.state) + ": " + printable(c.says), 2,
+                     sentence_width(STDOUT_FILENO), 2);
 }
 
 int verify(const VerifyWish& wanted, const Common& common) {

@@ -138,7 +138,7 @@ std::string dotted_date(std::string_view text, std::uint64_t line) {
   text = text.substr(0, text.find_first_of("#\r\n"));
   const std::size_t equals = text.find('=');
   if (equals == text.npos) return {};
-  const std::string value(trimmed(text.substr(equals + 1)));
+  const std::string value(readers::trimmed(text.substr(equals + 1)));
   const bool is_date = value.size() >= 8 && value.size() <= 10 &&
                        std::count(value.begin(), value.end(), '.') == 2 &&
                        value.find_first_not_of("0123456789.") == value.npos;

@@ -407,11 +407,8 @@ Expected<RenewedTables> renew(const reading::ReadCampaign& read, const Controlle
     if (files->artifacts.empty()) continue;  // refused; the finding states why
     const auto tables = tables_in(controller, files->artifacts, one, options);
     if (!tables) return tl::unexpected<Error>(tables.error());
-    const auto test = math::AxisTest::arrange(read.observations[i]);
-    const std::string axis = control_axis(campaign.machine, m);
-    out.forecast.push_back(forecast_of(m.id, axis, test,
-                                       math::error_curve(math::AxisTest::arrange(raw[i])), *tables,
-                                       present_backlash(options, axis, test.rotary)));
+    out.forecast.push_back(forecast_of_axis(campaign, m, control_axis(campaign.machine, m),
+                                            read.observations[i], raw[i], *tables, options));
     out.tables.insert(out.tables.end(), tables->begin(), tables->end());
   }
   return out;

@@ -79,12 +79,18 @@ class Judge {
       v.kind = Verdict::Kind::unrepeatable;
       return;
     }
+    const bool scatter_found = passes_.scatter() && !searched;
+    // Zeros of passes that scatter explain such effects as well: they are no evidence of a cause.
+    if (scatter_found && !walks &&
+        std::none_of(out_.together.begin(), out_.together.end(),
+                     [&](const std::string& name) { return passes_.shows(name); }))
+      out_.together.clear();
     find_one_growth();
     find_cancelling();
     list_certain(left, walks);
     if (auto place = of_targets(); place && serious.empty()) serious.push_back(std::move(*place));
-    const bool of_passes = passes_.scatter() && !searched && !out_.together.empty() &&
-                           !passes_.shows(out_.together.front());
+    const bool of_passes =
+        scatter_found && !out_.together.empty() && !passes_.shows(out_.together.front());
     if (!out_.together.empty() && !walks && !of_passes && !of_one_pass(out_.together.front()) &&
         !cancels(out_.together.front()) && !with_cancelling(out_.together.front()) &&
         !in_doubt(out_.together.front(), left, unexplained_share) &&

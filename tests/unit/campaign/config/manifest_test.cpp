@@ -110,6 +110,8 @@ TEST(Manifest, ComplaintsNameLineFoundAndWanted) {
            {"id = \"a-1\"", "", "campaign.id is missing"},
            {"id = \"a-1\"", "id = 7",
             "3: campaign.id: expected a text in quotes, found a whole number"},
+           {"date = 2026-11-03", "date = 3.11.2026  # day",
+            "expected a date such as 2026-03-23, found 3.11.2026"},
            {"date = 2026-11-03", "date = \"3.11.2026\"",
             "4: campaign.date: expected a date without quotes"},
            {"travel = [0.0, 500.0]", "travel = [500.0, 0.0]",
