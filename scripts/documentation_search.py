@@ -39,6 +39,8 @@ def on_post_page(output, page, config):
 
 
 def on_post_build(config):
+    for name in ("sitemap.xml", "sitemap.xml.gz"):  # of a server; with the time of the build
+        (pathlib.Path(config["site_dir"]) / name).unlink(missing_ok=True)
     folder = pathlib.Path(config["site_dir"]) / "search"
     index = (folder / "search_index.json").read_text(encoding="utf-8")
     (folder / "search_index.js").write_text(SCRIPT.replace("%s", index), encoding="utf-8")

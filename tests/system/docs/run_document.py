@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the commands of documents, those of each in one new folder that holds a copy of samples/, as in one terminal.
+"""Runs the commands of documents, those of each in one new folder that holds a copy of samples/, as in one terminal of
+100 columns.
 
 ```console  lines `$ COMMAND`; the lines below each are its output and errors, byte for byte
 ```sh       one command per line
@@ -46,7 +47,8 @@ class Terminal:
     def __init__(self, folder, programs):
         self.folder = folder
         self.state = folder.parent / "state"
-        self.environment = {"PATH": f"{programs}:{os.environ['PATH']}", "HOME": str(folder), "LC_ALL": "C", "NONIO_ALLOW_ROOT": "1", "NO_COLOR": "1", "TERM": "dumb",
+        self.environment = {"PATH": f"{programs}:{os.environ['PATH']}", "HOME": str(folder), "LC_ALL": "C", "NONIO_ALLOW_ROOT": "1",
+                            "NO_COLOR": "1", "TERM": "dumb",
                             "TMPDIR": str(folder.parent), "CMAKE_GENERATOR": "Ninja", "PYTHONDONTWRITEBYTECODE": "1",
                             "PYTHONPATH": str(programs.parent / "lib/python3/dist-packages")}
         for name in ("CXX", "CMAKE_CXX_COMPILER_LAUNCHER"):
