@@ -2,6 +2,8 @@
 """The nightly run with a model: analysis model-fit, tables from the model, exclusions."""
 import json
 import re
+import shutil
+import subprocess
 import unittest
 
 from verbs import VerbTest, manifest, readings
@@ -56,6 +58,11 @@ class Nightly(VerbTest):
                 self.assertEqual(name, of)
                 values[name, value] = float(number)
         self.assertTrue(text.endswith("\n# EOF\n"))
+        if shutil.which("promtool"):  # Debian: prometheus
+            checked = subprocess.run(["promtool", "check", "metrics"], input=text, capture_output=True, text=True)
+            self.assertEqual((0, ""), (checked.returncode, checked.stdout + checked.stderr))
+        else:
+            print("promtool is missing (scripts/install-dependencies --all): the metrics were not checked with it", flush=True)
         summary = json.loads((out / "summary.json").read_text())
         for state, count in summary["counts"].items():
             self.assertEqual(values["nonio_campaigns", state], count)

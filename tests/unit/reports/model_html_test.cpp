@@ -110,7 +110,7 @@ TEST_F(ModelHtml, CandidatesCardsSizesAndWhatToMeasureAreOnIt) {
         "<li>Record the material temperature"})
     EXPECT_TRUE(has(text, what)) << what;
   EXPECT_TRUE(has(page(made_model()), "There is no evidence for any further effect."));
-  EXPECT_TRUE(has(page(with_candidates(made_model()), "it"), "Nessun segno di: warm-up:X"));
+  EXPECT_TRUE(has(page(with_candidates(made_model()), "it"), "Nessun indizio di: warm-up:X"));
 }
 
 TEST_F(ModelHtml, HoldsTheFitWithoutAnEffectAndNoneWhereThereIsNone) {

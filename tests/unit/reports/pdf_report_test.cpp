@@ -111,7 +111,7 @@ TEST_F(PdfReport, WhatIsForTheLaboratoryIsInItsPartAlone) {
   const std::size_t part = all.find("For the laboratory");
   ASSERT_NE(part, std::string::npos);
   const std::string customer = all.substr(0, part), laboratory = all.substr(part);
-  EXPECT_TRUE(has(customer, "No finding requires action.")) << customer;
+  EXPECT_TRUE(has(customer, "No action required, no warnings.")) << customer;
   for (const char* what : {"fanuc", "no table", "contradict each other", "Check the set-up"}) {
     EXPECT_FALSE(has(customer, what)) << what;
     if (what != std::string("Check the set-up")) {
@@ -177,7 +177,7 @@ TEST_F(PdfReport, NothingNeedsAttentionOnlyWhereSomethingWasJudged) {
   even.reversal = 0;
   even.s_plus = even.s_minus = 0.5;
   const Case quiet = usual(even);
-  const std::string green = "No action required.";
+  const std::string green = "No action required, no warnings.";
   // No tolerance: nothing was judged.
   EXPECT_FALSE(has(text(quiet), green));
   EXPECT_TRUE(has(text(quiet), "conformity was not assessed"));
@@ -424,8 +424,8 @@ TEST_F(PdfReport, TemplatesAreCheckedWithFileAndKey) {
   EXPECT_TRUE(
       has(complaint(c, "report-bad"), "templates/report-bad.toml: the key \"plot.height_mm\""));
   EXPECT_TRUE(has(complaint(c, "nowhere"), "nowhere"));
-  templates.tables["words/en/report"].values.erase("status.attention");
-  EXPECT_TRUE(has(complaint(c), "templates/words/en/report.toml: the key \"status.attention\""));
+  templates.tables["words/en/report"].values.erase("status.warnings");
+  EXPECT_TRUE(has(complaint(c), "templates/words/en/report.toml: the key \"status.warnings\""));
 }
 
 Series curve(const std::string& name, double length, double size) {

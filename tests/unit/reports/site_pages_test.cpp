@@ -52,7 +52,7 @@ TEST(SitePages, NumbersAreThoseOfTheValues) {
   const auto pages = pages_of(made_site());
   const std::string& index = pages.at("index.html");
   EXPECT_TRUE(has(index, "11.20 ± 0.40 µm"));
-  EXPECT_TRUE(has(index, "limit 8.00"));
+  EXPECT_TRUE(has(index, "tolerance limit of 8.00 µm"));
   EXPECT_TRUE(has(index, "Known to B. Sample until 2026-06-01: repair ordered"));
   const std::string& machine = pages.at("machines/S-0042.html");
   EXPECT_TRUE(has(machine,
