@@ -63,7 +63,7 @@ if(MKDOCS AND EXISTS /usr/share/mkdocs/themes/material)
   set(site ${CMAKE_BINARY_DIR}/site)
   # What the pages are made from is listed by the hook.
   add_custom_command(OUTPUT ${site}/index.html DEPFILE ${site}.d
-    COMMAND ${CMAKE_COMMAND} -E env NONIO_DEPFILE=${site}.d ${MKDOCS} build --quiet --strict --site-dir ${site}
+    COMMAND ${CMAKE_COMMAND} -E env NONIO_DEPFILE=${site}.d PYTHONDONTWRITEBYTECODE=1 ${MKDOCS} build --quiet --strict --site-dir ${site}
     DEPENDS ${PROJECT_SOURCE_DIR}/mkdocs.yml WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM COMMENT "Pages of the documentation")
   add_custom_target(docs_site ALL DEPENDS ${site}/index.html)
   install(DIRECTORY ${site}/ DESTINATION ${papers}/site)
