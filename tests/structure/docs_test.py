@@ -13,6 +13,10 @@ ROOT = pathlib.Path(sys.argv.pop(1))
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 WIDTH = 120
 NAVIGATION = re.findall(r"^ +- ([^:]+): (\S+\.md)$", (ROOT / "mkdocs.yml").read_text(), re.M)
+# What a person reads first: all; metrologist, service engineer, IT, author of a plugin.
+PATHS = [["README.md"], ["docs/index.md", "docs/howto-metrologist.md", "docs/tutorial-first-certificate.md"],
+         ["docs/index.md", "docs/howto-service.md"], ["docs/index.md", "docs/howto-nightly.md"],
+         ["docs/index.md", "docs/howto-plugin.md"]]
 ITEM = re.compile(r"(?:[-*]|\d+\.) ")
 
 
@@ -129,6 +133,11 @@ class Documents(unittest.TestCase):
 
     def test_every_page_is_in_the_navigation_once(self):
         self.assertEqual(sorted(page for _, page in NAVIGATION), sorted(p.relative_to(ROOT / "docs").as_posix() for p in (ROOT / "docs").rglob("*.md")))
+
+    def test_each_reader_reaches_the_goal_within_3000_words(self):
+        for pages in PATHS:
+            words = sum(len(re.sub(r"<!--.*?-->", "", (ROOT / page).read_text(), flags=re.S).split()) for page in pages)
+            self.assertLessEqual(words, 700 if pages == ["README.md"] else 3000, pages)
 
     def test_a_page_has_one_title(self):
         titles = {page: title for title, page in NAVIGATION if page != "index.md"}
