@@ -57,12 +57,18 @@ set(papers ${CMAKE_INSTALL_DATADIR}/doc/nonio)
 # Scripts that users adapt.
 install(PROGRAMS ${PROJECT_SOURCE_DIR}/cmake/package/slurm/nonio-night ${PROJECT_SOURCE_DIR}/cmake/package/slurm/nonio-shard.sbatch
         DESTINATION ${CMAKE_INSTALL_DATADIR}/nonio/slurm)
-# The same as pages with search, if they were made: cmake --build BUILD --target docs_site
+# The same as pages with search.
 find_program(MKDOCS mkdocs)
-if(MKDOCS)
-  add_custom_target(docs_site COMMAND ${MKDOCS} build --quiet --strict --site-dir ${CMAKE_BINARY_DIR}/site
-    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM)
-  install(DIRECTORY ${CMAKE_BINARY_DIR}/site/ DESTINATION ${papers}/site OPTIONAL)
+if(MKDOCS AND EXISTS /usr/share/mkdocs/themes/material)
+  set(site ${CMAKE_BINARY_DIR}/site)
+  # What the pages are made from is listed by the hook.
+  add_custom_command(OUTPUT ${site}/index.html DEPFILE ${site}.d
+    COMMAND ${CMAKE_COMMAND} -E env NONIO_DEPFILE=${site}.d PYTHONDONTWRITEBYTECODE=1 ${MKDOCS} build --quiet --strict --site-dir ${site}
+    DEPENDS ${PROJECT_SOURCE_DIR}/mkdocs.yml WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM COMMENT "Pages of the documentation")
+  add_custom_target(docs_site ALL DEPENDS ${site}/index.html)
+  install(DIRECTORY ${site}/ DESTINATION ${papers}/site)
+else()
+  message(STATUS "mkdocs-material not found: the documentation is installed without its pages")
 endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${papers} FILES_MATCHING PATTERN *.md PATTERN *.png PATTERN *.svg)
 foreach(folder IN LISTS NONIO_PLUGIN_FOLDERS)

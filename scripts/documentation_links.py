@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hook of mkdocs: the pages of docs/ link to files of plugins/ and samples/, so the site contains those files too."""
+import os
 import pathlib
 import posixpath
 import re
@@ -30,6 +31,11 @@ def on_files(files, config):
                 known.add(name)
                 files.append(File(name, str(ROOT), config["site_dir"], config["use_directory_urls"]))
                 new += [name] if name.endswith(".md") else []
+    if os.environ.get("NONIO_DEPFILE"):
+        read = [ROOT / in_tree(file.src_path) for file in files if (ROOT / in_tree(file.src_path)).is_file()]
+        read += [ROOT / hook for hook in config["hooks"]]
+        site = pathlib.Path(config["site_dir"])
+        pathlib.Path(os.environ["NONIO_DEPFILE"]).write_text(f"{site / 'index.html'}: {' '.join(map(str, read))}\n", "utf-8")
     return files
 
 

@@ -12,6 +12,12 @@ import unittest
 ROOT = pathlib.Path(sys.argv.pop(1))
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 WIDTH = 120
+NAVIGATION = re.findall(r"^ +- ([^:]+): (\S+\.md)$", (ROOT / "mkdocs.yml").read_text(), re.M)
+# What a person reads first: all; metrologist, service engineer, IT, author of a plugin.
+PATHS = [["README.md"], ["docs/index.md", "docs/howto-metrologist.md", "docs/tutorial-first-certificate.md"],
+         ["docs/index.md", "docs/howto-service.md"], ["docs/index.md", "docs/howto-nightly.md"],
+         ["docs/index.md", "docs/howto-plugin.md"]]
+ITEM = re.compile(r"(?:[-*]|\d+\.) ")
 
 
 def wide_lines(text):
@@ -22,6 +28,25 @@ def wide_lines(text):
             code = not code
         elif not code and len(line) > WIDTH and not re.match(r"\s*(\||<!--|!\[|\[[^\]]*\]\([^)]*\)[.,]?$)", line):
             yield number
+
+
+def lost_lists(text):
+    """Numbers of the lines that Python-Markdown takes for running text: an item without a blank line before the list, or
+    after a block of the last item, and a block or paragraph of an item that is indented by 1 to 3."""
+    code, in_list, before = False, False, ""
+    for number, line in enumerate(text.splitlines(), 1):
+        fence = re.match(r" *```\S*$", line)
+        if not code and re.match(r" {1,3}\S", line) and (fence or in_list and not before.strip()):
+            yield number
+        if fence:
+            code = not code
+        elif not code and ITEM.match(line):
+            if before.startswith("    ") or not in_list and before.strip() and not before.startswith(("#", "|")):
+                yield number
+            in_list = True
+        elif not code and line.strip() and not line.startswith(" "):
+            in_list = in_list and bool(before.strip())
+        before = line
 
 
 # Phrases that a reader had to read twice.
@@ -107,8 +132,37 @@ class Documents(unittest.TestCase):
             self.assertTrue(RIDDLES.search(joined(text)), text)
 
     def test_every_page_is_in_the_navigation_once(self):
-        named = re.findall(r"^ +- [^:]+: (\S+\.md)$", (ROOT / "mkdocs.yml").read_text(), re.M)
-        self.assertEqual(sorted(named), sorted(p.relative_to(ROOT / "docs").as_posix() for p in (ROOT / "docs").rglob("*.md")))
+        self.assertEqual(sorted(page for _, page in NAVIGATION), sorted(p.relative_to(ROOT / "docs").as_posix() for p in (ROOT / "docs").rglob("*.md")))
+
+    def test_each_reader_reaches_the_goal_within_3000_words(self):
+        for pages in PATHS:
+            words = sum(len(re.sub(r"<!--.*?-->", "", (ROOT / page).read_text(), flags=re.S).split()) for page in pages)
+            self.assertLessEqual(words, 700 if pages == ["README.md"] else 3000, pages)
+
+    def test_a_page_has_one_title(self):
+        titles = {page: title for title, page in NAVIGATION if page != "index.md"}
+        headings_1 = {page: re.search(r"^# (.*)$", (ROOT / "docs" / page).read_text(), re.M)[1] for page in titles}
+        self.assertEqual(titles, headings_1)
+
+    def test_the_text_of_a_link_is_no_file(self):
+        found = [f"{page.relative_to(ROOT)}: {text}" for page in PAGES if page.parent != ROOT
+                 for text in re.findall(r"\[([\w.-]+\.md|howto-\w+|tutorial-[\w-]+)\]\(", page.read_text())]
+        self.assertEqual([], found, "expected the title of the page")
+
+    def test_each_picture_is_shown(self):
+        shown = {(page.parent / target).resolve().relative_to(ROOT) for page in PAGES
+                 for target in re.findall(r"!\[[^\]]*\]\(([^)\s]+)\)", page.read_text())}
+        there = {path.relative_to(ROOT) for path in (ROOT / "docs" / "pictures").iterdir()}
+        self.assertEqual(there, shown)
+
+    def test_lists_are_lists_on_the_built_pages(self):
+        self.assertEqual([2], list(lost_lists("text\n- an item\n")))
+        self.assertEqual([3], list(lost_lists("1. an item\n\n   ```sh\n   true\n   ```\n")))
+        self.assertEqual([4], list(lost_lists("1. an item\n\n    of two paragraphs\n2. another\n")))
+        self.assertEqual([], list(lost_lists("text\n\n- an item\n- another\n\n    ```sh\n    - no\n    ```\n")))
+        pages = [*PAGES, *(ROOT / "plugins").rglob("README.md")]
+        lost = [f"{page.relative_to(ROOT)}:{n}" for page in pages for n in lost_lists(page.read_text())]
+        self.assertEqual([], lost, "expected a blank line before a list, and blocks in it indented by 4")
 
     def test_rows_of_the_constants_are_those_that_the_code_names(self):
         rows = set(re.findall(r"^\| ([AM]\d+) \|", (ROOT / "docs/dev/constants.md").read_text(), re.M))

@@ -11,6 +11,7 @@ NOTE = re.compile(r"^ *<!-- (?:(not run): (\S.*)|(file): (\S+)|(here): (\S+) is 
 # Around what scripts/generate-docs writes.
 GENERATED = re.compile(r"^<!-- (?:[Gg]enerated\b.*|causes: .*|end(?: of causes)?) -->$")
 WANTED_NOTE = "expected <!-- not run: REASON -->, <!-- file: PATH --> or <!-- here: PATH is SOURCE -->"
+ITEM = re.compile(r"(?:[-*]|\d+\.) ")  # of a list, whose paragraphs and blocks are indented by four
 COMMAND = re.compile(
     r"^\s*(?:\$ .*"
     r"|(?:sudo\s+)?(?:[A-Z_]+=\S*\s+)*"
@@ -40,7 +41,7 @@ class Note:
 
 def parts_of(text):
     """(blocks and notes in their order, what is wrong with the document: (line, message))."""
-    parts, faults, pending, block, before = [], [], None, None, ""
+    parts, faults, pending, block, before, in_list = [], [], None, None, "", False
     for number, line in enumerate(text.splitlines(), 1):
         fence = FENCE.match(line)
         note = NOTE.match(line)
@@ -66,7 +67,9 @@ def parts_of(text):
             if pending:
                 faults.append(misplaced(pending))
                 pending = None
-            if line.startswith(("    ", "\t")) and (not before.strip() or before.startswith("#") or FENCE.match(before)):
+            if not line.startswith((" ", "\t")):
+                in_list = bool(ITEM.match(line)) or in_list and bool(before.strip())
+            elif not in_list and line.startswith(("    ", "\t")) and (not before.strip() or before.startswith("#") or FENCE.match(before)):
                 faults.append((number, "indented block: put it between ```sh, ```console or ```text and ```"))
         before = line
     if block is not None:

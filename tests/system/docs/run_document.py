@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the commands of documents, those of each in one new folder that holds a copy of samples/, as in one terminal.
+"""Runs the commands of documents, those of each in one new folder that holds a copy of samples/, as in one terminal of
+100 columns.
 
 ```console  lines `$ COMMAND`; the lines below each are its output and errors, byte for byte
 ```sh       one command per line
@@ -17,18 +18,24 @@ the text that have a decimal point or are followed by % must occur in some outpu
     NONIO=build/dev/bin/nonio tests/system/docs/run_document.py [--update] [--keep FOLDER] DOCUMENT...
 """
 import argparse
+import contextlib
 import difflib
+import fcntl
 import os
 import pathlib
+import pty
 import re
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
+import termios
 import time
 
 import document
 
+COLUMNS = 100  # of the terminal: what a reader sees
 PROJECT = pathlib.Path(__file__).resolve().parents[3]
 STATUS = re.compile(r"\s# status (\d+)\b[^\n]*$")
 FIGURE = re.compile(r"(?<![\w.])\d+\.\d+|\b\d+(?= %)")
@@ -41,6 +48,7 @@ class Terminal:
         self.folder = folder
         self.state = folder.parent / "state"
         self.environment = {"PATH": f"{programs}:{os.environ['PATH']}", "HOME": str(folder), "LC_ALL": "C", "NONIO_ALLOW_ROOT": "1",
+                            "NO_COLOR": "1", "TERM": "dumb",
                             "TMPDIR": str(folder.parent), "CMAKE_GENERATOR": "Ninja", "PYTHONDONTWRITEBYTECODE": "1",
                             "PYTHONPATH": str(programs.parent / "lib/python3/dist-packages")}
         for name in ("CXX", "CMAKE_CXX_COMPILER_LAUNCHER"):
@@ -55,9 +63,20 @@ class Terminal:
         """(status, output and errors)."""
         restored = f'. "{self.state}"\n' if self.state.exists() else ""
         kept = f"""trap '{{ export -p; echo "cd \\"$PWD\\""; }} > "{self.state}"' EXIT\n"""
-        done = subprocess.run(["bash", "-c", restored + kept + command], cwd=self.folder, env=self.environment, text=True,
-                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
-        return done.returncode, done.stdout
+        mine, terminal = pty.openpty()
+        raw = termios.tcgetattr(terminal)
+        raw[1] &= ~termios.OPOST  # no carriage return at the end of a line
+        termios.tcsetattr(terminal, termios.TCSANOW, raw)
+        fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 50, COLUMNS, 0, 0))
+        with subprocess.Popen(["bash", "-c", restored + kept + command], cwd=self.folder, env=self.environment,
+                              stdin=subprocess.DEVNULL, stdout=terminal, stderr=terminal) as process:
+            os.close(terminal)
+            output = b""
+            with contextlib.suppress(OSError):  # how a terminal ends
+                while part := os.read(mine, 65536):
+                    output += part
+            os.close(mine)
+        return process.returncode, output.decode()
 
 
 class Run:

@@ -39,6 +39,18 @@ CAMPAIGN = {"Customer": "Esempio Uno S.p.A.", "Operator": "A. Sample", "Machine,
             "Instrument, number of its calibration": "SO-1", "fixed part": "0.1", "part per metre": "0.5"}
 
 
+def plain(line):
+    """A command without its options."""
+    return re.split(r" --| [|\\#]", line)[0].strip()
+
+
+def commands_of_the_page():
+    """Of docs/tutorial-first-certificate.md; there options take the place of prompts and editor."""
+    page = (PROJECT / "docs/tutorial-first-certificate.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"^```(?:sh|console)\n(.*?)^```", page, re.M | re.S)
+    return [plain(line) for block in blocks for line in re.findall(r"^(?:\$ )?((?:bash|nonio) .*)$", block, re.M)]
+
+
 class Path(unittest.TestCase):
     def setUp(self):
         self._folder = tempfile.TemporaryDirectory(prefix="nonio-path-")
@@ -109,6 +121,7 @@ class Path(unittest.TestCase):
         self.assertIn("issued for first", self.type(f'nonio certificate approve lab/first --by "B. Sample" {reasons}'))
         # 3: valid; a throwaway key has neither time stamp nor revocation list.
         self.assertIn("VALID", self.type("nonio certificate verify out/first/certificate.pdf --site lab", expect=(0, 3)))
+        self.assertEqual([plain(line) for line in self.commands if not line.startswith("$EDITOR")], commands_of_the_page())
         keys = len(BY_HAND)
         print(f"{len(self.commands)} commands, {keys} keys typed by hand, {self.answers} answers to prompts")
         self.assertLessEqual(len(self.commands), MOST_COMMANDS, self.commands)
