@@ -40,7 +40,7 @@ Expected<Axis> axis_of(const std::string& text) {
     return wrong();
   const auto from = length_of("--axis", text.substr(equals + 1, colon - equals - 1));
   const auto to = length_of("--axis", text.substr(colon + 1));
-  // Written so that NaN is wrong.
+  // The conditions are negated so that NaN is refused.
   if (!from || !to || !(*from < *to) || !std::isfinite(*from) || !std::isfinite(*to))
     return wrong();
   Axis axis = axis_named(name);

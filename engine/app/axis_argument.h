@@ -6,18 +6,18 @@
 #include "nonio/sdk/campaign.h"
 #include "nonio/sdk/error.h"
 
-/// Lengths and axes on the command line.
+/// Parses lengths and axes on the command line.
 namespace nonio::app {
 
-/// A length in mm as SI. Taken as a text: a decimal comma deserves a better word than "could not
-/// convert".
+/// Converts a length in mm to SI. The argument is a text, so that a decimal comma gets a better
+/// error message than that of CLI11.
 Expected<double> length_of(const std::string& option, const std::string& text);
 
-/// Capital letters and digits.
+/// Whether the name consists of capital letters and digits.
 bool is_axis_name(const std::string& name);
-/// By its name alone: A, B and C turn (ISO 841).
+/// Returns an axis that is rotary or linear by its name alone: A, B and C are rotary (ISO 841).
 Axis axis_named(const std::string& name);
-/// "X=0:12000" of --axis; of A, B and C in degrees.
+/// Parses the value "X=0:12000" of --axis, in mm, or in degrees for A, B and C.
 Expected<Axis> axis_of(const std::string& text);
 
 }  // namespace nonio::app

@@ -40,7 +40,7 @@ int backup(const BackupWish& wish, const Common& common) {
   return exit_done;
 }
 
-/// What an output folder has under numbers that the register does not contain.
+/// Returns the certificates in an output folder whose numbers the register does not contain.
 Expected<Json> issued_since(const fs::path& site, const fs::path& out) {
   NONIO_TRY(const auto numbering, certificates::numbering_of(site));
   NONIO_TRY(const auto entries, certificates::certificates_of(site, numbering));
@@ -54,7 +54,7 @@ Expected<Json> issued_since(const fs::path& site, const fs::path& out) {
   if (!listed) return fail(listed.error());
   for (const fs::path& folder : folders) {
     const auto text = storage::read_file(folder / "results.json");
-    if (!text) continue;  // a folder of something else
+    if (!text) continue;  // not a folder with results
     const Json results = storage::parse_or_discard(*text);
     if (!results.is_object() || !results.contains("certificate")) continue;
     const auto text_of = [&of = results["certificate"]](const char* name) {

@@ -13,7 +13,7 @@
 
 namespace nonio::app {
 
-/// The campaign that a verb is about.
+/// A campaign that a command has opened.
 struct OpenCampaign {
   std::filesystem::path folder;
   std::unique_ptr<reading::Workplace> place;
@@ -21,21 +21,21 @@ struct OpenCampaign {
   const Campaign& campaign() const { return read.manifest->campaign; }
 };
 
-/// Reads the campaign and reports its errors on stderr. The error is the exit status if the verb
-/// cannot go on: 2 for the configuration, 1 for measurements of which none can be read. Errors of
-/// single measurements stay in `read.errors` and leave the others.
+/// Reads the campaign and prints its errors on stderr. The error is the exit status if the command
+/// cannot continue: 2 for a mistake in the configuration, 1 if no measurement can be read. Errors
+/// of single measurements are kept in `read.errors`, and the other measurements are used.
 tl::expected<OpenCampaign, int> open_campaign(
     const std::string& folder, const Common& common,
     reading::TemplatesFor what = reading::TemplatesFor::documents);
 
-/// The fit of each part. The error of a part that cannot be fitted is printed and added to `errors`.
+/// Fits each part. The error of a part that cannot be fitted is printed and added to `errors`.
 std::vector<modelling::Compared> compare_parts(std::vector<modelling::PartModel> parts,
                                                std::vector<Error>& errors);
 
-/// Sentences in the language of the site, or English for JSON.
+/// Returns the sentences in the language of the site, or in English for JSON.
 modelling::ModelWords words_for(const OpenCampaign& open, const Common& common);
 
-/// "CAMPAIGN", --templates and the common options.
+/// Returns the arguments "CAMPAIGN" and --templates, and the common ones.
 std::vector<Argument> campaign_arguments(std::string& folder, Common& common);
 
 }  // namespace nonio::app

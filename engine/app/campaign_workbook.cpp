@@ -23,10 +23,10 @@ namespace {
 
 using Row = std::vector<Cell>;
 
-/// They are taken before the sheets of measurements get their names.
+/// Names of the fixed sheets; sheets of measurements must not use them.
 constexpr const char* fixed_names[] = {"Summary", "Charts", "Points", "Curves", "Budget"};
 
-/// Of one curve of a chart; Excel refuses more.
+/// Largest number of points in one curve of a chart; Excel refuses more.
 constexpr std::size_t most_chart_points = 32'000;
 
 Cell number(const Json& of, const char* key) {
@@ -46,7 +46,7 @@ std::string column_name(const std::string& name, const std::string& unit) {
   return unit.empty() ? name : name + " (" + unit + ")";
 }
 
-/// "X, iso230-2"
+/// Returns measurement, plugin and part of an analysis, for example "X, iso230-2".
 std::string title_of(const Json& analysis) {
   std::string title = analysis.value("measurement", "");
   for (const char* key : {"plugin", "part"})
@@ -148,7 +148,7 @@ class Composer {
         sheet.rows.push_back({text(a, "measurement"), analysis_name(a), name, number(v, "value"),
                               number(v, "U"), text(v, "unit"), number(v, "k"),
                               number(v, "tolerance"), decision(v), number(v, "repeatability")});
-    // A tolerance whose value could not be determined has a row too.
+    // A tolerance without a value also gets a row.
     for (const Json& c : results_.value("conformity", Json::array()))
       if (!has_value(c))
         sheet.rows.push_back({text(c, "measurement"), text(c, "plugin"), text(c, "name"), Cell(),
@@ -200,7 +200,7 @@ class Composer {
     std::move(rows.begin(), rows.end(), std::back_inserter(sheet.rows));
   }
 
-  /// The columns of a file of readings, so that Nonio reads the sheet again.
+  /// Adds sheets with the columns of a file of readings, so that Nonio can read the sheets again.
   void readings() {
     for (const Observations& o : shown_.observations) {
       if (o.measurement.empty() || (o.size() == 0 && o.channels.empty())) continue;
@@ -227,7 +227,7 @@ class Composer {
     return i >= approach.size() || approach[i] == 0 ? "" : approach[i] > 0 ? "+" : "-";
   }
 
-  /// Whether the readings are of the form run, direction, target, deviation.
+  /// Whether the readings have the columns run, direction, target and deviation.
   static bool is_of_one_axis(const Observations& o) {
     return o.axes.size() == 1 && o.lines.size() <= 1 && o.sense.empty();
   }
@@ -308,7 +308,7 @@ class Composer {
     }
   }
 
-  /// The deviations of an axis, and their means by direction.
+  /// Adds the deviations of an axis and their means by direction to a chart.
   void add_means(const Json& analysis, std::size_t first) {
     const Json& units = analysis.at("point_units");
     const std::size_t count = analysis.at("points").size();
@@ -385,7 +385,7 @@ class Composer {
     std::move(charts.begin(), charts.end(), std::back_inserter(charts_));
   }
 
-  /// To the chart of the same axis and units.
+  /// Adds a curve to the chart of the same axis and units.
   static void add_curve(std::vector<Chart>& charts, const std::string& title,
                         const std::string& name, const Json& s,
                         std::pair<std::size_t, std::size_t> rows) {
@@ -448,7 +448,7 @@ class Composer {
   config::TerminalWords say_;
   Json results_;
   storage::Workbook book_{};
-  std::map<std::string, std::string> names_{};  ///< of the sheet of each measurement
+  std::map<std::string, std::string> names_{};  ///< name of each measurement's sheet
   std::vector<Chart> charts_{};
 };
 

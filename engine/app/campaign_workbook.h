@@ -6,9 +6,9 @@
 
 namespace nonio::app {
 
-/// The results of one campaign as a spreadsheet: what was decided with its uncertainty, points,
-/// curves and their charts, budgets, and the readings where `shown` has them. Numbers are those of
-/// results.json. An error if it is none of results.
+/// Returns the results of one campaign as a spreadsheet: decisions with their uncertainty, points,
+/// curves with charts, budgets, and the readings if `shown` contains them. Numbers are those of
+/// results.json. An error if `shown` does not contain a results.json.
 Expected<storage::Workbook> workbook_of(const Shown& shown);
 
 }  // namespace nonio::app

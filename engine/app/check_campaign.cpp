@@ -20,9 +20,9 @@ std::string_view trimmed(std::string_view s) {
   return s;
 }
 
-/// A table of the manifest: its head, and its lines with their ends.
+/// A table of the manifest: its header, and its lines with line ends.
 struct Section {
-  std::string head;  ///< "[campaign]"; empty: before the first table
+  std::string head;  ///< "[campaign]"; empty: lines before the first table
   std::vector<std::string> lines{};
 
   bool is_part_of(std::string_view name) const {
@@ -71,7 +71,8 @@ std::string backlash_text(double value, bool rotary) {
   return text;
 }
 
-/// The lines of the manifest that differ.
+/// Returns the manifest of the check campaign: the text of the original with single lines changed
+/// and the other measurements removed.
 std::string check_text(std::string_view text, const std::string& id, const CheckCampaign& check,
                        bool rotary) {
   auto sections = sections_of(text);
@@ -113,7 +114,7 @@ std::string check_text(std::string_view text, const std::string& id, const Check
   return out;
 }
 
-/// That the text states what was meant, and all else as before.
+/// Whether the changed manifest states what was intended, and everything else is as before.
 bool is_meant(const config::Manifest& read, const config::Manifest& before, const std::string& id,
               const CheckCampaign& check) {
   const Campaign& c = read.campaign;

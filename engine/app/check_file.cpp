@@ -23,10 +23,10 @@ namespace {
 
 constexpr std::size_t most_rows = 6, most_points = 20'000;
 
-/// What was made of the file.
+/// Result of reading the file.
 struct Read {
   const Reader* reader = nullptr;
-  std::string axis{};  ///< under which it was read
+  std::string axis{};  ///< name of the axis under which it was read
   Observations readings{};
 };
 
@@ -34,7 +34,7 @@ class FileCheck {
  public:
   FileCheck(const fs::path& file, const FileWish& wish, const Common& common)
       : name_(file.filename().string()), columns_(wish.columns), common_(common) {
-    // Another one than that of the wish, or of the name, is tried where the file is not of it.
+    // If the file cannot be read as the stated axis, or the one in its name, other axes are tried.
     if (!wish.axis.empty()) axes_.insert(axes_.begin(), wish.axis);
   }
 
@@ -53,8 +53,8 @@ class FileCheck {
   }
 
  private:
-  /// The one that recognises the file; with stated columns, or where none does, the one that shows
-  /// the rows of its table.
+  /// Returns the reader that recognises the file; with stated columns, or if none recognises it,
+  /// the one that can show the rows of its table.
   const Reader* reader_of(std::string_view bytes,
                           const std::optional<reading::StatedTable>& table) const {
     if (!columns_.empty()) return table ? table->reader : nullptr;
@@ -88,7 +88,7 @@ class FileCheck {
       const Error& error = got.error();
       if (first.message.empty()) first = error;
       (campaign.machine.axes.front().rotary ? was_rotary : was_linear) = true;
-      // What does not depend on the axis is wrong with each of them.
+      // An error that both kinds of axes give does not depend on the axis.
       if (was_linear && was_rotary && error.line != 0 && error.line == first.line &&
           error.message == first.message)
         break;
@@ -128,13 +128,13 @@ class FileCheck {
     if (read) {
       const Observations& o = read->readings;
       json["reader"] = read->reader->info.name;
-      // Another axis than the first of its kind is one that the file states.
+      // Any axis other than X and A is stated by the file.
       if (read->axis != "X" && read->axis != "A") json["axis"] = read->axis;
       json["rotary"] = o.axes.front().rotary;
       json["readings"] = o.size();
       json["missing"] = o.missing;
       json["points"] = points(*read);
-      // What an operator typed into an instrument's file.
+      // Text that an operator entered in the file of an instrument.
       for (const Remark& note : o.notes)
         for (const auto& [name, words] : note.texts)
           if (name == "text") json["text"] = words;

@@ -11,12 +11,13 @@ namespace nonio::app {
 
 struct FileWish {
   std::vector<std::string> columns{};  ///< entries of option `columns`
-  std::string axis{};                  ///< that its readings probably are of; empty: unknown
+  std::string axis{};                  ///< axis that the readings probably belong to; empty:
+                                       ///< unknown
 };
 
-/// `nonio check FILE`: which reader reads a file of readings of one axis, and the readings; where
-/// none does, why, and the first rows of its table. Prints `nonio-check-file/1` with --json. Status
-/// 1 if it cannot be read.
+/// Does `nonio check FILE`: reports which reader reads a file of readings of one axis, and the
+/// readings; if none does, why, and the first rows of its table. Prints `nonio-check-file/1` with
+/// --json. Returns status 1 if the file cannot be read.
 int check_file(const std::filesystem::path& file, const FileWish& wish, const Common& common);
 
 }  // namespace nonio::app

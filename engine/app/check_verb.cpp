@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `nonio check`: what `nonio run` would reject, without output; what a file of readings contains.
+// Implements `nonio check`: reports what `nonio run` would reject, without writing anything, or
+// what a file of readings contains.
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -27,7 +28,7 @@ struct CheckWish {
   bool only_templates = false;
 };
 
-/// The errors of a site or of one campaign as they are found.
+/// Collects and prints the errors of a site or of one campaign.
 class Check {
  public:
   explicit Check(const Common& common) : common_(common), words_(common) {}
@@ -58,7 +59,7 @@ class Check {
       if (!e.column.empty()) json["column"] = e.column;
       errors_.push_back(std::move(json));
     } else {
-      // Files of the site are named from there.
+      // Files of the site are named relative to the site, others relative to the campaign.
       const bool below =
           !campaign.empty() && (e.file.empty() || fs::exists(campaign + "/" + e.file));
       std::cout << (below ? campaign + "/" : "") << text_of(e) << "\n";
@@ -128,7 +129,7 @@ class Check {
   const Common& common_;
   SiteWords words_;
   std::unique_ptr<reading::Workplace> place_{};
-  std::map<std::string, fs::path> folders_{};  ///< by the id of the campaign
+  std::map<std::string, fs::path> folders_{};  ///< by id of the campaign
   Json errors_ = Json::array(), warnings_ = Json::array();
   std::size_t campaigns_ = 0, invalid_ = 0, count_ = 0;
 };

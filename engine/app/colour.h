@@ -7,14 +7,14 @@ namespace nonio::app {
 
 enum class Colour { red, yellow, green, bold };
 
-/// The text in that colour if the file descriptor (STDOUT_FILENO,
-/// STDERR_FILENO) is a terminal that can show it and NO_COLOR (no-color.org) is
-/// not set; else as it is. Never for JSON or files.
+/// Returns the text in that colour if the file descriptor (STDOUT_FILENO, STDERR_FILENO) is a
+/// terminal with colours and NO_COLOR (no-color.org) is not set; otherwise unchanged. Not to be
+/// used for JSON or files.
 std::string coloured(const std::string& text, Colour colour, int descriptor);
 
-/// Of a campaign's status or a decision.
+/// Returns the colour of a campaign's status or of a decision.
 Colour status_colour(const std::string& status);
-/// ok, attention or failed as a column of a list, in its colour.
+/// Returns ok, attention or failed in its colour, padded to the width of a column.
 std::string status_word(const std::string& status, int descriptor);
 
 }  // namespace nonio::app

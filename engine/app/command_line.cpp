@@ -32,11 +32,11 @@ CLI::Option* bind(CLI::App& app, const Argument& a) {
   if (auto* const* flag = std::get_if<bool*>(&a.target)) return app.add_flag(names, **flag);
   if (auto* const* list = std::get_if<Words*>(&a.target)) {
     CLI::Option* option = app.add_option(names, **list);
-    // One value each time, so that what follows it is never taken for a second one.
+    // Options take exactly one value, so that a following word is never taken for a second one.
     if (!a.is_positional()) option->take_all()->expected(1)->allow_extra_args(false);
     return option;
   }
-  if (!a.bare.empty())  // CLI11 knows such a value only for flags
+  if (!a.bare.empty())  // CLI11 supports optional values only for flags
     return app.add_flag(a.name + "{" + a.bare + "}", *std::get<std::string*>(a.target));
   return std::visit([&](auto* to) -> CLI::Option* { return app.add_option(names, *to); }, a.target);
 }
@@ -94,17 +94,17 @@ Words names_of(const std::vector<Verb>& verbs) {
   return names;
 }
 
-/// The command that the words lead to.
+/// The command that the words denote.
 struct Found {
   const Verb* verb = nullptr;
-  std::string path;              ///< "nonio plan"
-  std::string typed;             ///< the same with a former name, if that was typed
+  std::string path;              ///< path of the command, for example "nonio plan"
+  std::string typed;             ///< the path as typed, possibly with a former name
   Words rest{};                  ///< the words after the command
-  std::string wrong{};           ///< what is wrong with the word where a command is expected
+  std::string wrong{};           ///< error for a word that is not a command; empty: none
   const Alias* alias = nullptr;  ///< the former name that was typed
 };
 
-/// The words with the present name of a command in place of a former one.
+/// Returns the longest former name at the beginning of the words; null if there is none.
 const Alias* alias_of(const Program& program, const Words& words) {
   const Alias* longest = nullptr;
   for (const Alias& alias : program.aliases) {
@@ -116,7 +116,7 @@ const Alias* alias_of(const Program& program, const Words& words) {
   return longest;
 }
 
-/// The program has no command of that name: what may be meant.
+/// Returns a hint at the command that may be meant by an unknown word; empty if there is none.
 std::string hint_for(const Program& program, const std::string& word) {
   Words names;
   for (const Verb& v : program.verbs) {
@@ -139,7 +139,7 @@ std::string no_command(const Program& program, const Found& at, const std::strin
   const std::string hint =
       at.path == program.name ? hint_for(program, word) : storage::suggestion(word, names);
   return at.path + ": there is no command \"" + word + "\"" +
-         (!hint.empty()                ? hint
+         (!hint.empty()             ? hint
           : at.path == program.name ? ". `" + program.name + " help` lists the commands"
                                     : "; there are " + storage::listed(names));
 }
@@ -174,7 +174,7 @@ bool is_option(const std::string& word) {
   return word.size() > 1 && word[0] == '-' && word.find_first_of("0123456789.") != 1;
 }
 
-/// The options among the words, without their values.
+/// Returns the options among the words, without their values.
 Words options_of(const Verb& verb, const Words& words) {
   Words options;
   for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
@@ -186,8 +186,8 @@ Words options_of(const Verb& verb, const Words& words) {
   return options;
 }
 
-/// What is wrong with the first option that the command does not have, with the nearest one that
-/// it has; empty if it has them all.
+/// Returns an error for the first option that the command does not have, with the nearest existing
+/// one; empty if all exist.
 std::string unknown_option(const Verb& verb, const Words& options, bool at_top) {
   Words own{"--help", "-h"}, accepted;
   if (at_top) own.emplace_back("--version");
@@ -209,7 +209,8 @@ bool has(const Words& options, const char* name) {
 
 bool asks_for_help(const Words& options) { return has(options, "--help") || has(options, "-h"); }
 
-/// What CLI11 does not state as well; empty: nothing.
+/// Returns an error message for mistakes that CLI11 would report less clearly; empty if there is
+/// none.
 std::string complaint_about(const Found& found, const Words& options, const Program& program) {
   if (!found.wrong.empty()) return found.wrong;
   if (const std::string wrong = unknown_option(*found.verb, options, found.path == program.name);
@@ -357,7 +358,7 @@ void print_help(const Program& program, const Found& found, std::ostream& out, i
   found.path == program.name ? page.program(program) : page.command(found);
 }
 
-/// Fills the targets; the exit status.
+/// Parses the words into the targets of the arguments. Returns the exit status.
 int parse(const Found& found, const Words& options) {
   CLI::App cli;
   for (const Argument& a : found.verb->arguments) check(*bind(cli, a), a);

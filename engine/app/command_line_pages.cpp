@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is written from the table of commands: the manual page, completion of bash and zsh, JSON.
+// Writes the manual page, the completion of bash and zsh, and JSON from the table of commands.
 #include <algorithm>
 #include <ostream>
 
@@ -10,7 +10,7 @@ namespace nonio::app {
 
 namespace {
 
-/// Every verb that can be run or has verbs below it, with the words that lead to it.
+/// Calls `visit` for every command and group, with the words that denote it.
 template <class Visit>
 void each(const std::vector<Verb>& verbs, const std::string& path, const Visit& visit) {
   for (const Verb& v : verbs) {
@@ -55,7 +55,7 @@ void write_roff_examples(std::ostream& out, const std::vector<std::string>& exam
   out << ".fi\n";
 }
 
-/// Paragraphs of a footer; lines that begin with a space stay as they are.
+/// Writes the paragraphs of a footer; lines that begin with a space are kept unchanged.
 void write_roff_paragraphs(std::ostream& out, const std::string& text) {
   if (!text.empty()) out << ".PP\n" << roff(replaced(text, '\n', "\n.br\n")) << "\n";
 }
@@ -76,7 +76,7 @@ std::string in_words(const std::vector<std::string>& words) {
   return out;
 }
 
-/// What bash offers in the place of a value of the argument.
+/// Returns the options of compgen for the values that bash offers for the argument.
 std::string bash_values(const Argument& a) {
   const auto& words = a.choices.empty() ? a.offers : a.choices;
   if (!words.empty()) return "-W " + in_single_quotes(in_words(words));

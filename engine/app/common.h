@@ -11,39 +11,40 @@
 #include "command_line.h"
 #include "nonio/sdk/error.h"
 
-/// What the verbs share.
+/// Options that all commands have.
 namespace nonio::app {
 
 struct Common {
   std::vector<std::string> plugin_paths, template_paths;
   bool json = false, quiet = false;
 
-  /// Given on the command line, then from the environment, then in the folder of the program.
+  /// Returns the folders given on the command line, then those of the environment, then that of the
+  /// program.
   std::vector<std::filesystem::path> plugin_folders() const;
   std::vector<std::filesystem::path> template_folders() const;
   static std::filesystem::path own_plugins();
 };
 
-/// --plugin-path, --json, --quiet.
+/// Returns the arguments --plugin-path, --json and --quiet.
 std::vector<Argument> common_arguments(Common& common);
-/// --templates.
+/// Returns the argument --templates.
 Argument templates_argument(Common& common);
-/// --set NAME=VALUE; `help` states about what.
+/// Returns the argument --set NAME=VALUE; `help`: its description.
 Argument settings_argument(std::vector<std::string>& settings, std::string help);
-/// {"NAME", "VALUE"} of each --set.
+/// Parses the values of --set into pairs of NAME and VALUE.
 Expected<std::map<std::string, std::string>> settings_of(const std::vector<std::string>& given);
 
-/// On stdout with a line feed; bytes that are not UTF-8 are replaced. `indent` -1: on one line.
+/// Prints the JSON on stdout with a line feed; bytes that are not UTF-8 are replaced. `indent` -1:
+/// on one line.
 void print_json(const nlohmann::ordered_json& json, int indent = 1);
 
-/// YYYY-MM-DD, of the local clock.
+/// Returns the date of the local clock, YYYY-MM-DD.
 std::string today();
-/// YYYY-MM-DD, a day that is in the calendar.
+/// Whether the text is an existing date, YYYY-MM-DD.
 bool is_day(const std::string& text);
 
 using reading::text_of;
-/// "nonio run: ..." on stderr, with the words of the command as they were typed; returns the
-/// exit status.
+/// Prints "nonio run: ..." on stderr, with the words of the command as typed. Returns `status`.
 int complain(const std::string& message, int status = exit_usage);
 
 }  // namespace nonio::app

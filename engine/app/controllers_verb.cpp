@@ -37,7 +37,8 @@ const char* to_text(ControlTable::Confidence c) {
                                                    : "unsure";
 }
 
-/// Of the sign, if the declaration states it.
+/// Returns the statement about the sign of a control's table; null if the declaration contains
+/// none.
 const ControlTable::Fact* sign_fact(const ControlTable& t) {
   for (const ControlTable::Fact& f : t.facts)
     if (f.id == "sign") return &f;

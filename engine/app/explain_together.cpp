@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t most_candidates = 5;
 
-/// The campaigns at or below a folder, in the order of their paths. Links are not followed.
+/// Returns the campaigns at or below a folder, sorted by path. Links are not followed.
 std::vector<fs::path> campaigns_in(const fs::path& folder) {
   std::error_code error;
   if (fs::exists(folder / config::manifest_name, error)) return {folder};
@@ -84,7 +84,7 @@ class ExplainTogether {
     if (!common_.quiet) complain(text);
   }
 
-  /// Campaigns of one folder share their plugins and templates.
+  /// Opens a campaign; campaigns of one folder share their plugins and templates.
   int open(const fs::path& folder) {
     const fs::path whole = fs::weakly_canonical(folder);
     if (!seen_.insert(whole.string()).second) return exit_done;
@@ -104,7 +104,7 @@ class ExplainTogether {
       error.message = folder.string() + ": " + error.message;
       complain(text_of(errors_.emplace_back(std::move(error))));
     }
-    if (!read->manifest) return exit_done;  // one bad campaign does not stop the others
+    if (!read->manifest) return exit_done;  // a campaign with an error does not stop the others
     const std::string& id = read->manifest->campaign.id;
     const auto [known, is_new] = folder_of_.emplace(id, folder.string());
     if (!is_new)
@@ -166,10 +166,11 @@ class ExplainTogether {
   const Common& common_;
   std::uint64_t seed_;
   std::unique_ptr<reading::Workplace> place_;
-  std::vector<std::unique_ptr<reading::Workplace>> earlier_;  ///< their effects are in use
+  std::vector<std::unique_ptr<reading::Workplace>> earlier_;  ///< kept because their effects are in
+                                                              ///< use
   fs::path parent_;
   std::set<std::string> seen_;
-  std::map<std::string, std::string> folder_of_;  ///< of an id
+  std::map<std::string, std::string> folder_of_;  ///< folder by id
   std::vector<std::unique_ptr<reading::ReadCampaign>> read_;
   std::vector<Error> errors_;
   std::size_t passed_over_ = 0;

@@ -9,17 +9,17 @@
 
 namespace nonio::app {
 
-/// Which campaigns `model explain` takes together.
+/// Campaigns that `model explain` fits together.
 struct TogetherOptions {
-  std::vector<std::string> folders;  ///< of campaigns, or with campaigns below them
+  std::vector<std::string> folders;  ///< folders of campaigns, or folders that contain campaigns
   std::string machine;               ///< asset, serial number or model; empty: all
   std::string since, until;          ///< YYYY-MM-DD; empty: no limit
 };
 
-/// Whether it is one campaign and nothing else is asked for.
+/// Whether only one campaign is given, without further conditions.
 bool is_single(const TogetherOptions& options);
 
-/// Fits the campaigns together and prints what they show.
+/// Fits the campaigns together and prints the result. Returns the exit status.
 int explain_together(const TogetherOptions& options, const Common& common, std::uint64_t seed);
 
 }  // namespace nonio::app

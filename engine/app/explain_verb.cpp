@@ -14,11 +14,11 @@ namespace nonio::app {
 
 namespace {
 
-constexpr std::size_t most_steps = 24;  // for each part
+constexpr std::size_t most_steps = 24;  // added effects per part
 
 struct ExplainOptions {
   TogetherOptions together;
-  std::string folder;  ///< of the one campaign
+  std::string folder;  ///< folder of the campaign
   bool automatic = false;
   bool what_if = false, all = false, library = false;
   std::uint64_t seed = 1;
@@ -63,7 +63,7 @@ class Explain {
     }
   }
 
-  /// A model that the run does not fit, because the analyses are listed without it.
+  /// Warns if the run would not fit the model, because the listed analyses do not include it.
   void warn_of_run() {
     const reading::Context& context = open_.place->context;
     const auto& own = open_.read.manifest->run.analyses;
@@ -91,7 +91,7 @@ class Explain {
     if (parts->empty())
       tell(text_of(errors_.emplace_back(modelling::nothing_to_compare(open_.read))));
     for (modelling::PartModel& part : *parts) {
-      // A part whose model is as it was is explained already.
+      // The explanation of a part with an unchanged model is reused.
       const auto known = std::find_if(before.begin(), before.end(), [&](const auto& one) {
         return one.part.part.name == part.part.name && one.part.names() == part.names();
       });
@@ -146,7 +146,7 @@ class Explain {
   std::optional<modelling::ModelWords> words_;
   std::vector<modelling::Explained> all_;
   std::vector<modelling::ModelStep> steps_;
-  std::optional<modelling::Compared> known_;  ///< the part that was changed, with its model
+  std::optional<modelling::Compared> known_;  ///< the changed part with its model
   std::vector<std::string> warnings_;
   std::vector<Error> errors_;
   bool failed_ = false;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `nonio export`: the results of campaigns as spreadsheets, or as the files of a run in folders.
+// Implements `nonio export`: writes the results of campaigns as spreadsheets, or the files of a run
+// into folders.
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -80,8 +81,8 @@ void print_list(const std::string& id, const fs::path& folder,
     std::cout << "  " << f.sha256 << "  " << f.size << "  " << f.name << "\n";
 }
 
-/// Every file in a folder as it was written, or nothing: what exists already has these bytes or
-/// stays.
+/// Writes all files into a folder, or none. An existing file must have the same bytes; it is never
+/// replaced.
 Expected<std::size_t> write_out(const fs::path& from, const fs::path& to,
                                 const std::vector<evaluation::RecordedFile>& files) {
   const std::string below = std::string(evaluation::last_good_name) + "/";
@@ -108,7 +109,8 @@ Expected<std::size_t> write_out(const fs::path& from, const fs::path& to,
   return good.size() + own.size();
 }
 
-/// False if something is damaged or in the way; the message names it.
+/// Exports one campaign. Returns false, after printing an error, if a file is damaged or another
+/// file is in its place.
 bool get_one(const GetWish& wish, const std::string& id, const Common& common) {
   fs::path folder;
   const auto files = files_of(wish, id, folder);
@@ -132,14 +134,14 @@ bool get_one(const GetWish& wish, const std::string& id, const Common& common) {
   return true;
 }
 
-/// What a person names: a campaign, its results, or with --out an id.
+/// Returns the folder that an argument denotes: a campaign, its results, or with --out an id.
 fs::path named(const GetWish& wish, const std::string& id) {
   return wish.out.empty() || what_holds(results_at(id)) != Holds::nothing
              ? results_at(id)
              : storage::results_folder(wish.out, id);
 }
 
-/// The folders of the campaigns whose spreadsheets are wanted.
+/// Returns the folders of the campaigns that spreadsheets are requested for.
 Expected<std::vector<fs::path>> sources_of(const GetWish& wish) {
   std::vector<fs::path> out;
   const auto take_run = [&](const std::string& run) {
@@ -164,7 +166,8 @@ Expected<std::vector<fs::path>> sources_of(const GetWish& wish) {
   return out;
 }
 
-/// The name of the spreadsheet in its folder. The same bytes may be there, other ones stay.
+/// Writes a campaign's spreadsheet and returns its file name. An existing file with the same bytes
+/// is accepted; another one is an error.
 Expected<std::string> export_one(const fs::path& folder, const GetWish& wish,
                                  const Common& common) {
   NONIO_TRY(const auto shown, what_holds(folder) == Holds::campaign
@@ -226,7 +229,8 @@ int get(const GetWish& wish, const Common& common) {
   const auto ids = ids_of(wish);
   if (!ids) return complain(ids.error().message);
   std::optional<batch::OutputLock> lock;
-  if (!wish.list && wish.to.empty()) {  // the folders count from then on
+  // Results in folders take precedence over the pack from then on.
+  if (!wish.list && wish.to.empty()) {
     auto taken = batch::OutputLock::take(wish.out);
     if (!taken) return complain(taken.error().message);
     lock.emplace(std::move(*taken));

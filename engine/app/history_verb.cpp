@@ -25,7 +25,7 @@ namespace nonio::app {
 
 namespace {
 
-/// What the history is printed with: words of site.toml and terminal.toml, and columns.
+/// Words of site.toml and terminal.toml, and the number of columns, for printing a history.
 struct HistoryWords {
   const reports::Wording& words;
   std::size_t width;
@@ -38,7 +38,7 @@ using reports::HistorySeries;
 constexpr std::size_t least_bar = 15, most_bar = 41;
 constexpr double twice = 2.0;  // U is twice the standard uncertainty
 
-/// Numbers of one series as they are printed.
+/// Formats the numbers of one series.
 class Numbers {
  public:
   Numbers(const HistorySeries& s, std::string unit, std::string language)
@@ -54,7 +54,8 @@ class Numbers {
                      language_);
   }
 
-  /// "-4.35 ± 0.27"; of a scatter "0.48 (0.35 to 0.66)", with both ends of the interval.
+  /// Returns value and U, for example "-4.35 ± 0.27"; for a scatter "0.48 (0.35 to 0.66)" with both
+  /// ends of the interval.
   std::string value(double si, double u, const reports::Wording& words) const {
     if (is_log_) return reports::scatter_text(words, si, u);
     const double scale = unit_of(quantity_).per_si;
@@ -62,14 +63,15 @@ class Numbers {
     return rounded ? localised(rounded->value + " ± " + rounded->U, language_) : number(si);
   }
 
-  /// U of comparison, rounded as the value; of a scatter it is that of the value.
+  /// Returns U for comparing campaigns, rounded like the value; empty for a scatter, for which it
+  /// equals U of the value.
   std::string comparison(double si, double u) const {
     const double scale = unit_of(quantity_).per_si;
     const auto rounded = rounded_result(si * scale, twice * u * scale);
     return is_log_ || !rounded ? "" : localised(rounded->U, language_);
   }
 
-  /// A difference of two values: of a scatter the factor between them.
+  /// Returns the difference of two values; for a scatter, the factor between them.
   std::string difference(double si, double u, const reports::Wording& words) const {
     if (!is_log_) return value(si, u, words) + blank_unit();
     return reports::factor_text(words, si, u);
@@ -86,7 +88,8 @@ class Numbers {
   std::string unit_, language_;
 };
 
-/// A scatter is followed without a unit; it has that of the deviations of its axis.
+/// Returns the printed unit of a series. A scatter is followed as a logarithm without a unit; it is
+/// printed in the unit of the deviations of its axis.
 std::string unit_of_series(const reports::MachineHistory& machine, const HistorySeries& s) {
   if (!reports::is_log_of_scatter(s.quantity)) return std::string(unit_of(s.unit).symbol);
   bool is_rotary = config::rotary_by_name(s.axis);
@@ -152,7 +155,8 @@ class SeriesChart {
   }
 
  private:
-  static constexpr std::size_t before_state = 14;  // two blanks, a day, two blanks
+  // Columns before the state: two blanks, a day, two blanks.
+  static constexpr std::size_t before_state = 14;
 
   std::string line(const std::string& text) const { return wrapped(text, 2, width_, 2); }
 
@@ -209,13 +213,14 @@ class SeriesChart {
                                 : " (" + words_.get_or("site.not_joined." + p.why_not, p.why_not) +
                                       ")",
                       campaign = printable(p.campaign) + why;
-    // A long name goes below its bar.
+    // A long name is printed below its bar.
     if (columns_of(out) + 2 + columns_of(campaign) <= width_) return out + "  " + campaign + "\n";
     out.erase(out.find_last_not_of(' ') + 1);
     return out + "\n" + wrapped(campaign, before_state, width_);
   }
 
-  /// As found and as left are one campaign: a change follows the right one of them.
+  /// Whether the change is printed after this point, if readings as found and as left of one
+  /// campaign follow each other.
   bool is_last_of(std::size_t i, const HistoryChange& c) const {
     const bool left_follows = i + 1 < points_.size() && points_[i + 1].campaign == c.after_campaign;
     return (c.before_campaign == c.after_campaign) == left_follows;
@@ -284,7 +289,7 @@ class SeriesChart {
   Numbers numbers_;
   std::vector<HistoryPoint> points_;
   double low_ = 0.0, high_ = 0.0;
-  std::size_t states_ = 0, values_ = 0, bar_ = most_bar;  // columns
+  std::size_t states_ = 0, values_ = 0, bar_ = most_bar;  // widths in columns
 };
 
 std::size_t count_changes(const reports::MachineHistory& m, bool undeclared) {
@@ -294,7 +299,8 @@ std::size_t count_changes(const reports::MachineHistory& m, bool undeclared) {
   return n;
 }
 
-/// One line per machine: how many quantities are followed, what changed, when it is due.
+/// Returns a table with one line per machine: number of followed quantities, of changes, of changes
+/// with a known cause, and the due date.
 std::string machines_table(const reports::SiteHistory& site, const HistoryWords& with) {
   const reports::Wording& words = with.words;
   std::vector<std::array<std::string, 5>> rows{
@@ -310,7 +316,7 @@ std::string machines_table(const reports::SiteHistory& site, const HistoryWords&
       widths[i] = std::max(widths[i], columns_of(row[i]) + 2);
   std::size_t others = 0;
   for (std::size_t i = 1; i < widths.size(); ++i) others += widths[i];
-  // A longer name has a line of its own.
+  // A name that is longer than its column gets a line of its own.
   const std::size_t names = std::min(widths[0], with.width > others ? with.width - others : 0);
   std::string out;
   for (const auto& row : rows) {
@@ -323,9 +329,10 @@ std::string machines_table(const reports::SiteHistory& site, const HistoryWords&
   return out;
 }
 
-/// All series of a machine, one line per campaign with a bar of value ± U; between them changes and
-/// events, below them slope, detection limit and forecast. The scatter of the readings is followed
-/// as its logarithm and printed as a scatter, its changes as factors.
+/// Returns the charts of all series of a machine. Each campaign has one line with a bar of value ±
+/// U; changes and events are between them; slope, detection limit and forecast are below. The
+/// scatter of the readings is followed as a logarithm and printed as a scatter, its changes as
+/// factors.
 std::string machine_chart(const reports::MachineHistory& machine, const HistoryWords& with) {
   std::string name = printable(machine.id);
   for (const std::string* more :
@@ -347,7 +354,7 @@ struct HistoryWish {
   std::string out, machine, axis, quantity;
 };
 
-/// Leaves what is requested.
+/// Removes all machines and series that are not requested.
 void keep(const HistoryWish& wish, const std::string& machine, reports::SiteHistory& site) {
   if (!machine.empty())
     std::erase_if(site.machines, [&](const auto& m) { return m.id != machine; });

@@ -21,7 +21,7 @@ struct ImportArguments {
   bool partial = false, dry_run = false;
 };
 
-/// A file if it ends in .toml, else the pattern itself.
+/// Reads the rule from a file if its name ends in .toml; otherwise makes it from the pattern.
 config::Checked<importing::ImportRule> rule_of(const ImportArguments& arguments) {
   if (!arguments.rule.ends_with(".toml")) return importing::import_rule_of_pattern(arguments.rule);
   const auto text = storage::read_file(arguments.rule);
@@ -93,7 +93,8 @@ void print(const importing::ImportReport& report) {
       std::cout << "  belongs to no machine, so it has no history: state --asset, or --maker and "
                    "--serial\n";
     for (const importing::ImportedFile& f : c.files) {
-      if (!f.same_as.empty()) {  // reported once, and nothing more of this file
+      // A copy is reported once, without further messages about this file.
+      if (!f.same_as.empty()) {
         std::cout << "  " << f.file << ": " << f.lacks.front() << "\n";
         continue;
       }

@@ -6,22 +6,23 @@
 
 #include "table_common.h"
 
-/// What `table insert` and `table session` share.
+/// Functions shared by `table insert` and `table session`.
 namespace nonio::app {
 
-/// The axis that is given, or the only one that was measured.
+/// Returns the given axis, or the only one that was measured.
 Expected<std::string> merged_axis(const std::string& axis, const Campaign& campaign);
 
-/// That the day of loading is not before that of the measurement.
+/// Returns an error if the day of loading is before that of the measurement.
 Expected<void> check_day(const std::string& loaded, const std::string& day);
 
-/// What the control had while the axis was measured, where only the backup states it, and what is
-/// loaded from this day on. Gives the name of the record; nothing without a day.
+/// Enters into the record of the machine the state of the control during the measurement, if only
+/// the backup states it, and the table loaded on this day. Returns the name of the record; empty
+/// without a day.
 Expected<std::string> record_loading(const tables::MergedTables& merged, const Loaded& present,
                                      const Settings& options, const std::string& axis,
                                      const std::string& loaded, const OpenCampaign& open);
 
-/// That the axis was measured again after this campaign; none: it was not.
+/// Returns a finding if the axis was measured again after this campaign; otherwise none.
 std::vector<Finding> older_measurement(const OpenCampaign& open, const std::string& axis);
 
 }  // namespace nonio::app

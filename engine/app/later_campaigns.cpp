@@ -13,7 +13,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// By the record of the site, else by asset or maker and serial.
+/// Whether two campaigns name the same machine, by the record of the site, otherwise by asset or by
+/// maker and serial.
 bool is_same_machine(const config::MachineRecords& records, const Machine& a, const Machine& b) {
   const auto of_a = config::record_of(records, a), of_b = config::record_of(records, b);
   if (of_a && of_b && *of_a != nullptr && *of_a == *of_b) return true;

@@ -9,15 +9,15 @@
 
 namespace nonio::app {
 
-/// A campaign of the site that measured an axis of the same machine.
+/// A campaign of the site with an axis of the same machine.
 struct LaterCampaign {
   std::filesystem::path folder;
   std::string id, date, purpose;
 };
 
-/// The campaigns of this machine and axis with readings and a later date, or of the same date with
-/// the purpose "check"; by date. Of a site
-/// without site.toml and machines/ only those in the same folder. Manifests that cannot be read are left out.
+/// Returns the campaigns of this machine and axis with readings and a later date, or with the same
+/// date and the purpose "check"; sorted by date. Without site.toml and machines/, only campaigns in
+/// the same folder are searched. Manifests that cannot be read are skipped.
 std::vector<LaterCampaign> later_campaigns(const OpenCampaign& open, const std::string& axis);
 
 }  // namespace nonio::app

@@ -92,7 +92,7 @@ int event(EventWish& wish, const Common& common) {
   return exit_done;
 }
 
-/// False if it is not a number.
+/// Parses an optional number; an empty text leaves `into` unchanged. False if it is not a number.
 bool take_number(const std::string& text, std::optional<double>& into) {
   if (text.empty()) return true;
   double x = 0.0;
@@ -107,7 +107,7 @@ void put_number(Json& json, const char* name, const std::optional<double>& value
   if (value) json[name] = *value;
 }
 
-/// Those that count, in the order of the file.
+/// Prints the acknowledgements in force, in the order of the file.
 int list_acknowledged(const AckWish& wish, const Common& common) {
   const auto logs = config::read_site_logs(wish.site);
   if (!logs) return refuse_all(logs.error());

@@ -13,7 +13,8 @@
 
 namespace {
 
-/// The process that the user starts has no plugin code, whatever the command does.
+/// Makes every command start a separate process for plugins, so that the process that the user
+/// starts contains no plugin code.
 nonio::app::Verb apart(nonio::app::Verb verb) {
   for (nonio::app::Verb& part : verb.verbs) part = apart(std::move(part));
   if (verb.run)
@@ -24,8 +25,9 @@ nonio::app::Verb apart(nonio::app::Verb verb) {
   return verb;
 }
 
-/// Who reads our output and goes away is an error of `write`, not the end of a process that stores results. Libraries of
-/// plugins (Poco) set the same mask when they are loaded: set before, that is no change of theirs.
+/// Blocks SIGPIPE, so that a closed output is an error of `write` and does not end a process that
+/// stores results. It is blocked before plugins are loaded, because their libraries (Poco) set the
+/// same mask, which would otherwise be reported as a change by the plugin.
 void block_pipe_signal() {
   sigset_t pipe;
   ::sigemptyset(&pipe);
@@ -33,7 +35,8 @@ void block_pipe_signal() {
   ::pthread_sigmask(SIG_BLOCK, &pipe, nullptr);
 }
 
-/// What cannot be thrown further, out of a destructor or a library: with a word and a status.
+/// Called for exceptions that cannot be propagated, out of a destructor or a library: prints a
+/// message and ends the process.
 [[noreturn]] void give_up() noexcept {
   constexpr std::string_view words = "nonio: out of memory, or an unexpected error\n";
   [[maybe_unused]] const ssize_t n = ::write(STDERR_FILENO, words.data(), words.size());
@@ -42,7 +45,8 @@ void block_pipe_signal() {
 
 using namespace nonio::app;
 
-/// Former names. Those of the contract's table are not announced: scripts go on using them.
+/// Former names of commands. Those that the contract lists are accepted without a message, because
+/// scripts use them.
 std::vector<Alias> former_names() {
   return {{"compare", "model compare", false},
           {"explain", "model explain", false},
@@ -74,7 +78,7 @@ std::vector<Alias> former_names() {
           {"open", "show --open"}};
 }
 
-/// What people type who know other programs.
+/// Words of other programs, and the command for each.
 std::vector<std::pair<std::string, std::string>> synonyms() {
   return {{"report", "show"},
           {"view", "show"},
@@ -154,8 +158,9 @@ std::vector<Verb> table_of_commands(Common& common, const Program& program) {
 }  // namespace
 
 #ifdef NONIO_SANITIZED
-/// The search for leaks stops its own process, which one with plugin code is not permitted to do: it would wait for ever.
-/// The programs of the unit tests search.
+/// Turns off the leak sanitizer: it would have to stop its own process, which a confined process
+/// with plugin code must not do, and would wait for ever. The programs of the unit tests check for
+/// leaks.
 // NOLINTNEXTLINE(bugprone-reserved-identifier): the sanitizer's name
 extern "C" int __lsan_is_turned_off() { return 1; }
 #endif

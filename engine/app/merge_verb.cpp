@@ -120,7 +120,7 @@ int tell_merged(const tables::MergedTables& merged, const Loaded& present, const
   return exit_done;
 }
 
-/// Number with a point or a decimal comma, in mm or deg, or none.
+/// Parses a backlash value in mm or deg, with a point or a decimal comma, or "none" (0).
 Expected<double> backlash_of(std::string text) {
   if (text == "none") return 0.0;
   std::replace(text.begin(), text.end(), ',', '.');
@@ -131,7 +131,7 @@ Expected<double> backlash_of(std::string text) {
   return fail("expected the backlash value in mm or deg, or none, found \"" + text + "\"");
 }
 
-/// Asks a person for the state that nothing states. An error if there is no answer.
+/// Asks the user for the state of the control that no file states. An error if there is no answer.
 Expected<void> ask_for_state(OpenCampaign& open, const Controller& control,
                              const std::string& name) {
   const config::TerminalWords say(open.place->context.templates, open.place->context.site.language);

@@ -7,21 +7,22 @@
 
 #include "nonio/sdk/campaign.h"
 
-/// The files that `nonio new` writes, as texts.
+/// Makes the texts of the files that `nonio new` writes.
 namespace nonio::app {
 
 struct NewAxis {
   Axis axis;
-  std::string file;   ///< in the campaign's folder
-  std::string bytes;  ///< of the file; empty: example readings
+  std::string file;   ///< name in the campaign's folder
+  std::string bytes;  ///< content; empty: example readings are made
   bool example() const { return bytes.empty(); }
 };
 
 struct NewCampaign {
   std::string id, customer, operator_name, date, maker, machine, serial, asset, control, instrument;
   std::vector<NewAxis> axes;
-  std::string reader{};                ///< of all files, by `columns`; empty: by their content
-  std::vector<std::string> columns{};  ///< names of columns as a person stated them
+  std::string reader{};                ///< reader of all files, determined by `columns`; empty: by
+                                       ///< their content
+  std::vector<std::string> columns{};  ///< entries of option `columns` as stated by a person
   bool example() const;
 };
 
@@ -34,21 +35,21 @@ struct NewMachine {
   std::vector<Axis> axes;
 };
 
-/// The record of a machine; keys without a known value are comments.
+/// Returns the record of a machine; keys without a known value are comments.
 std::string machine_text(const NewMachine& machine);
 std::string site_text(const NewSite& site);
 std::string campaign_text(const NewCampaign& campaign);
 
-/// Writes a value in place of the example that a text offers for a key as a comment:
-/// "instrument.serial". A key with a quoted example gets a quoted value. False if the text offers
-/// no such key.
+/// Replaces the example that a text offers for a key as a comment, such as "instrument.serial", by
+/// a value. A key with a quoted example gets a quoted value. Returns false if the text offers no
+/// such key.
 bool set_offered(std::string& text, const std::string& key, const std::string& value);
 
-/// CSV of invented readings, marked as such: 5 runs, both directions, over the travel. They differ
-/// for each campaign and axis, because equal readings of two campaigns are a finding.
+/// Returns invented readings as CSV, marked as examples: 5 runs in both directions over the travel.
+/// They differ for each campaign and axis, because equal readings of two campaigns are a finding.
 std::string example_readings(const Axis& axis, const std::string& campaign);
 
-/// The nearest id that a campaign may have: "Rossi FP12" gives "rossi-fp12".
+/// Returns the nearest valid id of a campaign: "Rossi FP12" gives "rossi-fp12".
 std::string valid_id(const std::string& name);
 
 }  // namespace nonio::app

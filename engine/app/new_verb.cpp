@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `nonio new`: a site or a campaign that runs at once.
+// Implements `nonio new`: makes a site or a campaign that can be evaluated at once.
 #include <unistd.h>
 
 #include <algorithm>
@@ -35,14 +35,14 @@ struct NewWish {
   bool empty = false, defaults = false;
 };
 
-/// What was written, folder by folder.
+/// A new folder and its files.
 struct NewFiles {
   fs::path folder;
   std::vector<Artifact> files;
 };
 
-/// The nearest folder at or above this one that contains a site.toml, or another campaign next to
-/// the new one.
+/// Returns the nearest folder above this one that contains a site.toml; otherwise the parent
+/// folder, if it contains another campaign; otherwise none.
 std::optional<fs::path> site_above(const fs::path& folder) {
   std::error_code error;
   for (fs::path up = folder.parent_path(); !up.empty(); up = up.parent_path()) {
@@ -54,10 +54,11 @@ std::optional<fs::path> site_above(const fs::path& folder) {
   return std::nullopt;
 }
 
-/// The folder of the site's campaign that has the id; empty if none has.
+/// Returns the folder of the site's campaign with this id; empty if there is none.
 fs::path holder_of(const std::string& id, const fs::path& site) {
   std::error_code error;
-  if (!fs::exists(site / config::site_name, error)) return {};  // it may be a home folder
+  // Without site.toml it may be a home folder, which is not searched.
+  if (!fs::exists(site / config::site_name, error)) return {};
   fs::recursive_directory_iterator it(site, fs::directory_options::skip_permission_denied, error);
   for (; !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
     if (it->path().filename().string().starts_with('.')) it.disable_recursion_pending();
@@ -109,7 +110,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// "X=path.csv": the axis, which may be new, gets the file.
+/// Parses "X=path.csv" and assigns the file to the axis, which is added if it is new.
 Expected<void> take_file(const std::string& text, std::vector<NewAxis>& axes) {
   const std::size_t equals = text.find('=');
   if (equals == 0 || equals == std::string::npos || equals + 1 == text.size())
@@ -132,13 +133,14 @@ Expected<void> take_file(const std::string& text, std::vector<NewAxis>& axes) {
   return {};
 }
 
-/// A key of a new file that is prompted for, or given with --set.
+/// A key of a new file whose value is asked for or given with --set.
 struct Setting {
   const char *key, *question;
 };
 
-/// What a certificate requires of a site, and of a campaign whose site issues certificates. The
-/// contributions to the uncertainty are not among them: they are judged by a person, in the file.
+/// Keys that a certificate requires of a site, and of a campaign of a site that issues
+/// certificates. Contributions to the uncertainty are not included, because a person has to judge
+/// them in the file.
 constexpr Setting for_certificates = {"laboratory.authoriser",
                                       "Person who approves certificates (empty: none are issued)"};
 constexpr Setting signing_settings[] = {
@@ -163,7 +165,7 @@ Expected<void> ask_for(const Setting& one, const std::string& otherwise, Values&
   return one_line(one.key, values[one.key]);
 }
 
-/// Into the text that offers these keys.
+/// Sets these keys in the text that offers them.
 Expected<void> set_all(const Values& values, std::string& text) {
   for (const auto& [key, value] : values)
     if (!value.empty() && !set_offered(text, key, value))
@@ -172,7 +174,7 @@ Expected<void> set_all(const Values& values, std::string& text) {
   return {};
 }
 
-/// The last campaign of a site by its date: its values are defaults of the prompts.
+/// Returns the last campaign of a site by date; its values are the defaults of the questions.
 std::optional<Campaign> last_campaign(const fs::path& site) {
   std::optional<Campaign> last;
   std::error_code error;
@@ -191,7 +193,7 @@ std::string um_text(const std::optional<double>& m) {
   return text;
 }
 
-/// Of the instrument of the last campaign, if it is the same model.
+/// Returns the keys of the last campaign's instrument, if it is the same model.
 Values known_instrument(const std::optional<Campaign>& last, const std::string& model) {
   if (!last || last->instrument.model.empty() || last->instrument.model != model) return {};
   const Instrument& i = last->instrument;
@@ -203,7 +205,7 @@ Values known_instrument(const std::optional<Campaign>& last, const std::string& 
           {"instrument.U_per_m_um", um_text(i.U_per_length)}};
 }
 
-/// Prompted only if the site issues certificates.
+/// Asks for the keys that a certificate requires, only if the site issues certificates.
 Expected<void> ask_for_certificate(const NewCampaign& c, const fs::path& site, Values& values,
                                    Questions& ask) {
   std::string digest;
@@ -221,7 +223,7 @@ Expected<void> ask_for_certificate(const NewCampaign& c, const fs::path& site, V
   return {};
 }
 
-/// From the folder's name, if the command line does not state it.
+/// Returns the id of the new campaign; the default is made from the folder's name.
 Expected<std::string> id_of(const NewWish& wish, const fs::path& folder, Questions& ask) {
   std::string id = wish.id, near = valid_id(folder.filename().string());
   if (!config::is_campaign_id(near)) near = "campaign-" + near;
@@ -239,7 +241,7 @@ Expected<std::string> id_of(const NewWish& wish, const fs::path& folder, Questio
   return id;
 }
 
-/// Axes with their files; one without a file gets an example.
+/// Returns the axes with their files; an axis without a file gets example readings.
 Expected<std::vector<NewAxis>> axes_with_files(const NewWish& wish, Questions& ask) {
   std::vector<std::string> texts = wish.axes, files = wish.files;
   const bool asks = texts.empty() && files.empty();
@@ -269,7 +271,7 @@ Expected<std::vector<NewAxis>> axes_with_files(const NewWish& wish, Questions& a
   return axes;
 }
 
-/// What the command line states, and the answers to the rest.
+/// Returns the values of the command line, and asks for the others.
 Expected<NewCampaign> settled(const NewWish& wish, const fs::path& folder, Questions& ask) {
   NewCampaign c{.id = {},
                 .customer = wish.customer,
@@ -305,7 +307,7 @@ Expected<NewCampaign> settled(const NewWish& wish, const fs::path& folder, Quest
   return c;
 }
 
-/// The reader of files whose columns are stated.
+/// Determines the reader of files whose columns are stated.
 Expected<void> take_columns(const NewWish& wish, NewCampaign& c, const Common& common) {
   if (wish.columns.empty()) return {};
   for (const std::string& column : wish.columns)
@@ -330,11 +332,13 @@ std::vector<Artifact> files_of(const NewCampaign& c, std::string manifest) {
   std::vector<Artifact> files;
   for (const NewAxis& a : c.axes)
     files.push_back({a.file, a.example() ? example_readings(a.axis, c.id) : a.bytes});
-  files.push_back({config::manifest_name, std::move(manifest)});  // last: it shows the rest
+  // Last, because its presence makes the folder a campaign.
+  files.push_back({config::manifest_name, std::move(manifest)});
   return files;
 }
 
-/// Errors of the files, which are evaluated as in a run, with the settings of the site.
+/// Returns the errors of the files, which are evaluated in a temporary folder as in a run, with the
+/// settings of the site.
 std::vector<Error> mistakes(const std::vector<Artifact>& files, const std::string& id,
                             const std::optional<fs::path>& site, const Common& common) {
   const storage::ScratchFolder trial("new");
@@ -352,7 +356,7 @@ std::vector<Error> mistakes(const std::vector<Artifact>& files, const std::strin
       .results.errors;
 }
 
-/// Whether something is in the way. An empty folder is not.
+/// Returns an error if the folder exists and is not empty; otherwise empty.
 std::string in_the_way(const fs::path& folder) {
   std::error_code error;
   if (!fs::exists(fs::symlink_status(folder, error))) return {};
@@ -383,12 +387,19 @@ int write_new(const std::vector<NewFiles>& all, const NewWish& wish, const std::
         << "The readings are an EXAMPLE: they were not measured. Put your own into the CSV.\n";
   if (what == "machine") return exit_done;
   const bool is_empty_site = what == "site" && !example;
-  std::cout << "Next:  nonio " << (is_empty_site ? "new campaign " : what == "site" ? "run " : "show ")
-            << wish.folder << (is_empty_site ? "/NAME\n" : what == "site" ? " --out out\n" : "\n");
+  std::cout << "Next:  nonio "
+            << (is_empty_site    ? "new campaign "
+                : what == "site" ? "run "
+                                 : "show ")
+            << wish.folder
+            << (is_empty_site    ? "/NAME\n"
+                : what == "site" ? " --out out\n"
+                                 : "\n");
   return exit_done;
 }
 
-/// Folders and files of the new campaign, evaluated once in memory: if that fails, nothing is written.
+/// Makes the files of the new campaign. They are evaluated once in a temporary folder; an error
+/// means that nothing is written.
 Expected<NewFiles> campaign_files(const NewWish& wish, const fs::path& folder,
                                   const std::optional<fs::path>& site, Questions& ask,
                                   bool& example, const Common& common) {
@@ -407,7 +418,8 @@ Expected<NewFiles> campaign_files(const NewWish& wish, const fs::path& folder,
   return out;
 }
 
-/// Who approves certificates and what signs them. With a key, campaigns get a certificate.
+/// Asks who approves certificates and which key signs them. With a key, campaigns get a
+/// certificate.
 Expected<void> settle_certificates(const fs::path& folder, Values& values, Questions& ask) {
   if (auto done = ask_for(for_certificates, "", values, ask); !done) return done;
   if (values[for_certificates.key].empty()) return {};
@@ -415,7 +427,7 @@ Expected<void> settle_certificates(const fs::path& folder, Values& values, Quest
     if (auto done = ask_for(one, "", values, ask); !done) return done;
     std::string& file = values[one.key];
     if (file.empty()) return {};
-    // As typed it is relative to where the command runs, in the file to the site.
+    // A typed path is relative to the current folder, in the file it is relative to the site.
     const fs::path path = fs::absolute(file).lexically_normal(),
                    below = path.lexically_relative(folder);
     file = below.empty() || below.string().starts_with("..") ? path.string() : below.string();
@@ -463,7 +475,7 @@ int new_campaign(const NewWish& wish, const fs::path& folder, const Common& comm
   return write_new({*campaign}, wish, "campaign", example, common);
 }
 
-/// SITE/machines/<asset>.toml.
+/// Writes the record SITE/machines/<asset>.toml.
 int new_machine(const NewWish& wish, const fs::path& path, const Common& common) {
   NewMachine machine{path.stem().string(), wish.maker, wish.machine, wish.serial, wish.control, {}};
   if (path.extension() != ".toml" || path.parent_path().filename() != config::machines_folder)

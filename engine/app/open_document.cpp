@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `nonio show --open`: the report of a campaign, or the summary of a run, on the desktop.
+// Implements `nonio show --open`: opens the report of a campaign, or the summary of a run, on the
+// desktop.
 #include <fcntl.h>
 #include <spawn.h>
 #include <unistd.h>
@@ -36,8 +37,8 @@ Expected<Json> json_file(const fs::path& path) {
   return json;
 }
 
-/// The report in the language that was requested; else a page; else the results
-/// themselves.
+/// Returns the PDF document of the results, a report first; otherwise an HTML page; otherwise
+/// results.json.
 Expected<fs::path> document_of(const fs::path& results) {
   NONIO_TRY(const auto json, json_file(results / evaluation::results_name));
   std::vector<std::string> files;
@@ -51,7 +52,8 @@ Expected<fs::path> document_of(const fs::path& results) {
   return results / evaluation::results_name;
 }
 
-/// The first campaign that requires action or has failed; with none, the summary.
+/// Returns the document of the first campaign that requires action or has failed; if there is none,
+/// the summary.
 Expected<fs::path> document_of_night(const fs::path& out, const Common& common) {
   NONIO_TRY(const auto summary, json_file(out / "summary.json"));
   std::string first;
@@ -86,7 +88,7 @@ Expected<fs::path> document(const OpenWish& wish, const Common& common) {
   return fail(holds_nothing(folder));
 }
 
-/// Why no window can be opened here; empty if one can.
+/// Returns why no window can be opened; empty if one can.
 std::string no_desktop() {
   if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr)
     return "there is no desktop here (neither DISPLAY nor WAYLAND_DISPLAY is set)";
@@ -97,7 +99,7 @@ std::string no_desktop() {
   return "xdg-open is not installed (Debian: xdg-utils)";
 }
 
-/// In a session of its own, so that it outlives this program and its terminal.
+/// Starts xdg-open in a session of its own, so that it outlives this program and its terminal.
 bool open_in_background(const std::string& path) {
   posix_spawn_file_actions_t files;
   posix_spawnattr_t attributes;

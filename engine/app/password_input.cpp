@@ -12,7 +12,7 @@ namespace nonio::app {
 
 namespace {
 
-/// The terminal does not show what is typed.
+/// Turns off the echo of the terminal during its lifetime.
 class Hidden {
  public:
   Hidden() {

@@ -7,8 +7,8 @@
 
 namespace nonio::app {
 
-/// A password from the terminal, which does not show it, or a line of standard input. `whose`: of
-/// the question.
+/// Reads a password from the terminal without echo, or a line from standard input. `whose`: the
+/// person named in the prompt.
 Expected<std::string> read_password(const std::string& whose);
 
 }  // namespace nonio::app

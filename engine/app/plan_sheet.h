@@ -12,17 +12,18 @@
 
 namespace nonio::app {
 
-/// --pdf FILE --language LANGUAGE: a plan on paper.
+/// Options --pdf FILE and --language LANGUAGE, for printing a plan.
 struct SheetWish {
   std::string file, language = "en";
   std::int64_t stops = 1;
 };
 std::vector<Argument> sheet_arguments(SheetWish&, Common&);
 
-/// Axes X and Y with travels from 0 on, in m.
+/// Returns a machine with axes X and Y and travels from 0 to x and y, in m.
 Machine rectangle(double x, double y);
 
-/// Writes the sheet of these rows, by the output plan-sheet with its options. Exit status.
+/// Writes the sheet of these rows by the output plan-sheet with its options. Returns the exit
+/// status.
 int write_sheet(const SheetWish&, const Machine&, const PointTable& rows,
                 std::map<std::string, std::string> options, const Common&);
 

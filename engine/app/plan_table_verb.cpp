@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The look-up table of right triples by the ratio of their legs, and for a machine's travels the
-// plan of each triple that fits, by what it costs.
+// Prints the table of right triples by the ratio of their legs, and for a machine's travels the
+// plan of each triple that fits, sorted by the time it takes.
 #include <unistd.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ struct TableWish {
   bool fits() const { return !x.empty() || !y.empty(); }
 };
 
-/// One row: a triple, and its plan where travels were given (an optional has GCC 12 warn in vain).
+/// A triple, and its plan if travels were given (with an optional, GCC 12 gives a false warning).
 struct TableRow {
   math::Triple triple;
   math::TriplePlan plan{};
@@ -129,7 +129,7 @@ storage::Json json_of(const TableRow& row) {
   return out;
 }
 
-/// A folder for each row: 01-56-33-65.
+/// Writes the part programs of each row into a folder such as 01-56-33-65. Returns the exit status.
 int write_row_programs(const std::vector<TableRow>& rows, const TableWish& wish,
                        const math::TripleRequest& w, const Common& common) {
   if (wish.control.empty()) return complain("part programs: --control is required");
@@ -161,7 +161,7 @@ int write_row_programs(const std::vector<TableRow>& rows, const TableWish& wish,
   return exit_done;
 }
 
-/// The rows as the sheet takes them: those of the planner, or the triples alone.
+/// Returns the rows for the sheet: those of the planner, or the triples alone.
 PointTable sheet_rows(const std::vector<TableRow>& rows) {
   std::vector<math::TriplePlan> plans;
   for (const TableRow& row : rows) {
@@ -169,7 +169,8 @@ PointTable sheet_rows(const std::vector<TableRow>& rows) {
     plans.back().a = row.triple.a, plans.back().b = row.triple.b, plans.back().c = row.triple.c;
   }
   PointTable table = math::triple_table(plans);
-  if (!rows.empty() && !rows.front().fits()) table.columns.resize(3);  // a, b, c
+  // Keep only the columns a, b, c.
+  if (!rows.empty() && !rows.front().fits()) table.columns.resize(3);
   return table;
 }
 

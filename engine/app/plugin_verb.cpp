@@ -20,7 +20,7 @@ struct CheckOptions {
   std::vector<std::string> cases;
 };
 
-/// What is printed of each check, and how many there were.
+/// Prints the checks of a plugin and counts them.
 class CheckReport {
  public:
   CheckReport(const CheckOptions& options, const Common& common)

@@ -6,9 +6,9 @@
 
 namespace nonio::app {
 
-/// Text from elsewhere as one line that a terminal shows and does not obey: control characters,
-/// marks that turn the direction of writing, invisible ones and what is no UTF-8 become \x1b or
-/// \u202e.
+/// Returns text from other sources as one line that is safe on a terminal: control characters,
+/// marks that change the direction of writing, invisible characters and invalid UTF-8 become \x1b
+/// or \u202e.
 std::string printable(std::string_view text);
 
 }  // namespace nonio::app

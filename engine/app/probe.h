@@ -8,7 +8,7 @@
 #include "campaign/tables/table_check.h"
 #include "campaign_verb.h"
 
-/// The sign probe of an axis, for the verbs that offer it.
+/// Options of commands that offer the sign probe of an axis.
 namespace nonio::app {
 
 struct ProbeWish {
@@ -17,16 +17,16 @@ struct ProbeWish {
   double feed = 1000.0;  ///< mm/min or deg/min
 };
 
-/// The readings without the tables that were active. An error where it is not known whether there
-/// were any: what the probe shows without a table would be wrong by them. `axis`: the only one that
-/// has to be known; empty: all.
+/// Returns the readings without the effect of the active tables. An error if it is unknown whether
+/// tables were active, because the probe's prediction for an axis without a table would be wrong.
+/// `axis`: the only axis that has to be known; empty: all.
 Expected<std::vector<Observations>> raw_readings(const OpenCampaign& open, const std::string& axis);
 
-/// The probe of one measurement, within the travel of its axis.
+/// Returns the sign probe of one measurement, within the travel of its axis.
 Expected<tables::SignProbe> probe_of(const OpenCampaign& open, std::size_t measurement,
                                      const std::vector<Observations>& raw);
 
-/// The part program of a probe, by the writer of all part programs.
+/// Returns the part program of a probe, made by the output for part programs.
 Expected<Artifact> program_of(const tables::SignProbe& probe, const Machine& machine,
                               const ProbeWish& wish,
                               const std::map<std::string, std::string>& given,

@@ -22,8 +22,8 @@ namespace {
 
 using storage::Json;
 
-/// The writer of part programs for a control of this name: heidenhain-tnc has that of heidenhain,
-/// a control without one of its own plain G-code.
+/// Returns the output for part programs of a control: that of its family (heidenhain for
+/// heidenhain-tnc), or gcode if there is none.
 std::string writer_for(const std::string& control, const loader::Plugins& plugins) {
   const std::string family = control.substr(0, control.find('-'));
   for (const Output& o : plugins.outputs())
@@ -31,14 +31,14 @@ std::string writer_for(const std::string& control, const loader::Plugins& plugin
   return "gcode";
 }
 
-/// Without a program in G-code the moves are printed on the terminal.
+/// Whether the control runs G-code; if not, the moves are printed on the terminal.
 bool runs_gcode(const std::string& control, const loader::Plugins& plugins) {
   for (const Controller& c : plugins.controllers())
     if (c.info.name == control) return c.table.runs_gcode;
   return true;
 }
 
-/// What options and the record of the machine state about its axes.
+/// Returns the statements of options and of the machine's record about its axes.
 Settings said_of_axes(const OpenCampaign& open) {
   for (const Controller& o : open.place->plugins.controllers())
     if (o.info.name == open.campaign().machine.control)
@@ -49,7 +49,8 @@ Settings said_of_axes(const OpenCampaign& open) {
   return {};
 }
 
-/// That the probe stays within the travel, as the manifest has it, and option axes.
+/// Returns an error if the probe leaves the travel of the axis, as stated in the manifest and in
+/// option axes.
 Expected<void> within_travel(const tables::SignProbe& p, const Axis* axis, const Settings& said) {
   const double unit = p.rotary ? deg_per_rad : 1e3;
   const char* const suffix = p.rotary ? "_deg" : "_mm";
@@ -125,14 +126,14 @@ Expected<Artifact> program_of(const tables::SignProbe& p, const Machine& machine
     return fail("control " + machine.control +
                 " runs no part programs in G-code: enter the moves by hand (run without --out), or "
                 "name a writer with --control");
-  // A zero offset that is active in the control would send the axis elsewhere.
+  // G53 is used because an active zero offset would shift the moves.
   const std::string control = w.control.empty() ? writer_for(machine.control, plugins) : w.control;
   if (control == "gcode" && !machine.control.empty()) settings.emplace("work_offset", "G53");
   auto files = planning::write_programs(plugins, control, with_axis, stops, settings);
   if (!files) return fail(files.error().front());
   Artifact& program = files->front();
   std::string ending = std::filesystem::path(program.name).extension().string();
-  if (ending == ".ngc") ending = ".nc";  // as these files have always been called
+  if (ending == ".ngc") ending = ".nc";  // file ending that earlier versions used
   if (ending == ".h") ending = ".H";
   program.name = "sign-probe-" + p.axis + ending;
   return std::move(program);

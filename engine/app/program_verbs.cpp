@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// help, version, completion: what the program reports of itself.
+// Implements the commands help, version and completion.
 #include <iostream>
 #include <memory>
 

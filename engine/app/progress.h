@@ -10,17 +10,17 @@
 
 namespace nonio::app {
 
-/// How a run shows what it does: a bar on stderr where that is a terminal, else a plain line for
-/// each campaign that failed; with --json one event per line on stdout; with --quiet only failures.
+/// Shows the progress of a run: a bar on stderr if that is a terminal, otherwise one line for each
+/// failed campaign; with --json one event per line on stdout; with --quiet only failures.
 class Progress {
  public:
   Progress(const Common& common, bool quiet, bool json);
   batch::RunEvents events();
-  /// English until the run has read site.toml.
+  /// Returns the words for output, in English until the run has read site.toml.
   const config::TerminalWords& words() const { return words_.get(); }
-  /// Ends the bar's line.
+  /// Ends the line of the bar.
   void end();
-  /// Names the campaigns that failed and were not done again.
+  /// Prints the campaigns that failed earlier and were not evaluated again.
   void still_failed(const batch::RunResult& run);
 
  private:

@@ -32,7 +32,7 @@ struct QueryColumn {
   bool number = false;
 };
 
-/// All of a point, under its names in CSV and JSON.
+/// Names of a point's members in CSV and JSON.
 constexpr auto query_columns = std::to_array<QueryColumn>({
     {"machine", &Point::machine},
     {"axis", &Point::axis},
@@ -107,7 +107,8 @@ void print_rows(const std::vector<std::vector<std::string>>& rows, const std::st
   }
 }
 
-/// Value and U as everywhere: U with two digits, the value to the same place.
+/// Returns value and U as printed everywhere: U with two digits, the value rounded to the same
+/// place.
 std::pair<std::string, std::string> shown_result(const Point& p) {
   const double value = std::strtod(p.value.c_str(), nullptr);
   const double U = std::strtod(p.expanded.c_str(), nullptr);
@@ -116,7 +117,8 @@ std::pair<std::string, std::string> shown_result(const Point& p) {
   return {short_text(value), ""};
 }
 
-/// What compares campaigns, with two digits; of values of analyses there is none.
+/// U for comparing campaigns (2 u_repeat), rounded to two digits; empty for values that are not
+/// followed.
 std::string shown_comparison(const Point& p) {
   const double u = std::strtod(p.u_repeat.c_str(), nullptr);
   const auto rounded = rounded_result(0.0, 2.0 * u);

@@ -10,15 +10,15 @@
 
 namespace nonio::app {
 
-/// Asks on stderr, with the default in brackets, for what is still empty. An empty line takes the
-/// default; an error if there is no answer any more (^D).
+/// Asks on stderr, with the default in brackets, for values that are still empty. An empty line
+/// takes the default. An error if the input has ended (^D).
 class Questions {
  public:
   explicit Questions(bool asks) : asks_(asks) {}
-  /// Whether a person reads and answers.
+  /// Whether stdin and stderr are a terminal, so that a person can answer.
   static bool on_terminal() { return ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1; }
   bool asks() const { return asks_; }
-  /// Of a verb that ends with an error.
+  /// Returns the exit status of a command that ends with an error.
   int status() const { return ended_ ? exit_interrupted : exit_usage; }
 
   Expected<void> text(const char* question, std::string& to, const std::string& otherwise) {

@@ -8,16 +8,17 @@
 
 namespace nonio::app {
 
-/// What a folder that a user names holds, by the files in it.
+/// Kind of a folder, determined by the files in it.
 enum class Holds { campaign, results, run, nothing };
 Holds what_holds(const std::filesystem::path& folder);
 
-/// OUT/ID, or where a pack has its results.
+/// Returns the folder of results OUT/ID, or the path inside the pack that contains them.
 std::filesystem::path results_at(const std::filesystem::path& folder);
-/// "results.json, summary.json or campaign.toml" was wanted in a folder: the complaint.
+/// Error message for a folder that contains neither results.json, summary.json nor campaign.toml.
 std::string holds_nothing(const std::filesystem::path& folder);
 
-/// The id that a run would give to a campaign, also if other parts of the manifest have errors.
+/// Returns the id that a run would give to a campaign, even if other parts of the manifest have
+/// errors.
 std::string id_of_campaign(const std::filesystem::path& folder);
 
 }  // namespace nonio::app

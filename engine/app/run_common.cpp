@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// " 4.8 ± 1.0 um": the value that a line of the worklist is about, where its decision is; else empty.
+/// Returns the value that a worklist line decides about, for example " 4.8 ± 1.0 um"; empty for
+/// lines without a decision.
 std::string judged_value(const Json& line, const std::string& language) {
   const std::string kind = line.value("kind", ""), unit = line.value("unit", "");
   if ((kind != "out" && kind != "undecided") || !line.contains("value")) return {};
@@ -31,21 +32,21 @@ std::string judged_value(const Json& line, const std::string& language) {
   return " " + localised(shown, language) + (unit.empty() ? "" : " " + unit);
 }
 
-/// One line per campaign that requires action, as far as they fit a screen.
+/// Prints one line per campaign that requires action, at most 20 of them.
 void print_actions(const std::string& actions, const config::TerminalWords& words) {
   constexpr std::size_t most_campaigns = 20;
   const Json lines = storage::parse_or_discard(actions);
   if (!lines.is_array()) return;
   struct Campaign {
     std::string id, says;
-    std::vector<std::string> of{};  ///< axes and quantities
-    std::size_t more = 0;           ///< actions with other texts
+    std::vector<std::string> of{};  ///< axes and quantities of these actions
+    std::size_t more = 0;           ///< number of actions with other texts
   };
   std::vector<Campaign> campaigns;
   for (const Json& line : lines) {
     const std::string kind = line.value("kind", ""), id = line.value("campaign", "");
     if (line.value("state", "") != "new" || id.empty() || kind == "failed" || kind == "information")
-      continue;  // what failed has been printed already
+      continue;  // failed campaigns have been printed already
     const std::string axis = line.value("axis", ""), quantity = line.value("quantity", ""),
                       of = axis + (axis.empty() || quantity.empty() ? "" : " ") + quantity +
                            judged_value(line, words.language()),
@@ -84,7 +85,7 @@ void print_summary(const batch::RunResult& run, const fs::path& out,
       ++unchanged;
     if (c.status == evaluation::Status::attention) ++attention;
   }
-  // Findings are counted by campaign; actions by line of the worklist.
+  // `attention` counts campaigns with findings, `decisions` lines of the worklist.
   if (json) {
     Json end = {{"event", "end"},         {"done", done},     {"unchanged", unchanged},
                 {"attention", attention}, {"failed", failed}, {"vanished", run.vanished.size()}};
@@ -108,9 +109,9 @@ void print_summary(const batch::RunResult& run, const fs::path& out,
 
 namespace {
 
-/// A signal that ends the run, or the end of its terminal, leaves a run that the next one
-/// continues. Under nohup a lost terminal does not stop it. A closed pipe of the output, or a limit
-/// for the size of files, does not end the process but is an error like others.
+/// Catches signals: SIGINT, SIGTERM and SIGHUP interrupt the run, which the next run continues;
+/// under nohup SIGHUP is ignored. A closed output pipe or a limit of file sizes causes an error and
+/// does not end the process.
 void catch_signals() {
   struct sigaction stop {};
   stop.sa_handler = [](int) { process::request_stop(); };

@@ -88,7 +88,7 @@ int plan_run(PartWish& wish, const Common& common) {
   return exit_done;
 }
 
-/// A second merge of a complete run reports that, and has the exit status of the run.
+/// Reports that the run is merged already. Returns the exit status of the run.
 int already_merged(const batch::RunStatus& status, const Common& common) {
   const std::uint64_t failed = status.last ? status.last->failed : 0;
   if (!common.quiet)

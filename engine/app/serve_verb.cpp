@@ -19,7 +19,7 @@ struct LiveOptions {
   bool edit = false, hash_password = false;
 };
 
-/// The line for users.toml.
+/// Reads a password and prints the line with its hash for users.toml.
 int print_hash() {
   const auto password = read_password("the user");
   if (!password) return complain(text_of(password.error()));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// `nonio table session`: from backup and readings to the verdict on the loaded table. It keeps no state: where the
-// session is follows from the files, the record of the machine and the campaigns of the site.
+// Implements `nonio table session`: the steps from backup and readings to the verdict on the loaded
+// table. It stores no state: the present step follows from the files, the record of the machine and
+// the campaigns of the site.
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -34,7 +35,7 @@ struct SessionWish {
 };
 
 struct Step {
-  std::string name, state;  ///< state: done, missing, refused; of the verdict failed, open
+  std::string name, state;  ///< state: done, missing, refused; for the verdict also failed, open
   std::string text;
 };
 
@@ -47,7 +48,7 @@ std::string names_of(const std::vector<Artifact>& files) {
   return out;
 }
 
-/// An argument of the command that goes on, as a shell takes it.
+/// Quotes an argument for the shell if necessary.
 std::string shell_word(const std::string& text) {
   const auto is_plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -90,7 +91,8 @@ class Session {
   void done(const char* step, std::string text) {
     steps_.push_back({step, "done", std::move(text)});
   }
-  /// What a person has to do, and the command after it.
+  /// Adds a step that is missing, with the text that tells the person what to do and the command to
+  /// continue with.
   bool missing(const char* step, std::string text, std::string todo, const std::string& argument) {
     steps_.push_back({step, "missing", std::move(text)});
     todo_ = std::move(todo);
@@ -105,7 +107,7 @@ class Session {
     return false;
   }
 
-  /// This session without what is recorded by now.
+  /// Returns the command of this session, without arguments that the record states by now.
   std::string command() const {
     std::string out = "nonio table session " + shell_word(w_.folder);
     if (!w_.backup.empty()) out += " --backup " + shell_word(w_.backup);
@@ -122,7 +124,8 @@ class Session {
     return of == open_->read.machine->axes.end() ? nullptr : of->second.state_on(campaign().date);
   }
 
-  /// Files saved from the control; else those that the record has of the day of the measurement.
+  /// Reads the files saved from the control; without them, those that the record states for the day
+  /// of the measurement.
   bool backup() {
     std::vector<Artifact> files;
     if (!w_.backup.empty()) {
@@ -162,7 +165,7 @@ class Session {
                    {{"files", merged_.with.files}}));
     tell_findings(*open_, merged_.findings);
     if (merged_.files.empty()) return refused("table", Error{say("session.table.refused")});
-    // The probe and the verdict work with the state as well.
+    // The probe and the verdict use this state, too.
     Settings settled = options();
     std::vector<Finding> repeated;
     if (auto stated = tables::state_by_backup(open_->read, *present_.control, present_.files,
@@ -186,7 +189,8 @@ class Session {
     return true;
   }
 
-  /// A day on which the record has the new table in the control.
+  /// Sets the day of loading to the first day on which the record states the new table in the
+  /// control.
   void day_of_loading() {
     loaded_ = w_.loaded;
     if (!loaded_.empty() || !open_->read.machine) return;
@@ -211,7 +215,8 @@ class Session {
     return std::nullopt;
   }
 
-  /// Advice only: an axis whose error is too small for it gets its table all the same.
+  /// Adds the sign probe. It is only a recommendation: if the error of the axis is too small for
+  /// it, the table is written nevertheless.
   bool probe() {
     const auto raw = raw_readings(*open_, axis_);
     if (!raw) return refused("probe", raw.error());
@@ -252,7 +257,9 @@ class Session {
     return true;
   }
 
-  /// Of the campaigns from the day of loading on the last check, else the first one.
+  /// Determines the campaign that checks the table. With --check it is made from that file;
+  /// otherwise it is the last campaign with purpose check from the day of loading on, or else the
+  /// first campaign from that day on.
   bool check() {
     if (!w_.check.empty()) {
       auto bytes = storage::read_file(w_.check);

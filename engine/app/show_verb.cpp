@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0 `nonio show`: results.json for a person at a terminal, read
-// from the folder of a run or evaluated now.
+// SPDX-License-Identifier: Apache-2.0
+// Implements `nonio show`: prints results.json on the terminal, read from the folder of a run or
+// evaluated now.
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,8 +11,8 @@
 #include "campaign/config/terminal_words.h"
 #include "campaign/evaluation/record.h"
 #include "colour.h"
-#include "nonio/sdk/withheld.h"
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/withheld.h"
 #include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
 #include "platform/storage/packed_results.h"
@@ -31,7 +32,7 @@ struct ShowWish {
   bool all = false, opens = false;
 };
 
-/// Parts of a sentence with a separator between those that are not empty.
+/// Joins the parts that are not empty, with `between` as separator.
 std::string joined_text(const std::vector<std::string>& parts, const char* between) {
   std::string text;
   for (const std::string& part : parts)
@@ -39,7 +40,7 @@ std::string joined_text(const std::vector<std::string>& parts, const char* betwe
   return text;
 }
 
-/// One finding of the campaign, with all measurements that have it.
+/// A finding of the campaign, with all measurements that have it.
 struct Grouped {
   std::string severity, title;
   std::vector<std::string> measurements{}, says{}, advice{};
@@ -50,8 +51,8 @@ void add_once(std::vector<std::string>& texts, const std::string& text) {
     texts.push_back(text);
 }
 
-/// What requires action comes first: results outside their tolerance, then indeterminate ones, then
-/// those that conform, then those without tolerance.
+/// Returns the rank of a result in the table: 0 does not conform, 1 indeterminate, 2 conforms, 3
+/// without tolerance.
 int rank_of(const Json& value) {
   const std::string decision = value.value("decision", "");
   if (decision.empty()) return 3;
@@ -101,8 +102,8 @@ class Page {
         {thing.value("maker", ""), thing.value("model", ""), thing.value("serial", "")}, " ");
   }
 
-  /// Whether the campaign is on the worklist: a result that does not conform or is indeterminate, a
-  /// table or certificate that was withheld. Other findings only warn.
+  /// Whether the campaign is on the worklist: a result does not conform or is indeterminate, or a
+  /// table or certificate was withheld. Other findings do not require action.
   static bool requires_action(const Json& results) {
     for (const Json& value : results.value("conformity", Json::array()))
       if (rank_of(value) < 2) return true;
@@ -134,7 +135,7 @@ class Page {
         if (!text.empty()) out_ << "  " << say_.of("campaign", name) << " " << text << "\n";
     if (!results.contains("certificate")) return;
     const Json& issued = results.at("certificate");
-    if (issued.value("number", "").empty()) return;  // a draft
+    if (issued.value("number", "").empty()) return;  // a draft has no number
     const std::string replaced = issued.value("replaces", "");
     out_ << "  " << say_("campaign.certificate") << " "
          << say_("certificate-of",
@@ -148,7 +149,8 @@ class Page {
     out_ << "\n" << paint(say_("error"), Colour::red) << "\n" << wrapped(text_of(error), 2, width_);
   }
 
-  /// "0 to 1000 mm": the targets of an axis or of a diagonal; empty for other measurements.
+  /// Returns the range of targets of an axis or a diagonal, for example "0 to 1000 mm"; empty for
+  /// other measurements.
   std::string range(const Json& a) const {
     const Json points = a.value("points", Json::array());
     const std::string unit = a.value("point_units", Json::object()).value("target", "");
@@ -165,7 +167,7 @@ class Page {
     return say_("measurement.range", {{"from", text(least)}, {"to", text(most)}, {"unit", unit}});
   }
 
-  /// The other measurements that an analysis used, the first of them by name.
+  /// Returns the names of other measurements that an analysis used, at most 4 of them.
   std::string others(const Json& a) const {
     constexpr std::size_t most = 4;
     auto names = a.value("uses", std::vector<std::string>());
@@ -202,8 +204,8 @@ class Page {
     notes(a);
   }
 
-  /// To the second significant digit of U. Without one to three decimals, of what has no unit (a
-  /// direction) to seven.
+  /// Returns a value rounded to the second significant digit of U; without U with one to three
+  /// decimals, or up to seven for values without a unit (a direction).
   std::string number(const Json& of, const char* key) const {
     if (!of.contains(key)) return {};
     const double value = of.at(key), U = of.value("U", 0.0);
@@ -213,7 +215,7 @@ class Page {
         fixed_text(value, std::clamp(1 - static_cast<int>(std::floor(std::log10(U))), 0, 12)));
   }
 
-  /// "4.82 ± 1.00 um"
+  /// Returns value, U and unit, for example "4.82 ± 1.00 um".
   std::string result(const Json& v) const {
     const std::string U = number(v, "U"), unit = v.value("unit", "");
     if (U.empty() && unit.empty() && v.at("value").is_number_float()) {
@@ -232,12 +234,12 @@ class Page {
       return rank_of(a.second) < rank_of(b.second);
     });
     table(rows);
-    // Of the two directions only with --all.
+    // Values of a single direction are shown only with --all.
     std::erase_if(rest, [&](const auto& row) {
       return row.first.size() > 1 && (row.first.ends_with('+') || row.first.ends_with('-')) &&
              all.contains(row.first.substr(0, row.first.size() - 1));
     });
-    std::erase_if(rest, [](const auto& row) {  // of the test of a model
+    std::erase_if(rest, [](const auto& row) {  // results of the test of a model
       return row.first.starts_with("lack_of_fit") || row.first == "redundancy";
     });
     std::string text;
@@ -298,7 +300,8 @@ class Page {
          << "\n";
   }
 
-  /// The findings of an analysis or table to those that other measurements have too.
+  /// Adds the findings of an analysis or table to the list, joined with equal findings of other
+  /// measurements.
   void collect(const Json& of, const std::string& measurement) {
     if (!of.contains("findings")) return;
     for (const Json& json : of.at("findings")) {
@@ -319,8 +322,8 @@ class Page {
     }
   }
 
-  /// Each finding once. Without --all the text of those that require action, and the titles of the
-  /// others.
+  /// Prints each finding once. Without --all, the text is printed only for findings with severity
+  /// warning, and the title for others.
   void findings() {
     if (findings_.empty()) return;
     heading(say_("findings"));
@@ -362,7 +365,7 @@ class Page {
     }
   }
 
-  /// What each table would leave, by measurement, and how many files it has.
+  /// Prints the predicted result of each table, by measurement, and its number of files.
   void compensation(const Json& tables, const Json& written) {
     bool is_first = true;
     for (const Json& t : tables) {
@@ -413,11 +416,12 @@ class Page {
       out_ << "\n";
   }
 
-  static constexpr std::size_t most_values = 8;  ///< without --all, of one analysis
+  static constexpr std::size_t most_values = 8;  ///< values of one analysis that are shown without
+                                                 ///< --all
 
   config::TerminalWords say_;
   bool all_;
-  std::string folder_;  ///< of the results; empty: they are not stored
+  std::string folder_;  ///< folder of the results; empty: they are not stored
   std::ostream& out_;
   std::size_t width_;
   std::vector<Grouped> findings_{};
@@ -431,11 +435,13 @@ int show(const ShowWish& wish, const Common& common) {
   if (holds == Holds::nothing && !fs::exists(folder) && what_holds(wish.out) == Holds::run)
     return show_machine(wish.out, wish.folder, common);
   if (holds == Holds::run)
-    return complain(folder.string() + " contains the results of a run; choose a campaign, such as " +
+    return complain(folder.string() +
+                    " contains the results of a run; choose a campaign, such as " +
                     (folder / "ID").string() + ", or use `nonio status " + folder.string() + "`");
   if (holds == Holds::nothing && !fs::exists(folder))
-    return complain("\"" + folder.string() + "\" is neither a folder nor a machine of the history in " +
-                    wish.out + " (--out; `nonio machine list " + wish.out + "` lists the machines)");
+    return complain("\"" + folder.string() +
+                    "\" is neither a folder nor a machine of the history in " + wish.out +
+                    " (--out; `nonio machine list " + wish.out + "` lists the machines)");
   if (holds == Holds::nothing) return complain(holds_nothing(folder));
   const auto shown =
       holds == Holds::campaign ? evaluated_now(folder, common) : of_run(folder, common);

@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The number of a finding's evidence by its name with the unit: mean_um.
+/// Converts an evidence of a finding to a number; its unit is given by the suffix of its name, for
+/// example mean_um.
 Number number_of(const std::string& key, const Json& value) {
   Number n{key, value.get<double>(),
            value.is_number_integer() ? Quantity::count

@@ -9,11 +9,11 @@
 
 namespace nonio::app {
 
-/// The words of the terminal: English until the site is known, then its language. It keeps copies of
-/// the words alone, since the templates of a run end with it. Not copyable.
+/// Words for output on the terminal: English until the site is known, then in its language. It
+/// contains copies of the words, since the templates end with the run. Not copyable.
 class SiteWords {
  public:
-  /// English where a language has no words, and of "".
+  /// English is used if the language has no words, or is empty.
   explicit SiteWords(const Common& common, const std::string& language = "en");
   SiteWords(const SiteWords&) = delete;
   SiteWords& operator=(const SiteWords&) = delete;

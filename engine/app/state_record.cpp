@@ -14,9 +14,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t largest_file = 1'000'000;  // of a table that a record names
+constexpr std::size_t largest_file = 1'000'000;  // bytes of a table file that a record names
 
-/// A name that is safe in a list of files.
+/// Replaces the characters of a file name that are not safe in a list of files.
 std::string safe(const std::string& name) {
   std::string out = name;
   for (char& c : out)

@@ -9,19 +9,19 @@
 
 namespace nonio::app {
 
-/// A state of the control that a command was given.
+/// A state of the control to be entered into the record of a machine.
 struct NewState {
-  std::string since, source;         ///< as in [[axes.X.state]]
-  std::vector<Artifact> files;       ///< none: there is no table
+  std::string since, source;         ///< as in [[axes.X.state]] of the record
+  std::vector<Artifact> files;       ///< files of the table; empty: there is no table
   std::optional<double> backlash{};  ///< m or rad
   std::vector<LoadedTable> tables{};
-  std::optional<double> reference{};  ///< where the table is zero, in mm or deg
+  std::optional<double> reference{};  ///< position at which the table is zero, mm or deg
 };
 
 /// Adds the states of an axis to machines/<asset>.toml of the campaign's site, and copies their
-/// files next to it; states that the record has stay as they are. Gives the name of the record. An
-/// error if the campaign does not name its machine, or if the record could not be read afterwards:
-/// then it is unchanged.
+/// files next to it; existing states are unchanged. Returns the name of the record. An error if the
+/// campaign does not name its machine, or if the changed record would be invalid; then it is left
+/// unchanged.
 Expected<std::string> add_states(const OpenCampaign& open, const std::string& axis,
                                  const std::vector<NewState>& states);
 

@@ -11,7 +11,7 @@ namespace nonio::app {
 
 namespace {
 
-/// A label value as the format quotes it.
+/// Returns a label value with the quoting of OpenMetrics.
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {

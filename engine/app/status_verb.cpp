@@ -21,7 +21,7 @@ namespace {
 
 struct StatusWish {
   std::string out;
-  double max_age = 36.0;  ///< h; 0: any
+  double max_age = 36.0;  ///< h; 0: no limit
   WorklistWish list{};
 };
 
@@ -37,7 +37,7 @@ std::string hours_text(double hours, const TerminalWords& say) {
   return localised(fixed_text(hours, 1), say.language()) + " h";
 }
 
-/// What is wrong; empty if all is well.
+/// Returns what is wrong with the runs; empty if nothing is.
 std::string trouble(const RunStatus& s, const StatusWish& wish, const TerminalWords& say) {
   if (s.state == RunStatus::State::cut_short)
     return say("state.cut-short", {{"run", run_text(s.run, say)}});
@@ -68,7 +68,7 @@ std::string line_of(const RunStatus& s, const std::string& wrong, const Terminal
   return line + (wrong.empty() ? "" : "; " + say("state.wrong", {{"what", wrong}}));
 }
 
-/// That of --language, else that of the last run; "" before there is one.
+/// Returns the language of --language, otherwise that of the last run; empty before the first run.
 std::string language_of(const StatusWish& wish) {
   if (!wish.list.language.empty()) return wish.list.language;
   const auto last_run = assessment::last_run_in(wish.out);
@@ -76,7 +76,7 @@ std::string language_of(const StatusWish& wish) {
 }
 
 int print_status(const RunStatus& found, const StatusWish& wish, const Common& common) {
-  // What other programs read stays English.
+  // JSON is always in English.
   const SiteWords words(common, common.json ? "en" : language_of(wish));
   const std::string wrong = trouble(found, wish, words.get());
   const int exit = wrong.empty() ? exit_done : exit_failed;

@@ -11,7 +11,7 @@
 
 namespace nonio::app {
 
-/// Numbers with the unit in their name: "largest_um".
+/// Puts a number in its printed unit, with the unit appended to the name: "largest_um".
 void put(TableJson& json, const std::string& name, double si, Quantity q) {
   if (std::isfinite(si)) json[name + std::string(unit_of(q).suffix)] = printed(si, q);
 }
@@ -108,7 +108,7 @@ Expected<Loaded> understood(
   if (!options) return tl::unexpected<Error>(options.error().front());
   auto tables = tables::tables_in(*found, files, campaign, *options);
   if (tables) return Loaded{found, std::move(*tables), std::move(files)};
-  if (tables.error().line != 0) return fail(tables.error().message);  // which names the file
+  if (tables.error().line != 0) return fail(tables.error().message);  // the message names the file
   std::string names;
   for (const Artifact& f : files) names += (names.empty() ? "" : ",") + f.name;
   return fail(names + ": " + tables.error().message);
@@ -126,7 +126,7 @@ config::Checked<Settings> campaign_options(const OpenCampaign& open, const Info&
     NumberTables axes = settled->tables("axes");
     settled->values[name] = told->values.at(name);
     if (name != "axes") continue;
-    for (const auto& [axis, table] : told->tables("axes"))  // the last word counts
+    for (const auto& [axis, table] : told->tables("axes"))  // the last statement takes precedence
       for (const auto& [key, value] : table) axes[axis][key] = value;
     settled->values[name] = std::move(axes);
   }

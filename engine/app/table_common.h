@@ -10,22 +10,22 @@
 #include "campaign_verb.h"
 #include "platform/storage/json_values.h"
 
-/// What the verbs about tables share.
+/// Functions shared by the commands about tables.
 namespace nonio::app {
 
 using TableJson = storage::Json;
 using Texts = std::map<std::string, std::string>;
 
-/// Numbers with the unit in their name: "largest_um".
+/// Puts a number in its printed unit, with the unit appended to the name: "largest_um".
 void put(TableJson& json, const std::string& name, double si, Quantity q);
 TableJson difference_json(const tables::TableDifference& d);
-/// `compared`: else of one file alone.
+/// Prints a difference. `compared`: false if the argument describes a single file.
 void print_difference(const tables::TableDifference& d, bool compared = true);
 
 TableJson forecast_json(const tables::TableForecast& f);
 void print_forecast(const tables::TableForecast& f);
 
-/// Files, the control that they are of, and what it makes of them.
+/// Files of tables, their control, and the tables in them.
 struct Loaded {
   const Controller* control = nullptr;
   std::vector<LoadedTable> tables;
@@ -36,21 +36,22 @@ Expected<Loaded> load(const loader::Plugins& plugins, const std::string& files,
                       const std::string& control, const Campaign& campaign, const Texts& settings,
                       const std::function<config::Checked<Settings>(const Info&)>& options_of);
 
-/// The same of files that were read.
+/// Does the same for files that were read already.
 Expected<Loaded> understood(
     const loader::Plugins& plugins, std::vector<Artifact> files, const std::string& control,
     const Campaign& campaign, const Texts& settings,
     const std::function<config::Checked<Settings>(const Info&)>& options_of);
 
-/// Options of a control for a campaign: site, record of the machine, manifest, then `settings`.
+/// Returns the options of a control for a campaign: site, record of the machine, manifest, then
+/// `settings`.
 config::Checked<Settings> campaign_options(const OpenCampaign& open, const Info& info,
                                            const Texts& settings);
 
-/// An error, which names the key, where it is not known which table was active while an axis was
+/// Returns an error that names the key if it is unknown which table was active while the axis was
 /// measured.
 Expected<void> knows_active(const Campaign& campaign, const Measurement& m);
 
-/// The tables of a control that a campaign gives. The words of a refusal are printed on stderr.
+/// Prints the findings of a refused table on stderr.
 void tell_findings(const OpenCampaign& open, const std::vector<Finding>& findings);
 
 }  // namespace nonio::app

@@ -31,14 +31,14 @@ struct TableWish {
   bool active = false;
 };
 
-/// The axes of the machine in the order of their numbers.
+/// Returns a campaign whose machine has these axes, in the order of their numbers.
 Campaign machine_of(const std::vector<std::string>& axes) {
   Campaign campaign;
   for (const std::string& name : axes) campaign.machine.axes.push_back(axis_named(name));
   return campaign;
 }
 
-/// Their places are their numbers: `--axis` uses them.
+/// Sets the number of each axis to its position in `names`, which `--axis` states.
 void number_axes(const std::vector<std::string>& names, Settings& options) {
   if (!options.has("axes")) return;
   NumberTables axes = options.tables("axes");
@@ -59,7 +59,8 @@ int tell_differences(const std::string& control, const std::vector<tables::Table
   return exit_done;
 }
 
-/// What is in the control against what the campaign would write: of the campaign's axes only.
+/// Compares the tables in the control with those that the campaign would write, for the axes of the
+/// campaign only.
 int diff_with_campaign(const std::string& backup, const std::string& folder, const TableWish& w,
                        const Texts& settings, const Common& common) {
   auto opened = open_campaign(folder, common);
@@ -86,7 +87,8 @@ int diff_with_campaign(const std::string& backup, const std::string& folder, con
   return tell_differences(present->control->info.name, all, common);
 }
 
-/// A file that states no axis gives its name to the table: two such files are of one axis.
+/// Gives both tables the same axis: if each is in a single file that states no axis, they are named
+/// by their files, and belong to one axis.
 void join_unnamed(const Loaded& was, Loaded& will) {
   const auto only_unnamed = [](const Loaded& l) {
     return l.tables.size() == 1 &&
@@ -98,7 +100,7 @@ void join_unnamed(const Loaded& was, Loaded& will) {
   will.tables.front().input = was.tables.front().input;
 }
 
-/// --axis X=Y: X of the present table, Y of the new one. Both are axes of the control.
+/// Pairs of --axis X=Y: X of the present table, Y of the new one. Both are axes of the control.
 struct AxisPairs {
   std::vector<std::string> axes;
   std::vector<std::pair<std::string, std::string>> pairs;
@@ -113,7 +115,8 @@ struct AxisPairs {
     }
   }
 
-  /// Only the tables of pairs by their own position, with the name of the pair.
+  /// Keeps only the tables of the pairs that depend on their own position, and names them by the
+  /// pair.
   Expected<void> join(std::vector<LoadedTable>& was, std::vector<LoadedTable>& will) const {
     if (pairs.empty()) return {};
     std::vector<LoadedTable> of[2];
@@ -199,9 +202,9 @@ int tell(const Applied& a, const std::string& control, const OpenCampaign& open,
   return std::any_of(a.forecast.begin(), a.forecast.end(), worse) ? exit_failed : exit_done;
 }
 
-/// "0.012", "none", "X=0.012": mm or deg.
+/// A value of --active-backlash: "0.012", "none", "X=0.012"; mm or deg.
 struct BacklashWas {
-  std::string axis;  ///< empty: of the only one
+  std::string axis;  ///< empty: the only axis
   double value = 0.0;
 };
 
@@ -226,7 +229,8 @@ Expected<std::vector<BacklashWas>> backlash_was(const std::vector<std::string>& 
   return all;
 }
 
-/// A table whose files do not contain the backlash value that belongs to it: 0 would be a guess.
+/// Sets the backlash value of tables whose files do not contain it; without a statement it is an
+/// error, because 0 would be a guess.
 Expected<void> settle_backlash(const TableWish& w, const Loaded& present, Settings& options) {
   const auto said = backlash_was(w.backlash_was);
   if (!said) return fail(said.error().message);
@@ -262,7 +266,7 @@ Expected<void> settle_backlash(const TableWish& w, const Loaded& present, Settin
   return {};
 }
 
-/// --active-table and the campaign state the same thing: they must not state two.
+/// Returns an error if both --active-table and the campaign state the active table of an axis.
 Expected<void> active_unless_stated(const TableWish& w, const Loaded& present, const Campaign& c) {
   for (const LoadedTable& t : present.tables) {
     const Axis* axis = c.machine.axis(t.output);

@@ -28,7 +28,7 @@ namespace {
 
 constexpr std::size_t bar_width = 40;
 
-/// `part` of `whole` as a bar of at most `width`, with "|" at `mark`.
+/// Returns `part` of `whole` as a bar of at most `width` columns, with "|" at `mark`.
 std::string bar(double part, double whole, std::size_t width, std::optional<double> mark = {}) {
   const auto cells = [&](double value) {
     const double share = whole > 0.0 ? std::clamp(value / whole, 0.0, 1.0) : 0.0;
@@ -79,14 +79,15 @@ void print_head(std::ostream& out, const modelling::PartModel& part,
                                      {"model", effects.empty() ? say("head.empty") : effects}}));
 }
 
-/// The value as the model states it.
+/// Returns the value of a parameter that the model fixes, as stated there; empty if it is not
+/// fixed.
 std::string held_text(const modelling::PartModel& part, const model::Parameter& p) {
   for (const auto& held : part.held)
     if (held.parameter.effect == p.effect) return *modelling::entry_of(held.text).value;
   return {};
 }
 
-/// Curves by their RMS, everything else by its parameters.
+/// Prints the parameters of a fit; curves are represented by their RMS.
 void print_parameters(std::ostream& out, const model::Fit& fit, const modelling::PartModel& part,
                       const modelling::ModelWords& words) {
   if (fit.parameters.empty()) return;
@@ -124,7 +125,7 @@ void print_parameters(std::ostream& out, const model::Fit& fit, const modelling:
   }
 }
 
-/// "direction x position" in the language of the words.
+/// Returns a place such as "direction x position" in the language of the words.
 std::string where_text(const model::Where& where, const config::TerminalWords& say) {
   const std::string names = to_text(where);
   const std::size_t by = names.find(" x ");
@@ -132,7 +133,7 @@ std::string where_text(const model::Where& where, const config::TerminalWords& s
   return by == std::string::npos ? first : first + " x " + say.of("where", names.substr(by + 3));
 }
 
-/// Added one after the other: each is fitted together with those above it.
+/// Prints where the model does not fit; each place is fitted together with those above it.
 void print_places(std::ostream& out, const model::Comparison& c, const modelling::ModelWords& words,
                   Quantity deviation) {
   const config::TerminalWords say = words.terminal();
@@ -151,7 +152,8 @@ void print_suspects(std::ostream& out, const model::Comparison& c, const modelli
                  words.suspect(s, modelling::place_of(part, campaign, s.row), part.deviation()));
 }
 
-/// What a table in the control would leave, predicted; nothing if the model has nothing for one.
+/// Prints the predicted result of a compensation table in the control; nothing if the model has no
+/// effect that a table can compensate.
 void print_after_table(std::ostream& out, const modelling::PartModel& part, const model::Fit& fit,
                        Quantity q, const config::TerminalWords& say) {
   const modelling::AfterTable predicted = modelling::after_table(part, fit);
@@ -188,7 +190,7 @@ std::string largest_text(const modelling::Compared& compared, const Campaign& ca
   return at.line == 0 ? text : text + ":" + std::to_string(at.line);
 }
 
-/// The candidates as bars; without `all` those of the best explanation and the five best.
+/// Prints the candidates as bars; without `all`, those of the best explanation and the five best.
 void print_candidates(std::ostream& out, const modelling::Explained& e, bool all,
                       const config::TerminalWords& say) {
   constexpr std::size_t most_shown = 5;
@@ -222,7 +224,8 @@ void print_candidates(std::ostream& out, const modelling::Explained& e, bool all
   if (left > 0) out << "  " << say("show.more", {{"count", std::to_string(left)}}) << " (--all)\n";
 }
 
-/// What the best explanation adds; where it is none, what of it is not certain.
+/// Prints the effects that the best explanation adds; if there is none, those that are not
+/// significant.
 void print_together(std::ostream& out, const model::Explanation& x,
                     const config::TerminalWords& say) {
   const bool unknown = x.verdict.kind == model::Verdict::Kind::unknown;
@@ -244,7 +247,7 @@ void print_verdict(std::ostream& out, const modelling::Explained& e,
   sentence(out, 2, words.verdict(x, e.part));
 }
 
-/// Why it is so, what to do about it, and the command that goes on.
+/// Prints the reason, the recommended action, and the command to continue with.
 void print_advice(std::ostream& out, const modelling::Explained& e, const std::string& folder,
                   const modelling::ModelWords& words) {
   const model::Explanation& x = e.explanation;
@@ -263,7 +266,8 @@ void print_advice(std::ostream& out, const modelling::Explained& e, const std::s
         << "\n";
 }
 
-/// What the verdict does not cover. Without `all` the effects that could not be tested by name.
+/// Prints the limitations of the verdict. Without `all`, effects that could not be tested are
+/// listed by name only.
 void print_limits(std::ostream& out, const modelling::Explained& e, const Campaign& campaign,
                   bool all, const modelling::ModelWords& words) {
   const config::TerminalWords say = words.terminal();
@@ -271,7 +275,7 @@ void print_limits(std::ostream& out, const modelling::Explained& e, const Campai
   sentence(out, 2, words.no_sign(e.explanation, e.part));
   std::vector<std::string> untested;
   for (const model::Candidate& candidate : e.explanation.candidates) {
-    // A test of an hour is not meant to show the day: only the JSON states it.
+    // Effects that need a longer test are stated in the JSON only.
     if (modelling::is_ranked(candidate) || candidate.why == "short-test") continue;
     if (all)
       sentence(out, 2,

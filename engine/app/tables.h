@@ -5,34 +5,34 @@
 
 #include "campaign/modelling/model_json.h"
 
-/// What compare, explain and model show in the terminal.
+/// Terminal output of compare, explain and model.
 namespace nonio::app {
 
-/// "0.71 um"
+/// Returns a value with its unit, for example "0.71 um".
 std::string with_unit(double value, Quantity quantity);
-/// With the decimal sign of the language of the words.
+/// Returns the same with the decimal sign of the language.
 std::string with_unit(double value, Quantity quantity, const config::TerminalWords&);
-/// A name and its value; a sentence, wrapped to the terminal.
+/// Prints a name and its value, or a sentence, wrapped to the width of the terminal.
 void line(std::ostream& out, const std::string& name, const std::string& value);
 void sentence(std::ostream& out, std::size_t indent, const std::string& text);
 
 void print_comparison(std::ostream& out, const modelling::Compared& compared,
                       const Campaign& campaign, const modelling::ModelWords& words);
-/// `folder`: of the campaign, for the command that goes on. `all`: every candidate, and why an effect
-/// could not be tested.
+/// Prints an explanation. `folder`: of the campaign, for the command to continue with. `all`: every
+/// candidate, and why effects could not be tested.
 void print_explanation(std::ostream& out, const modelling::Explained& explained,
                        const Campaign& campaign, const std::string& folder, bool all,
                        const modelling::ModelWords& words);
-/// Before and after with bars that fall; "|" is the noise floor.
+/// Prints values before and after a change as bars; "|" marks the noise floor.
 void print_change(std::ostream& out, const modelling::Change& change,
                   const modelling::ModelWords& words);
-/// The effects with their values, and what they leave.
+/// Prints the effects with their values, and the residuals.
 void print_model(std::ostream& out, const modelling::Compared& compared,
                  const modelling::ModelWords& words);
-/// What one more run would do to the uncertainties of the model and to the evidence.
+/// Prints how one more run would change the uncertainties of the model and the evidence.
 void print_foresight(std::ostream& out, const modelling::Explained& e,
                      const config::TerminalWords& say);
-/// Readings that were excluded, or a period that was set, in one line.
+/// Prints a step of the model's history in one line: excluded readings, or a period.
 void print_step(std::ostream& out, const modelling::ModelStep& step,
                 const config::TerminalWords& say);
 void print_history(std::ostream& out, const std::vector<modelling::ModelStep>& history,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `nonio upgrade`: keys of site.toml, causes/*.toml and campaign.toml get their present names.
+// Implements `nonio upgrade`: replaces former names of keys in site.toml, causes/*.toml and
+// campaign.toml.
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -43,8 +44,8 @@ class Upgrade {
   }
 
  private:
-  /// The file appears whole or stays as it was, with its permissions. Of a link the file that it
-  /// names is changed.
+  /// Writes the file atomically and keeps its permissions. For a link, the file that it names is
+  /// changed.
   static Expected<void> write(const fs::path& path, const std::string& text) {
     std::error_code error;
     const fs::path real = fs::canonical(path, error);

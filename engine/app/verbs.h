@@ -3,14 +3,14 @@
 
 #include "common.h"
 
-/// The commands of the program. `common` is filled before one of them is run.
+/// The commands of the program. `common` is set before a command is run.
 namespace nonio::app {
 
 Verb new_verb(Common& common);
 Verb import_verb(Common& common);
 Verb check_verb(Common& common);
 Verb run_verb(Common& common);
-/// Below `run`: plan, merge, cancel, unlock.
+/// Returns the commands below `run`: plan, merge, cancel, unlock.
 std::vector<Verb> run_parts(Common& common);
 Verb status_verb(Common& common);
 Verb show_verb(Common& common);
@@ -21,7 +21,7 @@ Verb history_verb(Common& common);
 Verb event_verb(Common& common);
 Verb ack_verb(Common& common);
 Verb remove_verb(Common& common);
-/// Of the register: list, withdraw, audit.
+/// Returns the commands about the register: list, withdraw, audit.
 std::vector<Verb> register_verbs(Common& common);
 Verb approve_verb(Common& common);
 Verb verify_verb(Common& common);
@@ -46,22 +46,24 @@ Verb upgrade_verb(Common& common);
 Verb backup_verb(Common& common);
 Verb restore_verb(Common& common);
 Verb version_verb(Common& common);
-/// What they print is made from the whole table; the program outlives the command.
+/// These commands print from the whole table, so the program must outlive them.
 Verb help_verb(const Program& program);
 Verb completion_verb(const Program& program);
 
-/// Parts of other commands. The history of a machine, or of all (`machine` empty), on stdout.
+/// Prints the history of a machine, or of all (`machine` empty), on stdout. Returns the exit
+/// status.
 int show_machine(const std::string& out, const std::string& machine, const Common& common);
-/// The report of a campaign or of the first one that requires action, on the desktop.
+/// Opens the report of a campaign, or of the first one that requires action, on the desktop.
+/// Returns the exit status.
 int open_document(const std::string& folder, const std::string& out, const Common& common);
-/// The templates of a site, or those that are installed.
+/// Checks the templates of a site, or the installed ones. Returns the exit status.
 int check_templates(const std::string& site, const Common& common);
 
 struct WorklistWish {
   std::string out, since, customer, language, site, page;
 };
-/// What the last run requires of people, one line per action. The exit status: 1 if action is
-/// required.
+/// Prints the actions that the last run requires, one line each. Returns the exit status: 1 if
+/// action is required.
 int print_worklist(const WorklistWish& wish, const Common& common);
 
 }  // namespace nonio::app

@@ -54,7 +54,8 @@ Json to_json(const std::string& file, const sign::Verified& v) {
           {"checks", std::move(checks)}};
 }
 
-/// "time stamp", "revocation": of the checks that were not made, each once.
+/// Returns the names of checks that were not made, such as "time stamp" and "revocation", each
+/// once.
 std::vector<std::string> check_names(const std::vector<std::string>& checks) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 6> names{
       {{".time", "time stamp"},
@@ -73,7 +74,7 @@ std::vector<std::string> check_names(const std::vector<std::string>& checks) {
   return out;
 }
 
-/// The most severe of all files'.
+/// Returns the exit status of the most severe verdict.
 int exit_of(const std::vector<Verdict>& verdicts) {
   constexpr std::array<std::pair<Verdict, int>, 8> statuses{{{Verdict::altered, exit_failed},
                                                              {Verdict::untrusted, 4},
@@ -88,8 +89,8 @@ int exit_of(const std::vector<Verdict>& verdicts) {
   return exit_failed;
 }
 
-/// The verdict first: no text of the file precedes it, and none can look like it. The checks that
-/// fail follow, or all of them.
+/// Prints the verdict first, so that no text of the file can precede or imitate it; then the failed
+/// checks, or all of them if `verbose`.
 void print(std::ostream& out, const std::string& file, const sign::Verified& v, bool quiet,
            bool verbose) {
   const std::string name = printable(file);
@@ -118,11 +119,12 @@ int verify(const VerifyWish& wanted, const Common& common) {
     for (const Error& e : verifier.error()) complain(text_of(e));
     return exit_usage;
   }
-  // Before it: what is confined opens no connection to a server.
+  // Read the register before the process is confined, because a confined process cannot connect to
+  // a server.
   const auto rows = certificates::register_rows(wanted.site);
-  process::step_aside();  // a stranger's file is read confined, as the plugins' code is run
+  process::step_aside();  // an untrusted file is read in a confined process, like plugin code
   std::unique_ptr<reading::Workplace> place;
-  std::ostringstream early;  // loading plugins may restart this process: printed after that
+  std::ostringstream early;  // output is delayed, because loading plugins may restart this process
   const auto open = [&]() -> Expected<const reading::Context*> {
     if (place) return &place->context;
     auto opened = certificates::open_to_verify(common.plugin_folders(), common.template_folders(),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the last run requires of people, one line per action: `nonio status`.
+// Implements `nonio status --actions`: prints the actions that the last run requires, one line
+// each.
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,7 +19,7 @@ namespace nonio::app {
 
 namespace {
 
-/// Leaves out what was known before that day, and other customers' machines.
+/// Removes lines that were known before the requested day, and lines of other customers' machines.
 void keep_lines(const WorklistWish& wish, reports::SiteHistory& site) {
   std::erase_if(site.lines, [&](const reports::WorkItem& l) {
     return (!wish.customer.empty() && l.customer != wish.customer) ||
@@ -26,7 +27,7 @@ void keep_lines(const WorklistWish& wish, reports::SiteHistory& site) {
   });
 }
 
-/// One of the pages of the site as it would be now, on stdout.
+/// Prints one page of the site with its present content on stdout.
 int print_page(const WorklistWish& wish, const Templates& templates, const std::string& language,
                assessment::Assessment& assessment) {
   const reports::SiteHistory& site = assessment.site();

@@ -40,7 +40,8 @@ using Action = CampaignState::Action;
 
 bool is_todo(const CampaignState& c) { return c.action == Action::todo; }
 
-/// Results are never written among the files of a campaign, which they could replace.
+/// Why `out` cannot be the output folder: it is the site, or inside a campaign, whose files results
+/// could replace. Empty if it can.
 std::string unfit_output(const fs::path& site, const fs::path& out) {
   std::error_code error;
   const fs::path root = fs::weakly_canonical(site, error);
@@ -53,7 +54,9 @@ std::string unfit_output(const fs::path& site, const fs::path& out) {
   return {};
 }
 
-/// The first look at the site: its name in the record of the run.
+/// Checks that the site folder exists and that the output folder is allowed. Returns the canonical
+/// path of the site, which the record of the run states. Runs in a child process, because the disk
+/// may hang.
 Expected<std::string> look_at_site(const RunOptions& options) {
   const fs::path& site = options.site;
   return read_apart<std::string>("the site " + site.string(), config::Limits{}.disk_seconds,
@@ -69,12 +72,13 @@ Expected<std::string> look_at_site(const RunOptions& options) {
                                  });
 }
 
-/// What is new, in the order of the numbers, and what waits. An error if the register cannot be
-/// read: a summary without what was issued would pass for one of a run that issued nothing.
+/// Lists the certificates issued since the previous run, in the order of their numbers, and the
+/// drafts. An error if the register cannot be read: otherwise the summary would wrongly state that
+/// nothing was issued.
 Expected<void> note_certificates(RunResult& run, const RunOptions& options,
                                  const reading::Context& context, RunState& state) {
   NONIO_TRY(auto known, known_of(options, context, Look::again));
-  if (!known) {  // the next run lists it
+  if (!known) {  // the next run lists the certificates
     run.notes.push_back("the register of certificates is locked: what was issued is not listed");
     return {};
   }
@@ -94,7 +98,7 @@ Expected<void> note_certificates(RunResult& run, const RunOptions& options,
 
 bool is_campaign(const Vanished& v) { return config::is_campaign_id(v.id); }
 
-/// Campaigns that were removed on purpose do not count as vanished.
+/// Removes campaigns that forgotten.toml names from the list of vanished ones.
 void leave_out_forgotten(RunResult& run, const Expected<store::SiteRecords>& records) {
   if (!records) return;
   std::erase_if(run.vanished, [&](const Vanished& v) {
@@ -104,7 +108,8 @@ void leave_out_forgotten(RunResult& run, const Expected<store::SiteRecords>& rec
   });
 }
 
-/// If pages cannot be made, the run does not fail: they are made again from the results.
+/// Makes the worklist and its pages. If this fails, the run does not fail: the error is noted, and
+/// the next run makes them from the results.
 WorklistPages worklist_of(RunResult& run, const RunOptions& options, const RunEvents& events,
                           const reading::Context& context) {
   auto made = make_worklist(options, context, last_run_of(run, options.out, context.templates));
@@ -120,7 +125,7 @@ WorklistPages worklist_of(RunResult& run, const RunOptions& options, const RunEv
   return {};
 }
 
-/// A mail that cannot be sent is reported in the summary, and nothing is lost.
+/// Sends the mail of the run. If it cannot be sent, the error is noted in the summary.
 void write_mail(RunResult& run, const RunOptions& options, const RunEvents& events,
                 const reading::Context& context, const WorklistPages& worklist) {
   if (worklist.mail.empty() || process::is_stop_requested()) return;
@@ -134,8 +139,9 @@ void write_mail(RunResult& run, const RunOptions& options, const RunEvents& even
   events.note(run.notes.back());
 }
 
-/// Lines that require action, each once: OUT/.nonio/webhook.json has the ids of those that were taken.
-/// A program that does not take them delays no result; the next run tries again.
+/// Sends new lines that require action to the webhook, each once: OUT/.nonio/webhook.json contains
+/// the ids of lines that were accepted. If the receiver fails, no result is delayed, and the next
+/// run tries again.
 void post_news(RunResult& run, const RunOptions& options, const RunEvents& events,
                const reading::Context& context) {
   using storage::Json;
@@ -169,7 +175,7 @@ void post_news(RunResult& run, const RunOptions& options, const RunEvents& event
     events.note(kept.error().message);
 }
 
-/// First what cannot be left lying; then what the register states; the summary last.
+/// Removes leftovers, lists certificates, makes the worklist, and writes the summary last.
 Expected<void> close_run(RunResult& run, const RunOptions& options, const RunEvents& events,
                          const SetUp& place, RunState& state) {
   const reading::Context& context = place.context;
@@ -187,7 +193,7 @@ Expected<void> close_run(RunResult& run, const RunOptions& options, const RunEve
   return end_run(options.out, state, {state.of(), run.campaigns.size(), run.failed()});
 }
 
-/// The summary lists all of them; of very many the messages name the first.
+/// Reports vanished campaigns as messages, at most 100 of them; the summary lists all.
 void tell_vanished(const RunResult& run, const RunEvents& events) {
   constexpr std::size_t most = 100;
   for (std::size_t i = 0; i < std::min(most, run.vanished.size()); ++i) {
@@ -200,7 +206,7 @@ void tell_vanished(const RunResult& run, const RunEvents& events) {
                 " more have vanished: see the summary");
 }
 
-/// Which campaigns there are, and what is to do with each.
+/// Fills `run` with the campaigns of the site and what is to be done with each.
 Expected<void> survey_site(const RunOptions& options, const reading::Context& context,
                            const RunState& state, const std::optional<Known>& known,
                            RunResult& run) {
@@ -226,7 +232,7 @@ Expected<void> survey_site(const RunOptions& options, const reading::Context& co
   return {};
 }
 
-/// Keys with former names: of many the messages name the first.
+/// Reports keys with former names in manifests, at most 20 of them.
 void report_former_keys(const RunResult& run, const RunEvents& events) {
   constexpr std::size_t most = 20;
   std::size_t count = 0;
@@ -247,14 +253,17 @@ void tell_plan(const RunResult& run, const RunEvents& events) {
                                            run.campaigns.begin(), run.campaigns.end(), is_todo)));
 }
 
-/// What was found out before the first campaign is done.
+/// Facts that are known before the first campaign is evaluated.
 struct Plan {
   Expected<store::SiteRecords> records;
-  std::string only;                              ///< the campaign of a run that is reopened
-  std::optional<std::uint64_t> history_known{};  ///< by the store, when this run was planned
+  std::string only;                              ///< id of the campaign of a reopened run; empty
+                                                 ///< otherwise
+  std::optional<std::uint64_t> history_known{};  ///< the run up to which the store was complete
+                                                 ///< when this run was planned
 };
 
-/// Surveyed and reported. An error: the run ends here; empty if a stop is requested.
+/// Surveys the site and reports the result. An error ends the run; its message is empty if a stop
+/// was requested.
 Expected<Plan> plan_run(const RunOptions& options, const RunEvents& events, const SetUp& place,
                         const RunState& state, const std::optional<Known>& known, RunResult& run) {
   const reading::Context& context = place.context;
@@ -280,7 +289,7 @@ void tell_stage(const RunEvents& events, const char* name) {
   if (events.stage) events.stage(name);
 }
 
-/// A run that was planned, as its shards have left it.
+/// Restores the plan of a run that was done in shards, with the results of its shards in `run`.
 Expected<Plan> planned_run_of(const RunOptions& options, const RunEvents& events,
                               const SetUp& place, const RunPlan& planned,
                               const std::optional<Known>& known, RunResult& run) {
@@ -297,8 +306,8 @@ Expected<Plan> planned_run_of(const RunOptions& options, const RunEvents& events
   return plan;
 }
 
-/// Every campaign that is to do, and what the history and the reports know of it. An error: the
-/// run ends here; empty if a stop is requested.
+/// Evaluates every campaign that is to be evaluated, then updates the history and the reports that
+/// show it. An error ends the run; its message is empty if a stop was requested.
 Expected<void> do_planned(const RunOptions& options, const RunEvents& events, SetUp& place,
                           const Plan& plan, bool register_known, RunState& state, RunResult& run) {
   const reading::Context& context = place.context;
@@ -316,7 +325,7 @@ Expected<void> do_planned(const RunOptions& options, const RunEvents& events, Se
       if (!state.issued_before) state.issued_before = issued_so_far(numbers);
       return check_numbers(options.out, run.campaigns, numbers);
     };
-  RunOptions numbered = options;  // numbers in the order of the campaigns
+  RunOptions numbered = options;  // campaigns get their numbers in the order of their ids
   if (options.step == RunOptions::Step::merge && context.site.numbering.automatic)
     numbered.jobs = 1;
   bool well = do_campaigns(numbered, events, context, state, desk, run.campaigns);
@@ -339,7 +348,8 @@ Expected<void> do_planned(const RunOptions& options, const RunEvents& events, Se
   return fail("");
 }
 
-/// The output folder, before anything is looked up in it.
+/// Prepares the output folder before results are looked up in it: layout of folders, catalogue of
+/// packs, and packs of a plan that is given up.
 Expected<void> make_ready(const RunOptions& options, const reading::Context& context) {
   auto ready = settle_folders(options.out, context.site.hashed_folders, options.dry_run);
   if (ready) ready = storage::check_catalogue(options.out);
@@ -347,7 +357,7 @@ Expected<void> make_ready(const RunOptions& options, const reading::Context& con
   return ready;
 }
 
-/// The run itself, in an output folder that no other process uses.
+/// Does the run in an output folder that no other process uses, and stores its outcome in `run`.
 void do_run(const RunOptions& options, const RunEvents& events, const std::string& site_text,
             SetUp& place, const std::optional<Known>& known, RunResult& run) {
   const reading::Context& context = place.context;
@@ -443,7 +453,7 @@ RunResult run_site(const RunOptions& options, const RunEvents& events) {
         "campaigns that need a number wait for it");
   for (const std::string& note : run.notes) events.note(note);
   if (!(*place)->unstamped.empty()) run.notes.push_back((*place)->unstamped);
-  // What takes the memory is released first, so that enough is left to report it.
+  // Memory that is freed if memory runs out, so that the error can be reported.
   auto reserve = std::make_unique<std::array<char, 1 << 18>>();
   try {
     do_run(options, events, *site_text, **place, *known, run);

@@ -89,8 +89,9 @@ void compare_keys(const Keys& before, const Keys& after, FileChange& out) {
     if (key != amendment_key && !after.contains(key)) list.add({key, 0, value, std::nullopt});
 }
 
-/// What is the same at the begin and at the end is left out. In between, line by line where there
-/// are as many as there were, else all that was removed and all that is new.
+/// Lists the differences between two files. Equal lines at the beginning and at the end are left
+/// out; between them, lines are compared one by one if both files have the same number of lines,
+/// otherwise all removed and all new lines are listed.
 void compare_lines(const std::vector<std::string>& a, const std::vector<std::string>& b,
                    FileChange& out) {
   ChangeList list(out);

@@ -8,18 +8,19 @@
 
 namespace nonio::certificates {
 
-/// Where one file is other than it was: keys of TOML, lines of text; of other files that they
-/// differ. At most `most_changes` places are listed. Without `before` or `after`: the file is new,
-/// or was removed.
+/// Returns the differences between two versions of a file: keys of a TOML file, lines of a text;
+/// for other files only that they differ. At most `most_changes` places are listed. If `before` or
+/// `after` is null, the file is new or was removed.
 FileChange change_of(const std::string& file, const std::string* before, const std::string* after);
 
 inline constexpr std::size_t most_changes = 40;
 
-/// A TOML text as keys with their values: "machine.axes.X.tolerance_um.B" -> "3". Of a list of
-/// tables with an `id` each: "measurement.X.file". Empty if it is no TOML.
+/// Returns the keys of a TOML text with their values: "machine.axes.X.tolerance_um.B" -> "3".
+/// Tables of a list are named by their `id`: "measurement.X.file". Empty if the text is not TOML.
 std::map<std::string, std::string> flat_toml(std::string_view text);
 
-/// Why an earlier certificate is replaced; a part of the manifest that is no change by itself.
+/// Key for the reason why an earlier certificate is replaced; a change of this key alone is not a
+/// change.
 inline constexpr const char* amendment_key = "certificate.amendment";
 
 }  // namespace nonio::certificates

@@ -11,17 +11,18 @@
 
 namespace nonio::certificates {
 
-/// The files of one campaign for numbering and signing: each is read and hashed once, at its first
-/// use. They are those that were evaluated, or there is an error: the process with the plugins has
-/// read them through descriptors of its own.
+/// Reads the files of one campaign for numbering and signing; each is read and hashed once, at its
+/// first use. Returns an error if a file is not the one that was evaluated, because the process
+/// with the plugins has read it through descriptors of its own.
 class CampaignFiles {
  public:
-  /// `folder` must outlive it.
+  /// `folder` must outlive this object.
   explicit CampaignFiles(const std::filesystem::path& folder) : folder_(folder) {}
 
-  /// `name` as the manifest has it, `digest` as it was evaluated. Valid as long as this object.
+  /// Returns the bytes of a file. `name`: as in the manifest; `digest`: of the evaluated file.
+  /// Valid during the lifetime of this object.
   Expected<std::string_view> bytes(const std::string& name, const std::string& digest);
-  /// SHA-256 of the files of readings, one behind the other.
+  /// Returns the SHA-256 of the concatenated files of readings.
   Expected<std::string> readings_sha256(const reading::Inputs& inputs);
 
  private:
@@ -33,8 +34,8 @@ class CampaignFiles {
   std::map<std::string, Known> known_;
 };
 
-/// The name of the file of the campaign's folder behind an input; empty where it is none: what
-/// another campaign has, or the record of the machine.
+/// Returns the name of the campaign's file that an input denotes; empty if the input is not one of
+/// them, but a file of another campaign or the record of the machine.
 std::string file_of_input(const std::string& input);
 
 }  // namespace nonio::certificates

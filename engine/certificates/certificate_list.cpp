@@ -55,7 +55,8 @@ Expected<Audit> audit(const fs::path& site, const config::Numbering& numbering) 
 
 namespace {
 
-/// What its own output made is named by the number alone; what was signed with it has its name too.
+/// Returns the name of an exported file: the number alone for files of the output `own`; for other
+/// signed files, their names follow the number.
 std::string export_name(const std::string& number, const evaluation::IssuedFile& file,
                         const std::string& own) {
   if (file.output == own && file.name.ends_with(".pdf")) return number + ".pdf";

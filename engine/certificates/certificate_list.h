@@ -8,22 +8,22 @@
 
 namespace nonio::certificates {
 
-/// `[certificate]` of a site's site.toml.
+/// Reads `[certificate]` of a site's site.toml.
 Expected<config::Numbering> numbering_of(const std::filesystem::path& site);
 
-/// All numbers of the site's register, with who released and withdrew them.
+/// Returns all numbers of the site's register, with the persons who approved and withdrew them.
 Expected<std::vector<RegisterEntry>> certificates_of(const std::filesystem::path& site,
                                                      const config::Numbering& numbering);
 
-/// Takes a number back; `why` stays in the register, and `by` (may be empty).
+/// Withdraws a number. The register keeps `why` and `by` (may be empty).
 Expected<void> withdraw(const std::filesystem::path& site, const config::Numbering& numbering,
                         const std::string& number, const std::string& why,
                         const std::string& by = {});
 
-/// Whether the register is what it was written as; an error if that cannot be read.
+/// Checks that the register was not changed outside of this program; an error if it cannot be read.
 Expected<Audit> audit(const std::filesystem::path& site, const config::Numbering& numbering);
 
-/// Writes what was issued under all numbers into a folder: NUMBER.pdf, NUMBER-dcc.xml.
+/// Writes all issued files into a folder: NUMBER.pdf, NUMBER-dcc.xml.
 Expected<void> export_certificates(const std::filesystem::path& site,
                                    const config::Numbering& numbering,
                                    const std::filesystem::path& folder);

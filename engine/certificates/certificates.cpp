@@ -21,8 +21,8 @@ bool is_asked(const Results& results) {
   });
 }
 
-/// A certificate on its way: out of the list of artifacts while its attachments are made, since
-/// results.json cannot name the digest of a file that it is part of.
+/// A PDF to be signed, which is removed from the list of artifacts while its attachments are made,
+/// since results.json cannot state the digest of a file that contains it.
 struct Draft {
   std::size_t output, place;
   Artifact artifact;
@@ -38,7 +38,7 @@ Expected<evaluation::IssuedFile> signed_by(const SignWith& how, Artifact& a,
   return evaluation::IssuedFile{output, a.name, a.bytes, std::move(done->no_time_stamp)};
 }
 
-/// Of all outputs what is to be signed and is no PDF; it is attached, too.
+/// Signs the files other than PDFs that outputs want signed, and adds them to the attachments.
 Expected<void> sign_documents(evaluation::Evaluated& evaluated, const SignWith& how,
                               std::vector<evaluation::IssuedFile>& done, Attachments& attachments) {
   for (Results::Written& w : evaluated.results.outputs)
@@ -52,7 +52,7 @@ Expected<void> sign_documents(evaluation::Evaluated& evaluated, const SignWith& 
   return {};
 }
 
-/// The PDFs that are to be signed, out of the artifacts.
+/// Moves the PDFs that are to be signed out of the artifacts.
 std::vector<Draft> take_drafts(evaluation::Evaluated& evaluated) {
   std::vector<Draft> drafts;
   auto& outputs = evaluated.results.outputs;
@@ -78,7 +78,7 @@ void put_back(evaluation::Evaluated& evaluated, std::vector<Draft>& drafts) {
   }
 }
 
-/// The manifest or a file of readings, byte by byte as it was evaluated.
+/// Returns the manifest or a file of readings as an attachment, with the bytes that were evaluated.
 Expected<pdf::Attachment> attached_input(const std::string& input, const std::string& digest,
                                          CampaignFiles& files) {
   const bool is_manifest = input == config::manifest_name;
@@ -94,11 +94,12 @@ Expected<pdf::Attachment> attached_input(const std::string& input, const std::st
       is_manifest ? "the campaign: what was measured, and how it is evaluated" : "readings"};
 }
 
-/// From what the results were made: campaign, machine, settings of the site, words.
+/// Attaches the data that the results were made from: campaign, machine, settings of the site,
+/// templates.
 Expected<void> attach_sources(const evaluation::Evaluated& evaluated, CampaignFiles& files,
                               const reading::Context& context, Attachments& to) {
   for (const auto& [input, digest] : evaluated.inputs) {
-    if (input.starts_with(reading::shared_name(""))) continue;  // what another campaign has
+    if (input.starts_with(reading::shared_name(""))) continue;  // a file of another campaign
     if (input.starts_with(config::machine_prefix)) {
       const auto record = config::record_of(context.machines, evaluated.campaign.machine);
       if (record && *record != nullptr)
@@ -133,7 +134,8 @@ Expected<void> attach_results(const evaluation::Evaluated& evaluated,
   return {};
 }
 
-/// What a certificate carries, results.json last. `to`: the documents that are signed already.
+/// Attaches the sources and, as the last attachment, results.json. `to`: contains the signed
+/// documents already.
 Expected<void> attach_all(const evaluation::Evaluated& evaluated, CampaignFiles& files,
                           const reading::Context& context, const SignWith& how, Attachments& to) {
   if (auto done = attach_sources(evaluated, files, context, to); !done) return done;
@@ -153,7 +155,8 @@ Expected<void> sign_drafts(std::vector<Draft>& drafts, const evaluation::Evaluat
   return {};
 }
 
-/// All that the numbered output has made, and what of the others is signed with it.
+/// Stores in `certificate` all files of the numbered output, and the files of other outputs that
+/// were signed with it.
 Expected<void> keep_for_register(const evaluation::Evaluated& evaluated,
                                  std::vector<evaluation::IssuedFile> done, std::string results,
                                  evaluation::Certificate& certificate) {
@@ -178,7 +181,7 @@ Expected<void> keep_for_register(const evaluation::Evaluated& evaluated,
   return {};
 }
 
-/// Documents first, which PDFs carry; then the PDFs.
+/// Signs the documents first, because the PDFs contain them as attachments, then the PDFs.
 Expected<void> sign_all(evaluation::Evaluated& evaluated, CampaignFiles& files,
                         const reading::Context& context, const SignWith& how, sign::Time now) {
   std::vector<evaluation::IssuedFile> signed_files;
@@ -214,7 +217,8 @@ void remove_unsigned(evaluation::Evaluated& evaluated) {
 
 namespace {
 
-/// Of a draft its pages stay, under a name that shows that: what is signed comes with the number.
+/// Keeps only the pages of a draft, under a name that marks them as a draft. Signed files come with
+/// the number.
 void keep_draft(evaluation::Evaluated& evaluated) {
   for (Results::Written& w : evaluated.results.outputs) {
     auto& artifacts = w.result.artifacts;

@@ -41,7 +41,7 @@ namespace {
 
 using State = sign::Check::State;
 
-/// The campaign's folder as it was, from what is attached.
+/// Writes the campaign's folder from the attachments. An error if a name leads out of the folder.
 Expected<void> unpack(const sign::Verified& v, const fs::path& folder) {
   for (const pdf::Attachment& a : v.attachments) {
     const fs::path name = fs::path(a.name).lexically_normal();
@@ -57,15 +57,17 @@ Expected<void> unpack(const sign::Verified& v, const fs::path& folder) {
   return {};
 }
 
-/// What an attached results.json states about the number that was issued, if one was, and by which
-/// version.
+/// Statements of an attached results.json: the certificate, if one was issued, and the version of
+/// the program.
 struct Stated {
   std::optional<evaluation::Certificate> certificate;
   std::string nonio;
-  std::vector<std::pair<std::string, std::string>> shared;  ///< files, each with another campaign
+  /// Files that another campaign had too, each with the id of that campaign.
+  std::vector<std::pair<std::string, std::string>> shared;
 };
 
-/// Which files another campaign had too, which only the run could know, according to the findings.
+/// Reads from the findings which files another campaign had too, since only the run could know
+/// this.
 void put_shared(const storage::Json& analyses, Stated& stated) {
   const auto text = [](const storage::Json& of, const char* key) {
     return of.is_object() && of.contains(key) && of[key].is_string() ? of[key].get<std::string>()
@@ -104,7 +106,8 @@ struct Content {
   sign::Check values, attachments, templates, words, printed;
 };
 
-/// The content of a signed PDF in a process of its own: plugins read what is attached.
+/// Evaluates the content of a signed PDF again, in a process of its own, because plugins read the
+/// attachments.
 class Again {
  public:
   Again(const sign::Verified& v, std::string_view pdf, const fs::path& folder,
@@ -161,8 +164,8 @@ class Again {
     return twins;
   }
 
-  /// Those that the file was made with, if this is its version. What is not whole, or not what
-  /// results.json states about it, does not end the other checks.
+  /// Takes over the attached templates if the file was made by this version. Incomplete templates,
+  /// or templates that do not match results.json, do not end the other checks.
   sign::Check take_templates() {
     constexpr const char* id = "content.templates";
     if (stated_.nonio != context_.version)
@@ -183,8 +186,8 @@ class Again {
     return {id, State::holds, "the attached ones are those that results.json names"};
   }
 
-  /// Words state whether a value conforms: with others than the installed ones, a file of the same
-  /// signer and the same readings may state the opposite.
+  /// Checks that the attached templates are the installed ones: words state whether a value
+  /// conforms, so other words could state the opposite for the same readings and signer.
   sign::Check same_words() const {
     if (!strange_) return not_checked(words_check, "needs the templates of this version");
     if (strange_->empty())
@@ -194,7 +197,7 @@ class Again {
                 storage::listed(*strange_)};
   }
 
-  /// Why the file cannot be made again as it was; empty if it can.
+  /// Why the file cannot be made again; empty if it can.
   std::string why_not_drawn(const sign::Check& templates) const {
     if (stated_.nonio != context_.version)
       return "was made by version \"" + stated_.nonio + "\", this is " + context_.version;
@@ -212,8 +215,8 @@ class Again {
     return number;
   }
 
-  /// The manifest, the readings that it names, what the host adds, and documents that results.json
-  /// lists: no more and no less.
+  /// Checks that the attachments are exactly the manifest, the readings that it names, what the
+  /// host adds, and documents that results.json lists.
   Expected<std::string> check_names(const evaluation::Evaluated& again) const {
     std::vector<std::string> wanted = {evaluation::results_name};
     const std::string prefix = reading::input_name("");
@@ -235,7 +238,7 @@ class Again {
     return std::to_string(wanted.size()) + " files, each with its place in the campaign";
   }
 
-  /// With the digest that it has.
+  /// Whether results.json lists the attachment with its digest.
   bool is_listed(const pdf::Attachment& a) const {
     const storage::Json json = storage::parse_once(results_);
     if (!json.is_object() || !json.contains("outputs") || !json["outputs"].is_array()) return false;
@@ -246,8 +249,8 @@ class Again {
         });
   }
 
-  /// The steps of a run up to the signature; the bytes to be signed are compared with those that
-  /// exist.
+  /// Repeats the steps of a run up to the signature, and compares the bytes to be signed with those
+  /// of the file.
   Expected<std::string> same_file(evaluation::Evaluated& again) {
     if (again.status == evaluation::Status::failed)
       return fail("the attached readings cannot be evaluated: " +
@@ -306,14 +309,16 @@ class Again {
   reading::Context context_;
   const std::string& results_;
   Stated stated_;
-  std::optional<std::vector<std::string>> strange_;  ///< attached templates; none: not looked at
-  std::string missing_;                              ///< a font, so that nothing can be drawn
+  std::optional<std::vector<std::string>> strange_;  ///< attached templates that differ from the
+                                                     ///< installed ones; none: not compared
+  std::string missing_;                              ///< a font that is missing, so that nothing
+                                                     ///< can be drawn
 };
 
 constexpr std::array check_ids = {"content.values", "content.attachments", "content.templates",
                                   words_check, "content.printed"};
 
-/// A line of a process that ends for the one that waits for it.
+/// Returns the result of a check as one line for the waiting process.
 std::string line_of(const sign::Check& check) {
   constexpr std::size_t most = 900;
   std::string text = check.says.substr(0, most);
@@ -324,7 +329,7 @@ std::string line_of(const sign::Check& check) {
          text + "\n";
 }
 
-/// Takes a line off the answer.
+/// Removes one line from the answer and returns it as a check.
 sign::Check check_of(const char* id, std::string& answer) {
   const std::size_t end = answer.find('\n');
   const std::string line = answer.substr(0, end);
@@ -334,7 +339,7 @@ sign::Check check_of(const char* id, std::string& answer) {
           line.empty() ? "there is no answer" : line.substr(1)};
 }
 
-/// A line for each of `check_ids`.
+/// Runs the checks in a confined process. Returns one line for each of `check_ids`.
 Expected<std::string> recompute_apart(const sign::Verified& v, std::string_view pdf,
                                       const reading::Context& context) {
   for (const char* name : {config::manifest_name, evaluation::results_name})

@@ -9,12 +9,12 @@
 
 namespace nonio::certificates {
 
-/// What is attached to a signed PDF evaluated again by the installed plugins: `content.values`,
-/// whether the readings give the attached results; `content.attachments`, whether all that is
-/// attached belongs there; `content.templates`, whether its words are those that results.json names;
-/// `content.words`, whether these are the installed ones;
-/// `content.printed`, whether the readings give this very file, object by object, when it is put
-/// together again as the run did.
+/// Evaluates the attachments of a signed PDF again with the installed plugins. Checks:
+/// `content.values`, whether the readings give the attached results; `content.attachments`, whether
+/// all attachments belong to the certificate; `content.templates`, whether its templates are those
+/// that results.json names; `content.words`, whether these are the installed ones;
+/// `content.printed`, whether the readings give exactly this file, object by object, when it is
+/// made again as in the run.
 std::vector<sign::Check> check_content(const sign::Verified& verified, std::string_view pdf,
                                        const reading::Context& context);
 

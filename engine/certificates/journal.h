@@ -11,30 +11,30 @@
 
 namespace nonio::certificates {
 
-/// What happened in a register, in order. Entries are only ever added. Each holds a digest of
-/// itself and of the digest before, so that nothing before the last one can be changed or taken out
-/// unseen.
+/// Events of a register in their order. Entries are only appended. Each contains its own digest and
+/// that of the entry before, so that a change or removal of any entry but the last is detected.
 class Journal {
  public:
   struct Entry {
-    std::int64_t place = 0;  ///< from 1, without gaps
+    std::int64_t place = 0;  ///< counted from 1, without gaps
     std::string at;          ///< UTC, "2026-11-22T14:21:33Z"
     std::string what;        ///< made, carried-over, drawn, approved, issued, withdrawn
-    std::string number;      ///< empty: of no number
-    std::string says;        ///< JSON
+    std::string number;      ///< empty: concerns no number
+    std::string says;        ///< details as JSON
     std::string sha256;
   };
   static const char* const schema;
 
   explicit Journal(storage::Database& database) : database_(database) {}
 
-  /// In the transaction of the change that it records. Every entry states the account that wrote it.
+  /// Appends an entry, in the transaction of the change that it records. Every entry states the
+  /// account that wrote it.
   Entry add(const char* what, const std::string& number, storage::Json says);
   std::vector<Entry> all();
   std::optional<Entry> last();
-  /// The last of a kind that is about a number.
+  /// Returns the last entry of this kind for this number.
   std::optional<Entry> last_of(const char* what, const std::string& number);
-  /// The digest that an entry has to have behind one with the digest `before`.
+  /// Returns the digest that an entry must have if it follows an entry with the digest `before`.
   static std::string digest(const Entry& entry, const std::string& before);
 
  private:
@@ -43,12 +43,12 @@ class Journal {
   storage::Database& database_;
 };
 
-/// Of the real user of this process, as the operating system knows him, and the host:
+/// Returns the account of this process' real user according to the operating system, and the host:
 /// "lab@measuring-room".
 std::string own_account();
-/// False in a user namespace of a person's own, where any number and name of an account can be chosen.
+/// Returns false in a user namespace of one person, in which that person can choose any account.
 bool is_own_account_certain();
-/// Now, as the journal writes it.
+/// Returns the present time as the journal writes it.
 std::string utc_now();
 
 }  // namespace nonio::certificates

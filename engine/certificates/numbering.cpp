@@ -22,15 +22,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Of other campaigns, or of the machine's record: no file of the campaign, and no data of its
-/// certificate. What other campaigns do makes no other data of these, and what is in the control by
-/// now neither.
+/// Whether an input belongs to another campaign or to the machine's record. Such inputs are not
+/// data of the certificate, which must not change when other campaigns or the tables in the control
+/// change.
 bool is_foreign(const std::string& input) {
   return input.starts_with(reading::shared_name("")) || input.starts_with(config::machine_prefix);
 }
 
-/// What a certificate is made from: the campaign's own files, and the parts of site.toml that affect
-/// the results.
+/// Returns the data that a certificate is made from: the campaign's own files, and the parts of
+/// site.toml that affect the results.
 reading::Inputs data_of(const evaluation::Evaluated& evaluated, const reading::Context& context) {
   reading::Inputs data = evaluated.inputs;
   std::erase_if(data, [](const auto& one) { return is_foreign(one.first); });
@@ -38,7 +38,8 @@ reading::Inputs data_of(const evaluation::Evaluated& evaluated, const reading::C
   return data;
 }
 
-/// A worker does not wait long for others: its campaign is done again when the register is free.
+/// Returns how long a worker waits for the register, in s. If it is locked longer, the campaign is
+/// evaluated again when it is free.
 double short_wait(const config::Numbering& numbering) {
   constexpr double seconds = 5.0;
   return std::min(seconds, numbering.patience);
@@ -52,7 +53,8 @@ const std::string* find_file(const Files& files, const std::string& name) {
   return nullptr;
 }
 
-/// From what a certificate was made: manifest, readings, settings of the site.
+/// Returns the files that an issued certificate was made from: manifest, readings, settings of the
+/// site.
 Expected<Files> attached_files(const std::vector<evaluation::IssuedFile>& issued) {
   Files files;
   for (const evaluation::IssuedFile& f : issued) {
@@ -82,14 +84,14 @@ Expected<Files> current_files(const evaluation::Evaluated& evaluated,
   return files;
 }
 
-/// In the order of `now`; then the removed ones.
+/// Returns the changes in the order of `now`, followed by removed files.
 std::vector<FileChange> changes_of(const Files& then, const Files& now) {
   std::vector<FileChange> all;
   for (const auto& [name, bytes] : now) {
     const std::string* before = find_file(then, name);
     if (before != nullptr && *before == bytes) continue;
     FileChange change = change_of(name, before, &bytes);
-    // Comments, or nothing but the reason for the amendment.
+    // Only comments, or only the reason for the amendment, have changed.
     if (before != nullptr && name.ends_with(".toml") && change.changes.empty()) continue;
     all.push_back(std::move(change));
   }
@@ -98,7 +100,7 @@ std::vector<FileChange> changes_of(const Files& then, const Files& now) {
   return all;
 }
 
-/// The register's files in place of what has been made now.
+/// Replaces the files that were made now by those in the register.
 void take_issued(evaluation::Evaluated& evaluated) {
   for (Results::Written& w : evaluated.results.outputs)
     for (const evaluation::IssuedFile& f : evaluated.certificate->files) {
@@ -110,7 +112,8 @@ void take_issued(evaluation::Evaluated& evaluated) {
   remove_unsigned(evaluated);
 }
 
-/// Those that the certificate states. If two persons gave one for the same finding, each is stated.
+/// Puts the reasons that the certificate states into `issue`. If two persons gave one for the same
+/// finding, both are stated.
 void put_reasons(const Releasing& releasing, Issue& issue) {
   for (const evaluation::KnownFinding& f : releasing.draft.findings) {
     if (!reading::is_expired_calibration(f.id)) continue;
@@ -133,7 +136,7 @@ void put_reasons(const Releasing& releasing, Issue& issue) {
 const config::AcceptedRule* rule_for(const config::Numbering& numbering,
                                      const evaluation::KnownFinding& finding) {
   if (finding.id.starts_with(reading::plausibility_prefix))
-    return nullptr;  // a person states why, each time
+    return nullptr;  // requires a person's reason each time
   for (const config::AcceptedRule& rule : numbering.accepted) {
     const bool all_of_a_kind = rule.finding.ends_with(".*");
     if (all_of_a_kind ? finding.id.starts_with(rule.finding.substr(0, rule.finding.size() - 1))
@@ -154,7 +157,8 @@ Expected<Register> Numbers::open() const {
 
 namespace {
 
-/// Whether an open finding requires the decision of a person, which the rules cannot replace.
+/// Whether a finding with severity warning is not accepted by a rule, so that a person has to
+/// decide.
 bool any_unruled(const std::vector<evaluation::KnownFinding>& findings,
                  const config::Numbering& numbering) {
   return std::any_of(findings.begin(), findings.end(), [&](const evaluation::KnownFinding& f) {
@@ -162,7 +166,7 @@ bool any_unruled(const std::vector<evaluation::KnownFinding>& findings,
   });
 }
 
-/// Everything that the pages of a draft depend on.
+/// Returns everything that the pages of a draft depend on.
 reading::Inputs made_from(const evaluation::Evaluated& evaluated, const reading::Context& context) {
   reading::Inputs all = data_of(evaluated, context);
   for (const auto& [name, digest] : evaluated.inputs)
@@ -174,7 +178,7 @@ reading::Inputs made_from(const evaluation::Evaluated& evaluated, const reading:
 
 }  // namespace
 
-/// By the rules, or because a person releases it.
+/// Whether the certificate may be issued: a person approves it, or the rules of the site allow it.
 bool Numbers::may_issue(const evaluation::Evaluated& evaluated) const {
   if (releasing_ != nullptr) return true;
   const config::Numbering& numbering = context_.site.numbering;
@@ -202,7 +206,7 @@ bool Numbers::held_up(const evaluation::Evaluated& evaluated) const {
   return certificate && !certificate->issued && !certificate->draft && !may_issue(evaluated);
 }
 
-/// What a person releases is what he has seen.
+/// Returns an error if the draft has changed since the person who approves it has read it.
 Expected<void> Numbers::check_release(const reading::Inputs& now) const {
   if (releasing_ == nullptr) return {};
   std::string other;
@@ -275,7 +279,7 @@ Expected<evaluation::Certificate> Numbers::find_or_draw(const evaluation::Evalua
   if (*found) return std::move(**found);
   if (auto same = check_release(made_from(evaluated, context_)); !same) return fail(same.error());
   NONIO_TRY(const auto before, opened.last_number(campaign));
-  // Issued for the same data by another run since they were searched? Then nothing is
+  // Another run may have issued a certificate for the same data in the meantime; then nothing is
   // amended.
   if (before) found = opened.find(campaign, data);
   if (!found) return fail(found.error());
@@ -398,7 +402,8 @@ Expected<void> Numbers::issue(evaluation::Evaluated& evaluated, const std::strin
   return {};
 }
 
-/// A certificate does not change; that another version would print other numbers is stated.
+/// Adds a finding if this version would print other values than the issued certificate, which
+/// remains unchanged.
 void Numbers::note_differences(evaluation::Evaluated& evaluated) const {
   auto outputs = std::exchange(evaluated.results.outputs, {});
   const auto same = same_values(evaluated.certificate->results,

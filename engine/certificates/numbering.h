@@ -10,43 +10,46 @@
 
 namespace nonio::certificates {
 
-/// Whether a rule of the site accepts this finding.
+/// Returns the rule of the site that accepts this finding; null if there is none.
 const config::AcceptedRule* rule_for(const config::Numbering& numbering,
                                      const evaluation::KnownFinding& finding);
 
-/// A draft, and the one who releases it.
+/// A draft, and the approval of the person who issues it.
 struct Releasing {
   WaitingDraft draft;
   Approval by;
-  reading::Twins twins{};  ///< what the run knew of other campaigns
+  reading::Twins twins{};  ///< twins of the campaign, as the run knew them
 };
 
-/// What a run, or the release of one campaign, does with the site's register. Every call opens it
-/// by itself: no process inherits it from another.
+/// Accesses the site's register for a run, or for the approval of one campaign. Every call opens
+/// the register itself, because no process may inherit it from another.
 class Numbers {
  public:
   struct Where {
     std::filesystem::path site, out;
     std::string today;  ///< YYYY-MM-DD
-    bool can_sign;      ///< there is a key, or there are neither drafts nor numbers
+    bool can_sign;      ///< whether there is a key, or signing needs none
   };
   /// `releasing` is null in a run.
   Numbers(Where where, const reading::Context& context, const Releasing* releasing)
       : where_(std::move(where)), context_(context), releasing_(releasing) {}
 
-  /// What was issued for these data, whatever is `missing` for it today; else, if nothing is, a
-  /// draft or a number; else neither. `as_draft`: never a number.
+  /// Assigns a certificate to the data: the one that was issued for them, even if something is
+  /// `missing` today; otherwise, if nothing is missing, a draft or a number; otherwise neither.
+  /// `as_draft`: never assign a number.
   evaluation::AssignedNumber assign(const evaluation::Evaluated& evaluated, CampaignFiles& files,
                                     std::vector<std::string> missing, bool as_draft) const;
-  /// Whether a finding that no rule accepts came after a number was drawn by the rules.
+  /// Whether a finding that no rule accepts appeared after the rules had allowed a number to be
+  /// drawn.
   bool held_up(const evaluation::Evaluated& evaluated) const;
-  /// After signing: enters what is issued into the register, and gives the campaign what the
-  /// register holds. Of what was issued before it is stated if its numbers are others now. A draft
-  /// is entered as one that waits for `folder`'s release (relative to the site).
+  /// Has to be called after signing. Enters the certificate into the register and replaces the
+  /// campaign's files by those of the register. Adds a finding if an earlier certificate's values
+  /// would be different now. A draft is entered as waiting for the approval of `folder` (relative
+  /// to the site).
   Expected<void> issue(evaluation::Evaluated& evaluated, const std::string& folder) const;
-  /// Nothing is signed that neither a person nor the site's rules have released. Documents that are
-  /// not part of a certificate need no release: they are signed if the rules allow it, else omitted
-  /// with a finding.
+  /// Removes files that were to be signed without approval by a person or by the site's rules.
+  /// Documents that are not part of a certificate need no person's approval; if the rules do not
+  /// allow them, they are omitted with a finding.
   void hold_unreleased(evaluation::Evaluated& evaluated) const;
   /// Records why a number that was drawn for a campaign is not issued. Errors are ignored, because
   /// no caller could handle them.
@@ -56,7 +59,8 @@ class Numbers {
   Expected<Register> open() const;
   Expected<bool> has_register() const;
   bool may_issue(const evaluation::Evaluated& evaluated) const;
-  /// No number: `missing` states what for.
+  /// Returns the certificate for the data. Without a number, `missing` lists what is missing for
+  /// one.
   Expected<evaluation::Certificate> find_or_draw(const evaluation::Evaluated& evaluated,
                                                  CampaignFiles& files,
                                                  std::vector<std::string>& missing,

@@ -12,12 +12,14 @@ namespace nonio::certificates {
 
 inline constexpr std::size_t shortest_password = 12, longest_password = 200;
 
-/// A new hash. An error if the password has not 12 to 200 bytes or a control character.
+/// Returns a new hash. An error if the password does not have 12 to 200 bytes, or contains a
+/// control character.
 Expected<std::string> password_hash(std::string_view password);
-/// Whether a text has the form of such a hash; one that would take more than 1 GiB has not.
+/// Whether the text has the form of such a hash. One that would need more than 1 GiB of memory is
+/// rejected.
 bool is_password_hash(const std::string& text);
-/// Takes a tenth of a second, also for an empty hash, which fits no password: the time does not
-/// show whether a user exists.
+/// Whether the password matches the hash. Takes a tenth of a second, even for an empty hash, which
+/// matches no password, so that the time does not show whether a user exists.
 bool fits_password(std::string_view password, const std::string& hash);
 
 }  // namespace nonio::certificates

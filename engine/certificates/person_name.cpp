@@ -25,7 +25,8 @@ bool in(Code c, const std::array<Range, N>& ranges) {
                      [c](const Range& r) { return c >= r.from && c <= r.to; });
 }
 
-/// Forms of other characters: ligatures, full width, letters of formulas, in circles, raised.
+/// Characters that are variants of others: ligatures, full width, mathematical letters, circled,
+/// raised.
 constexpr std::array<Range, 10> forms{{{0x2070, 0x209F},
                                        {0x2100, 0x214F},
                                        {0x2460, 0x24FF},
@@ -72,7 +73,7 @@ constexpr std::array<std::pair<Code, char>, 37> look_alikes{
      {0x458, 'j'}, {0x4AF, 'y'}, {0x4BB, 'h'}, {0x501, 'd'}, {0x51B, 'q'}, {0x51D, 'w'},
      {0x131, 'i'}}};
 
-/// Of Latin, Greek and Cyrillic.
+/// Returns the small letter of a Latin, Greek or Cyrillic letter.
 Code small(Code c) {
   if (c >= 'A' && c <= 'Z') return c + 32;
   if (c >= 0xC0 && c <= 0xDE && c != 0xD7) return c + 32;

@@ -5,13 +5,13 @@
 
 namespace nonio::certificates {
 
-/// What is wrong with the name of a person who approves; empty if nothing. A name is one line that
-/// looks like what it is: nothing invisible, no compatibility characters (NFKC), no
-/// word with letters of two alphabets.
+/// Returns what is wrong with the name of a person who approves; empty if nothing. A name is one
+/// line without invisible characters, without compatibility characters (NFKC), and without words
+/// that mix letters of two alphabets.
 std::string mistake_in_name(const std::string& name);
 
-/// Letters and digits of a name: in lower case, and of other alphabets as the Latin letters that
-/// they look like. Two names with the same one are not two persons.
+/// Returns the letters and digits of a name in lower case, with letters of other alphabets replaced
+/// by the Latin ones that they resemble. Two names with the same result count as one person.
 std::string likeness_of(const std::string& name);
 
 }  // namespace nonio::certificates

@@ -17,7 +17,8 @@ namespace {
 constexpr const char* no_results =
     "the attached results.json is none, or has a key twice in one object";
 
-/// Printed numbers have 12 digits; another processor may give another last one.
+/// Whether two numbers are equal apart from the last of 12 printed digits, which may depend on the
+/// processor.
 bool same(double a, double b) {
   return std::fabs(a - b) <= 1e-9 + 1e-9 * std::max(std::fabs(a), std::fabs(b));
 }
@@ -48,7 +49,7 @@ class Comparison {
  private:
   void compare_objects(const storage::Json& attached, const storage::Json& again,
                        const std::string& where) {
-    // Certificates of earlier versions state neither k, which was 2, nor their budget.
+    // Certificates of earlier versions state neither k, which was 2, nor the budget.
     for (const auto& [key, value] : again.items())
       if (!attached.contains(key) && key != "k" && key != "budget")
         difference = where + " lacks " + key;
@@ -62,7 +63,7 @@ class Comparison {
   }
 };
 
-/// The parts of an analysis that are numbers.
+/// Returns the numerical members of an analysis.
 storage::Json values_of(const storage::Json& analysis) {
   storage::Json out = storage::Json::object();
   for (const char* key :
@@ -123,8 +124,8 @@ Expected<std::string> same_values(std::string_view attached_text, std::string_vi
 
 namespace {
 
-/// The text of a JSON document without what may differ on another processor: numbers, and digests
-/// of files that have such numbers. Programs that read it by other rules get the same as ours.
+/// Returns the text of a JSON document without parts that may depend on the processor: numbers, and
+/// digests of files with such numbers. Equal shapes are read alike by every JSON parser.
 std::string shape_of(std::string_view json) {
   constexpr std::string_view number = "+-.0123456789eE";
   constexpr std::size_t digest = 64;
@@ -149,8 +150,7 @@ std::string shape_of(std::string_view json) {
   return shape;
 }
 
-/// Files that are not attached may have another last digit on another processor, and so another
-/// digest.
+/// Removes the digests of files that are not attached, because they may depend on the processor.
 void forget_digests(storage::Json& results, const std::vector<std::string>& attached) {
   if (!results.contains("outputs") || !results["outputs"].is_array()) return;
   for (storage::Json& file : results["outputs"])
@@ -184,8 +184,8 @@ bool is_number(const storage::Json& value, const char* key) {
   return value.is_object() && value.contains(key) && value[key].is_number();
 }
 
-/// A DCC has the digits that are printed, as U allows them; earlier ones had all. `U` is NaN where
-/// there is none.
+/// Whether a value of a DCC equals the result. A DCC states printed digits, rounded according to U;
+/// DCCs of earlier versions stated all digits. `U` is NaN if there is none.
 bool same_when_rounded(const sign::DccValue& v, double value, double U) {
   if (v.U.has_value() != std::isfinite(U)) return false;
   const double stated_U = v.U.value_or(0.0);
@@ -195,7 +195,7 @@ bool same_when_rounded(const sign::DccValue& v, double value, double U) {
          std::strtod(rounded->U.c_str(), nullptr) == stated_U;
 }
 
-/// "" if the number is in results.json, else what is wrong.
+/// Returns what is wrong with a value of a DCC compared with results.json; empty if it agrees.
 std::string contradiction(const sign::DccValue& v, const storage::Json& results) {
   const storage::Json* analysis = find(results, v.analysis);
   const std::string who = v.analysis + " " + v.name;

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What differs in `now`, in the order of `now`; then what was removed.
+/// Returns the inputs that differ in `now`, in the order of `now`, followed by removed ones.
 std::vector<FileChange> differences(const reading::Inputs& before, const reading::Inputs& now) {
   std::vector<FileChange> names;
   const auto add = [&](const std::string& input) {
@@ -84,7 +84,7 @@ Expected<Register> Register::open_to_read(const fs::path& site,
                                           const config::Numbering& numbering) {
   const auto place = register_place(site, numbering);
   if (!place) return fail(place.error());
-  // Not as read-only: what a killed process has left half-written is taken back.
+  // Opened for writing, so that an unfinished transaction of a killed process is rolled back.
   auto database =
       open_register(*place, storage::Database::Use::write, storage::Database::usual_patience);
   if (!database) return fail(database.error());
@@ -110,7 +110,7 @@ Expected<std::map<std::string, std::string>> Register::issued_digests() {
       if (!says.is_object() || !says.contains("files")) continue;
       for (const storage::Json& file : says["files"]) numbers[file.value("sha256", "")] = row[0];
     }
-  } else {  // read as an older one has left it
+  } else {  // tables of an older version
     for (const storage::Database::Row& row :
          database_->rows("SELECT c.number, f.bytes FROM files f JOIN certificates c ON c.id = "
                          "f.certificate"))
@@ -122,7 +122,7 @@ Expected<std::map<std::string, std::string>> Register::issued_digests() {
 
 namespace {
 
-/// None if there is no register: looking makes none.
+/// Opens the register; none if it does not exist, since reading must not create it.
 Expected<std::optional<Register>> open_if_there(const fs::path& site,
                                                 const config::Numbering& numbering,
                                                 double patience) {
@@ -211,7 +211,7 @@ reading::Inputs Register::inputs_of(std::int64_t id) {
 
 namespace {
 
-/// What the journal states was issued under a number.
+/// Returns what the journal states about the issue of a number.
 Expected<storage::Json> issued_as_noted(storage::Database& database, const std::string& number) {
   const auto entry = Journal(database).last_of("issued", number);
   if (auto well = database.take_error(); !well) return fail(well.error());
@@ -242,7 +242,7 @@ Expected<std::vector<evaluation::IssuedFile>> Register::files_of(std::int64_t id
                        "ORDER BY place",
                        {id}))
     files.push_back({std::move(row[0]), std::move(row[1]), std::move(row[2]), std::move(row[3])});
-  if (!is_of_this_version(*database_)) return files;  // read as an older one has left it
+  if (!is_of_this_version(*database_)) return files;  // tables of an older version
   const std::string number = database_->first("SELECT number FROM certificates WHERE id = ?", {id});
   if (files.empty() && number.empty()) return files;
   const auto says = issued_as_noted(*database_, number);
@@ -283,7 +283,7 @@ Expected<evaluation::Certificate> Register::load(std::int64_t id) {
     issue.changes = differences(inputs_of(integer(row[6])), inputs_of(id));
     if (auto noted = note_replaced(integer(row[6]), issue); !noted) return fail(noted.error());
   }
-  // Everything else that it prints is contained in the results that are attached to it.
+  // Everything else that the certificate prints is contained in its attached results.
   const storage::Json results = storage::parse_or_discard(row[5]);
   if (results.is_object() && results.contains("certificate"))
     if (Issue printed = evaluation::certificate_of(results["certificate"]).issue;
@@ -301,7 +301,7 @@ Expected<evaluation::Certificate> Register::load(std::int64_t id) {
 
 namespace {
 
-/// The entry that a campaign was issued last.
+/// SQL for the last issued entry of a campaign.
 constexpr const char* last_of_campaign =
     "SELECT id, state, number, date, reason FROM certificates WHERE campaign = ? AND issued IS NOT "
     "NULL ORDER BY issued DESC LIMIT 1";
@@ -348,7 +348,7 @@ Expected<std::string> Register::next_number(const std::string& year) {
                                  "DO UPDATE SET last = counters.last + 1 RETURNING last",
                                  {sequence}));
     auto text = config::number_text(pattern_, year, static_cast<std::uint64_t>(number));
-    // With another pattern before it may have been used.
+    // The number may have been used with an earlier pattern.
     if (!text || database_->failed() ||
         database_->first("SELECT count(*) FROM certificates WHERE number = ?", {*text}) == "0")
       return text;
@@ -408,7 +408,8 @@ Expected<evaluation::Certificate> Register::draw(const std::string& campaign,
 
 namespace {
 
-/// Whose certificate signed them: keys are replaced, and what they signed stays valid.
+/// Returns the signer's certificate of the files, because keys are replaced while their signatures
+/// remain valid.
 storage::Json signer_json(const std::vector<evaluation::IssuedFile>& files) {
   for (const evaluation::IssuedFile& f : files) {
     if (!f.bytes.starts_with("%PDF-")) continue;

@@ -17,79 +17,82 @@ namespace nonio::certificates {
 
 struct RegisterPlace;
 
-/// One number of a register.
+/// One number in a register.
 struct RegisterEntry {
   std::string number, campaign;
   std::string state;  ///< drawn, issued, amended, withdrawn
-  std::string date;   ///< of issue; of a number that is only drawn: the day on which it was drawn
+  std::string date;   ///< of issue; for a number that is only drawn, the day on which it was drawn
   std::string replaces, replaced_by;
   std::string reason;       ///< why it was withdrawn; why it is not issued yet
-  std::uint64_t order = 0;  ///< in which numbers were issued, from 1; 0: not issued
-  /// Who released it and who withdrew it, as they stated. Empty: the rules; not stated.
+  std::uint64_t order = 0;  ///< in which numbers were issued, counted from 1; 0: not issued
+  /// Persons who approved and withdrew it, as stated. Empty: approved by the rules; not stated.
   std::string released_by{}, withdrawn_by{};
-  /// Under which accounts of the operating system, "user@host"; empty before version 2026-12.
+  /// Their accounts of the operating system, "user@host"; empty before version 2026-12.
   std::string released_account{}, withdrawn_account{};
-  /// Account of users.toml whose password was given; empty: the name is a statement.
+  /// Account of users.toml whose password was given; empty: the name is unverified.
   std::string released_user{};
-  /// Of the certificate with which it was signed; empty before version 2026-12.
+  /// Subject and SHA-256 of the signer's certificate; empty before version 2026-12.
   std::string signer{}, signer_sha256{};
   bool in_force() const { return state == "issued"; }
 };
 
-/// A person's word on a draft.
+/// The approval of a draft by a person.
 struct Approval {
   std::string by, role;                        ///< role: author, authoriser
   std::string at{};                            ///< UTC
   std::map<std::string, std::string> reasons;  ///< why a finding is accepted, by `finding_key`
   std::string account{};  ///< of the operating system; empty before version 2026-12
-  std::string user{};     ///< of users.toml, whose password was given; empty: none was
+  std::string user{};     ///< account of users.toml whose password was given; empty: none
 };
 
-/// What a run has made for a campaign and no person has released yet.
+/// A draft that a run has made and no person has approved yet.
 struct WaitingDraft {
-  std::string campaign, folder;  ///< the folder relative to the site
-  std::string out;               ///< the output folder of the run
-  std::string file, sha256;      ///< the PDF in OUT/campaign
-  std::string replaces;          ///< the number that it would replace; may be empty
-  reading::Inputs made_from;     ///< its data, and plugins, templates, version
+  std::string campaign, folder;  ///< folder: relative to the site
+  std::string out;               ///< output folder of the run
+  std::string file, sha256;      ///< the PDF in OUT/campaign, and its digest
+  std::string replaces;          ///< number that it would replace; may be empty
+  reading::Inputs made_from;     ///< digests of its data, plugins, templates and version
   std::vector<evaluation::KnownFinding> findings;
-  std::optional<Approval> author{};  ///< who has approved it, where two persons are required
+  std::optional<Approval> author{};  ///< approval by the author, if two persons are required
 };
 
-/// What a person approves, as he has read it.
+/// A draft as the person has read it, and that person's approval.
 struct Approved {
   const WaitingDraft& draft;
   const Approval& by;
 };
 
-/// "X: reversal.not-constant": how a finding is called where a reason for it is given.
+/// Returns the key under which a reason for a finding is given, for example "X:
+/// reversal.not-constant".
 std::string finding_key(const evaluation::KnownFinding& finding);
 
-/// Whether nothing was changed in a register or taken out of it.
+/// Result of checking a register for changes and removals.
 struct Audit {
   std::string id;             ///< identity of the register
-  std::uint64_t entries = 0;  ///< of its journal
+  std::uint64_t entries = 0;  ///< of the journal
   std::uint64_t certificates = 0, files = 0;
-  std::string last_at, last_sha256;  ///< of the last entry: worth keeping elsewhere
-  std::vector<std::string> wrong;    ///< empty: all is as it was written
+  std::string last_at, last_sha256;  ///< time and digest of the last entry; they should be kept in
+                                     ///< another place too
+  std::vector<std::string> wrong;    ///< what is wrong; empty: nothing
 };
 
-/// The site's register of numbers and of everything that was issued under them: an SQLite file, or a
-/// schema of a server (register_place.h).
-/// Entries are never deleted. Several processes may use it at once; each opens it itself, and none
-/// carries it across a fork. What a call has changed is on disk when it returns.
+/// The site's register of certificate numbers and of all files issued under them: an SQLite file,
+/// or a schema of a server (register_place.h). Entries are never deleted. Several processes may use
+/// it at once; each opens it itself, and it must not be inherited by fork. Changes of a call are on
+/// the disk when the call returns.
 class Register {
  public:
-  /// Made if it is missing. Whoever finds it locked waits up to `patience` seconds.
+  /// Opens the register and creates it if it is missing. If it is locked, waits up to `patience`
+  /// seconds.
   static Expected<Register> open(const std::filesystem::path& site,
                                  const config::Numbering& numbering, double patience = 60.0);
-  /// The same, whatever was done to it.
+  /// Opens the register even if it was damaged or restored to an older state.
   static Expected<Register> open_to_audit(const std::filesystem::path& site,
                                           const config::Numbering& numbering);
-  /// Nothing is written, not even where an older version has made it.
+  /// Opens the register without writing, even if its tables are those of an older version.
   static Expected<Register> open_to_read(const std::filesystem::path& site,
                                          const config::Numbering& numbering);
-  /// All numbers in the order in which they were drawn; none if there is no register yet.
+  /// Returns all numbers in the order in which they were drawn; empty if there is no register yet.
   static Expected<std::vector<RegisterEntry>> entries(const std::filesystem::path& site,
                                                       const config::Numbering& numbering,
                                                       double patience = 60.0);
@@ -101,61 +104,63 @@ class Register {
   ~Register();
 
   Expected<std::vector<RegisterEntry>> all();
-  /// Who released and withdrew them, as the journal has it.
+  /// Adds the persons who approved and withdrew the entries, from the journal.
   Expected<void> note_persons(std::vector<RegisterEntry>& entries);
-  /// No two registers have the same; a copy has that of the one it was copied from.
+  /// Returns the id of the register, which is unique; a copy has the id of its original.
   std::string id();
-  /// The number of every file that was issued, by its SHA-256.
+  /// Returns the number of each issued file, by the file's SHA-256.
   Expected<std::map<std::string, std::string>> issued_digests();
-  /// The number that a campaign was issued last, in force or not.
+  /// Returns the last number that was issued for a campaign, in force or not.
   Expected<std::optional<RegisterEntry>> last_number(const std::string& campaign);
-  /// What a campaign was issued last, if that is in force and was made from these data.
+  /// Returns the last certificate of a campaign, if it is in force and was made from these data.
   Expected<std::optional<evaluation::Certificate>> find(const std::string& campaign,
                                                         const reading::Inputs& data);
-  /// As `find`, or else a number: one that was drawn for the campaign and never issued, or the next
-  /// one. `today` is YYYY-MM-DD; an error if something was issued on a later day.
+  /// Returns the same as `find`, or a number: one that was drawn for the campaign and never issued,
+  /// otherwise the next one. `today`: YYYY-MM-DD; an error if something was issued on a later day.
   Expected<evaluation::Certificate> draw(const std::string& campaign, const reading::Inputs& data,
                                          const std::string& today);
-  /// Issues what was drawn and signed. Returns the entry that is valid from now on: if another
-  /// process was faster with the same data, the entry of that process; if both are approvals by
-  /// persons, an error that names the first one. The campaign's draft is removed with it.
+  /// Issues a certificate that was drawn and signed, and removes the campaign's draft. Returns the
+  /// entry that is valid from now on: if another process was faster with the same data, the entry
+  /// of that process; if both are approvals by persons, an error that names the first one.
   Expected<evaluation::Certificate> issue(const evaluation::Certificate& certificate,
                                           const std::string& campaign, const reading::Inputs& data,
                                           const Approved* approved = nullptr);
-  /// Why the number that was drawn for a campaign is not issued; nothing if there is none.
+  /// Records why the number that was drawn for a campaign is not issued; does nothing if there is
+  /// none.
   Expected<void> note_failure(const std::string& campaign, const std::string& why);
-  /// From now on it is not in force: the next run makes a draft for the campaign anew. `by` may
-  /// be empty.
+  /// Withdraws a number, so that the next run makes a new draft for the campaign. `by` may be
+  /// empty.
   Expected<void> withdraw(const std::string& number, const std::string& why,
                           const std::string& by = {});
-  /// As they were issued; an error if the register's copy is not what was issued.
+  /// Returns the files as they were issued; an error if the register's copy was changed.
   Expected<std::vector<evaluation::IssuedFile>> files(const std::string& number);
 
   Expected<std::vector<WaitingDraft>> all_drafts();
-  /// In place of an earlier one of the campaign. What its author stated stays if it is the same.
+  /// Enters a draft and replaces an earlier one of the campaign. The author's approval is kept if
+  /// the draft is unchanged.
   Expected<void> enter_draft(const WaitingDraft& draft);
   Expected<std::optional<WaitingDraft>> draft(const std::string& campaign);
-  /// The approval of the draft by its author, who has seen it; an error if the draft, or what an
-  /// author states about it, has changed since.
+  /// Enters the approval of a draft by its author; an error if the draft, or the data that an
+  /// author approves, has changed since the author read it.
   Expected<void> approve(const WaitingDraft& seen, const Approval& approval);
-  /// For whoever approves what another person has approved already: enters the second approval into
-  /// the journal, so that its reasons are kept, and states who was first.
+  /// Enters a second approval of an approved certificate into the journal, so that its reasons are
+  /// kept. Returns a message that names the first person.
   Expected<std::string> note_second(const std::string& number, const std::string& campaign,
                                     const Approval& second);
-  /// Whose approval a number was issued with; none by the rules.
+  /// Returns the approval of an issued number; none if it was issued by the rules.
   Expected<std::optional<Approval>> approval_of(const std::string& number);
 
   Expected<Audit> audit();
-  /// The part of it that costs little: an error if the journal is not a chain, or does not fit the
-  /// numbers where these are looked at too. Nothing is issued from such a register.
+  /// Does the fast part of the audit: an error if the journal is not a chain, or, with `numbers`,
+  /// contradicts the numbers. Nothing is issued from such a register.
   Expected<void> check_journal(bool numbers);
 
  private:
   Register(std::unique_ptr<storage::Database> database, const RegisterPlace& place,
            std::string pattern);
-  /// Ends it, and writes the last journal entry to the identity file.
+  /// Ends the transaction, and writes the last journal entry to the identity file.
   Expected<void> end(storage::Database::Transaction& transaction);
-  /// Compare and set: the draft that waits is the one that was read.
+  /// Returns an error if the waiting draft is not the one that was read.
   Expected<void> check_seen(const WaitingDraft& seen, const Approval& by);
   void add_second(const std::string& number, const std::string& campaign, const Approval& by);
   Expected<std::string> first_of(const std::string& number);
@@ -164,7 +169,7 @@ class Register {
                                                         const reading::Inputs& data);
   Expected<evaluation::Certificate> load(std::int64_t id);
   reading::Inputs inputs_of(std::int64_t id);
-  /// An error if they are not what the journal states was issued.
+  /// Returns the files; an error if they differ from what the journal states.
   Expected<std::vector<evaluation::IssuedFile>> files_of(std::int64_t id);
   Expected<void> note_replaced(std::int64_t id, Issue& issue);
 
@@ -173,7 +178,7 @@ class Register {
   std::string pattern_;
 };
 
-/// Where the register is: inside the site.
+/// Returns the path of the register file inside the site.
 Expected<std::filesystem::path> register_path(const std::filesystem::path& site,
                                               const config::Numbering& numbering);
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Whether a register is what it was written as. The journal is a chain of digests: an entry that
-// was changed or taken out breaks it. Who writes the whole chain anew is found by the certificates
-// themselves: each carries, below its signature, the digest of the journal up to its own number.
+// Checks that a register was not changed outside of this program. The journal is a chain of
+// digests, which a changed or removed entry breaks. A chain that was written again as a whole is
+// disclosed by the certificates: each contains, below its signature, the digest of the journal up
+// to its own number.
 #include <map>
 #include <set>
 #include <utility>
@@ -24,7 +25,8 @@ class Auditor {
     for (const Journal::Entry& e : entries_) last_[{e.number, e.what}] = &e;
   }
 
-  /// The journal as a chain; with `numbers`, these against it too, but not the files.
+  /// Checks the chain of the journal and, with `numbers`, compares the numbers with it; the files
+  /// are not checked.
   std::vector<std::string> run_journal(bool numbers) {
     audit_.id = database_.first("SELECT id FROM site");
     check_chain();
@@ -121,7 +123,7 @@ class Auditor {
     check_anchor(id, number, noted.contains("carried_over"), drawn);
   }
 
-  /// What the signed file states about the journal.
+  /// Compares the journal with what the signed file states about it.
   void check_anchor(std::int64_t id, const std::string& number, bool carried_over,
                     const Journal::Entry& drawn) {
     for (const storage::Database::Row& row :
@@ -152,7 +154,8 @@ class Auditor {
 
   storage::Database& database_;
   const std::vector<Journal::Entry> entries_;
-  std::map<std::pair<std::string, std::string>, const Journal::Entry*> last_;  ///< by number, what
+  std::map<std::pair<std::string, std::string>, const Journal::Entry*> last_;  ///< last entry by
+                                                                               ///< number and kind
   Audit audit_;
   bool look_at_files_ = true;
 };
@@ -172,7 +175,7 @@ Expected<void> Register::check_journal(bool numbers) {
 }
 
 Expected<Audit> Register::audit() {
-  // The lock excludes writers meanwhile.
+  // The lock prevents changes during the audit.
   storage::Database::Transaction transaction(*database_);
   Audit audit = Auditor(*database_).run();
   if (auto same = check_seen_state(*database_, *place_); !same)

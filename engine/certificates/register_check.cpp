@@ -21,11 +21,11 @@ using State = sign::Check::State;
 
 struct StatedNumber {
   std::string number, register_id;
-  bool by_register = true;  ///< no: the number may come from elsewhere
+  bool by_register = true;  ///< false: the number may come from another source
 };
 
-/// Of a DCC: its identifier, which need not come from a register. What output `certificate` makes
-/// always does.
+/// Returns the identifier of a DCC. It may come from another source than a register, except in DCCs
+/// of the output `certificate`.
 StatedNumber stated_in_dcc(std::string_view xml) {
   constexpr std::string_view open = "<dcc:uniqueIdentifier>", close = "</dcc:uniqueIdentifier>";
   const std::size_t begin = xml.find(open);

@@ -13,30 +13,30 @@
 
 namespace nonio::certificates {
 
-/// What a verification needs of the register of a site. It is read before a stranger's file is: the
-/// process that reads that file may not open a connection to a server.
+/// Data from the register of a site that a verification needs. They are read before the file to be
+/// verified, because the process that reads an untrusted file must not connect to a server.
 struct RegisterRows {
-  bool asked = false;     ///< a site was named
-  std::string no_answer;  ///< why the register could not be read; empty: it could
+  bool asked = false;     ///< whether a site was named
+  std::string no_answer;  ///< why the register could not be read; empty: it was read
   bool exists = false;
   std::string id;
   std::vector<RegisterEntry> entries;
-  std::map<std::string, std::string> issued;  ///< number, by the SHA-256 of an issued file
+  std::map<std::string, std::string> issued;  ///< number by the SHA-256 of an issued file
 };
 
-/// Of the site's register; not checked where `site` is empty.
+/// Reads the site's register; does nothing if `site` is empty.
 RegisterRows register_rows(const std::filesystem::path& site);
 
-/// "no verdict on FILE, because the register cannot be read: ..."
+/// Returns the message "no verdict on FILE, because the register cannot be read: ...".
 std::string no_verdict(const RegisterRows& rows, const std::string& what);
 
-/// The register that issued these bytes, for `sign::Verifier::issued_by`; empty: none of them. The
-/// bytes of a PDF may end with updates.
+/// Returns the statement that the register issued these bytes, for `sign::Verifier::issued_by`;
+/// empty if it did not. Updates after the signed part of a PDF are ignored.
 std::string issued_by(const RegisterRows& rows, std::string_view bytes);
 
-/// The state of a signed file in the register of a site (`register.state`): that this very file was
-/// issued under its number, and that the number is in force. None where the file has no number that
-/// a register gives. An error if the register is required and did not answer.
+/// Checks a signed file against the register of a site (`register.state`): this very file was
+/// issued under its number, and the number is in force. None if the file has no number from a
+/// register. An error if the register is required and could not be read.
 Expected<std::optional<sign::Check>> check_register(const sign::Verified& verified,
                                                     std::string_view bytes,
                                                     const RegisterRows& rows);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Drafts wait in the register until a person releases them; what is issued leaves the list.
+// Stores drafts in the register until a person approves them; issued ones are removed.
 #include "certificates/register.h"
 #include "certificates/register_tables.h"
 
@@ -35,7 +35,7 @@ storage::Json draft_json(const WaitingDraft& d) {
   return json;
 }
 
-/// Throws what nlohmann::json throws where it is not what `draft_json` has written.
+/// Parses a draft; throws exceptions of nlohmann::json if `json` was not written by `draft_json`.
 WaitingDraft draft_of(const std::string& campaign, const storage::Json& json) {
   WaitingDraft d;
   d.campaign = campaign;
@@ -111,7 +111,7 @@ void put_draft(storage::Database& database, const WaitingDraft& draft) {
 Expected<void> Register::enter_draft(const WaitingDraft& draft) {
   storage::Database::Transaction transaction(*database_);
   WaitingDraft now = draft;
-  // What cannot be read is replaced.
+  // A draft that cannot be read is replaced.
   if (const auto before = this->draft(draft.campaign);
       before && *before && same_work(**before, now))
     now.author = (*before)->author;
@@ -148,7 +148,7 @@ void Register::add_second(const std::string& number, const std::string& campaign
 Expected<void> Register::approve(const WaitingDraft& seen, const Approval& approval) {
   storage::Database::Transaction transaction(*database_);
   if (auto same = check_seen(seen, approval); !same) {
-    // The record of the second approval is committed.
+    // The record of the second approval is committed before the error is returned.
     if (auto ended = end(transaction); !ended) return ended;
     return same;
   }

@@ -18,7 +18,8 @@ std::string what_of(const RegisterPlace& place) {
   return std::string("the register of certificates ") + (place.server ? "in " : "");
 }
 
-/// What a server has confirmed has to be on its disk, and on that of a standby that may take over.
+/// Returns an error unless the server writes confirmed transactions to its disk, and to that of a
+/// standby that may take over.
 Expected<void> check_durable(Database& database) {
   const auto rows = database.rows(
       "SELECT current_setting('fsync'), current_setting('full_page_writes'), "
@@ -40,14 +41,14 @@ Expected<void> check_durable(Database& database) {
 }
 
 struct Identity {
-  std::string id;          ///< empty: the site has none yet
-  std::int64_t place = 0;  ///< of the last entry of the journal that the site has seen; 0: none
-  std::string sha256{};    ///< of that entry
+  std::string id;          ///< empty: the site has no register yet
+  std::int64_t place = 0;  ///< place of the last journal entry that the site has seen; 0: none
+  std::string sha256{};    ///< digest of that entry
 };
 
 constexpr std::string_view entry_key = "entry ";
 
-/// "UUID", and on a second line "entry 17 SHA-256".
+/// Reads the identity file: "UUID", and on a second line "entry 17 SHA-256".
 Expected<Identity> identity_in(const RegisterPlace& place) {
   NONIO_TRY(const auto there, storage::is_there(place.identity));
   if (!there) return Identity{};
@@ -74,7 +75,8 @@ Error is_gone(const RegisterPlace& place, const std::string& identity) {
                "site"};
 }
 
-/// A register is not moved from a file to a server or back: a new one would begin with 1.
+/// Returns an error if the site has a register of the other kind (file or server), because a new
+/// register would begin with number 1 again.
 Expected<void> check_is_first(const RegisterPlace& place) {
   NONIO_TRY(const auto there, storage::is_there(place.other));
   if (!there) return {};
@@ -84,7 +86,8 @@ Expected<void> check_is_first(const RegisterPlace& place) {
               "numbering, and keep that file outside the site");
 }
 
-/// In a transaction: one process at a time, wherever it is.
+/// Writes the identity file. Must be called inside a transaction, so that only one process writes
+/// at a time.
 Expected<void> write_identity(const RegisterPlace& place, const Identity& identity) {
   std::string text = identity.id + "\n";
   if (identity.place > 0)
@@ -93,7 +96,7 @@ Expected<void> write_identity(const RegisterPlace& place, const Identity& identi
                           {{place.identity.filename().string(), std::move(text)}});
 }
 
-/// A journal only grows.
+/// Checks that the journal still contains the last entry that the site has seen.
 Expected<void> check_state(Database& database, const RegisterPlace& place, const Identity& known) {
   if (known.place == 0) return {};
   const std::string sha256 =
@@ -107,7 +110,8 @@ Expected<void> check_state(Database& database, const RegisterPlace& place, const
               "Numbers would be given a second time; restore the newest state of the register");
 }
 
-/// Two sites, or a site and its copy for trials, never draw from one register unseen.
+/// Checks that the register belongs to this site, so that two sites, or a site and a copy of it,
+/// never draw numbers from one register.
 Expected<void> check_identity(Database& database, const RegisterPlace& place, bool may_write) {
   const std::string id = database.first("SELECT id FROM site");
   const bool is_new = database.first("SELECT count(*) FROM certificates") == "0";

@@ -10,32 +10,35 @@
 
 namespace nonio::certificates {
 
-/// Where a site's register of numbers is: an SQLite file inside the site, or a schema of a
-/// PostgreSQL server (`[database] register`). A file in the site holds the identity of its register
-/// and how far its journal went: `certificates.register` of a schema, else the name of the file and
-/// `.identity`. So a register that was lost, emptied or restored to an older state is recognised.
+/// Location of a site's register: an SQLite file inside the site, or a schema of a PostgreSQL
+/// server (`[database] register`). An identity file in the site contains the id of the register and
+/// its last known journal entry, so that a register that was lost, emptied or restored to an older
+/// state is detected. It is called `certificates.register` for a schema, otherwise the name of the
+/// file with `.identity` appended.
 struct RegisterPlace {
-  std::filesystem::path file{};  ///< the register; on a server: what holds its identity
+  std::filesystem::path file{};  ///< the register file; for a server, its identity file
   std::optional<storage::Server> server{};
-  std::string name{};  ///< for messages
+  std::string name{};  ///< name of the file or schema for messages
   std::filesystem::path identity{};
-  std::filesystem::path other{};  ///< is there where the site's register is of the other kind
+  std::filesystem::path other{};  ///< path of a register of the other kind; it must not exist
 };
 
-/// Notes the last entry of its journal in the file of its identity.
+/// Writes the last journal entry to the identity file.
 Expected<void> note_state(storage::Database& database, const RegisterPlace& place);
 
 Expected<RegisterPlace> register_place(const std::filesystem::path& site,
                                        const config::Numbering& numbering);
-/// Whether anything was entered there yet; looking makes nothing. An error if it no longer exists.
+/// Whether the register exists; does not create it. An error if it existed before and no longer
+/// does.
 Expected<bool> has_register(const RegisterPlace& place, double patience);
-/// Made with `create`. Refused: a server that may lose what it has confirmed, since it would give
-/// numbers again; the register of another site; a new one where the site has one of the other kind.
-/// `as_it_is`: not compared with what the site has seen, for an audit, which states all that is
-/// wrong.
+/// Opens the register, or creates it if `use` is `create`. Refused are: a server that may lose
+/// confirmed transactions, since numbers would be given twice; the register of another site; and a
+/// new register if the site has one of the other kind. `as_it_is`: skip the comparison with the
+/// identity file, for an audit, which reports all errors.
 Expected<storage::Database> open_register(const RegisterPlace& place, storage::Database::Use use,
                                           double patience, bool as_it_is = false);
-/// An error if it is not the register of the site, or lacks entries that the site has seen.
+/// Returns an error if the register does not belong to the site, or lacks entries that the site has
+/// seen.
 Expected<void> check_seen_state(storage::Database& database, const RegisterPlace& place);
 
 }  // namespace nonio::certificates

@@ -48,9 +48,9 @@ CREATE TABLE files(
   PRIMARY KEY(certificate, place)
 );
 )";
-constexpr std::int64_t application = 0x4e6f6e69;  // marks the file as one of these
+constexpr std::int64_t application = 0x4e6f6e69;  // identifies the file as a register
 
-/// What version 2 adds.
+/// Tables that version 2 of the format adds.
 constexpr const char* additions = R"(
 CREATE TABLE site(
   "only" INTEGER PRIMARY KEY CHECK("only" = 1),
@@ -64,7 +64,7 @@ CREATE TABLE drafts(
 constexpr const char* this_version = "2";
 constexpr const char* of_newer_version = "was written by a newer version of Nonio";
 
-/// RFC 9562, version 4.
+/// Returns a random UUID (RFC 9562, version 4).
 std::string random_id() {
   std::random_device random;
   std::array<unsigned, 4> part{};
@@ -96,8 +96,8 @@ void carry_over(storage::Database& database) {
 
 std::int64_t integer(const std::string& text) { return std::strtoll(text.c_str(), nullptr, 10); }
 
-/// By rows of the catalogue, not by to_regclass: that may answer from what this connection has
-/// remembered, so that tables which another process has just made are missed.
+/// Whether the schema has the tables. Reads the catalogue instead of calling to_regclass, which may
+/// answer from the cache of this connection and miss tables that another process has just made.
 bool has_tables(storage::Database& database) {
   return database.first(
              "SELECT count(*) FROM pg_catalog.pg_class c JOIN pg_catalog.pg_namespace n ON n.oid = "
@@ -121,8 +121,8 @@ void note_made(storage::Database& database) {
   Journal(database).add("made", "", {{"register", id}});
 }
 
-/// The tables of the file, in a schema. The numbers of rows are drawn in the transaction that holds
-/// the lock, so that their order is that of the numbers.
+/// Returns the SQL for the tables in a schema of a server. Row numbers are drawn in the transaction
+/// that holds the lock, so that their order is that of the certificate numbers.
 std::string server_tables() {
   constexpr std::string_view row_number = "  id INTEGER PRIMARY KEY";
   std::string sql = std::string(schema) + additions + Journal::schema +

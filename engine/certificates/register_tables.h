@@ -11,17 +11,18 @@ namespace nonio::certificates {
 
 std::int64_t integer(const std::string& text);
 
-/// The tables of a register that was made just now; those of one that version 1 of this format has
-/// left, carried over with all that is in it. An error if the file is something else.
+/// Makes the tables of a new register, or converts those of version 1 of the format with all their
+/// content. An error if the file is not a register.
 Expected<void> make_tables(storage::Database& database);
-/// The same in a schema of a server, which is made too. An error if the schema holds anything else.
+/// Makes the tables in a schema of a server, and the schema if necessary. An error if the schema
+/// contains anything else.
 Expected<void> make_server_tables(storage::Database& database, const std::string& schema);
-/// Whether a server's schema has the tables of a register, of whatever version.
+/// Whether a server's schema has the tables of a register of any version.
 bool has_tables(storage::Database& database);
-/// Whether it has what this version adds.
+/// Whether the register has the tables of this version.
 bool is_of_this_version(storage::Database& database);
 
-/// What was issued under a number, as the journal keeps it: digests, no contents.
+/// Returns what was issued under a number as the journal states it: digests without contents.
 storage::Json issued_json(storage::Database& database, std::int64_t id);
 
 }  // namespace nonio::certificates

@@ -11,26 +11,27 @@
 
 namespace nonio::certificates {
 
-/// Arguments of `nonio certificate extend`; an empty one is that of the site.
+/// Arguments of `nonio certificate extend`; empty ones are taken from the site.
 struct RestampOptions {
   VerifyOptions whom;
-  std::string time_stamp;  ///< address of the server
+  std::string time_stamp;  ///< address of the time-stamp server
   bool with_time_stamp = true;
-  std::vector<std::filesystem::path> answers;  ///< by OCSP, DER
+  std::vector<std::filesystem::path> answers;  ///< files with OCSP answers, DER
   bool fetch = true;
 };
 
-/// An error where no time-stamp server is named although a time stamp is required.
+/// Converts the arguments. An error if a time stamp is required and no server is named.
 config::Checked<sign::Prolonging> prolonging_of(const RestampOptions& options);
 
 struct Restamped {
   std::filesystem::path written;
-  std::vector<std::string> added;  ///< in words
+  std::vector<std::string> added;  ///< what was added, in words
 };
 
-/// Writes the file with its revocation data and a time stamp into `out`, or over itself where that
-/// is empty: whole or not at all. Not into the output of a run, which the next run would write again
-/// as it was issued. What the register has issued is accepted with the signer of that time.
+/// Writes the file with its revocation data and a time stamp to `out`, or over itself if that is
+/// empty; completely or not at all. Refuses the output folder of a run, because the next run would
+/// restore the issued file. A file that the register has issued is accepted with the signer of that
+/// time.
 Expected<Restamped> restamp(const std::filesystem::path& file, const sign::Prolonging& how,
                             const RegisterRows& rows, const std::filesystem::path& out);
 

@@ -36,7 +36,7 @@ Expected<std::string> password_of(const config::Signing& s, const fs::path& site
       site);
 }
 
-/// Relative to the site; empty stays empty.
+/// Returns the path relative to the site; an empty path remains empty.
 std::string in_site(const fs::path& site, const std::string& path) {
   return path.empty() ? path : (site / path).string();
 }
@@ -50,7 +50,7 @@ Expected<sign::Key> open_key(const config::Signing& s, const fs::path& site) {
       sign::Key::open({in_site(site, s.pkcs12), s.pkcs11, s.module, in_site(site, s.certificates)},
                       password, std::time(nullptr));
   std::string& secret = password;
-  explicit_bzero(secret.data(), secret.size());  // a plain fill of what ends is left out
+  explicit_bzero(secret.data(), secret.size());  // unlike a plain fill, this is not optimised away
   return key;
 }
 
@@ -63,17 +63,17 @@ Expected<sign::TimeStamping> stamping_of(const config::Signing& s, const fs::pat
   stamping.required = s.time_stamp_required;
   stamping.seconds = s.time_stamp_seconds;
   stamping.trust = std::move(roots);
-  // Certificates are signed in turn: a server without response costs its time limit once only.
+  // After one failure the server is not contacted again, so that its time limit passes only once.
   stamping.away = std::make_shared<std::string>();
   return stamping;
 }
 
 constexpr const char* signing_process = "the process that signs";
 
-/// One request and its answer go over a stream of their own, whose end the signer is sent. Waits
-/// for requests: one that hangs is ended by the main process, and its stream with it. An empty
-/// request is answered with the signer. The answer: "" or what went wrong; the message about a
-/// missing time stamp; the bytes.
+/// Answers one request of a worker on a stream of its own. Waits for the request; the main process
+/// ends a worker that hangs, and thereby its stream. An empty request is answered with the identity
+/// of the signer. The answer consists of an error (or ""), a message about a missing time stamp,
+/// and the signed bytes.
 void answer(int stream, const Expected<sign::Key>& key,
             const Expected<sign::TimeStamping>& stamping) {
   std::string request;
@@ -95,7 +95,8 @@ void answer(int stream, const Expected<sign::Key>& key,
   done ? reply("", *done) : reply(done.error().message, {});
 }
 
-/// `go_on`: called repeatedly until the answer begins; may be empty.
+/// Sends bytes to the signer and returns them signed. `go_on`: called repeatedly until the answer
+/// begins; false gives up; may be empty.
 Expected<sign::Signed> ask(int channel, std::string_view bytes,
                            const std::function<bool()>& go_on = {}) {
   NONIO_TRY(auto ends, process::channel_pair(SOCK_STREAM, signing_process));
@@ -130,7 +131,7 @@ Expected<void> Signer::fork_process() {
 }
 
 void Signer::serve() {
-  ::prctl(PR_SET_DUMPABLE, 0);  // no process may read its memory
+  ::prctl(PR_SET_DUMPABLE, 0);  // no other process may read its memory
   to_ = process::Handle();
   constexpr int most_deaths = 5;
   const auto key = process::guarded("the signing key", [&]() -> Expected<sign::Key> {
@@ -171,7 +172,7 @@ Expected<sign::Identity> Signer::start() {
 void Signer::revive() {
   if (child_ && !child_.has_ended()) return;
   ++deaths_;
-  // Not now: then a later call tries again.
+  // If this fails, a later call tries again.
   [[maybe_unused]] const auto made = fork_process();
 }
 

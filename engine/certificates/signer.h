@@ -13,21 +13,21 @@
 
 namespace nonio::certificates {
 
-/// The only process of a run that has the key. Workers send it finished bytes and get them back
-/// signed. It is made before plugins are loaded, so that nothing of theirs is in it, and opens the
-/// key once; if that does not succeed, each request is answered with the error.
+/// Controls the only process of a run that has the key. Workers send it finished bytes and receive
+/// them signed. It is started before plugins are loaded, so that it contains none of their code,
+/// and opens the key once. If the key cannot be opened, each request is answered with the error.
 class Signer {
  public:
-  /// A disk or share without an answer for `disk_seconds` is none.
+  /// `disk_seconds`: time limit for a disk or share that does not answer.
   Signer(const config::Signing& signing, std::filesystem::path site, double disk_seconds);
   Signer(const Signer&) = delete;
   Signer& operator=(const Signer&) = delete;
 
-  /// Starts the process; whose key it has, or why it has none.
+  /// Starts the process. Returns the identity of its key, or why it has none.
   Expected<sign::Identity> start();
-  /// Starts it again if it has died; requests in the meantime are not lost.
+  /// Starts the process again if it has died; requests made in the meantime are not lost.
   void revive();
-  /// To be called first in a worker: it cannot listen to others.
+  /// Must be called first in a worker, so that it cannot receive the requests of others.
   void leave_to_worker();
   Expected<sign::Signed> sign(const std::string& bytes) const;
 
@@ -38,9 +38,9 @@ class Signer {
   const config::Signing& signing_;
   const std::filesystem::path site_;
   const double disk_seconds_;
-  std::string given_up_{};  ///< why signing has ended
+  std::string given_up_{};  ///< why the process is not started again
   int deaths_ = 0;
-  process::Handle to_, from_;  ///< the two ends of the channel on which requests come
+  process::Handle to_, from_;  ///< both ends of the channel for requests
   process::Child child_{};
 };
 

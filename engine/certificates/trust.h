@@ -12,16 +12,16 @@ namespace nonio::certificates {
 
 /// Arguments of `nonio certificate verify`; paths may be empty.
 struct VerifyOptions {
-  std::filesystem::path site;  ///< whose [signing] states whom to trust and expect
+  std::filesystem::path site;  ///< site whose [signing] states trusted roots and expected signers
   std::filesystem::path signer_roots, time_stamp_roots;
-  std::filesystem::path trust;  ///< one root for both
+  std::filesystem::path trust;  ///< one root for signers and time servers
   std::filesystem::path revocation;
   std::vector<std::string> signers;
 };
 
-/// Trust, revocation lists and expected signers; what is given by itself goes before the site's. An
-/// error where a file that is named holds nothing of its kind, and where one file of several roots
-/// would serve for signers and for time servers.
+/// Reads trusted roots, revocation lists and expected signers; arguments take precedence over the
+/// site. An error if a file contains none of the required objects, or if one file with several
+/// roots would serve for both signers and time servers.
 config::Checked<sign::Verifier> verifier_of(const VerifyOptions& options);
 
 }  // namespace nonio::certificates

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// As users_file() declares them.
+/// In the order of `Role`, as users_file() declares them.
 constexpr std::array role_names{"view", "measure", "approve", "administer"};
 
 }  // namespace

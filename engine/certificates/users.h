@@ -9,30 +9,32 @@
 
 #include "nonio/sdk/error.h"
 
-/// SITE/users.toml: who may do what on the page of a site, and who has approved a certificate.
+/// Reads SITE/users.toml: the users of a site's page and their roles, and the persons who approve
+/// certificates.
 namespace nonio::certificates {
 
-/// Each may do what those before it may.
+/// Roles; each includes the rights of those before it.
 enum class Role { view, measure, approve, administer };
-/// "view", ...
+/// Returns "view", "measure", "approve" or "administer".
 const char* to_text(Role role);
 
 /// `[[user]]` of users.toml.
 struct User {
-  std::string account;  ///< as the reverse proxy states it, or as the person types it
-  std::string name;     ///< of the person, as documents print it
+  std::string account;  ///< as the reverse proxy states it, or as the person enters it
+  std::string name;     ///< name of the person, as documents print it
   Role role = Role::view;
-  std::string password{};  ///< hash of it (password.h); empty: no sign-in with a password
+  std::string password{};  ///< hash of the password (password.h); empty: the user cannot sign in
+                           ///< with a password
 };
 
 inline constexpr const char* users_name = "users.toml";
 
-/// All that is in the text, or the first mistake with its line. No account is given twice, and no
-/// two accounts have one name: two signatures are of two persons.
+/// Parses users.toml; an error states the first mistake with its line. No account may occur twice,
+/// and no two accounts may have the same name, because two approvals must come from two persons.
 Expected<std::vector<User>> parse_users(std::string_view text);
-/// A link, or more than a megabyte, is refused.
+/// Reads the file of a site. A symbolic link, or a file above 1 MB, is refused.
 Expected<std::vector<User>> read_users(const std::filesystem::path& site);
-/// The one with this account; none: it is no user.
+/// Returns the user with this account; none if there is no such user.
 std::optional<User> user_with(const std::vector<User>& users, const std::string& account);
 
 }  // namespace nonio::certificates

@@ -46,7 +46,7 @@ sign::Verified refused(std::string_view check, const std::string& why) {
   return v;
 }
 
-/// Why these bytes need no search for a signature; nothing if it is to be checked.
+/// Returns why these bytes cannot be a certificate; none if the signature has to be checked.
 std::optional<std::string> why_no_certificate(std::string_view bytes) {
   const auto has = [&](std::string_view text) { return bytes.find(text) != bytes.npos; };
   if (bytes.starts_with("%PDF-")) {
@@ -97,7 +97,7 @@ Expected<std::string> read_bounded(const fs::path& path) {
   };
   std::error_code error;
   if (fs::is_directory(path, error)) return fail(path.string() + " is a folder, expected a file");
-  // A pipe may never send anything.
+  // A pipe could block for ever.
   if (const auto kind = fs::status(path, error).type();
       kind != fs::file_type::regular && kind != fs::file_type::not_found)
     return fail(path.string() + " is not a regular file");
@@ -127,7 +127,7 @@ Expected<sign::Verified> verify_file(const fs::path& path, const sign::Verifier&
   const bool is_xml = bytes->starts_with("<?xml");
   sign::Verified v =
       is_xml ? sign::verify_xml(*bytes, verifier) : sign::verify_pdf(*bytes, verifier);
-  // The register may know an earlier signer.
+  // The register may contain an earlier signer.
   if (verdict_of(v) == Verdict::untrusted && !rows.no_answer.empty())
     return fail(no_verdict(rows, path.string()));
   if (is_xml) {
@@ -136,7 +136,7 @@ Expected<sign::Verified> verify_file(const fs::path& path, const sign::Verifier&
     if (auto added = add_register_state(v, *bytes, rows); !added) return fail(added.error());
     return v;
   }
-  // Unsigned bytes are not given to plugins.
+  // Plugins must not read unsigned bytes.
   if (!v.holds()) {
     for (const char* check : {"content.values", "content.printed"})
       v.checks.push_back({check, State::not_checked,
@@ -144,7 +144,7 @@ Expected<sign::Verified> verify_file(const fs::path& path, const sign::Verifier&
                                                               : "the signature is not valid"});
     return v;
   }
-  // What was added later is looked at by `verify_pdf`; the rest is about what was issued.
+  // `verify_pdf` has checked what was added later; the other checks are about the issued part.
   const std::string_view issued = std::string_view(*bytes).substr(0, v.issued);
   if (auto added = add_register_state(v, issued, rows); !added) return fail(added.error());
   check_documents(v, verifier);
@@ -172,7 +172,7 @@ Verdict verdict_of(const sign::Verified& v) {
   if (any(of_signer)) return Verdict::untrusted;
   if (any(of_register)) return Verdict::not_in_force;
   if (any(of_words)) return Verdict::other_words;
-  if (!v.holds()) {  // an essential check was not made: whom to trust was not stated, or no register
+  if (!v.holds()) {  // an essential check was not made: no trusted roots were given, or no register
     const bool no_register = std::any_of(v.checks.begin(), v.checks.end(), [&](const auto& c) {
       return of_register(c.id) && c.state == State::not_checked && c.essential;
     });
@@ -202,7 +202,7 @@ std::string text_of(Verdict verdict) {
 std::vector<std::string> not_made(const sign::Verified& v) {
   std::vector<std::string> ids;
   for (const sign::Check& c : v.checks)
-    if (c.state == State::not_checked && c.id != "dcc") ids.push_back(c.id);  // none is attached
+    if (c.state == State::not_checked && c.id != "dcc") ids.push_back(c.id);  // no DCC is attached
   return ids;
 }
 

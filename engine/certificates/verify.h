@@ -13,46 +13,48 @@
 
 namespace nonio::certificates {
 
-/// Plugins and templates, with those of `site` if it is not empty. Neither its site.toml nor the
-/// current folder is read.
+/// Loads plugins and templates, including those of `site` if it is not empty. Neither its site.toml
+/// nor the current folder is read.
 Expected<std::unique_ptr<reading::Workplace>> open_to_verify(
     const std::vector<std::filesystem::path>& plugin_folders,
     std::vector<std::filesystem::path> template_folders, const std::filesystem::path& site,
     const std::string& version);
 
-/// A file that may be a certificate. Refused by its size where the system reports it, else when
-/// more bytes are read than allowed; never read whole.
+/// Reads a file that may be a certificate. A file that is too large is refused by its size, or when
+/// more bytes than allowed are read, without reading all of it.
 Expected<std::string> read_bounded(const std::filesystem::path& path);
 
-/// Opens plugins and templates at the first call: a file whose signature does not hold needs none.
+/// Loads plugins and templates at the first call, because a file without a valid signature needs
+/// none.
 using OpenContext = std::function<Expected<const reading::Context*>()>;
 
-/// A certificate (PDF) or a DCC (XML): its signature first, then, where that holds, its content:
-/// every attached DCC, and the attached readings evaluated again by the plugins that `open` gives,
-/// up to the printed pages. `rows` of the register state whether a number is in force, and whose
-/// key signed it. Whatever the file holds, there is an answer; an error is one of `open`, or the
-/// register is needed and could not be read.
+/// Verifies a certificate (PDF) or a DCC (XML): first its signature, then, if that is valid, its
+/// content. Every attached DCC is checked, and the attached readings are evaluated again by the
+/// plugins of `open`, up to the printed pages. `rows` of the register state whether a number is in
+/// force, and whose key signed it. Any content of the file yields a result; an error comes from
+/// `open`, or from a register that is required and could not be read.
 Expected<sign::Verified> verify_file(const std::filesystem::path& path,
                                      const sign::Verifier& verifier, const OpenContext& open,
                                      const RegisterRows& rows);
 
-/// What all checks of a file amount to; each has an exit status of `nonio certificate verify`.
+/// Overall result of all checks of a file; each has an exit status of `nonio certificate verify`.
 enum class Verdict {
   valid,         ///< every check was made and passed
   incomplete,    ///< every check that was made passed; some could not be made (`not_made`)
-  untrusted,     ///< intact, but the signer is not one whom the user trusts and expects
-  not_in_force,  ///< intact and trusted, but the register of the site does not list it as in force
-  other_words,   ///< intact, trusted, in force, but its words or layout are not the installed ones
+  untrusted,     ///< intact, but the signer is not trusted or not expected
+  not_in_force,  ///< intact and trusted, but not in force according to the register of the site
+  other_words,   ///< intact, trusted and in force, but with other words or another layout than the
+                 ///< installed ones
   altered,       ///< changed after signing, or damaged
-  no_certificate,  ///< has no signature, or is not a certificate of Nonio
+  no_certificate,  ///< no signature, or not a certificate of Nonio
   no_file          ///< does not exist, or cannot be read
 };
 Verdict verdict_of(const sign::Verified& verified);
-/// "valid", "no-certificate": for programs.
+/// Returns the verdict for programs: "valid", "no-certificate".
 std::string id_of(Verdict verdict);
-/// "VALID", "NOT A CERTIFICATE": what people read, on the terminal as on the page.
+/// Returns the verdict for people: "VALID", "NOT A CERTIFICATE".
 std::string text_of(Verdict verdict);
-/// The checks that could not be made and do not change the verdict to a negative one.
+/// Returns the checks that could not be made and do not make the verdict negative.
 std::vector<std::string> not_made(const sign::Verified& verified);
 
 }  // namespace nonio::certificates

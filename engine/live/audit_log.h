@@ -12,14 +12,15 @@ namespace nonio::live {
 
 inline constexpr const char* audit_name = "audit.jsonl";
 
-/// SITE/audit.jsonl: one line for each request that may change something, also for those that were
-/// refused. Lines are only ever added.
+/// Writes SITE/audit.jsonl: one line for each request that may change something, including refused
+/// ones. Lines are only appended.
 class AuditLog {
  public:
   explicit AuditLog(const std::filesystem::path& site) : file_(site / audit_name) {}
-  /// With the time, UTC. An error: nothing may be done that would leave no trace.
+  /// Appends the entry with the time in UTC. If this fails, the caller must not carry out the
+  /// request, because it would not be recorded.
   Expected<void> write(storage::Json entry);
-  /// Empty if there is none.
+  /// Returns the content of the file; empty if it does not exist.
   Expected<std::string> text() const;
 
  private:

@@ -30,7 +30,7 @@ using storage::Json;
 
 namespace {
 
-/// Numbers that a child writes and others read: one a reading of a part.
+/// Memory shared with child processes that contains one number per reading of a part.
 class SharedColumn {
  public:
   explicit SharedColumn(std::size_t size) : size_(size) {
@@ -50,7 +50,7 @@ class SharedColumn {
   double* data_ = nullptr;
 };
 
-/// What was fitted last of a part: the newest, by their trials.
+/// Residuals of the last fits of each part, by trial; the oldest are dropped.
 class FittedBefore {
  public:
   std::shared_ptr<SharedColumn> find(const std::string& key) const {
@@ -65,7 +65,8 @@ class FittedBefore {
   }
 
  private:
-  static constexpr std::size_t most = 8;  // steps to and fro; 8 MB each of 1,000,000 readings
+  // Entries, for steps back and forth; 8 MB each for 1,000,000 readings.
+  static constexpr std::size_t most = 8;
   std::deque<std::pair<std::string, std::shared_ptr<SharedColumn>>> all_;
 };
 
@@ -83,10 +84,10 @@ struct Running {
   process::Handle pipe{};
   std::string received{};
   std::shared_ptr<SharedColumn> residual{};
-  bool fills = false;     ///< `residual`
+  bool fills = false;     ///< whether this job writes `residual`
   bool is_begun = false;  ///< the first state was reported
   Clock::time_point begun = Clock::now();
-  int reported = 0;  ///< seconds that were reported
+  int reported = 0;  ///< seconds that were reported last
 };
 
 bool write_all(int fd, std::string_view bytes) {
@@ -104,8 +105,8 @@ std::string words_of(const Error& e) {
          e.message;
 }
 
-/// The first byte of what a child sends: an answer, or why there is none. Before it may come what
-/// is there first, with its length.
+/// First byte of what a child sends: an answer, or the reason for a refusal. A first part of the
+/// answer may precede it, with its length.
 constexpr char begins = '1', answers = '+', refuses = '-';
 constexpr std::size_t before_first = 1 + sizeof(std::uint64_t);
 
@@ -116,7 +117,7 @@ void send_first(int pipe, const std::string& text) {
   write_all(pipe, bytes + text);
 }
 
-/// What came first, once it is complete.
+/// Removes the first part from `received` and returns it; none until it is complete.
 std::optional<std::string> take_first(std::string& received) {
   std::uint64_t size = 0;
   if (received.size() < before_first || received.front() != begins) return std::nullopt;
@@ -143,9 +144,10 @@ std::string answer_of(Bench& bench, const Job& job, std::span<double> residual, 
 
 bool is_slow(const Job& job) { return job.kind == "explain" || job.kind == "without"; }
 
-/// A person waits for a picture while the others calculate.
+/// Returns the priority of a job as a nice value: a picture that a person waits for goes before
+/// background work.
 int niceness(const Job& job, const Bench& bench) {
-  constexpr std::size_t takes_seconds = 100000;  // readings
+  constexpr std::size_t takes_seconds = 100000;  // readings from which a fit takes seconds
   if (is_slow(job)) return 10;
   if (job.number == 0) return 5;
   for (const auto& part : bench.parts)
@@ -175,7 +177,7 @@ class Loop {
         channel_(std::move(channel)),
         seconds_(bench_.place->context.site.limits.seconds) {}
 
-  /// Until the server has ended.
+  /// Serves jobs until the server has ended.
   void run() {
     tell(0, job_state::opened, storage::dump(described(bench_)));
     if (!bench_.has_catalogue) {
@@ -198,7 +200,8 @@ class Loop {
       gone_ = true;
   }
 
-  /// Slow work begins when the picture that a person waits for is ready, or takes long itself.
+  /// Whether a person waits for this fit. Slow jobs start when it is ready, or if it takes longer
+  /// than a second itself.
   bool is_awaited(const Running& one) const {
     constexpr auto long_time = std::chrono::seconds(1);
     return one.job.kind == "fit" && !one.is_begun && niceness(one.job, bench_) == 0 &&
@@ -257,7 +260,8 @@ class Loop {
     one.residual = std::move(residual), one.fills = fills;
   }
 
-  /// What this process does itself, since all requests need it: while no request waits.
+  /// Whether this process itself has to do groundwork, which all later requests need: only while no
+  /// request waits.
   bool has_work() const {
     return without_groundwork(bench_) != nullptr &&
            std::all_of(running_.begin(), running_.end(),
@@ -290,7 +294,7 @@ class Loop {
     for (const std::uint64_t number : ended) finish(number);
   }
 
-  /// False at the end.
+  /// Reads what the child has sent; false at the end of the stream.
   static bool read_from(Running& one) {
     std::array<char, 1 << 16> bytes;
     const ssize_t n = ::read(one.pipe.get(), bytes.data(), bytes.size());
@@ -323,7 +327,8 @@ class Loop {
     std::erase_if(waiting_, [&](const Job& job) { return job.number == number; });
     const auto found = running_.find(number);
     if (found == running_.end()) return;
-    if (needs_files(found->second.job.kind)) return;  // it may be writing
+    // The job may be writing files and must not be ended.
+    if (needs_files(found->second.job.kind)) return;
     running_.erase(found);
   }
 
@@ -354,7 +359,7 @@ class Loop {
     bench_.read.inputs.front().second = saved.at("manifest_sha256").get<std::string>();
   }
 
-  /// Ends what takes too long, and states how long the others have been at work.
+  /// Ends jobs that exceed their time limit, and reports the elapsed time of the others.
   void look_after() {
     std::vector<std::uint64_t> overdue;
     for (auto& [number, one] : running_) {

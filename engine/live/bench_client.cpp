@@ -81,7 +81,7 @@ bool BenchClient::connect() {
     return false;
   }
   const std::lock_guard lock(mutex_);
-  if (over_) return false;  // no one would shut this one down
+  if (over_) return false;  // close() has run already and would not end this process
   channel_ = std::move(*channel);
   for (const auto& [job, text] : unsent_) send("do", job, text);
   unsent_.clear();
@@ -101,7 +101,8 @@ void BenchClient::hear() {
     if (job != 0) {
       const bool goes_on = state == job_state::running || state == job_state::begun;
       const std::lock_guard lock(mutex_);
-      if (goes_on ? !open_.contains(job) : open_.erase(job) == 0) continue;  // it was cancelled
+      // The job was cancelled.
+      if (goes_on ? !open_.contains(job) : open_.erase(job) == 0) continue;
     }
     tell_(job, state, text);
   }
@@ -123,7 +124,7 @@ void BenchClient::listen() {
       hear();
       const std::lock_guard lock(mutex_);
       channel_ = process::Handle();
-      // One that ends as soon as it has begun is started again only on a request.
+      // A process that died soon after its start is restarted only by the next request.
       if (Clock::now() - begun > soon) again_ = true;
       if (over_) return;
       is_begun_again = again_;

@@ -15,12 +15,13 @@
 
 namespace nonio::live {
 
-/// The server's side of a bench process: numbers for requests, answers from a thread of its own. If
-/// a bench process dies, its requests fail and it is restarted.
+/// Controls a bench process from the server: numbers the requests, and receives the answers in a
+/// thread of its own. If the bench process dies, its requests fail and it is restarted.
 class BenchClient {
  public:
-  /// Number of the job (0: the campaign itself), one of `job_state`, text. Called without a lock,
-  /// always by the same thread. State "ended" of job 0: the process has died; text "again": another one begins.
+  /// Receives the number of the job (0: the campaign itself), one of `job_state`, and a text. It is
+  /// called without a lock, always by the same thread. State "ended" of job 0: the process has
+  /// died; text "again": it is restarted.
   using Tell = std::function<void(std::uint64_t, const std::string&, std::string)>;
 
   BenchClient(Launcher& launcher, std::filesystem::path campaign, Tell tell);
@@ -28,10 +29,10 @@ class BenchClient {
   BenchClient& operator=(const BenchClient&) = delete;
   ~BenchClient();
 
-  /// The request's number; `tell` may be called before it returns.
+  /// Sends a request and returns its number; `tell` may be called before this returns.
   std::uint64_t ask(const storage::Json& request);
   void cancel(std::uint64_t job);
-  /// A new bench process, which reads the files again.
+  /// Starts a new bench process, which reads the files again.
   void restart();
 
  private:
@@ -47,8 +48,8 @@ class BenchClient {
   std::mutex mutex_;
   std::condition_variable wanted_;
   process::Handle channel_;
-  std::set<std::uint64_t> open_;                 ///< jobs without an answer
-  std::map<std::uint64_t, std::string> unsent_;  ///< requested while there was no process
+  std::set<std::uint64_t> open_;                 ///< jobs that are not answered yet
+  std::map<std::uint64_t, std::string> unsent_;  ///< requests made while there was no process
   std::uint64_t last_ = 0;
   bool again_ = true, over_ = false;
   std::thread listener_;

@@ -51,7 +51,8 @@ Json machine_json(const Machine& machine) {
   return json;
 }
 
-/// Ends of each line in the volume, mm: the readings that lie farthest apart along it.
+/// Returns the ends of each measured line in the volume, in mm: its readings with the lowest and
+/// the highest position along the line.
 Json lines_in_space(const model::Part& part) {
   struct Ends {
     std::size_t low = 0, high = 0;
@@ -89,7 +90,7 @@ Json card_of(const modelling::ModelWords& words, const std::string& effect) {
   return card;
 }
 
-/// Causes that an explanation of an axis may name, and that can be added then.
+/// Adds the causes of the library that apply to the axis, so that they can be added to the model.
 void put_library(const PartModel& part, const modelling::ModelWords& words, Json& list) {
   if (part.library == nullptr) return;
   const Axis& axis = part.part.axes.front();
@@ -130,7 +131,7 @@ Json catalogue_json(const Bench& bench) {
   return list;
 }
 
-/// Which rows of each measurement's table are left; empty: all.
+/// Rows of each measurement's table that are kept; empty: all.
 using Kept = std::vector<std::vector<std::uint32_t>>;
 
 Expected<Kept> exclude(Bench& bench, const Json& request) {
@@ -170,12 +171,11 @@ Expected<void> try_periods(Bench& bench, const Json& request) {
   return {};
 }
 
-/// A part with the model that is tried: one of the bench, or of its own where readings or periods
-/// are others.
+/// A part with the tried model: that of the bench, or a copy if readings or periods differ.
 struct Tried {
   std::unique_ptr<PartModel> own;
   PartModel* of_bench = nullptr;
-  std::vector<std::size_t> row;  ///< of each of its readings: that of the part with all readings
+  std::vector<std::size_t> row;  ///< row of each reading in the part with all readings
   const PartModel& part() const { return own ? *own : *of_bench; }
 };
 
@@ -226,8 +226,8 @@ Expected<Tried> tried(Bench& bench, const Json& request) {
   return out;
 }
 
-/// What the page holds: the same readings whatever the model is. Of very many it draws columns of
-/// pixels, and needs a sample for quantiles and tables only.
+/// Returns the readings that the page gets; they do not depend on the model. For large parts the
+/// page draws columns of pixels and needs only a sample for quantiles and tables.
 workbench::Kept kept_of(const PartModel& part) {
   constexpr std::size_t sample = 5000;
   const std::vector<double> measured = part.measured();
@@ -235,7 +235,7 @@ workbench::Kept kept_of(const PartModel& part) {
   return workbench::kept_readings(measured, is_drawn ? workbench::most_readings : sample);
 }
 
-/// What model-html embeds, with the rows as the files have them.
+/// Returns the data that model-html embeds, with the rows counted as in the files.
 Expected<std::string> page_data(const Bench& bench, const PartModel& part, const ModelFit& fit,
                                 const std::vector<std::size_t>& rows) {
   const reports::Wording words(bench.place->context.templates, bench.language(), {"pictures"});
@@ -248,14 +248,14 @@ Expected<std::string> page_data(const Bench& bench, const PartModel& part, const
   return data;
 }
 
-/// None if it belongs to other readings.
+/// Returns the prepared matrices of the part; null if they are for other readings.
 const model::Groundwork* groundwork_of(const Bench& bench, const Tried& tried) {
   if (tried.own) return nullptr;
   const auto found = bench.groundwork.find(tried.part().part.name);
   return found == bench.groundwork.end() ? nullptr : &found->second;
 }
 
-/// All of a fit but the page.
+/// Returns all members of a fit's answer except the page.
 std::string head_of(const Bench& bench, const PartModel& part, const model::Comparison& c,
                     modelling::Extent extent) {
   const modelling::Compared both{part, c};
@@ -284,14 +284,14 @@ Expected<std::string> fit(Bench& bench, const Json& request, std::span<double> r
   return storage::pack(head_of(bench, one.part(), compared, modelling::Extent::whole), *page);
 }
 
-/// The readings as they were measured: what the page draws until there is a fit.
+/// Returns the page with the readings as measured, which is shown until there is a fit.
 Expected<std::string> look(Bench& bench, const PartModel& part) {
   const auto data = page_data(bench, part, modelling::measured_value(part), {});
   if (!data) return data;
   return "{\"page\":" + *data + "}";
 }
 
-/// A column over the readings that the page has.
+/// Returns the printed values of a column for the rows that the page has.
 Json column(const std::vector<double>& values, const std::vector<std::size_t>& rows, Quantity q) {
   Json list = Json::array();
   for (const std::size_t row : rows) {
@@ -301,7 +301,8 @@ Json column(const std::vector<double>& values, const std::vector<std::size_t>& r
   return list;
 }
 
-/// What each candidate would remove from the residuals, in addition to the model, on these readings.
+/// Returns, for each candidate, its contribution to the fit at the page's readings if it is added
+/// to the model. At most 40 candidates.
 Json fingerprints_of(const PartModel& part, const model::Explanation& e) {
   constexpr std::size_t most = 40;
   const std::vector<std::size_t> rows = kept_of(part).rows;
@@ -373,7 +374,7 @@ Expected<Bench> open_bench(const BenchWish& wish) {
     modelling::set_model(part, {}, bench.read);
     readings += part.part.table.size();
   }
-  constexpr std::size_t many = 50000;  // below, it takes less than a tenth of a second
+  constexpr std::size_t many = 50000;  // readings; below this, the catalogue takes less than 0.1 s
   if (readings <= many) fill_catalogue(bench);
   return bench;
 }
@@ -433,7 +434,7 @@ bool needs_residual(const Json& request) {
 }
 
 const PartModel* without_groundwork(const Bench& bench) {
-  // Of fewer readings it takes milliseconds; of more it would keep others waiting.
+  // Groundwork for fewer readings takes milliseconds, and for more it would delay other requests.
   constexpr std::size_t fewest = 5000, most = 200000;
   for (const PartModel& part : bench.parts)
     if (part.part.table.size() >= fewest && part.part.table.size() <= most &&

@@ -12,26 +12,28 @@
 #include "campaign/modelling/campaign_model.h"
 #include "platform/storage/json_values.h"
 
-/// What the bench process calculates of its campaign, each answer as JSON (docs/dev/live.md). All of it
-/// runs plugins.
+/// Calculations of the bench process, each answer as JSON (docs/dev/live.md). All of them run
+/// plugins.
 namespace nonio::live {
 
-/// What a bench process is about.
+/// What a bench process needs to open its campaign.
 struct BenchWish {
-  std::filesystem::path folder;  ///< of the campaign
+  std::filesystem::path folder;  ///< folder of the campaign
   std::vector<std::filesystem::path> plugin_folders, template_folders;
-  std::filesystem::path own_plugins;  ///< of the program's own folder: tested with it
+  std::filesystem::path own_plugins;  ///< the program's own plugin folder; other plugins were not
+                                      ///< tested with it
   std::string version;
 };
 
-/// A campaign as it was read once, and its parts with all readings.
+/// A campaign that was read once, and its parts with all readings.
 struct Bench {
   std::filesystem::path folder;
   std::unique_ptr<reading::Workplace> place;
   reading::ReadCampaign read;
-  std::vector<modelling::PartModel> parts;  ///< with any model
-  bool has_catalogue = false;  ///< of very many readings each process that requires it makes it
-  /// Of parts with many readings: the same for each model that is tried.
+  std::vector<modelling::PartModel> parts;  ///< all parts; each request sets their model
+  bool has_catalogue = false;  ///< false for very many readings: each process that needs the
+                               ///< catalogue makes it
+  /// Prepared matrices of large parts, which are the same for every tried model.
   std::map<std::string, model::Groundwork> groundwork{};
 
   const Campaign& campaign() const { return read.manifest->campaign; }
@@ -39,41 +41,45 @@ struct Bench {
   modelling::PartModel* part(const std::string& name);
 };
 
-/// Reads the campaign; the process goes on in a child that is kept apart. An error states why the
-/// campaign cannot be opened.
+/// Reads the campaign. The process continues as a confined child. An error states why the campaign
+/// cannot be opened.
 Expected<Bench> open_bench(const BenchWish& wish);
 
-/// Campaign, machine, parts, catalogue, saved model, errors of single measurements, limits.
+/// Returns campaign, machine, parts, catalogue, saved model, errors of single measurements, and
+/// limits as JSON.
 storage::Json described(const Bench& bench);
 
-/// The catalogue of all parts, where it is not there yet; as "catalogue" of `described`.
+/// Makes the catalogue of all parts if it does not exist yet. Returns it as in the member
+/// "catalogue" of `described`.
 storage::Json fill_catalogue(Bench& bench);
 
-/// The next part whose groundwork is to be done; none if all is. Of parts without a set-up:
-/// no plugin takes part, so it may be done in the process that all requests come from.
+/// Returns the next part whose groundwork has to be done; null if none. Only parts without a
+/// set-up: their groundwork runs no plugin, so it may be done in the process that all requests are
+/// forked from.
 const modelling::PartModel* without_groundwork(const Bench& bench);
 void do_groundwork(Bench& bench, const modelling::PartModel& part);
 
-/// What is there of an answer before all of it.
+/// Receives the first part of an answer.
 using First = std::function<void(const std::string&)>;
 
-/// Answers one request, in a process of its own: it changes `bench`. `residual`: of each reading of
-/// the part as the files have it, NaN where it is excluded; a fit fills it, others read it if
-/// `fitted`. Errors are for the person at the page.
+/// Answers one request. Has to run in a child process, since it changes `bench`. `residual`:
+/// residual of each reading of the part in the order of the files, NaN for excluded ones; a fit
+/// fills it, other requests read it if `fitted`. Errors are texts for the person at the page.
 ///
-/// fit: packed, the members "compare" and "text", and the value of "page". Of many readings this
-/// comes first, without the places; then the page is empty. explain: the explanation first, then
-/// the fingerprints.
+/// fit: packed, the members "compare" and "text", and the value of "page". For many readings this
+/// is sent first without the places, and then the page is empty. explain: the explanation is sent
+/// first, then the fingerprints.
 Expected<std::string> calculate(Bench& bench, const storage::Json& request,
                                 std::span<double> residual, bool fitted, const First& first);
 
-/// Whether it needs what a fit leaves of each reading.
+/// Whether the request needs the residuals of a fit.
 bool needs_residual(const storage::Json& request);
 
-/// What must be read from files, or written: such a request is not confined to calculating.
+/// Whether the request reads or writes files, so that its process must not be confined to
+/// calculating.
 bool needs_files(const std::string& kind);
 
-/// The part of a request that the fit and its results depend on.
+/// Returns the members of a request that the fit and its results depend on.
 std::string trial_key(const storage::Json& request);
 
 }  // namespace nonio::live

@@ -7,26 +7,27 @@
 #include "live/service.h"
 #include "platform/storage/json_values.h"
 
-/// The form of a new campaign: what a page may state, and the options of `nonio new campaign` that
-/// state it.
+/// Converts the form of a new campaign on the page into options of `nonio new campaign`.
 namespace nonio::live {
 
-/// A request with a file: one line of JSON, then the bytes of the file as they were dropped.
+/// A request with a file: one line of JSON, followed by the bytes of the file.
 struct DroppedFile {
   storage::Json form;
   std::string name, bytes;
 };
-/// An error is the refusal: no form, or a name that no file of a campaign may have.
+/// Parses the body of such a request. An error is the refusal: no valid form, or a file name that a
+/// campaign must not contain.
 tl::expected<DroppedFile, Answer> dropped_file(const std::string& body);
 
-/// --column=... of the form's member `columns`, and --axis of `axis`.
+/// Returns the options --column=... for the member `columns` and --axis for `axis`.
 tl::expected<std::vector<std::string>, Answer> file_options(const storage::Json& form);
 
-/// What the form states, as options; an error is the refusal of a value that has another form than
-/// its key requires.
+/// Returns the form as options. An error is the refusal of a value that does not have the form its
+/// key requires.
 tl::expected<std::vector<std::string>, Answer> campaign_options(const storage::Json& form);
 
-/// Day, machine and axis of the form as an id, which no folder of a site has for another purpose.
+/// Makes an id from day, machine and axis of the form; it differs from the names of the site's own
+/// folders.
 std::string proposed_id(const storage::Json& form);
 
 }  // namespace nonio::live

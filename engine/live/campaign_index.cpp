@@ -97,12 +97,13 @@ std::map<std::string, std::string> values_of(const Campaign& c) {
   return to;
 }
 
-/// Grows with what has to be done about a decision.
+/// Returns the severity of a decision: 0 none, 1 conforms, 2 indeterminate, 3 does not conform.
 int severity(std::string_view decision) {
   return decision.empty() ? 0 : decision == "conforms" ? 1 : decision == "does not conform" ? 3 : 2;
 }
 
-/// Of results.json; of a test before and after an adjustment that after it decides.
+/// Returns the worst decision in results.json; if there are tests before and after an adjustment,
+/// those before it are ignored.
 std::string verdict_of(const std::string& results, const Campaign* campaign) {
   bool has_after = false;
   std::vector<std::string> before;
@@ -297,7 +298,7 @@ bool CampaignIndex::look_at_all() {
 
 void CampaignIndex::run() {
   using Clock = std::chrono::steady_clock;
-  constexpr double share = 20.0;  // of the time it waits for
+  constexpr double share = 20.0;  // the pause is this many times the duration of a look
   std::chrono::duration<double> pause = pause_;
   while (true) {
     {

@@ -14,47 +14,47 @@
 
 #include "platform/storage/json_values.h"
 
-/// The campaigns of a site as their files state them, kept in memory.
+/// Index of a site's campaigns, kept in memory.
 namespace nonio::live {
 
-/// One campaign: what campaign.toml, run.json and results.json state.
+/// One campaign as stated in campaign.toml, run.json and results.json.
 struct ListedCampaign {
   std::string folder, id, day, customer, place;
-  std::string machine, model;           ///< the name of the history; empty: none
+  std::string machine, model;           ///< name of the machine in the history; empty: none
   std::string state;                    ///< new, ok, attention, failed
-  std::string verdict;                  ///< the worst decision on a tolerance; empty: none
-  std::string certificate;              ///< its number
-  std::string message;                  ///< the first error
-  bool draft = false;                   ///< of a certificate that waits for its approval
-  bool changed = false;                 ///< campaign.toml is another one than that of the results
-  std::vector<std::string> files{};     ///< of the results
-  std::vector<std::string> findings{};  ///< that require a decision, in words
-  std::vector<std::string> columns{};   ///< that a person stated of its files
-  /// What a form can take from it, by the keys of campaign.toml, units in the keys.
+  std::string verdict;                  ///< worst decision on a tolerance; empty: none
+  std::string certificate;              ///< number of the certificate
+  std::string message;                  ///< first error
+  bool draft = false;                   ///< a draft of a certificate waits for approval
+  bool changed = false;                 ///< campaign.toml has changed since the results were made
+  std::vector<std::string> files{};     ///< names of the output files
+  std::vector<std::string> findings{};  ///< findings with severity warning, in words
+  std::vector<std::string> columns{};   ///< columns that a person stated for its files
+  /// Values that a form can take over, by keys of campaign.toml, with units in the keys.
   std::map<std::string, std::string> values{};
-  std::string words{};  ///< all that a search looks at, in small letters
+  std::string words{};  ///< all searchable text in lower case
 };
 
 struct CampaignQuery {
-  std::string search{};  ///< words that all occur
-  std::string folder{};  ///< only this one; empty: any
-  std::string state{};   ///< also a verdict, "draft" or "certificate"; empty: any
+  std::string search{};  ///< words that must all occur
+  std::string folder{};  ///< only the campaign in this folder; empty: any
+  std::string state{};   ///< a state, a verdict, "draft" or "certificate"; empty: any
   std::size_t page = 0, size = 50;
 };
 
 struct CampaignPage {
   std::size_t found = 0, all = 0;
-  bool complete = false;  ///< false: not all campaigns have been read yet
+  bool complete = false;  ///< false: some campaigns have not been read yet
   std::vector<ListedCampaign> campaigns{};
 };
 
-/// Reads the campaigns of a site in a thread of its own, and again what has changed: content of
-/// files decides, size and time only show when to read. The first reading of 10,000 campaigns takes
-/// seconds, an answer from memory milliseconds.
+/// Reads the campaigns of a site in a thread of its own, and reads changed ones again. Size and
+/// time of files only show when to read; their content decides. The first reading of 10,000
+/// campaigns takes seconds, an answer from memory milliseconds.
 class CampaignIndex {
  public:
-  /// `changed`: the campaigns are others, or their results are. `is_watched`: a page is open; while
-  /// none is, files are left alone. `pause`: between two looks, at least.
+  /// `changed` is called when campaigns or results have changed. `is_watched` returns whether a
+  /// page is open; while none is, no files are read. `pause`: shortest time between two looks.
   CampaignIndex(std::filesystem::path site, std::filesystem::path out,
                 std::function<void()> changed, std::function<bool()> is_watched,
                 std::chrono::duration<double> pause = std::chrono::seconds(5));
@@ -62,17 +62,17 @@ class CampaignIndex {
   CampaignIndex& operator=(const CampaignIndex&) = delete;
   ~CampaignIndex();
 
-  /// By day, the newest first, then by id.
+  /// Returns matching campaigns by day, the newest first, then by id.
   CampaignPage find(const CampaignQuery& query) const;
-  /// All of them, in the same order; `take` may not call the index.
+  /// Calls `take` for all campaigns in the same order; `take` must not call the index.
   void each(const std::function<void(const ListedCampaign&)>& take) const;
   bool has(const std::string& folder) const;
   std::size_t size() const;
-  /// Reads this campaign now, before anything else.
+  /// Reads this campaign at once.
   void look_at(const std::string& folder);
-  /// Something has changed: all are looked at soon.
+  /// Requests that all campaigns are looked at soon, because something has changed.
   void look_soon();
-  /// For a request: what may be old is looked at soon.
+  /// Requests that campaigns are looked at soon if the last look is too long ago.
   void look_if_old();
 
  private:
@@ -83,7 +83,7 @@ class CampaignIndex {
   std::string stamp_of(const std::string& folder, const std::string& id) const;
   Seen read(const std::string& folder) const;
   void run();
-  /// False: nothing was new.
+  /// Returns false if nothing has changed.
   bool look_at_all();
   bool is_over() const;
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* api = "/api/";
 
-/// One campaign at the root.
+/// Serves the page of one campaign at the root path.
 class CampaignService : public Starting {
  public:
   CampaignService(LiveWish wish, Launcher launcher, Shells shells)
@@ -51,7 +51,8 @@ class CampaignService : public Starting {
   std::unique_ptr<Desk> desk_;
 };
 
-/// In the language of the site; English where the page has no words of it.
+/// Reads the page's texts in the language of the site, or in English if the page has none in that
+/// language.
 Expected<Shells> shells_of(const LiveWish& wish) {
   const fs::path site = config::site_of(wish.folder);
   std::string digest;
@@ -70,7 +71,8 @@ Expected<Shells> shells_of(const LiveWish& wish) {
                 Sentences(workbench::words(templates, language)), settings->limits.seconds};
 }
 
-/// Whether the site has users who sign in here, and not at a proxy.
+/// Whether users sign in at this server and not at a proxy. An error if users.toml states no
+/// password.
 Expected<bool> requires_sign_in(const LiveWish& wish) {
   NONIO_TRY(const auto there, storage::is_there(wish.folder / certificates::users_name));
   if (!there && wish.user_header.empty()) return false;

@@ -9,27 +9,27 @@
 
 namespace nonio::live {
 
-/// A service that has its processes, and no thread yet.
+/// A service whose processes are started, but no threads yet.
 class Starting : public Service {
  public:
-  /// Threads may be made from now on.
+  /// Starts the threads of the service.
   virtual Expected<void> begin() = 0;
 };
 
-/// Folders with a campaign.toml below a site, relative to it, in order.
+/// Returns the folders with a campaign.toml below a site, relative to it and sorted.
 std::vector<std::string> campaigns_in(const std::filesystem::path& site);
 
-/// What a page begins with, in the language of the site.
+/// HTML of the pages, in the language of the site.
 struct Shells {
   std::string campaign, site;
   Sentences sentences;
-  double seconds = 0.0;  ///< that a verb may take: site.toml, [limits]
+  double seconds = 0.0;  ///< time limit of a command, from site.toml, [limits]
 };
 
-/// Of a site: its worklist, and the workbench of each of its campaigns.
+/// Makes the service of a site: its worklist, and the workbench of each of its campaigns.
 std::unique_ptr<Starting> site_service(const LiveWish& wish, Launcher launcher, Shells shells);
 
-/// Of a campaign, or of a site if the folder has no campaign.toml.
+/// Makes the service of a campaign, or of a site if the folder has no campaign.toml.
 Expected<std::unique_ptr<Starting>> service_of(const LiveWish& wish);
 
 }  // namespace nonio::live

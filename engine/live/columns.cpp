@@ -12,9 +12,9 @@ using storage::Json;
 
 namespace {
 
-/// One value of each reading, as it is printed.
+/// A column with one printed value per reading.
 struct Column {
-  std::vector<double> own;  ///< where it is not a column of the table
+  std::vector<double> own;  ///< values that are not a column of the table
   std::span<const double> si;
   Quantity quantity = Quantity::number;
   double from = 0.0;
@@ -110,15 +110,16 @@ Range range_of(const Column& x, const Column& y, const Json& request) {
   return range;
 }
 
-/// Of a column of pixels.
+/// Readings with the least and the largest value in one column of pixels.
 struct Extremes {
   std::size_t least = 0, most = 0, count = 0;
 };
 
-/// All readings of a range: by columns of pixels, and as they are while they are few.
+/// Readings of a range: reduced to columns of pixels, and as single readings if they are few.
 struct Binned {
   std::vector<Extremes> columns;
-  std::vector<std::size_t> rows;  ///< all, or more than `few` of them
+  std::vector<std::size_t> rows;  ///< rows in the range; more than `few` mean that not all are
+                                  ///< listed
   std::size_t count = 0;
 };
 
@@ -145,7 +146,7 @@ Json number(double value, Quantity q) {
   return std::isfinite(out) ? Json(out) : Json(nullptr);
 }
 
-/// Each reading for itself.
+/// Adds each reading as a separate point.
 void put_points(Json& out, const std::vector<std::size_t>& rows, const Column& x, const Column& y) {
   for (const std::size_t i : rows) {
     out["x"].push_back(number(x.shown(i), x.quantity));

@@ -13,7 +13,7 @@ namespace {
 constexpr auto fit_patience = std::chrono::seconds(2);
 constexpr const char* json_type = "application/json";
 
-/// The JSON object with the version as its first member.
+/// Returns the JSON object with the version added as its first member.
 std::string with_version(std::uint64_t version, const std::string& object) {
   return "{\"version\":" + std::to_string(version) + "," + object.substr(1);
 }
@@ -141,7 +141,7 @@ Json Desk::steps() const {
   return list;
 }
 
-/// What leads to the trial on a terminal.
+/// Returns the command that makes the trial on a terminal.
 std::string Desk::command() const {
   const std::string change = command_of(name_, session_.saved(), session_.trial());
   return change.empty() ? "nonio model compare " + quoted_for_shell(name_) : change;
@@ -193,7 +193,8 @@ Answer Desk::state(bool may_write) {
   return {200, json_type, storage::dump_line(json)};
 }
 
-/// `picture`: also one whose places are still looked for.
+/// Returns the fit of a part, waiting for it if necessary. `picture`: also accept one whose places
+/// are not computed yet.
 Answer Desk::fit(const std::string& part, const Request& request, bool picture) {
   std::unique_lock lock(mutex_);
   const auto is_known = [&] {
@@ -292,7 +293,7 @@ Answer Desk::document(const std::string& kind, const std::string& part) {
   for (char& c : name)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '.' && c != '_')
       c = '_';
-  // Not shown here: its script would run with this server's address.
+  // Sent as an attachment: if it were shown, its script would run with the address of this server.
   return {200,
           page ? "application/octet-stream" : "application/pdf",
           done.text,

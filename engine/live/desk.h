@@ -14,27 +14,29 @@
 
 namespace nonio::live {
 
-/// What a part shows for the present trial.
+/// State of one part for the present trial.
 struct PartState {
   struct Work {
     std::string state = "none";  ///< none, queued, running, done, failed
     std::uint64_t job = 0;
     std::string error;
     int seconds = 0;
-    /// fit: members "compare" and "text", value of "page"; without places before it is done.
-    /// explain: {"explain": ...}, {"fingerprints": ...}; the second may come later.
+    /// First part and rest of the answer. fit: members "compare" and "text", and the value of
+    /// "page", without places until it is done. explain: {"explain": ...}, {"fingerprints": ...};
+    /// the second may come later.
     std::string head, rest;
   };
-  std::string key;  ///< of the trial that this belongs to
+  std::string key;  ///< key of the trial that this belongs to
   Work fit, explain;
 };
 
-/// Answers that were calculated, by what they depend on; the newest 64 MB.
+/// Cache of calculated answers by the data that they depend on; the newest 64 MB are kept.
 class Remembered {
  public:
   struct Text {
     std::string head, rest;
-    storage::Json figures = storage::Json::object();  ///< of a fit: RMS and the like, with units
+    storage::Json figures = storage::Json::object();  ///< for a fit: RMS and similar values, with
+                                                      ///< units
     std::size_t size() const { return head.size() + rest.size(); }
   };
   void put(const std::string& key, Text text);
@@ -48,26 +50,27 @@ class Remembered {
   std::size_t bytes_ = 0;
 };
 
-/// Effects that are added one after the other, as `nonio model explain --auto` adds them.
+/// A search that adds effects one after the other, as `nonio model explain --auto` does.
 struct Searching {
   std::uint64_t job = 0;
-  std::string kind;  ///< suggest, finish
+  std::string kind;  ///< suggest or finish
   std::vector<std::string> added;
   std::vector<std::string> failed_before;  ///< parts that could not be explained at the start
 };
 
 /// One campaign with its page: session, bench process, events. Its functions are called by the
-/// threads of the server; `tell` by that of the bench.
+/// threads of the server, `tell` by the thread of the bench.
 class Desk {
  public:
-  /// `name`: the folder as a person wrote it, for commands.
+  /// `name`: the folder as the person wrote it, for use in commands.
   Desk(Launcher& launcher, const std::filesystem::path& folder, std::string name, bool edit,
        std::string engine);
   ~Desk();
 
-  /// `what`: the path behind "/api/", names replaced: "state", "parts/{part}/fit".
+  /// Answers a request. `what`: the path after "/api/" with placeholders, for example "state" or
+  /// "parts/{part}/fit".
   Answer answer(const std::string& what, const std::string& part, const Request& request);
-  /// Whether the model or the readings differ from what was saved.
+  /// Whether the model or the excluded readings differ from what was saved.
   bool has_unsaved() const;
   void close();
 
@@ -113,7 +116,7 @@ class Desk {
                         bool is_done);
   bool take_waiting(std::uint64_t job, const std::string& state, std::string& text);
 
-  // work
+  // requests to the bench, and the search
   Json request_for(const std::string& kind, const std::string& part) const;
   void refresh();
   void forget_parts();
@@ -123,10 +126,10 @@ class Desk {
   void search_on();
   bool is_explained() const;
   void search_ended(const std::string& state, const std::string& says);
-  /// In the program's own words, or by the name of a sentence of the page.
+  /// Ends the search with an error: a text of the program, or the name of a sentence of the page.
   void fail_search(const std::string& words, const std::string& name = "");
   void end_search();
-  /// The answer to a request, waited for with `lock` released.
+  /// Sends a request and waits for its answer; `lock` is released meanwhile.
   Waiting wait_for(std::unique_lock<std::mutex>& lock, const Json& request,
                    const std::string& replaces);
   void publish(const char* type, const std::string& about, Json data);
@@ -147,9 +150,9 @@ class Desk {
   Events events_;
   Session session_;
   std::string bench_state_ = "opening", bench_error_, read_at_;
-  Json campaign_ = Json::object();  ///< `described`
+  Json campaign_ = Json::object();  ///< result of `described`
   bool read_again_ = false, changed_on_disk_ = false, over_ = false;
-  std::vector<std::string> order_;  ///< of the parts
+  std::vector<std::string> order_;  ///< names of the parts in their order
   std::map<std::string, PartState> parts_;
   Remembered fits_, explanations_;
   std::map<std::uint64_t, Waiting> waiting_;
@@ -157,7 +160,8 @@ class Desk {
   std::optional<Searching> searching_;
   std::uint64_t searches_ = 0;
   std::unique_ptr<Watch> watch_;
-  std::unique_ptr<BenchClient> bench_;  ///< last: its thread uses all of the above
+  std::unique_ptr<BenchClient> bench_;  ///< declared last, because its thread uses all other
+                                        ///< members
 };
 
 }  // namespace nonio::live

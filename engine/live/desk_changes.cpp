@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a person changes: model, excluded readings, steps; saving; effects found one by one.
+// Changes that a person makes on the page of a campaign: model, excluded readings, steps, saving,
+// and the search for effects.
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -13,7 +14,7 @@ using storage::Json;
 
 namespace {
 
-constexpr std::size_t most_added = 12;  // as `nonio model explain --auto`
+constexpr std::size_t most_added = 12;  // limit of `nonio model explain --auto`
 constexpr std::size_t longest_text = 2000;
 
 }  // namespace
@@ -38,7 +39,8 @@ Answer Desk::post(const std::string& what, const Json& body, const Request& requ
   return changed(done, shown_command);
 }
 
-/// Also where it failed: with words.
+/// Publishes a change and answers with the new version and command; if the change failed, answers
+/// with its error.
 Answer Desk::changed(const Done& done, const std::string& command_now) {
   if (!done) return refused(422, done.error().name, done.error().places);
   refresh();
@@ -130,7 +132,8 @@ void Desk::read_again() {
   forget_parts();
 }
 
-/// Excluded readings with their reasons, by measurement, in addition to what a fit depends on.
+/// Returns a request that contains the excluded readings with their reasons, by measurement, in
+/// addition to everything that a fit depends on.
 Json Desk::save_request(const std::string& kind) const {
   std::map<std::string, std::pair<Json, std::string>> of;
   for (const Excluded& e : session_.trial().excluded) {
@@ -196,7 +199,7 @@ Answer Desk::save(const Request& request) {
   campaign_["manifest_sha256"] = saved.at("manifest_sha256");
   campaign_["inputs"]["campaign.toml"] = saved.at("manifest_sha256");
   watch_->expect(campaign_.at("inputs").get<std::map<std::string, std::string>>());
-  // Other readings, or another machine: they are those of the file from now on.
+  // The file now states other readings or another machine, so it is read again.
   if (reads_others) end_search(), read_again();
   publish("state", "", Json::object());
   return json_answer(200, {{"version", session_.version()},
@@ -205,7 +208,7 @@ Answer Desk::save(const Request& request) {
                            {"command", shown_command}});
 }
 
-// ---- effects, one after the other
+// ---- search that adds effects one after the other
 
 Answer Desk::search(const std::string& kind) {
   const std::lock_guard lock(mutex_);
@@ -220,7 +223,8 @@ Answer Desk::search(const std::string& kind) {
   const std::uint64_t job = searching_->job;
   search_on();
   answer["version"] = session_.version();
-  if (!searching_) return json_answer(200, answer);  // all was known
+  // Everything was known, so the search has ended already.
+  if (!searching_) return json_answer(200, answer);
   answer["job"] = job;
   return json_answer(202, answer);
 }
@@ -253,7 +257,7 @@ void Desk::end_search() {
   if (searching_) search_ended("cancelled", "");
 }
 
-/// When all parts are explained: the next effect, or the end.
+/// When all parts are explained, adds the next effect or ends the search.
 void Desk::search_on() {
   while (searching_ && is_explained()) {
     std::vector<modelling::PartVerdict> verdicts;

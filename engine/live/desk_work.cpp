@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Requests of a desk to its bench process, and their answers.
+// Sends the requests of a desk to its bench process, and receives the answers.
 #include <chrono>
 #include <ctime>
 
@@ -23,7 +23,7 @@ std::string now() {
   return text;
 }
 
-/// RMS and the like of a fit, with their units.
+/// Returns RMS and similar values of a fit, with their units.
 Json figures_of(const std::string& head) {
   Json out = Json::object();
   const Json all = storage::parse_or_discard("{" + head + "}");
@@ -75,8 +75,7 @@ Json Desk::request_for(const std::string& kind, const std::string& part) const {
   return request;
 }
 
-/// What belongs to another trial is cancelled; what is not known yet of this one is requested, now
-/// or as soon as a process is free.
+/// Cancels requests of other trials, and requests what is not known yet for the present one.
 void Desk::refresh() {
   for (const std::string& part : order_) {
     PartState& state = parts_[part];
@@ -113,7 +112,7 @@ void Desk::ask_explanation(const std::string& part, PartState& state) {
     state.explain.head = known->head;
     state.explain.rest = known->rest;
     publish("explain", part, {{"part", part}});
-    if (!known->rest.empty()) return;  // else its fingerprints were cancelled
+    if (!known->rest.empty()) return;  // otherwise the request for its fingerprints was cancelled
   }
   if (bench_state_ == "open") state.explain.job = bench_->ask(request_for("explain", part));
 }
@@ -181,7 +180,7 @@ void Desk::take_campaign(const std::string& state, const std::string& text) {
   answered_.notify_all();
 }
 
-/// As if nothing had been requested: what was, is lost with the process.
+/// Requests everything again, because requests were lost with the bench process.
 void Desk::forget_parts() {
   for (const std::string& part : order_) {
     parts_[part].fit.job = parts_[part].explain.job = 0;
@@ -202,7 +201,7 @@ void Desk::take_work(const std::string& part, PartState::Work& work, bool is_fit
   }
   const bool is_done = state == job_state::done;
   if (state != job_state::begun) work.job = 0;
-  if (state == job_state::failed && work.state == "done") {  // only its fingerprints are missing
+  if (state == job_state::failed && work.state == "done") {  // only the fingerprints failed
     answered_.notify_all();
     return;
   }
@@ -248,14 +247,14 @@ bool Desk::take_waiting(std::uint64_t job, const std::string& state, std::string
   return true;
 }
 
-/// A newer request with the same takes the place of an older one.
+/// Returns the key of a request; a newer request with the same key replaces an older one.
 std::string Desk::replaced_by(const Json& request) {
   std::string out;
   for (const char* name : {"kind", "part", "x", "y"}) out += request.value(name, "") + "\n";
   return out;
 }
 
-/// A request whose answer is no longer wanted gets none.
+/// Cancels the older request with this key; the thread that waits for it gets an error.
 void Desk::cancel_waiting(const std::string& replaces) {
   const auto older = replaces.empty() ? replaceable_.end() : replaceable_.find(replaces);
   if (older == replaceable_.end()) return;

@@ -6,7 +6,7 @@
 
 namespace nonio::live {
 
-/// A unified difference of two texts that differ in one place; "" if they are the same.
+/// Returns the unified difference of two texts that differ in one place; empty if they are equal.
 std::string unified_difference(const std::string& name, std::string_view before,
                                std::string_view after);
 

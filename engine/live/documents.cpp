@@ -20,7 +20,8 @@ std::vector<std::string> model_in(const Json& request) {
   return request.at("model").get<std::vector<std::string>>();
 }
 
-/// Whole lines only: campaign.toml knows no other readings.
+/// Converts excluded rows into lines of the file. An error if only a part of a line's readings is
+/// excluded, because campaign.toml can exclude whole lines only.
 Expected<modelling::Exclusion> exclusion_of(const Bench& bench, const Json& one) {
   modelling::Exclusion out{
       one.at("measurement").get<std::string>(), {}, one.at("why").get<std::string>()};
@@ -46,7 +47,7 @@ Expected<modelling::Exclusion> exclusion_of(const Bench& bench, const Json& one)
   return out;
 }
 
-/// What leads from campaign.toml to the trial.
+/// Returns the changes from campaign.toml to the trial.
 Expected<modelling::CampaignEdit> edit_of(const Bench& bench, const Json& request) {
   modelling::CampaignEdit edit{
       .model = modelling::edits_between(bench.campaign().model, model_in(request)),
@@ -112,7 +113,7 @@ Expected<std::string> document(Bench& bench, const Json& request) {
     if (written.plugin != output) continue;
     std::size_t k = 0;
     for (const Artifact& artifact : written.result.artifacts) {
-      // A page of models is a file for each model that could be fitted, in their order.
+      // A page of models has one file for each fitted model, in their order.
       if (!page || (k < done.results.models.size() && done.results.models[k].part == wanted))
         return artifact.bytes;
       ++k;

@@ -5,16 +5,16 @@
 
 namespace nonio::live {
 
-/// Writes the model to campaign.toml as `nonio model add` and `drop` do: {"model": [...]}. The
-/// answer has the new digest of the file and the lines of its history.
+/// Writes the model to campaign.toml, as `nonio model add` and `drop` do: {"model": [...]}. The
+/// answer contains the new digest of the file and the lines added to its history.
 Expected<std::string> save(Bench& bench, const storage::Json& request);
 
-/// What that would change: {"diff": "--- campaign.toml\n+++ ..."}, and the file as it is now
-/// on the disk.
+/// Returns what `save` would change: {"diff": "--- campaign.toml\n+++ ..."}, and the content of the
+/// file now on the disk.
 Expected<std::string> difference(Bench& bench, const storage::Json& request);
 
-/// The file that a run would write, of the model that is tried: "page" for one part by
-/// model-html, "report" by pdf-report. The bytes themselves.
+/// Returns the bytes of the file that a run would write with the tried model: "page" of model-html
+/// for one part, or "report" of pdf-report.
 Expected<std::string> document(Bench& bench, const storage::Json& request);
 
 }  // namespace nonio::live

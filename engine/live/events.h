@@ -12,24 +12,27 @@
 #include <string>
 #include <vector>
 
-/// Events that the server sends to open pages. Of what a newer event replaces only the newest is
-/// kept, so a slow page holds no queue, and a page that comes back gets all that it has missed.
+/// An event that the server sends to open pages. Only the newest of several events with the same
+/// type and subject is kept, so a slow page needs no queue, and a page that reconnects gets
+/// everything that it missed.
 namespace nonio::live {
 
 struct Event {
-  std::uint64_t version = 0;  ///< of the state, as `id:`
+  std::uint64_t version = 0;  ///< version of the state, sent as `id:`
   std::string type;           ///< "state", "fit", "explain", "progress", "changed", "failed"
-  std::string about;          ///< a newer event of this type about the same replaces it: a part
+  std::string about;          ///< subject, for example a part: a newer event of this type with the
+                              ///< same subject replaces it
   std::string data;           ///< JSON, one line
 };
 
-/// "id: 17\nevent: fit\ndata: {...}\n\n"
+/// Returns the event as sent, for example "id: 17\nevent: fit\ndata: {...}\n\n".
 std::string event_text(const Event& event);
 
-/// One page that listens.
+/// The connection of one open page.
 class Listener {
  public:
-  /// What came since the last call, oldest first; waits for it. Empty: nothing came in that time.
+  /// Waits for events and returns those since the last call, oldest first; empty if none came
+  /// within `patience`.
   std::vector<Event> wait(std::chrono::milliseconds patience);
   bool closed() const;
 
@@ -49,19 +52,19 @@ class Events {
   static constexpr std::size_t most_listeners = 8;
 
   void publish(Event event);
-  /// Events of `since` and later first, those about the same only once. None if `most_listeners`
-  /// listen already, or the server ends. A version that is not known yet is one of an earlier
-  /// server: everything then.
+  /// Returns a listener that gets the events of `since` and later first. Null if there are
+  /// `most_listeners` already, or the server ends. An unknown version belongs to an earlier start
+  /// of the server: then all events are sent.
   std::shared_ptr<Listener> listen(std::uint64_t since);
   void leave(const std::shared_ptr<Listener>& listener);
   std::size_t listeners() const;
-  /// All listeners end.
+  /// Ends all listeners.
   void close();
 
  private:
   mutable std::mutex mutex_;
   std::vector<std::shared_ptr<Listener>> listeners_;
-  std::deque<Event> latest_;  ///< of each type and subject the newest, oldest first
+  std::deque<Event> latest_;  ///< newest event of each type and subject, oldest first
   std::uint64_t version_ = 0;
   bool closed_ = false;
 };

@@ -21,10 +21,10 @@ Verdict denied(int status, std::string name,
 }
 
 struct Authority {
-  std::string name, port;  ///< port without ":"; "" if none is there
+  std::string name, port;  ///< port without ":"; empty if not stated
 };
 
-/// "NAME:PORT", "[::1]:PORT" or "NAME"; none if it is something else.
+/// Parses "NAME:PORT", "[::1]:PORT" or "NAME"; none if it is something else.
 std::optional<Authority> authority_of(std::string_view text) {
   if (text.empty() || text.find_first_of("@/\\ \t,%?#") != std::string_view::npos)
     return std::nullopt;
@@ -38,15 +38,15 @@ std::optional<Authority> authority_of(std::string_view text) {
         out.port.find_first_not_of("0123456789") != std::string::npos)
       return std::nullopt;
   }
-  // A name may end with a dot; a number may not.
+  // A name may end with a dot, an address may not.
   if (out.name.size() > 1 && out.name.back() == '.' &&
       out.name.find_first_not_of("0123456789.") != std::string::npos)
     out.name.pop_back();
   return out;
 }
 
-/// Whether the authority is one of this server. `scheme`: of an Origin, which leaves out the port
-/// that is usual for it.
+/// Whether the authority is an address of this server. `scheme`: of an Origin header, in which the
+/// default port is left out.
 bool is_ours(std::string_view text, const Post& post, std::string_view scheme) {
   const auto given = authority_of(text);
   if (!given) return false;
@@ -60,7 +60,7 @@ bool is_ours(std::string_view text, const Post& post, std::string_view scheme) {
     const auto allowed = authority_of(host);
     if (!allowed || allowed->name != given->name) return false;
     if (given->port == allowed->port) return true;
-    // The proxy's port is that of http or https, which may be stated or not.
+    // The proxy uses the default port of http or https, which may be omitted.
     const std::string usual = scheme == "http" ? "80" : "443";
     return (allowed->port.empty() && (given->port == usual || given->port == "80")) ||
            (given->port.empty() && allowed->port == usual);
@@ -105,7 +105,7 @@ Verdict judge_sender(const Head& head, const Post& post) {
 
 bool is_name_step(std::string_view step) { return step.starts_with('{') && step.ends_with('}'); }
 
-/// Whether the path is of the route; `names` then has what stands for its names.
+/// Whether the path matches the pattern; `names` then has the values of its placeholders.
 bool fits(std::string_view path, std::string_view pattern, std::vector<std::string>& names) {
   names.clear();
   while (true) {
@@ -125,7 +125,7 @@ bool fits(std::string_view path, std::string_view pattern, std::vector<std::stri
   }
 }
 
-/// The route of a path; the status states what is wrong with path or method.
+/// Finds the route of a path. The status states whether path or method is wrong.
 Verdict route_of(const Head& head, const std::vector<Route>& routes) {
   Verdict out;
   const std::string_view path =
@@ -144,7 +144,7 @@ Verdict route_of(const Head& head, const std::vector<Route>& routes) {
   return denied(404, "nothing");
 }
 
-/// `all`: with blanks between them.
+/// Whether `type` is in the list `all`, which is separated by blanks.
 bool is_one_of(std::string_view type, std::string_view all) {
   while (!all.empty()) {
     const std::size_t end = std::min(all.find(' '), all.size());
@@ -177,7 +177,7 @@ Verdict judge_body(const Head& head, const Route& route) {
   return {};
 }
 
-/// RFC 9110, 5.6.2.
+/// Whether the text is a token (RFC 9110, 5.6.2).
 bool is_token(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
     return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ||
@@ -199,7 +199,7 @@ int request_line_status(std::string_view line) {
   return target.size() > most_target ? 414 : 200;
 }
 
-/// As long as the reader behind takes them.
+/// Whether the line is a valid field, within the lengths that Poco's reader accepts.
 bool is_field(std::string_view line) {
   constexpr std::size_t longest_name = 200, longest_value = 8000;
   const std::size_t colon = line.find(':');
@@ -219,7 +219,7 @@ int head_status(std::string_view bytes) {
   for (std::size_t lines = 0; !bytes.empty(); ++lines) {
     const std::size_t end = std::min(bytes.find('\n'), bytes.size());
     std::string_view line = bytes.substr(0, end);
-    // The last line is before its CR LF.
+    // The last line has no LF, because the bytes end at its CR.
     if (end < bytes.size() && line.ends_with('\r')) line.remove_suffix(1);
     bytes.remove_prefix(std::min(end + 1, bytes.size()));
     status = lines == 0 ? request_line_status(line) : is_field(line) ? 200 : 400;
@@ -301,9 +301,11 @@ Verdict judge(const Head& head, const Post& post, const std::vector<Route>& rout
     if (Verdict v = judge_body(head, *found.route); v.status != 200) return v;
     return found;
   }
-  // A client without the token does not learn which addresses exist.
+  // The token is checked before the path, so that a client without it does not learn which paths
+  // exist.
   std::vector<std::string> tokens = head.all("X-Nonio-Token");
-  constexpr std::string_view bearer = "Bearer ";  // of programs that collect metrics (RFC 6750)
+  // Used by programs that collect metrics (RFC 6750).
+  constexpr std::string_view bearer = "Bearer ";
   if (tokens.empty())
     for (const std::string& given : head.all("Authorization"))
       if (given.starts_with(bearer)) tokens.push_back(given.substr(bearer.size()));

@@ -14,10 +14,10 @@ namespace nonio::live {
 
 namespace {
 
-/// This program, also where it was replaced meanwhile.
+/// This program, even if its file was replaced after the start.
 constexpr const char* own_program = "/proc/self/exe";
 
-/// One process for a campaign or a verb; false if the server has ended.
+/// Starts one process for a campaign or a command; false if the server has ended.
 bool launch(const BenchWish& common, const storage::Json& what, int to_server) {
   auto ends = process::channel_pair(SOCK_STREAM, "a process of its own");
   if (!ends) return process::send_descriptors(to_server, '-', {});
@@ -38,8 +38,8 @@ bool launch(const BenchWish& common, const storage::Json& what, int to_server) {
 }
 
 void serve_launches(const BenchWish& common, int server) {
-  ::signal(SIGINT, SIG_IGN);   // the server ends it
-  ::signal(SIGCHLD, SIG_IGN);  // bench processes leave nothing behind
+  ::signal(SIGINT, SIG_IGN);   // the server ends this process
+  ::signal(SIGCHLD, SIG_IGN);  // ended children are removed by the kernel
   for (std::string what; process::read_text(server, what);)
     if (!launch(common, storage::parse(what), server)) break;
 }

@@ -8,16 +8,17 @@
 
 namespace nonio::live {
 
-/// Makes processes for a server that has threads and so must not fork: a process of one
-/// thread, made before the first thread.
+/// Starts processes for the server, which has threads and so must not fork. The launcher is a
+/// process with one thread that is made before the first thread.
 class Launcher {
  public:
-  /// Ends with this process.
+  /// Starts the launcher; it ends with this process.
   static Expected<Launcher> start(const BenchWish& common);
 
-  /// A new bench process for this campaign: the channel to it.
+  /// Starts a bench process for this campaign and returns the channel to it.
   Expected<process::Handle> open(const std::filesystem::path& campaign);
-  /// This program with other arguments (tool.h): the channel to it. `input`: a line that it reads.
+  /// Runs this program with other arguments (tool.h) and returns the channel to it. `input`: a line
+  /// for its standard input.
   Expected<process::Handle> run(const std::vector<std::string>& arguments, double seconds,
                                 const std::string& input = {});
 

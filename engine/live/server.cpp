@@ -47,20 +47,20 @@ namespace net = Poco::Net;
 
 namespace {
 
-/// Takes connections on 127.0.0.1 and hands each on when the whole head of its request is there:
-/// one who sends a byte now and then keeps no thread. One thread.
+/// Accepts connections on 127.0.0.1 and passes each on when the complete head of its request has
+/// arrived, so that a slow sender occupies no thread. Uses one thread.
 class Front {
  public:
   static constexpr std::size_t most_waiting = 128;
   static constexpr std::chrono::seconds head_patience{5};
 
-  /// `port` 0: the kernel chooses one.
+  /// Binds the port; 0: the kernel chooses one.
   static Expected<Front> open(std::uint16_t port);
   std::uint16_t port() const { return port_; }
 
-  /// `take` gets a socket whose next bytes are a head, still unread; or the status with which it is
-  /// to be refused (408: too slow, 431: too large). Until `is_over`, which is called several times
-  /// a second.
+  /// Passes each socket to `take` with its complete head still unread, or with the status of a
+  /// refusal (408: too slow, 431: too large). Runs until `is_over`, which is called several times
+  /// per second, returns true.
   void serve(const std::function<void(process::Handle, int refused)>& take,
              const std::function<bool()>& is_over);
 
@@ -68,7 +68,8 @@ class Front {
   using Clock = std::chrono::steady_clock;
   Front(process::Handle socket, std::uint16_t port) : socket_(std::move(socket)), port_(port) {}
   void accept_all();
-  /// Whether the head is complete (200), refused (its status), or to be waited for (0); -1: gone.
+  /// Returns 200 if the head is complete, the status of a refusal, 0 if it is incomplete, or -1 if
+  /// the connection was closed.
   int look_at(int socket) const;
 
   struct Visitor {
@@ -78,7 +79,7 @@ class Front {
   };
   process::Handle socket_;
   std::uint16_t port_;
-  std::map<std::uint64_t, Visitor> waiting_{};  ///< in the order in which they came
+  std::map<std::uint64_t, Visitor> waiting_{};  ///< in the order of arrival
   std::uint64_t last_ = 0;
 };
 
@@ -107,7 +108,7 @@ void Front::accept_all() {
     process::Handle visitor(
         ::accept4(socket_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
     if (!visitor) return;
-    // The one who has waited longest is closed first.
+    // The connection that has waited longest is closed.
     if (waiting_.size() == most_waiting) waiting_.erase(waiting_.begin());
     waiting_[++last_] = {std::move(visitor), Clock::now(), 0};
   }
@@ -131,7 +132,7 @@ void Front::serve(const std::function<void(process::Handle, int)>& take,
   while (!is_over()) {
     std::vector<pollfd> all{{socket_.get(), POLLIN, 0}};
     for (const auto& [number, visitor] : waiting_) all.push_back({visitor.socket.get(), POLLIN, 0});
-    // A socket whose head has begun is always readable: looked at again a little later.
+    // A socket with an incomplete head is always readable, so wait a moment before looking again.
     if (::poll(all.data(), all.size(), tick) > 0 && all.front().revents == 0) ::usleep(soon * 1000);
     accept_all();
     std::vector<std::pair<std::uint64_t, int>> ready;
@@ -166,8 +167,8 @@ Expected<std::string> read_token(const std::string& file, int fd) {
   return token;
 }
 
-/// The token in a file that only its owner can read; a new one if there is no such file. For an
-/// address that stays when the server is started again.
+/// Returns the token in a file that only its owner can read; without the file, writes a new token
+/// to it. The address of the page then remains the same after a restart.
 Expected<std::string> token_in(const std::string& file) {
   const process::Handle old(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
   if (old) return read_token(file, old.get());
@@ -184,10 +185,10 @@ Expected<std::string> token_in(const std::string& file) {
 
 constexpr std::size_t threads = 16, most_queued = 64;
 constexpr auto heartbeat = std::chrono::seconds(15);
-constexpr auto between_events = std::chrono::milliseconds(100);  // 10 a second
+constexpr auto between_events = std::chrono::milliseconds(100);  // at most 10 per second
 constexpr auto body_patience = std::chrono::seconds(30);
 
-/// What all connections share.
+/// Data that all connections share.
 struct House {
   const Post& post;
   Service& service;
@@ -234,11 +235,12 @@ class Handler : public net::HTTPRequestHandler {
     return house_.service.answer(one);
   }
 
-  /// False if it is larger, or does not come.
+  /// Reads a body of at most `most` bytes; false if it is larger or takes too long.
   static bool read_body(std::istream& from, std::size_t most, std::string& body) {
     const auto deadline = std::chrono::steady_clock::now() + body_patience;
     std::array<char, 1 << 14> part;
-    // What has come already: a sender of one byte a second must not hold a thread for longer.
+    // Read only what has arrived, so that a slow sender does not block the thread beyond the
+    // deadline.
     while (from.peek() != std::istream::traits_type::eof()) {
       const std::streamsize here = std::max<std::streamsize>(from.rdbuf()->in_avail(), 1);
       from.read(part.data(), std::min(here, static_cast<std::streamsize>(part.size())));
@@ -263,7 +265,7 @@ class Handler : public net::HTTPRequestHandler {
     out << answer.body << std::flush;
   }
 
-  /// Events until the page or the server goes.
+  /// Sends events until the page or the server closes the connection.
   void stream(const Answer& answer, net::HTTPServerResponse& response) {
     response.setChunkedTransferEncoding(true);
     std::ostream& out = response.send();
@@ -302,7 +304,8 @@ void set_timeout(int socket, int option, long seconds, long microseconds) {
   ::setsockopt(socket, SOL_SOCKET, option, &time, sizeof time);
 }
 
-/// Takes what the other side still sends, so that it reads the answer before the end.
+/// Reads what the client still sends, because otherwise the connection could be reset before the
+/// client has read the answer.
 void part_from(int socket) {
   constexpr int most = 64;
   constexpr long soon = 200'000;  // us
@@ -313,7 +316,7 @@ void part_from(int socket) {
     ;
 }
 
-/// An answer to what is no request, or comes too slowly.
+/// Answers bytes that are not a request, or a request that came too slowly.
 void refuse(int socket, int status, const Sentences& sentences) {
   const Answer answer = sentences.spelled(
       status == 431
@@ -336,7 +339,7 @@ void refuse(int socket, int status, const Sentences& sentences) {
 class Pool {
  public:
   explicit Pool(House& house) : house_(house), params_(new net::HTTPServerParams) {
-    params_->setKeepAlive(false);  // a connection without a request keeps no thread
+    params_->setKeepAlive(false);  // an idle connection must not occupy a thread
     params_->setTimeout(Poco::Timespan(5, 0));
     handlers_ = new Handlers(house);
     for (std::size_t i = 0; i < threads; ++i) all_.emplace_back([this] { work(); });
@@ -391,18 +394,18 @@ class Pool {
     const int fd = socket.get();
     ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) & ~O_NONBLOCK);
     if (refused != 0) return refuse(fd, refused, house_.service.sentences());
-    // Poco closes its own descriptor at the end, with bytes that were not read.
+    // Poco closes its descriptor while bytes are unread, so it gets a copy.
     const int copy = ::fcntl(fd, F_DUPFD_CLOEXEC, 0);
     if (copy < 0) return;
     try {
       net::HTTPServerConnection(net::StreamSocket(new Socket(copy)), params_, handlers_).run();
     } catch (const Poco::Exception&) {
-      // A handler catches what it throws: this is an unreadable head.
+      // Handlers catch their own exceptions, so the head was unreadable.
       if (!house_.over) refuse(fd, 400, house_.service.sentences());
     }
   }
 
-  /// A connection that was accepted elsewhere.
+  /// Wraps a connection that was accepted by `Front`.
   class Socket : public net::StreamSocketImpl {
    public:
     explicit Socket(int fd) : net::StreamSocketImpl(fd) {}
@@ -418,7 +421,7 @@ class Pool {
   std::vector<std::thread> all_;
 };
 
-/// SIGINT and SIGTERM are waited for, by one thread; SIGPIPE is nothing.
+/// Blocks SIGINT, SIGTERM and SIGHUP, for which one thread waits, and ignores SIGPIPE.
 sigset_t block_signals() {
   sigset_t ends;
   ::sigemptyset(&ends);
@@ -432,9 +435,9 @@ sigset_t block_signals() {
 
 Expected<void> serve_here(const LiveWish& wish) {
   NONIO_TRY(auto front, Front::open(wish.port));
-  auto service = service_of(wish);  // makes processes: before the first thread
+  auto service = service_of(wish);  // starts processes, so before the first thread
   if (!service) return fail(service.error());
-  std::string token;  // none where people sign in
+  std::string token;  // empty if people sign in
   if (!(*service)->signs_in()) {
     auto made = wish.token_file.empty() ? random_token() : token_in(wish.token_file);
     if (!made) return fail(made.error());

@@ -13,17 +13,18 @@
 #include "live/guard.h"
 #include "platform/storage/json_values.h"
 
-/// Between HTTP and what a person does: requests that the guard let through, answers.
+/// Interface between HTTP and the actions of a person. A Request has passed the checks of the
+/// guard.
 namespace nonio::live {
 
 struct Request {
   const Head& head;
   const Route& route;
-  const std::vector<std::string>& names;  ///< what stands for the names in the route's path
+  const std::vector<std::string>& names;  ///< values of the placeholders in the route's path
   std::string body;
   bool may_write = true;  ///< the user's role allows it
 
-  /// A value of the query; none if it is missing.
+  /// Returns a value of the query; none if it is missing.
   std::optional<std::string> query(std::string_view name) const;
 };
 
@@ -31,28 +32,31 @@ struct Answer {
   int status = 200;
   std::string type = "application/json", body;
   std::vector<std::pair<std::string, std::string>> headers{};
-  Said said{};                         ///< why it is refused; `body`: more members, or nothing
-  std::shared_ptr<Listener> stream{};  ///< instead of a body: events until one side ends
-  Events* events = nullptr;            ///< of the stream
-  std::function<bool()> may_go_on{};   ///< asked once a second: the stream ends with its user
+  Said said{};                         ///< why it is refused; `body` then contains additional
+                                       ///< members, or nothing
+  std::shared_ptr<Listener> stream{};  ///< events until one side closes the connection, instead of
+                                       ///< a body
+  Events* events = nullptr;            ///< source of the events
+  std::function<bool()> may_go_on{};   ///< called once per second: false ends the stream, because
+                                       ///< the user's session has ended
 };
 
-/// {"error": sentence, "id": name, "status": status}; `name` without "refused." in front.
+/// Returns {"error": sentence, "id": name, "status": status}; `name` without the prefix "refused.".
 Answer refused(int status, const std::string& name,
                std::vector<std::pair<std::string, std::string>> places = {});
-/// The same with a sentence that the caller has made.
+/// Returns a refusal with a text made by the caller.
 Answer refusal(int status, const std::string& words);
 
-/// A value as JSON.
+/// Returns the value as a JSON answer.
 Answer json_answer(int status, const storage::Json& json);
 
-/// Sentences of the page in the language of the site, by their names.
+/// Sentences of the page in the language of the site, by name.
 class Sentences {
  public:
   explicit Sentences(std::map<std::string, std::string> all) : all_(std::move(all)) {}
-  /// Its name if there is none.
+  /// Returns the sentence; the name itself if there is no such sentence.
   std::string operator()(const Said& said) const;
-  /// The answer with its refusal as a body.
+  /// Replaces the id of a refusal by its text in the site's language, as JSON body.
   Answer spelled(Answer answer) const;
 
  private:
@@ -64,20 +68,20 @@ class Service {
   virtual ~Service() = default;
   virtual const std::vector<Route>& routes() const = 0;
   virtual Answer answer(const Request& request) = 0;
-  /// A refusal that needs no body: of whoever is not signed in.
+  /// Refuses a request before its body is read, if the user is not signed in.
   virtual std::optional<Answer> before_body(const Head&, const Route&) { return std::nullopt; }
-  /// For what is refused.
+  /// Sentences for refusals.
   virtual const Sentences& sentences() const = 0;
-  /// Requests have a session in place of the token.
+  /// Whether requests have a session instead of a token.
   virtual bool signs_in() const { return false; }
-  /// All streams end; nothing is begun any more.
+  /// Ends all streams and prevents new ones.
   virtual void close() = 0;
 };
 
-/// The page's own files, which have no data.
+/// Routes of the page's own files, which contain no data.
 std::vector<Route> shell_routes();
-/// One of them, with the words of a language in the shell; status 404 if it is none. Answers
-/// If-None-Match.
+/// Returns one of these files; the shell with the words of its language. Status 404 if there is no
+/// such file. Handles If-None-Match.
 Answer shell_file(const Request& request, const std::string& shell);
 
 }  // namespace nonio::live

@@ -10,43 +10,42 @@
 #include "live/guard.h"
 #include "nonio/sdk/error.h"
 
-/// What a person does on the page of a campaign: a value without files, processes or clock.
+/// The work of a person on the page of a campaign, as a value without files, processes or clock.
 namespace nonio::live {
 
-/// A reading that a person has excluded; `row` counts the readings of its part as the files have
-/// them.
+/// An excluded reading; `row` counts the readings of its part in the order of the files.
 struct Excluded {
   std::string part;
   std::size_t row = 0;
   std::string measurement, file;
-  std::uint32_t measurement_row = 0;  ///< of the measurement's table
-  std::uint64_t line = 0;             ///< 0: the reader does not state it
+  std::uint32_t measurement_row = 0;  ///< row in the table of the measurement
+  std::uint64_t line = 0;             ///< line of the file; 0: unknown
   std::string why;
   bool operator==(const Excluded&) const = default;
 };
 
 /// Everything that a fit depends on apart from the files.
 struct Trial {
-  std::vector<std::string> model;           ///< in the order in which saving would write it
-  std::vector<Excluded> excluded;           ///< by part and row
-  std::map<std::string, double> period_mm;  ///< of axes whose period is tried
+  std::vector<std::string> model;           ///< effects in the order in which they would be saved
+  std::vector<Excluded> excluded;           ///< sorted by part and row
+  std::map<std::string, double> period_mm;  ///< by axis, for axes with a tried period
   bool operator==(const Trial&) const = default;
 };
 
 struct Step {
   std::size_t n = 0;
-  std::string name;  ///< what a person calls it
-  std::string what;  ///< "+ backlash:X"
+  std::string name;  ///< name given by a person
+  std::string what;  ///< change of this step, for example "+ backlash:X"
   Trial trial;
 };
 
-/// Else a sentence for the person, its name without "refused." in front.
+/// Success, or a sentence for the person; its name is without the prefix "refused.".
 using Done = tl::expected<void, Said>;
 
 class Session {
  public:
   Session() = default;
-  /// Begins with the model of campaign.toml.
+  /// Starts with the model of campaign.toml.
   explicit Session(std::vector<std::string> saved);
 
   std::uint64_t version() const { return version_; }
@@ -57,7 +56,8 @@ class Session {
   bool can_undo() const { return at_ > 0; }
   bool can_redo() const { return at_ + 1 < steps_.size(); }
 
-  // What changes it; an error leaves it as it is. Whether an effect exists is the caller's concern.
+  // Changes of the trial. An error leaves it unchanged. The caller has to check that an effect
+  // exists.
   Done add(const std::string& effect);
   Done drop(const std::string& effect);
   Done set(const std::vector<std::string>& model);
@@ -65,18 +65,18 @@ class Session {
   Done redo();
   Done go_to(std::size_t n);
   Done name(std::size_t n, const std::string& name);
-  /// Those that are excluded already get the new reason.
+  /// Excludes readings; those that are excluded already get the new reason.
   Done exclude(const std::vector<Excluded>& readings);
   Done include(const std::string& part, const std::vector<std::size_t>& rows);
-  /// 0: as campaign.toml has it.
+  /// Sets the period of an axis; 0: that of campaign.toml.
   Done period(const std::string& axis, double period_mm);
 
-  /// The model was written to campaign.toml, or read from it anew.
+  /// Has to be called when the model was written to campaign.toml or read from it again.
   void was_saved(const std::vector<std::string>& model);
-  /// The files were read again: readings may be others, so none is excluded any more. Model and
-  /// periods are those of the file.
+  /// Has to be called when the files were read again. No reading is excluded any more, because
+  /// readings may have changed; model and periods are those of the file.
   void was_read_again(const std::vector<std::string>& model);
-  /// Something that the page shows has changed, apart from the trial.
+  /// Marks a change of the page that does not affect the trial.
   void touch() { ++version_; }
 
  private:
@@ -90,13 +90,13 @@ class Session {
   std::vector<std::string> saved_;
 };
 
-/// What does on a terminal what leads from campaign.toml with this model to the trial; "" where they
-/// are the same.
+/// Returns the commands that change campaign.toml with the model `saved` to the trial; empty if
+/// they are equal.
 std::string command_of(const std::string& campaign, const std::vector<std::string>& saved,
                        const Trial& trial);
-/// From one trial to the next: what a terminal cannot take back is left out.
+/// Returns the commands from one trial to the next, without changes that no command can revoke.
 std::string command_between(const std::string& campaign, const Trial& from, const Trial& to);
-/// A word as a shell takes it.
+/// Quotes a word for the shell if necessary.
 std::string quoted_for_shell(const std::string& word);
 
 }  // namespace nonio::live

@@ -20,7 +20,7 @@ std::size_t place_of(const std::string& account) {
   return std::stoul(storage::sha256(account).substr(0, 2), nullptr, hexadecimal);
 }
 
-/// Of a "Cookie: a=1; b=2" the value of the name; empty if it is missing, or there twice.
+/// Returns the value of a cookie; empty if it is missing or stated twice.
 std::string cookie_of(const Head& head, const std::string& name) {
   std::string found;
   for (const std::string& line : head.all("Cookie"))
@@ -68,7 +68,7 @@ Expected<std::string> SignIn::begin(const User& user, bool secure) {
   NONIO_TRY(const auto token, random_token());
   NONIO_TRY(const auto name, random_token());
   const std::lock_guard lock(mutex_);
-  // Cookies of one host are of all its ports.
+  // Cookies do not distinguish ports, so each server uses its own name.
   if (cookie_.empty()) cookie_ = "nonio-" + name.substr(0, 8);
   const auto now = Clock::now();
   std::erase_if(sessions_, [&](const auto& one) { return now - one.second.since > lasting; });

@@ -13,33 +13,36 @@
 #include "live/guard.h"
 #include "nonio/sdk/error.h"
 
-/// Who is signed in at the page of a site that has no proxy for it: passwords of users.toml, and a
-/// session in a cookie.
+/// Sessions of the users of a site without a proxy: checks the passwords of users.toml, and
+/// identifies a session by a cookie.
 namespace nonio::live {
 
 class SignIn {
  public:
   using Clock = std::chrono::steady_clock;
-  /// A session ends after it, at the end of the server, with another password, and with the user.
+  /// Longest duration of a session. It also ends with the server, with a change of the password,
+  /// and with the removal of the user.
   static constexpr std::chrono::hours lasting{12};
 
-  /// How a password was.
+  /// Result of checking a password.
   struct Checked {
     bool fits = false;
-    int wait_s = 0;  ///< not checked: wrong passwords came before, wait so long
+    int wait_s = 0;  ///< not checked: seconds to wait after wrong passwords
   };
-  /// One after the other, so that guessing takes no more than one processor; few may wait for it. After a
-  /// wrong one the account is not checked for 1, 2, 4 ... 60 s; whether it exists is not shown.
-  /// `of_session`: of a person who is signed in, whom wrong passwords of others do not stop.
+  /// Checks a password. Checks run one after the other, so that guessing uses at most one
+  /// processor, and only a few may wait. After wrong passwords the account is not checked for 1, 2,
+  /// 4 ... 60 s, whether it exists or not. `of_session`: for a person who is signed in; wrong
+  /// passwords of others do not block this person.
   Checked check(const std::string& account, const std::string& password,
                 const std::optional<certificates::User>& user, bool of_session = false);
 
-  /// Value of Set-Cookie for a new session. `secure`: not over plain HTTP.
+  /// Starts a session and returns the value of Set-Cookie. `secure`: send the cookie over TLS only.
   Expected<std::string> begin(const certificates::User& user, bool secure);
-  /// The account of the request's session as long as its user has the password of that time.
+  /// Returns the user of the request's session; none if there is no session, or the password has
+  /// changed since.
   std::optional<certificates::User> user_of(const Head& head,
                                             const std::vector<certificates::User>& users);
-  /// Value of Set-Cookie that removes it.
+  /// Ends the session and returns the value of Set-Cookie that removes the cookie.
   std::string end(const Head& head);
 
  private:
@@ -54,10 +57,12 @@ class SignIn {
   std::string key_of(const Head& head) const;
 
   std::mutex mutex_, checking_;
-  std::string cookie_{};                       ///< its name; another one for each start of a server
-  std::map<std::string, Session> sessions_{};  ///< by the SHA-256 of what the cookie has
-  std::map<std::string, Wrong> wrong_{};       ///< by account, and by account in a session
-  std::array<Wrong, 256> wrong_of_others_{};   ///< of no user: by the account's SHA-256
+  std::string cookie_{};                       ///< name of the cookie; random for each start of a
+                                               ///< server
+  std::map<std::string, Session> sessions_{};  ///< by SHA-256 of the cookie's value
+  std::map<std::string, Wrong> wrong_{};       ///< by account, and by account of a session
+  std::array<Wrong, 256> wrong_of_others_{};   ///< for accounts that do not exist: by SHA-256 of
+                                               ///< the account
   std::atomic<int> waiting_ = 0;
 };
 

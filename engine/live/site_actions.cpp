@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What people do on the page of a site: entries, approvals, verifications, runs.
+// Carries out what people do on the page of a site: entries, approvals, verifications, runs.
 #include "certificates/person_name.h"
 #include "live/site_service.h"
 #include "platform/storage/files.h"
@@ -10,7 +10,7 @@ using storage::Json;
 
 namespace {
 
-/// The members that a body has, as options.
+/// Adds those members of the body as options that it has.
 void add_options(std::vector<std::string>& arguments, const Json& body,
                  std::initializer_list<const char*> names) {
   for (const char* name : names)
@@ -26,7 +26,7 @@ Answer SiteService::acknowledge(const Json& body) {
   add_options(
       arguments, body,
       {"finding", "machine", "axis", "quantity", "until", "value", "U", "by", "why", "date"});
-  // Without what it is about the verb would list.
+  // Without a finding the command would only list acknowledgements.
   if (!body.contains("finding")) return refused(400, "body_form", {{"path", "/api/ack"}});
   arguments.push_back(wish_.folder.string());
   return entered(arguments);
@@ -44,14 +44,15 @@ namespace {
 
 constexpr std::size_t longest_account = 200;
 
-/// Of the page over TLS, which a proxy adds.
+/// Whether the request came through the TLS proxy: its origin is https, or its host is not this
+/// computer.
 bool is_by_proxy(const Head& head) {
   const std::string host = head.first("Host");
   if (head.first("Origin").starts_with("https:")) return true;
   return !host.starts_with("127.0.0.1") && !host.starts_with("localhost");
 }
 
-/// Blanks around a name, and capital letters of it, are not what a person confirms.
+/// Whether two names agree apart from blanks and capital letters.
 bool is_same_name(const std::string& one, const std::string& other) {
   return certificates::likeness_of(one) == certificates::likeness_of(other);
 }
@@ -92,8 +93,9 @@ Answer SiteService::end_session(const Request& request) {
   return out;
 }
 
-/// A person who has a password gives it again, and the verb takes the name from users.toml; who is
-/// logged in at a proxy and has none types their name.
+/// Approves a certificate. A person with a password has to repeat it, and the command takes the
+/// name from users.toml; a person who is logged in at a proxy and has no password has to type the
+/// name.
 Answer SiteService::release(const Json& body, const User* user) {
   const auto folder = folder_of(body.at("campaign").get<std::string>());
   if (!folder)
@@ -136,7 +138,8 @@ Answer SiteService::verify(const Request& request) {
                    (folder.path() / name).string()}));
 }
 
-/// One campaign of the previous run again; or what a run would do now, of all that has changed.
+/// Starts `nonio run`: with `campaign` for that campaign only (--only), otherwise for all changed
+/// campaigns.
 Answer SiteService::run(const Json& body) {
   if (wish_.out.empty()) return refused(409, "no_out");
   std::vector<std::string> arguments{"run", verb_option("out", wish_.out.string())};
@@ -147,7 +150,7 @@ Answer SiteService::run(const Json& body) {
       return refused(404, "no_campaign", {{"campaign", body["campaign"].get<std::string>()}});
     id = id_of(*folder);
     of_one = *folder;
-    // The first run of a site is of all its campaigns.
+    // The first run of a site has to include all campaigns.
     if (news_->run().last != 0) arguments.push_back(verb_option("only", *folder));
   }
   arguments.push_back(wish_.folder.string());

@@ -49,7 +49,7 @@ std::size_t number_of(const Request& request, const char* name, std::size_t othe
   return read.ec == std::errc() && read.ptr == text->data() + text->size() ? number : otherwise;
 }
 
-/// Those of the keys that begin with one of these, as an object.
+/// Returns the values whose keys begin with one of these prefixes, as an object.
 Json values_with(const ListedCampaign& c, std::initializer_list<const char*> beginnings) {
   Json out = Json::object();
   for (const auto& value : c.values)
@@ -124,7 +124,7 @@ Answer SiteCampaigns::list(const Request& request) const {
                            {"campaigns", std::move(all)}});
 }
 
-/// By name, each with its newest campaign.
+/// Lists the machines by name, each with its newest campaign.
 Answer SiteCampaigns::machines() const {
   struct Machine {
     Json json;
@@ -152,7 +152,8 @@ Answer SiteCampaigns::machines() const {
   return json_answer(200, {{"schema", "nonio-live-machines/1"}, {"machines", std::move(all)}});
 }
 
-/// By name, each with its newest calibration and the newest campaigns that used it.
+/// Lists the instruments by name, each with its newest calibration and the newest campaigns that
+/// used it.
 Answer SiteCampaigns::instruments() const {
   struct Instrument {
     Json json;
@@ -185,7 +186,8 @@ Answer SiteCampaigns::instruments() const {
                      {{"schema", "nonio-live-instruments/1"}, {"instruments", std::move(all)}});
 }
 
-/// Of each customer, machine, instrument and stated table the newest campaign.
+/// Lists each customer, machine, instrument and stated table with the values of its newest
+/// campaign, and machines that have only a record.
 Answer SiteCampaigns::records() const {
   Json customers = Json::array(), machines = Json::array(), instruments = Json::array(),
        columns = Json::array();
@@ -229,7 +231,7 @@ Answer SiteCampaigns::records() const {
 
 namespace {
 
-/// A file that was dropped with its form, as a copy that is removed at the end.
+/// A file that was dropped on the page with its form, as a copy that is removed at the end.
 struct Taken {
   DroppedFile dropped;
   std::vector<std::string> options;
@@ -237,7 +239,7 @@ struct Taken {
   std::string path() const { return (folder.path() / dropped.name).string(); }
 };
 
-/// Put into `taken`; an answer where it is refused.
+/// Puts the request's file into `taken`; returns an answer if it is refused.
 std::optional<Answer> take(const Request& request, decltype(file_options)& options_of,
                            Taken& taken) {
   auto file = dropped_file(request.body);
@@ -256,7 +258,7 @@ std::optional<Answer> take(const Request& request, decltype(file_options)& optio
 
 }  // namespace
 
-/// `nonio check FILE --json` on the copy.
+/// Runs `nonio check FILE --json` on the copy.
 Answer SiteCampaigns::preview(const Request& request) {
   Taken taken;
   if (auto refusal = take(request, file_options, taken)) return *std::move(refusal);
@@ -268,8 +270,8 @@ Answer SiteCampaigns::preview(const Request& request) {
   return out.is_object() ? json_answer(200, out) : refusal(422, end.errors);
 }
 
-/// A new empty folder of the site with this name, or the name with a number. Whoever makes the
-/// folder has it: another request gets the next number.
+/// Makes a new empty folder of the site with this name, or the name with a number if it exists.
+/// Making the folder reserves it, so that a simultaneous request gets the next number.
 tl::expected<std::string, Answer> SiteCampaigns::take_folder(const std::string& id) {
   constexpr int most = 1000;
   for (int n = 1; n <= most; ++n) {
@@ -283,7 +285,7 @@ tl::expected<std::string, Answer> SiteCampaigns::take_folder(const std::string& 
   return tl::unexpected(refused(409, "folder_taken", {{"campaign", id}}));
 }
 
-/// `nonio new campaign`: nothing is left of a campaign that it refuses.
+/// Runs `nonio new campaign`. If it refuses the campaign, nothing remains of it.
 Answer SiteCampaigns::create(const Request& request) {
   Taken taken;
   if (auto refusal = take(request, campaign_options, taken)) return *std::move(refusal);
@@ -301,7 +303,7 @@ Answer SiteCampaigns::create(const Request& request) {
   const ToolEnd end = call_(std::move(arguments));
   if (end.status != 0) {
     std::error_code ignored;
-    fs::remove(site_ / *name, ignored);  // only while it is empty
+    fs::remove(site_ / *name, ignored);  // does nothing if the folder is not empty
     return refusal(422, end.errors);
   }
   index_.look_at(*name);

@@ -11,18 +11,18 @@
 
 namespace nonio::live {
 
-/// The campaigns of a site on its page: lists, what is known for a form, a dropped file as it would
-/// be read, and a new campaign. Requests of several threads.
+/// The campaigns on the page of a site: lists, known values for a form, preview of a dropped file,
+/// and new campaigns. May be called by several threads.
 class SiteCampaigns {
  public:
-  /// `call` runs a verb of this program; `changed`: something of the lists is new; `is_watched`: a
-  /// page is open.
+  /// `call` runs a command of this program; `changed` is called when a list has changed;
+  /// `is_watched` returns whether a page is open.
   using Call = std::function<ToolEnd(std::vector<std::string>)>;
   SiteCampaigns(std::filesystem::path site, std::filesystem::path out, Call call,
                 std::function<void()> changed, std::function<bool()> is_watched);
 
   static std::vector<Route> routes();
-  /// `what`: the path after /api/.
+  /// Answers a request. `what`: the path after /api/.
   Answer answer(const std::string& what, const Request& request);
   CampaignIndex& index() { return index_; }
 

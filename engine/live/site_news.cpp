@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Another one when the file was written, or another one has its name.
+/// Returns a text that changes when the file is written or replaced.
 std::string news_stamp(const fs::path& path) {
   struct stat s {};
   if (::stat(path.c_str(), &s) != 0) return "-";

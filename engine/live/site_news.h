@@ -12,18 +12,18 @@
 
 namespace nonio::live {
 
-/// State of the runs of an output folder.
+/// State of the runs in an output folder.
 struct RunNow {
-  std::string state{};       ///< none, or as `nonio status` states
-  std::uint64_t number = 0;  ///< of the last that began
+  std::string state{};       ///< none, or a state of `nonio status`
+  std::uint64_t number = 0;  ///< number of the last run that began
   std::string date{};
-  std::uint64_t last = 0;  ///< the last complete one; 0: none
+  std::uint64_t last = 0;  ///< number of the last complete run; 0: none
   std::string last_date{};
   bool operator==(const RunNow&) const = default;
 };
 
-/// Checks once a second whether the worklist of a site has changed: by a run, by entries of people
-/// (here or on a terminal), or by a release.
+/// Checks once per second whether the worklist of a site has changed by a run, by entries of people
+/// (here or on a terminal), or by an approval.
 class SiteNews {
  public:
   /// `what`: run (a run began or ended), worklist (results or entries changed), drafts.
@@ -34,7 +34,7 @@ class SiteNews {
   ~SiteNews();
 
   RunNow run() const;
-  /// Without waiting for the second to pass.
+  /// Checks at once.
   void look_now();
 
  private:

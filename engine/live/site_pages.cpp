@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the page of a site shows: verbs that print, pages of the run, files of results.
+// Answers requests that only read: output of commands, pages of the run, files of results.
 #include "campaign/config/manifest.h"
 #include "campaign/config/site_files.h"
 #include "campaign/evaluation/record.h"
@@ -25,7 +25,7 @@ ToolEnd SiteService::call(const std::vector<std::string>& arguments, const std::
   return end;
 }
 
-/// Plugins and templates as this server has them.
+/// Adds the plugin and template folders of this server to the arguments.
 std::vector<std::string> SiteService::with_places(std::vector<std::string> arguments) const {
   for (const std::string& folder : wish_.plugin_paths)
     arguments.push_back(verb_option("plugin-path", folder));
@@ -34,7 +34,7 @@ std::vector<std::string> SiteService::with_places(std::vector<std::string> argum
   return arguments;
 }
 
-/// What the verb prints with --json, and the command that was called.
+/// Runs a command and returns what it prints with --json, with the command line added.
 Answer SiteService::of_verb(const std::vector<std::string>& arguments, const std::string& input) {
   const ToolEnd end = call(arguments, input);
   Json out = storage::parse_or_discard(end.out);
@@ -51,7 +51,7 @@ Answer SiteService::of_verb(const std::vector<std::string>& arguments, const std
   return json_answer(end.status == 2 ? 422 : 200, out);
 }
 
-/// The same of what other pages should see at once.
+/// Runs a command that makes an entry, then notifies the other pages at once.
 Answer SiteService::entered(const std::vector<std::string>& arguments, const std::string& input) {
   Answer out = of_verb(arguments, input);
   if (news_) news_->look_now();
@@ -93,14 +93,14 @@ Answer SiteService::state(const User* user) {
     json["user"] = {{"account", user->account},
                     {"name", user->name},
                     {"role", certificates::to_text(user->role)},
-                    // How an approval is confirmed.
+                    // How the user confirms an approval.
                     {"confirms", user->password.empty() ? "name" : "password"},
                     {"signs_out", wish_.sign_in}};
   if (Json now = run_->now(); !now.is_null()) json["run"] = std::move(now);
   return json_answer(200, json);
 }
 
-/// What a person may want to know of site.toml and users.toml, without secrets.
+/// Returns the settings of site.toml and users.toml without secrets.
 Answer SiteService::settings(const User* user) const {
   std::string digest;
   const auto site = config::read_site(wish_.folder, digest);
@@ -156,7 +156,7 @@ bool is_plain_file_in(const fs::path& folder, const std::string& name) {
 
 }  // namespace
 
-/// A page of the site by its name, as it would be now: only those that the run has written.
+/// Returns a page of the site with its present content; only pages that the run has written.
 Answer SiteService::page(const std::string& name) {
   const bool below = name.starts_with("machines/");
   const fs::path folder = below ? wish_.out / "machines" : wish_.out;
@@ -167,11 +167,11 @@ Answer SiteService::page(const std::string& name) {
   const ToolEnd end = call({"status", "--actions", verb_option("site", wish_.folder.string()),
                             verb_option("page", name), wish_.out.string()});
   if (end.status != 0) return refusal(422, end.errors);
-  // To be kept or shown by the page itself: its own script would run with this address.
+  // Not sent as HTML: the page's own script would otherwise run with the address of this server.
   return {200, "application/octet-stream", end.out, {}};
 }
 
-/// A file of the results of a campaign, to be kept.
+/// Returns a file of a campaign's results as a download.
 Answer SiteService::result(const std::string& campaign, const std::string& file) {
   const fs::path folder = wish_.out.empty() || !config::is_campaign_id(campaign)
                               ? fs::path()

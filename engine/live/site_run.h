@@ -13,33 +13,33 @@
 
 namespace nonio::live {
 
-/// What a campaign's results were at a moment.
+/// Results of a campaign at one moment, to compare them before and after a run.
 struct ResultsNow {
-  std::string status;                 ///< empty: there were none
-  std::string sha256;                 ///< of results.json
-  std::vector<std::string> findings;  ///< those that require action
+  std::string status;                 ///< empty: no results
+  std::string sha256;                 ///< digest of results.json
+  std::vector<std::string> findings;  ///< findings with severity warning
 };
 ResultsNow results_now(const std::filesystem::path& out, const std::string& id);
 
-/// A `nonio run` that a page has started: one at a time, of one campaign or of all that has
-/// changed. It reports as JSON: state, stage, done, to_do, what was different afterwards.
+/// A `nonio run` started from a page: one at a time, for one campaign or for all changed ones. Its
+/// state is JSON: state, stage, done, to_do, and the differences in the results afterwards.
 class SiteRun {
  public:
-  /// `changed`: something of `now()` is new.
+  /// `changed` is called when `now()` has changed.
   SiteRun(Launcher& launcher, std::filesystem::path out, std::function<void()> changed);
   SiteRun(const SiteRun&) = delete;
   SiteRun& operator=(const SiteRun&) = delete;
   ~SiteRun();
 
-  /// `id`: of the campaign; empty: a whole run. False if one is at work.
+  /// Starts a run. `id`: of the campaign; empty: a whole run. Returns false if one is running.
   Expected<bool> begin(const std::vector<std::string>& arguments, const std::string& command,
                        const std::string& id);
-  /// Ends the one at work. False if there is none.
+  /// Ends the present run. Returns false if there is none.
   bool cancel();
   bool is_running() const;
-  /// nothing if there was none.
+  /// Returns the state of the last run; null if there was none.
   storage::Json now() const;
-  /// What is at work is ended.
+  /// Ends the present run.
   void close();
 
  private:

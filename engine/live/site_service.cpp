@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of a site: which request is answered by what, and for whom.
+// Serves the page of a site: checks who may make a request, and selects what answers it.
 #include "live/site_service.h"
 
 #include <sys/socket.h>
@@ -21,14 +21,14 @@ using storage::Json;
 namespace {
 
 constexpr const char* of_json = "application/json";
-/// Campaigns that are kept open; more only while they have changes that were not saved.
+/// Open campaigns that are kept in memory; more only if they have unsaved changes.
 constexpr std::size_t most_desks = 4, most_unsaved = 32;
 
-/// What a request needs: the least role.
+/// Returns the role that a request requires.
 Role needed(const Route& route) {
   if (route.path == "/api/audit") return Role::administer;
   if (route.path == "/api/release") return Role::approve;
-  // All who look at a campaign see one model.
+  // Changes of the model are visible to everyone who views the campaign.
   if (route.method == Method::post && route.path.starts_with("/c/")) return Role::measure;
   return route.writes ? Role::measure : Role::view;
 }
@@ -67,7 +67,7 @@ void SiteService::close() {
   for (const int channel : channels_) ::shutdown(channel, SHUT_RDWR);
 }
 
-/// The one that was run last.
+/// Reads again the campaign that was run last, and soon all others.
 void SiteService::look_at_campaign() {
   std::string folder;
   {
@@ -88,7 +88,8 @@ void SiteService::publish(const char* what) {
   events_.publish({version, what, "", storage::dump_line({{"version", version}})});
 }
 
-/// Below the site, of a campaign that is named by its folder or by the id of its results.
+/// Returns the folder, relative to the site, of a campaign that is named by its folder or by the id
+/// of its results; none if there is no such campaign.
 std::optional<std::string> SiteService::folder_of(const std::string& campaign) const {
   if (is_campaign(campaign)) return campaign;
   if (wish_.out.empty() || !config::is_campaign_id(campaign)) return std::nullopt;
@@ -97,7 +98,7 @@ std::optional<std::string> SiteService::folder_of(const std::string& campaign) c
   return std::nullopt;
 }
 
-/// Whether a folder below the site, and not above or beyond a link, has a manifest.
+/// Whether the folder is below the site, without "..", and not behind a link, and has a manifest.
 bool SiteService::is_campaign(const std::string& folder) const {
   if (folder.empty() || folder.ends_with('/') || !is_utf8(folder)) return false;
   if (campaigns_->index().has(folder)) return true;
@@ -107,7 +108,7 @@ bool SiteService::is_campaign(const std::string& folder) const {
   return fs::is_regular_file(*path / config::manifest_name, error);
 }
 
-/// The id that its manifest gives; empty if it gives none.
+/// Returns the id that the manifest states; empty if it states none.
 std::string SiteService::id_of(const std::string& folder) const {
   const auto text = storage::read_small_file(wish_.folder / folder / config::manifest_name);
   return text ? config::extract_id(*text) : "";
@@ -136,8 +137,8 @@ std::shared_ptr<Desk> SiteService::desk(const std::string& campaign) {
   return desks_[campaign];
 }
 
-/// Whom the proxy states or the session has; the file is read each time, so that what it states
-/// applies at once.
+/// Returns the user stated by the proxy or by the session. users.toml is read each time, so that
+/// changes apply at once.
 tl::expected<certificates::User, Answer> SiteService::user_of(const Head& head) {
   const auto users = certificates::read_users(wish_.folder);
   if (!users) return tl::unexpected(refused(503, "users"));
@@ -165,7 +166,7 @@ Answer SiteService::answer(const Request& request) {
   if (request.route.open) return shell_file(request, path == "/" ? shells_.site : shells_.campaign);
   if (wish_.user_header.empty() && !wish_.sign_in) {
     std::error_code
-        error;  // a file that is new since the start has users who would not be asked for
+        error;  // users.toml was added after the start, so requests without a user are refused
     return std::filesystem::exists(wish_.folder / certificates::users_name, error)
                ? refused(503, "users_new")
                : answer_to(request, nullptr);
@@ -182,7 +183,7 @@ Answer SiteService::answer(const Request& request) {
   return out;
 }
 
-/// What may change something, with its lines in the log.
+/// Carries out a request that may change something, and records it in the audit log.
 Answer SiteService::recorded(const Request& request, const User& user, bool may) {
   const std::string& path = request.route.path;
   Json entry = {{"account", user.account},
@@ -199,7 +200,7 @@ Answer SiteService::recorded(const Request& request, const User& user, bool may)
   };
   add(body, {"machine", "finding", "why", "text", "reasons"});
   if (path != "/api/ack" && path != "/api/event") add(body, {"campaign"});
-  // Before it is done: what could not be recorded is not done.
+  // Recorded before it is carried out; if that fails, the request is refused.
   entry["state"] = may ? "begins" : "refused";
   if (!audit_.write(entry)) return refused(503, "audit");
   if (!may) return refused(403, "role", {{"role", certificates::to_text(user.role)}});
@@ -262,7 +263,7 @@ Answer SiteService::post(const std::string& what, const Request& request, const 
   if (what == "verify") return verify(request);
   Json body = storage::parse_once(request.body.empty() ? "{}" : request.body);
   if (!body.is_object()) return refused(400, "no_object");
-  // A user enters and approves under their own name.
+  // Users make entries and approve under their own name.
   if (user != nullptr && (what == "ack" || what == "event" || what == "release"))
     body["by"] = user->name;
   try {

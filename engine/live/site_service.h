@@ -24,7 +24,7 @@
 
 namespace nonio::live {
 
-/// "--by=B. Sample": a value that begins with "-" stays a value.
+/// Returns "--by=B. Sample". With "=", a value that begins with "-" remains a value.
 inline std::string verb_option(const std::string& name, const std::string& value) {
   return "--" + name + "=" + value;
 }
@@ -35,8 +35,8 @@ inline std::string command_line(const std::vector<std::string>& arguments) {
   return out;
 }
 
-/// The page of a site: verbs of this program, each as a terminal would call it; and the workbench of
-/// each campaign that is open.
+/// The service of a site: runs commands of this program as a terminal would, and contains the
+/// workbench of each open campaign.
 class SiteService : public Starting {
  public:
   SiteService(LiveWish wish, Launcher launcher, Shells shells)
@@ -112,15 +112,16 @@ class SiteService : public Starting {
   std::vector<Route> routes_;
   std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Desk>> desks_;
-  std::vector<std::string> order_;  ///< of the desks, the one used last behind
-  std::string run_folder_;          ///< of the campaign that was run last; empty: of all
+  std::vector<std::string> order_;  ///< keys of the desks, the one used last at the end
+  std::string run_folder_;          ///< folder of the campaign that was run last; empty: all
+                                    ///< campaigns
   Events events_;
   std::atomic<std::uint64_t> version_ = 1;
-  std::set<int> channels_;  ///< of verbs at work
+  std::set<int> channels_;  ///< channels of running commands
   std::atomic<bool> over_ = false;
   std::unique_ptr<SiteCampaigns> campaigns_;
   std::unique_ptr<SiteRun> run_;
-  std::unique_ptr<SiteNews> news_;  ///< its thread uses all of the above
+  std::unique_ptr<SiteNews> news_;  ///< declared last, because its thread uses all other members
 };
 
 }  // namespace nonio::live

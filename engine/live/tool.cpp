@@ -19,11 +19,11 @@ namespace nonio::live {
 
 namespace {
 
-/// A message begins with it or its opposite.
+/// First member of a message: true for a line, false for the end.
 constexpr bool is_line = true;
 constexpr std::size_t most_input = 4096, most_printed = 64 << 20, most_errors = 1 << 16;
 
-/// False at the end.
+/// Appends what can be read to `into`; false at the end.
 bool take_from(int fd, std::string& into) {
   std::array<char, 1 << 16> bytes;
   const ssize_t n = ::read(fd, bytes.data(), bytes.size());
@@ -41,7 +41,7 @@ int exit_status_of(const process::Child& child) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : by_signal;
 }
 
-/// Whole lines of `text` from `sent` on.
+/// Sends the complete lines of `text` from `sent` on.
 void tell_lines(const std::string& text, std::size_t& sent, int channel) {
   for (std::size_t end; (end = text.find('\n', sent)) != std::string::npos; sent = end + 1) {
     process::write_text(channel, storage::pack(is_line, text.substr(sent, end - sent)));
@@ -57,7 +57,7 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
   process::Child::Program own{{program}, process::present_environment(), -1, out[1], errors[1]};
   int in[2] = {-1, -1};
   if (const std::string line = input + "\n"; !input.empty()) {
-    // A pipe takes 4096 bytes at once.
+    // The write cannot block: a pipe holds 4096 bytes.
     if (line.size() > most_input || ::pipe2(in, O_CLOEXEC) != 0 ||
         ::write(in[1], line.data(), line.size()) != static_cast<ssize_t>(line.size()))
       ::_exit(1);
@@ -69,14 +69,14 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
   if (!child) ::_exit(1);
   ::close(out[1]);
   ::close(errors[1]);
-  // What a run prints are events; what others print is one answer.
+  // Each line that a run prints is an event; the output of other commands is sent as one answer.
   const bool tells = !arguments.empty() && arguments.front() == "run";
   std::string printed, said;
   std::size_t sent_printed = 0, sent = 0;
   std::array<pollfd, 3> all{
       {{out[0], POLLIN, 0}, {errors[0], POLLIN, 0}, {channel.get(), POLLIN, 0}}};
   using Clock = std::chrono::steady_clock;
-  // It is asked to end first, so that what it has done so far stays whole.
+  // The program is first asked to end by SIGTERM, so that finished work is kept.
   constexpr std::chrono::seconds patience(10);
   auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                      std::chrono::duration<double>(seconds));

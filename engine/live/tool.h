@@ -7,29 +7,28 @@
 
 #include "platform/process/channel.h"
 
-/// Verbs of this program as processes of their own: what the page of a site does is what a terminal
-/// would do.
+/// Runs commands of this program in processes of their own, so that the page of a site does the
+/// same as a terminal.
 namespace nonio::live {
 
-/// How a verb ended.
+/// Result of a command.
 struct ToolEnd {
   int status = -1;          ///< exit status; -1: it did not end by itself
-  std::string out, errors;  ///< what it printed; of the errors the end
+  std::string out, errors;  ///< its output; of the error output only the end
 };
 
-/// In a process of one thread: starts the program with these arguments, sends each line of its
-/// errors (and each event of a run) over the channel, and at the end its exit. It terminates the
-/// program (SIGTERM) when the other side requests it, and ends it if the other side has ended.
-/// `input`: a line for its standard input; empty: it has none. After `seconds` it is terminated, and
-/// its exit status is -1.
+/// Runs the program with these arguments in a process with one thread. Sends each line of its error
+/// output (and each event of a run) over the channel, and its exit at the end. It terminates the
+/// program (SIGTERM) on request, and if the other side has ended. `input`: a line for its standard
+/// input; empty: none. After `seconds` it terminates the program, and the exit status is -1.
 [[noreturn]] void run_tool(const std::string& program, const std::vector<std::string>& arguments,
                            const std::string& input, double seconds, process::Handle channel);
 
-/// The other side: until its end.
+/// Receives what `run_tool` sends, and calls `line` for each line, until the program has ended.
 ToolEnd hear_tool(const process::Handle& channel,
                   const std::function<void(const std::string& line)>& line);
 
-/// Terminates it: what it has done so far stays whole.
+/// Requests that the program is terminated by SIGTERM; finished work is kept.
 void stop_tool(const process::Handle& channel);
 
 }  // namespace nonio::live

@@ -12,7 +12,7 @@ namespace nonio::live {
 
 namespace {
 
-/// Something else when the file was written, or another one has its name; "" if there is none.
+/// Returns a text that changes when the file is written or replaced; empty if it does not exist.
 std::string stamp_of(const std::filesystem::path& path) {
   struct stat s {};
   if (::stat(path.c_str(), &s) != 0) return {};

@@ -11,8 +11,8 @@
 
 namespace nonio::live {
 
-/// Looks once a second whether files still have the content that was read. Time and size only show
-/// when to read: content decides.
+/// Checks once per second whether files still have the content that was read. Size and time only
+/// show when to read; the content decides.
 class Watch {
  public:
   using Tell = std::function<void(bool changed)>;
@@ -21,7 +21,7 @@ class Watch {
   Watch& operator=(const Watch&) = delete;
   ~Watch();
 
-  /// Names of files and the SHA-256 that they had.
+  /// Sets the names of the files and their expected SHA-256.
   void expect(std::map<std::string, std::string> digests);
 
  private:
@@ -37,7 +37,7 @@ class Watch {
   std::mutex mutex_;
   std::condition_variable over_or_new_;
   std::map<std::string, std::string> expected_;
-  std::map<std::string, Seen> seen_;  ///< only the thread's own
+  std::map<std::string, Seen> seen_;  ///< used by the thread only
   bool over_ = false, changed_ = false;
   std::thread thread_;
 };

@@ -50,7 +50,7 @@ constexpr const char* of_files[][2] = {
     {"pure", "The result depends on the input only; no file, socket or process is used."},
     {"time", "At most one of its checks hangs; after two the others are skipped."}};
 
-/// All that one file registers.
+/// Collects the plugins that one file registers.
 struct Brought final : Registry {
   std::vector<Method> methods;
   std::vector<Reader> readers;
@@ -75,7 +75,7 @@ double processor_seconds(int who = RUSAGE_SELF) {
   return of(usage.ru_utime) + of(usage.ru_stime);
 }
 
-/// Where the child that `pure` looks at leaves its answer.
+/// Shared memory into which the child of the check `pure` writes the forbidden call it made.
 process::SharedStatus* impure_answer = nullptr;
 
 [[noreturn]] void tell_impurity(const char* call) {
@@ -84,7 +84,7 @@ process::SharedStatus* impure_answer = nullptr;
   ::_exit(0);
 }
 
-/// 26 hours apart, so that the local date of the second is never that of the first.
+/// Two time zones 26 hours apart, so that the local dates of the two runs always differ.
 constexpr const char *first_zone = "HERE+12", *second_zone = "ELSE-14";
 
 void set_zone(const char* zone) {
@@ -92,19 +92,19 @@ void set_zone(const char* zone) {
   ::tzset();
 }
 
-/// Another home and folder.
+/// Sets the home, user and temporary folder to a folder that does not exist, and changes to /usr.
 void go_elsewhere() {
   for (const char* name : {"HOME", "TMPDIR", "USER", "PWD"}) ::setenv(name, "/elsewhere", 1);
   if (::chdir("/usr") != 0) throw std::runtime_error("no folder /usr");
 }
 
-/// The first locale of the system that writes a comma in numbers; none: as it was.
+/// Sets the first installed locale that writes a decimal comma; without one, nothing changes.
 void speak_otherwise() {
   for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "it_IT.UTF-8", "es_ES.UTF-8"})
     if (std::setlocale(LC_ALL, name) != nullptr) return;
 }
 
-/// Those of the file first, so that they replace the program's of the same name.
+/// Returns `own` followed by those of `others` whose name `own` does not contain.
 template <class Plugin>
 std::vector<Plugin> joined(std::vector<Plugin> own, const std::vector<Plugin>& others) {
   const std::size_t n = own.size();
@@ -125,7 +125,7 @@ std::vector<fs::path> files_with(const fs::path& folder, const std::string& endi
   return found;
 }
 
-/// The campaigns below a folder; their files are in the folder of the manifest.
+/// Reads all campaigns below a folder, with the files next to each campaign.toml.
 Expected<std::vector<kit::Source>> sources_below(const fs::path& folder) {
   std::vector<kit::Source> sources;
   for (const fs::path& manifest : files_with(folder, std::string("/") + config::manifest_name)) {
@@ -188,13 +188,14 @@ class Checker {
   const std::vector<std::string>& names() const { return names_; }
 
  private:
-  /// The samples of a number, made and read once.
+  /// Makes and reads the samples of this seed unless they exist, and selects the seed.
   void seed(std::uint64_t number) {
     const auto [place, anew] = made_.try_emplace(number);
     Made& made = place->second;
     if (anew) {
       made.sources = kit::made_sources(number);
-      // a reader that is being checked need not know the samples that are made for the program's
+      // a reader under test may not recognise the samples that are made for the program's own
+      // readers
       for (const kit::Source& s : made.sources)
         if (auto sample = kit::open_source(s, own_.readers(), own_.methods()))
           made.samples.push_back(std::move(*sample));
@@ -202,8 +203,8 @@ class Checker {
     bench_.seed = number;
   }
 
-  /// Their results by the program's own plugins: here, since each check needs them in a child of
-  /// its own.
+  /// Evaluates the samples of the current seed with the program's own plugins. The parent does
+  /// this, because each check runs in a child process of its own and would have to repeat it.
   void evaluate() {
     Made& made = made_.at(bench_.seed);
     if (std::exchange(made.evaluated, true)) return;
@@ -213,7 +214,8 @@ class Checker {
     for (kit::Sample& s : made.samples) s.results = kit::results_of(s, own);
   }
 
-  /// A line of `load`: "reader csv". Of each kind the plugins are counted.
+  /// Runs all checks of one plugin, a line of `load` such as "reader csv". `at` contains, for each
+  /// kind, the number of plugins checked so far.
   void check_plugin(const std::string& plugin, std::size_t (&at)[6]) {
     hung_ = 0;
     const std::string kind = plugin.substr(0, plugin.find(' '));
@@ -247,8 +249,9 @@ class Checker {
          [this, kind, index](Bench& b) { return kit::fingerprint((brought_.*kind)[index], b); });
   }
 
-  /// The same work twice, the second time elsewhere and later, without files, sockets or processes:
-  /// here the first time.
+  /// Runs the check `pure` for the first time. The check runs the same work twice, the second time
+  /// later, in another environment, and without files, sockets or processes. A passed result is
+  /// kept for `pure_again`.
   void pure(const std::string& plugin, std::function<Verdict(Bench&)> digest) {
     if ((!request_.only.empty() && request_.only != "pure") || hung_ >= most_hanging) return;
     zone_ = first_zone;
@@ -261,7 +264,8 @@ class Checker {
       tell_(result);
   }
 
-  /// The second time, of all plugins of a file: so that they need not wait one after the other.
+  /// Runs the check `pure` again for all plugins of the file. They are repeated together, because
+  /// each repetition must start at least a second after the first.
   void pure_again() {
     for (const Once& once : std::exchange(once_, {})) {
       hung_ = 0;
@@ -271,7 +275,8 @@ class Checker {
       const PluginCheck result = in_child(once.plugin, "pure", [&](Bench& b) {
         std::string why;
         b.only_plugin = [&] {
-          go_elsewhere();  // only now: what the host calls before puts the folder back
+          // only now: calls of the host before this point restore the working folder
+          go_elsewhere();
           speak_otherwise();
           why = process::confine_pure(tell_impurity);
         };
@@ -295,8 +300,9 @@ class Checker {
       run(plugin, c.name, [&](Bench& b) { return c.run((brought_.*kind)[index], b); });
   }
 
-  /// One check in a child. `list` gets the text of a passed check; `always`: needed for the others,
-  /// and reported only if it was requested or failed.
+  /// Runs one check in a child process. `list` receives the text of a passed check. With `always`
+  /// the check runs although it was not requested, because others need it; then only a failure is
+  /// reported.
   bool run(const std::string& plugin, const std::string& name,
            const std::function<Verdict(Bench&)>& work, std::string* list = nullptr,
            bool always = false) {
@@ -339,7 +345,8 @@ class Checker {
     const process::ChildEnd end = child ? child->wait(10.0 * request_.seconds)
                                         : process::ChildEnd{false, child.error().message};
     const std::string words = answer.get();
-    if (end.overdue) hung_ = most_hanging;  // it waits, which costs the most
+    // a check that waits until the time limit costs most time, so no further check is tried
+    if (end.overdue) hung_ = most_hanging;
     if (!end.well && processor_seconds(RUSAGE_CHILDREN) - before > 0.9 * request_.seconds) ++hung_;
     if (!end.well || words.empty()) {
       result.state = CheckState::crashed;
@@ -359,7 +366,7 @@ class Checker {
     ::setrlimit(RLIMIT_CPU, &limit);
   }
 
-  /// Run in the child: the first letter is the verdict.
+  /// Runs `work` in the child and returns its verdict: a letter (p, f or s) and the text.
   std::string told(bool first, process::SharedStatus& stage,
                    const std::function<Verdict(Bench&)>& work) {
     Verdict v;
@@ -381,7 +388,8 @@ class Checker {
     return letter + v.says;
   }
 
-  /// What every check works with, the file's own plugins among it.
+  /// Loads the plugin file in the child and fills `bench_`. Plugins of the file replace the
+  /// program's plugins of the same name.
   void set_up() {
     if (const auto entry = loader::open_entry(path_)) (*entry)->add_to(brought_);
     bench_.methods = joined(brought_.methods, own_.methods());
@@ -392,7 +400,8 @@ class Checker {
     bench_.sources = std::move(made_.at(bench_.seed).sources);
     bench_.samples = std::move(made_.at(bench_.seed).samples);
     if (!brought_.analyses.empty() || !brought_.effects.empty())
-      for (kit::Sample& s : bench_.samples) s.results.reset();  // they may be different
+      // the file's own plugins may give other results
+      for (kit::Sample& s : bench_.samples) s.results.reset();
     for (const kit::Source& s : cases_)
       if (auto sample = kit::open_source(s, bench_.readers, bench_.methods))
         bench_.samples.push_back(std::move(*sample));
@@ -446,14 +455,14 @@ class Checker {
     std::vector<kit::Sample> samples;
     bool evaluated = false;
   };
-  std::map<std::uint64_t, Made> made_;  ///< by the seed
-  bool wants_results_ = false;          ///< the plugin that is being checked writes results
+  std::map<std::uint64_t, Made> made_;  ///< by seed
+  bool wants_results_ = false;          ///< the plugin under test needs the results of the samples
   std::vector<kit::Source> cases_;
   std::vector<std::string> names_;
-  fs::path path_, shown_path_;  ///< the second as it was given
-  std::size_t hung_ = 0;        ///< checks of one plugin that did not return
-  const char* zone_ = nullptr;  ///< of time, of the next child
-  /// What `pure` made the first time of a plugin.
+  fs::path path_, shown_path_;  ///< the second as the user gave it
+  std::size_t hung_ = 0;        ///< checks of the current plugin that reached the time limit
+  const char* zone_ = nullptr;  ///< time zone of the next child; null: unchanged
+  /// Result of the first run of `pure` for one plugin.
   struct Once {
     std::string plugin;
     std::function<Verdict(Bench&)> digest;
@@ -463,7 +472,7 @@ class Checker {
   };
   static constexpr std::chrono::milliseconds a_second{1100};
   std::vector<Once> once_;
-  Brought brought_;  ///< in a child only
+  Brought brought_;  ///< filled only in a child
 };
 
 template <class Checks>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Laws of analyses: what changes in the readings changes the results so, and no other way.
+// Checks of analyses: how results must change, or must not change, if the readings are changed.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -14,8 +14,8 @@ namespace nonio::plugin_check::kit {
 
 namespace {
 
-/// The results of an analysis for one sample, as a list; findings apart, since some have a
-/// threshold.
+/// Results of an analysis for one sample as a list of numbers. The evidence of findings is kept
+/// apart, because a finding appears or disappears at a threshold.
 struct Said {
   struct One {
     std::string name;
@@ -23,9 +23,9 @@ struct Said {
     Quantity quantity = Quantity::number;
   };
   std::vector<One> values, evidence;
-  std::string texts;    ///< ids and texts of findings and notes, errors
-  std::string error;    ///< the first one
-  std::string unsound;  ///< what the host would refuse of an evaluation
+  std::string texts;    ///< ids and texts of findings and notes; error messages
+  std::string error;    ///< first error message
+  std::string unsound;  ///< what the host would refuse in a result
   std::size_t evaluations = 0;
   bool failed() const { return !error.empty(); }
 };
@@ -92,21 +92,22 @@ bool only_kinds(const Sample& s, const std::vector<std::string>& kinds) {
                      });
 }
 
-/// Readings that are deviations, and not coordinates.
+/// Whether all readings of the sample are deviations, not coordinates.
 bool of_deviations(const Sample& s) {
   return only_kinds(s, {"axis", "straightness", "angle", "diagonal", "step-diagonal"});
 }
 
-/// Those with an unknown zero: step diagonals count from their start.
+/// Whether the zero of all readings is unknown. It is known for step diagonals, which begin with 0.
 bool of_unknown_zero(const Sample& s) {
   return only_kinds(s, {"axis", "straightness", "angle", "diagonal"});
 }
 
-/// No sample that a law can be tried on.
+/// Reason for a skipped check: the analysis evaluates no sample of the kind that the check needs.
 const std::string no_sample =
     "no sample of a kind that it evaluates; put a campaign into cases/<name>/campaign.toml";
 
-/// Calls `law` with each sample that it evaluates and `wanted` takes.
+/// Calls `law` with each sample that the analysis evaluates and `wanted` accepts. Fails with the
+/// first non-empty text that `law` returns; `otherwise` is the reason if no sample fits.
 Verdict each_sample(const Analysis& a, const Bench& bench, bool (*wanted)(const Sample&),
                     const std::function<std::string(const Sample&)>& law,
                     const std::string& otherwise = no_sample) {
@@ -134,7 +135,8 @@ bool near(double a, double b, double scale, double relative = 1e-6) {
   return std::fabs(a - b) <= relative * std::max(std::fabs(a), std::fabs(b)) + 1e-7 * scale;
 }
 
-/// The largest deviation: what rounding is measured by.
+/// Largest absolute deviation of the sample in m or rad, at least 1 nm: the scale of rounding
+/// errors.
 double size_of(const Sample& s) {
   double size = 1e-9;
   for (const Observations& o : s.observations)
@@ -142,7 +144,7 @@ double size_of(const Sample& s) {
   return size;
 }
 
-/// Whether two lists hold the same things; else in words which do not.
+/// Returns the first difference between the names in two lists in words; empty if they are equal.
 std::string same_names(const Said& one, const Said& two) {
   if (one.failed() != two.failed())
     return "it fails on one of both: " + (one.failed() ? one : two).error;
@@ -155,7 +157,7 @@ std::string same_names(const Said& one, const Said& two) {
   return {};
 }
 
-/// Scale on which small differences of this quantity are rounding.
+/// Returns the scale relative to which a difference of this quantity is regarded as rounding.
 double scale_of(Quantity q, double deviation) {
   switch (q) {
     case Quantity::deviation:
@@ -180,7 +182,7 @@ std::string same_values(const Said& one, const Said& two, double deviation) {
   return {};
 }
 
-/// Every column of every measurement through `change`.
+/// Calls `change` for the observations of each measurement and returns the changed sample.
 Sample changed(Sample s, const std::function<void(Observations&, const Measurement&)>& change) {
   for (std::size_t i = 0; i < s.observations.size(); ++i)
     change(s.observations[i], s.campaign.measurements[i]);
@@ -233,7 +235,8 @@ Sample shifted(const Sample& s, double by) {
   });
 }
 
-/// The zero of a deviation is that of the instrument: a number stays, or moves with it.
+/// Check: a constant that is added to all deviations leaves each result unchanged or moves it by
+/// the same amount, because the zero of the deviations belongs to the instrument.
 Verdict analysis_shift(const Analysis& a, const Bench& bench) {
   return each_sample(a, bench, of_unknown_zero, [&](const Sample& s) -> std::string {
     const double c = 20.0 * size_of(s);
@@ -251,7 +254,8 @@ Verdict analysis_shift(const Analysis& a, const Bench& bench) {
   });
 }
 
-/// Powers of the deviation in a quantity; none if it shows nothing about that.
+/// Returns the power with which a quantity scales with the deviations, 1 or 0; none if it is not
+/// fixed.
 std::optional<int> power_of(Quantity q) {
   switch (q) {
     case Quantity::deviation:
@@ -278,7 +282,7 @@ std::optional<int> power_of(Quantity q) {
   }
 }
 
-/// Twice the deviations of an instrument without uncertainty give twice the results.
+/// Check: doubling all deviations doubles the results, for an instrument without uncertainty.
 Verdict analysis_scale(const Analysis& a, const Bench& bench) {
   return each_sample(a, bench, of_deviations, [&](const Sample& given) -> std::string {
     Sample s = given;
@@ -296,7 +300,7 @@ Verdict analysis_scale(const Analysis& a, const Bench& bench) {
       const auto power = power_of(v.quantity);
       if (!power) continue;
       const double wanted = *power == 1 ? by * v.value : v.value;
-      // a deviation moves the place where the next one is read: of second order
+      // a deviation moves the position of the next reading, which is an effect of second order
       if (!near(two.values[i].value, wanted, 100.0 * scale_of(v.quantity, size_of(s)), 1e-4))
         return "with twice the deviations " + v.name + " is " + number(v, two.values[i].value) +
                ": expected " + number(v, wanted);
@@ -316,7 +320,8 @@ std::vector<double> sizes(const Said& said) {
 
 bool of_one_axis(const Sample& s) { return only_kinds(s, {"axis", "straightness", "angle"}); }
 
-/// The axis counted the other way round: the same sizes, with other signs and places.
+/// Check: if the axis is counted in the opposite direction, the sizes of all results stay the same;
+/// signs and positions may differ.
 Verdict analysis_mirror(const Analysis& a, const Bench& bench) {
   if (a.analyse_campaign) return skipped("it is of the campaign as a whole");
   return each_sample(
@@ -360,7 +365,8 @@ Verdict analysis_renamed(const Analysis& a, const Bench& bench) {
       "it evaluates no runs of one axis");
 }
 
-/// Huge: what no reader takes for a blank, and yet no machine does.
+/// Returns variants of a sample with unusual readings, each with its name. The huge values are too
+/// small for a reader to regard as blank and too large for any machine.
 std::vector<std::pair<std::string, Sample>> odd_samples(const Sample& s) {
   std::vector<std::pair<std::string, Sample>> all;
   const auto with = [&](const char* name, auto change) {
@@ -399,7 +405,8 @@ std::vector<std::pair<std::string, Sample>> odd_samples(const Sample& s) {
   return all;
 }
 
-/// A value, a series or a finding with a number that is none; a table may have blanks.
+/// Check: no value, series or finding of an unusual sample contains a number that is not finite. A
+/// table may contain blanks (NaN).
 Verdict analysis_hostile(const Analysis& a, const Bench& bench) {
   for (const Sample& s : bench.samples)
     for (const auto& [name, odd] : odd_samples(s)) {
@@ -420,7 +427,7 @@ Verdict analysis_hostile(const Analysis& a, const Bench& bench) {
   return passed();
 }
 
-/// Where it applies it must give a result, at least somewhere.
+/// Check: the analysis gives a result for at least one sample to which it applies.
 Verdict analysis_says(const Analysis& a, const Bench& bench) {
   if (!a.analyse_campaign && (!a.applies || !a.analyse))
     return failed("applies or analyse is missing");

@@ -46,7 +46,7 @@ Expected<Sample> open_source(const Source& source, const std::vector<Reader>& re
       config::parse_manifest(source.manifest, source.name + "/" + config::manifest_name, methods);
   if (!manifest) return fail(manifest.error().front());
   Sample s{source.name, std::move(manifest->campaign), std::move(manifest->options), {}};
-  for (Axis& axis : s.campaign.machine.axes) {  // else no control writes a table
+  for (Axis& axis : s.campaign.machine.axes) {  // else no controller writes a table
     if (!axis.active_table) axis.active_table.emplace();
     if (!axis.active_backlash) axis.active_backlash = 0.0;
   }
@@ -100,7 +100,8 @@ std::vector<std::pair<std::string, Observations>> odd_tables(const Observations&
 
 namespace {
 
-/// How its control counts the axes: by their places, so that tables of every control are written.
+/// Returns a machine record that numbers the axes in order, so that every controller can write
+/// tables.
 config::MachineRecord record_for(const Sample& sample) {
   config::MachineRecord record;
   for (const Axis& a : sample.campaign.machine.axes)
@@ -109,8 +110,8 @@ config::MachineRecord record_for(const Sample& sample) {
   return record;
 }
 
-/// Of controls with entries in counts: only the builder of the machine knows the counts of an axis.
-/// Chosen so that a sixteenth of a count is a nanometre.
+/// Adds the encoder counts of each axis to options of controllers whose table entries are in
+/// counts, because only the machine builder knows them. The values make 1/16 count equal to 1 nm.
 void add_encoders(Settings& settings, const Info& info, const Machine& machine) {
   for (const Option& o : info.options) {
     if (o.name != "axes" || o.help.find("counts_per_mm") == o.help.npos) continue;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Laws of tables: read back as the plugin reports its control reads them, they take the error away.
+// Checks of tables: a table that is read back as the control would use it must compensate the
+// error.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -14,7 +15,7 @@ namespace nonio::plugin_check::kit {
 
 namespace {
 
-/// An axis whose error is known. SI.
+/// A planted error of one axis, in SI units.
 struct KnownError {
   bool rotary = false;
   std::vector<double> targets, error;  ///< actual - nominal at each target, mean of both directions
@@ -28,7 +29,8 @@ struct KnownError {
   }
 };
 
-/// Three waves and a slope, 0 at its beginning; over the turn of a rotary axis no slope.
+/// Returns a random error of three waves and a slope, 0 at the first target. A rotary axis has no
+/// slope, so that the error closes over a turn.
 KnownError random_error(storage::Random& random, bool rotary, double size, double first) {
   KnownError k{.rotary = rotary, .targets = {}, .error = {}};
   const int n = rotary ? 36 : 40;
@@ -51,7 +53,7 @@ KnownError random_error(storage::Random& random, bool rotary, double size, doubl
   return k;
 }
 
-/// A campaign with three runs of that axis.
+/// Returns a campaign with three bidirectional runs of an axis that has this error.
 Sample sample_of(const KnownError& k) {
   Sample s;
   s.name = k.rotary ? "planted C" : "planted X";
@@ -80,12 +82,12 @@ Sample sample_of(const KnownError& k) {
   return s;
 }
 
-/// What is in the control once the files are loaded.
+/// Files of a controller, and the tables that the control contains once they are loaded.
 struct Written {
   std::vector<Artifact> files;
   std::vector<LoadedTable> tables;
-  std::string refused;  ///< why there are none
-  bool unable = false;  ///< the plugin failed, instead of saying what it lacks
+  std::string refused;  ///< why no table was written
+  bool unable = false;  ///< the plugin failed without stating what it lacks
 };
 
 Written written_table(const Controller& o, const Sample& s, const Settings& options, const Bench&) {
@@ -104,8 +106,8 @@ Written written_table(const Controller& o, const Sample& s, const Settings& opti
   return {r->artifacts, std::move(*tables), {}};
 }
 
-/// Ways to set the plugin up: the user states the sign of a control if it is undocumented; a
-/// table for each direction.
+/// Returns the option settings to try: each choice of `sign`, which the user states where the
+/// control's sign is undocumented, and one table per direction where that is possible.
 std::vector<Settings> set_ups(const Controller& o, const Sample& s) {
   const Settings defaults = settings_for(o, s);
   std::vector<Settings> all{defaults};
@@ -123,7 +125,8 @@ std::vector<Settings> set_ups(const Controller& o, const Sample& s) {
   return all;
 }
 
-/// Whether any table of one axis alone comes out; some controls count from zero down.
+/// Options with which the controller writes a table of one axis alone, and the position of the
+/// first target (m). Some controls only accept positions from zero downwards.
 struct SetUp {
   Settings options;
   double first = 0.0;
@@ -146,8 +149,8 @@ std::vector<SetUp> settings_that_write(const Controller& o, const Bench& bench, 
   return all;
 }
 
-/// Range of the remaining error at the targets once the control adds the table; both directions
-/// together where the files have a word about the reversal. Nothing where there is no table.
+/// Range of the remaining error at the targets once the control adds the tables. Both directions
+/// are taken together if the files state the reversal. None if no table belongs to the axis.
 std::optional<double> left(const KnownError& k, const std::vector<LoadedTable>& tables) {
   const std::string axis = k.rotary ? "C" : "X";
   const auto c = math::correction_of(tables, axis);
@@ -183,7 +186,8 @@ std::string in_um(double si) { return short_text(si * 1e6, 4) + " um or urad"; }
 
 double step_of(const Controller& o, bool rotary) { return o.table.value_step.of(rotary); }
 
-/// What is wrong with a table of this error; `refused` gets why there is none, which may be right.
+/// Returns what is wrong with a table written for this error; empty if nothing. `refused` receives
+/// the reason if no table is written, which may be correct.
 std::string wrong_table(const Controller& o, const KnownError& k, const Settings& options,
                         const Bench& bench, std::string& refused) {
   const Written w = written_table(o, sample_of(k), options, bench);
@@ -197,7 +201,7 @@ std::string wrong_table(const Controller& o, const KnownError& k, const Settings
     refused = "no table of that axis alone";
     return {};
   }
-  // the control adds to a position where the error is another one already
+  // the control adds the correction at a position where the error already differs
   const double allowed =
       0.05 * range(k) + 3.0 * step_of(o, k.rotary) + 2.0 * steepest(k) * range(k);
   if (*after <= allowed) return {};
@@ -252,7 +256,7 @@ Verdict table_cancels(const Controller& o, const Bench& bench) {
   });
 }
 
-/// A ramp, and the same ramp downwards.
+/// Check: for an error that rises linearly the table falls, and the reverse.
 Verdict table_sign(const Controller& o, const Bench& bench) {
   return each_setting(o, bench, [&](const SetUp& s) -> std::string {
     for (const double slope : {40e-6, -40e-6}) {
@@ -273,7 +277,7 @@ Verdict table_sign(const Controller& o, const Bench& bench) {
   });
 }
 
-/// Range of the remaining error at the points of its tables.
+/// Range of the remaining error at the points of the tables, in m.
 double left_at_points(const KnownError& k, const std::vector<LoadedTable>& tables,
                       const math::Correction& added, int direction) {
   double low = 1e9, high = -1e9;
@@ -288,7 +292,8 @@ double left_at_points(const KnownError& k, const std::vector<LoadedTable>& table
   return high - low;
 }
 
-/// At every point of the table, so that no sum of increments drifts away.
+/// Check: the remaining error is within half a step at every point of the table, so that rounding
+/// errors of increments do not accumulate.
 Verdict table_rounding(const Controller& o, const Bench& bench) {
   return each_setting(o, bench, [&](const SetUp& s) -> std::string {
     storage::Random random = bench.random(12);
@@ -307,7 +312,7 @@ Verdict table_rounding(const Controller& o, const Bench& bench) {
   });
 }
 
-/// Growing errors: the tables must be right until the errors are refused as too large.
+/// Check: tables for growing errors are correct until the controller refuses an error as too large.
 Verdict table_limits(const Controller& o, const Bench& bench) {
   return each_setting(o, bench, [&](const SetUp& s) -> std::string {
     storage::Random random = bench.random(13);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Laws of effects: what their columns are, and that a planted effect is found again.
+// Checks of effects: properties of their columns, and whether a planted effect is found again.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -18,7 +18,7 @@ using Columns = Effect::Columns;
 
 constexpr double planted_size = 10e-6, planted_noise = 0.5e-6;  // m or rad
 
-/// One thing that the effect can be of in one part of a sample.
+/// One term of the effect, in a part of a sample that can show it.
 struct Shown {
   std::string sample;
   model::Part part;
@@ -47,7 +47,8 @@ std::vector<Shown> shown(const Effect& effect, const Bench& bench) {
 constexpr const char* unseen =
     "no sample shows this effect; put a campaign that does into cases/<name>/campaign.toml";
 
-/// A value of each shape, by the share of its grid; empty if one has none.
+/// Returns one value per shape parameter, at the fraction `share` (0 to 1) of its grid; none if a
+/// grid is empty.
 std::optional<std::vector<double>> shape_at(const Effect& e, const Shown& s, double share) {
   std::vector<double> shape;
   for (const auto& one : e.shapes) {
@@ -58,7 +59,8 @@ std::optional<std::vector<double>> shape_at(const Effect& e, const Shown& s, dou
   return shape;
 }
 
-/// The columns as these readings sense them: of an effect of one axis, its component.
+/// Returns the columns as these readings sense them: in space, an effect of one axis is multiplied
+/// by the component of the direction of sensing along that axis.
 Expected<Columns> sensed_columns(const Effect& e, const Shown& s,
                                  const std::vector<double>& shape) {
   auto columns = e.columns(s.table(), s.term.axis, shape);
@@ -73,7 +75,7 @@ double norm(const std::vector<double>& v) {
   return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0));
 }
 
-/// Less the mean of each line, with an unknown zero.
+/// Subtracts from `v` its mean over each line, because the zero of each line is unknown.
 std::vector<double> without_zeros(const Observations& o, std::vector<double> v) {
   std::vector<double> sum(std::max<std::size_t>(o.lines.size(), 1)), count(sum.size());
   const auto line = [&](std::size_t i) { return o.line.empty() ? 0U : o.line[i]; };
@@ -82,7 +84,7 @@ std::vector<double> without_zeros(const Observations& o, std::vector<double> v) 
   return v;
 }
 
-/// Takes the part along an orthonormal basis away.
+/// Subtracts from `v` its projection onto an orthonormal basis; twice, because of rounding.
 void take_away(const Columns& basis, std::vector<double>& v) {
   for (int twice = 0; twice < 2; ++twice)
     for (const auto& b : basis) {
@@ -91,8 +93,8 @@ void take_away(const Columns& basis, std::vector<double>& v) {
     }
 }
 
-/// Orthonormal basis of the columns and the zeros. `least`: the smallest share of a column that the
-/// ones before it leave.
+/// Returns an orthonormal basis of the columns after subtraction of the zeros of the lines. `least`
+/// receives the smallest share of a column's norm that is independent of the columns before it.
 Columns basis_of(const Observations& o, const Columns& columns, double& least) {
   Columns basis;
   least = 1.0;
@@ -124,8 +126,8 @@ std::string wrong_columns(const Effect& e, const Columns& columns, const Shown& 
   return {};
 }
 
-/// Calls `law` with each place where the effect shows and the shape in the middle of the grid; it
-/// gives what is wrong, or nothing.
+/// Calls `law` for each term that a sample shows, with shape parameters in the middle of their
+/// grids. Fails with the first non-empty text that `law` returns.
 Verdict everywhere(
     const Effect& e, const Bench& bench,
     const std::function<std::string(const Shown&, const std::vector<double>&)>& law) {
@@ -159,7 +161,7 @@ Verdict effect_again(const Effect& e, const Bench& bench) {
   });
 }
 
-/// A row in which the axis was at rest, far away, is added to the readings.
+/// Check: in an added row in which the axis is stationary and far away, all columns are 0.
 Verdict effect_still(const Effect& e, const Bench& bench) {
   if (e.instances) return skipped("an effect in space: a stationary axis is included");
   return everywhere(e, bench, [&](const Shown& s, const std::vector<double>& shape) -> std::string {
@@ -180,7 +182,8 @@ Verdict effect_still(const Effect& e, const Bench& bench) {
   });
 }
 
-/// With times, since without them the order of the file is that of time.
+/// Check: columns do not depend on the order of the rows. Effects of one axis need samples with
+/// times, because without times the order of the rows is the order of time.
 Verdict effect_rows(const Effect& e, const Bench& bench) {
   storage::Random random = bench.random(2);
   std::size_t seen = 0;
@@ -194,7 +197,8 @@ Verdict effect_rows(const Effect& e, const Bench& bench) {
         if (!one || !two || one->size() != two->size()) return "it gives other columns";
         const Observations other = rearranged(s.table(), order);
         for (std::size_t k = 0; k < one->size(); ++k) {
-          // a column may count from the first row of a line: the line's zero takes that
+          // a column may start at 0 in the first row of a line; the zero of the line absorbs the
+          // difference
           const auto a = without_zeros(s.table(), (*one)[k]), b = without_zeros(other, (*two)[k]);
           const double size = norm((*one)[k]) + 1e-300;
           for (std::size_t i = 0; i < order.size(); ++i)
@@ -222,7 +226,7 @@ Verdict effect_grid(const Effect& e, const Bench& bench) {
   });
 }
 
-/// Share of the columns' sum of squares in the span of the others.
+/// Share of the sum of squares of `columns` that is in the span of `others`, 0 to 1.
 double alike(const Observations& o, const Columns& columns, const Columns& others) {
   double least = 0.0, whole = 0.0, left = 0.0;
   const Columns basis = basis_of(o, others, least);
@@ -235,8 +239,8 @@ double alike(const Observations& o, const Columns& columns, const Columns& other
   return whole > 0.0 ? 1.0 - left / whole : 1.0;
 }
 
-/// Each value of a grid must resemble one of its neighbours: otherwise the search misses an effect
-/// between them.
+/// Check: each value of the grid resembles one of its neighbours; otherwise the search misses an
+/// effect between two values.
 Verdict effect_neighbours(const Effect& e, const Bench& bench) {
   const bool any = std::any_of(e.shapes.begin(), e.shapes.end(),
                                [](const Effect::Shape& s) { return s.continuous; });
@@ -262,11 +266,12 @@ Verdict effect_neighbours(const Effect& e, const Bench& bench) {
   });
 }
 
-/// At least somewhere; the engine handles readings that do not separate effects elsewhere.
+/// Check: in at least one sample the columns are independent of each other and of a constant. If
+/// readings do not separate effects in other samples, the engine handles this.
 Verdict effect_independent(const Effect& e, const Bench& bench) {
   const auto all = shown(e, bench);
   if (all.empty()) return skipped(unseen);
-  // Where the direction of sensing turns from reading to reading (a circle), a constant shows.
+  // On a circle the direction of sensing changes with each reading, so that a constant is visible.
   const auto turns = [](const Shown& s) { return !s.table().sense.empty(); };
   const bool everywhere_turned = std::all_of(all.begin(), all.end(), turns);
   double best = -1.0;
@@ -288,7 +293,7 @@ Verdict effect_independent(const Effect& e, const Bench& bench) {
                 where + " comes nearest)");
 }
 
-/// Readings that show nothing but the effect, with random parameters, and noise.
+/// Readings that contain only the effect, with random parameters, and noise.
 struct Planted {
   model::Part part;
   std::vector<double> parameters, shape, truth;
@@ -316,7 +321,8 @@ std::optional<Planted> plant(const Effect& e, const Shown& s, storage::Random& r
   return p;
 }
 
-/// What a fit predicts of the planted effect; empty if it is right.
+/// Compares the effect that a fit found with the planted one; returns the difference, empty if it
+/// is within its uncertainty.
 std::string missed(const Effect& e, const Planted& p, const model::Fit& fit) {
   const auto n = static_cast<double>(p.truth.size());
   const auto planted = without_zeros(p.part.table, p.truth);
@@ -357,7 +363,7 @@ Verdict effect_planted(const Effect& e, const Bench& bench) {
   return tried == 0 ? skipped("no sample determines its parameters") : passed();
 }
 
-/// By its name, or by one that these readings do not separate from it.
+/// Whether the explanation names this effect, or one that the readings do not separate from it.
 bool named(const model::Explanation& x, const std::string& name) {
   const auto has = [&](const std::vector<std::string>& names) {
     return std::find(names.begin(), names.end(), name) != names.end();
@@ -371,7 +377,8 @@ bool named(const model::Explanation& x, const std::string& name) {
   });
 }
 
-/// What is always in a model may are the same on these readings.
+/// Whether this effect cannot be seen in the readings, because terms that every model contains
+/// describe the same columns.
 bool unseen_in(const model::Explanation& x, const std::string& name) {
   return std::any_of(x.candidates.begin(), x.candidates.end(), [&](const model::Candidate& c) {
     return c.term.name() == name && !c.visible;
@@ -383,7 +390,8 @@ bool describes(const model::Explanation& x, const std::string& name) {
                      [&](const model::Description& d) { return d.term.name() == name; });
 }
 
-/// In the first sample of an axis, or of space, that determines it.
+/// Check: `explain` names the effect that is planted in the first sample of an axis, or of space,
+/// that determines it.
 Verdict effect_explained(const Effect& e, const Bench& bench) {
   if (e.is_nuisance) return skipped("it is in every model and never a candidate");
   if (e.of_channels)
@@ -402,8 +410,8 @@ Verdict effect_explained(const Effect& e, const Bench& bench) {
     if (!x) return failed(s.where() + ": " + x.error().message);
     if (named(*x, s.term.name()) || describes(*x, s.term.name())) return passed();
     if (unseen_in(*x, s.term.name())) continue;
-    // A cause that comes near is named before a description; a free curve of time may look as if
-    // the readings did not repeat.
+    // A similar cause is named before a description, and a free curve of time may look like
+    // readings that do not repeat.
     if (e.description && x->verdict.kind != model::Verdict::Kind::nothing) continue;
     return failed(s.where() + ": planted alone, explain states " +
                   (x->verdict.effect.empty() ? "nothing" : x->verdict.effect) + " instead");
@@ -411,7 +419,8 @@ Verdict effect_explained(const Effect& e, const Bench& bench) {
   return skipped("no sample determines its parameters");
 }
 
-/// Of an axis, or of the first thing that an effect in space would be of.
+/// Calls the effect with readings `o`, for `axis` or for each instance of an effect in space.
+/// Returns what is wrong with its columns; empty if nothing.
 std::string survives(const Effect& e, const Observations& o, const Axis& axis) {
   std::vector<std::string> names{axis.name};
   if (e.instances) names = e.instances(o);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every plugin declares: its name, version, options.
+// Checks of what every plugin declares: name, version and options.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -11,7 +11,8 @@ namespace nonio::plugin_check::kit {
 
 namespace {
 
-/// A letter, then letters, digits and these characters.
+/// Whether `name` has at most 60 characters: a letter, then letters, digits and characters of
+/// `also`. Capital letters are accepted with `capitals` only.
 bool is_plain(std::string_view name, bool capitals, std::string_view also) {
   const auto letter = [&](char c) {
     return (c >= 'a' && c <= 'z') || (capitals && c >= 'A' && c <= 'Z');
@@ -46,7 +47,7 @@ Verdict check_names(const Info& info, const Bench&) {
   return passed();
 }
 
-/// Names that end in a unit: "_mm", "_um_per_m". Everything else has the unit of a name, or none.
+/// Returns the unit with which a name ends: "mm" for "depth_mm"; empty if it ends with none.
 std::string unit_in_name(std::string_view name) {
   static constexpr std::string_view units[] = {"mm",   "um",     "deg", "arcsec", "urad", "s",
                                                "degC", "kelvin", "K",   "rad",    "m",    "h"};

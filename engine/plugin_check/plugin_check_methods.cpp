@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What must hold of every measuring method.
+// Checks of measuring methods.
 #include <algorithm>
 #include <cmath>
 
@@ -17,7 +17,7 @@ const char* const no_columns = "it declares no columns: readers of their own rea
 const char* const no_measurement =
     "no sample of its kind; put a campaign with one into cases/<name>/campaign.toml";
 
-/// A measurement of this kind, and its observations.
+/// A measurement of the method under test, with its sample and its observations.
 struct Measured {
   const Sample& sample;
   const Measurement& measurement;
@@ -80,7 +80,7 @@ bool nearly_equal(double a, double b) {
   return std::fabs(a - b) <= 1e-9 * std::max({std::fabs(a), std::fabs(b), 1e-6});
 }
 
-/// All numbers of one reading, and what they are.
+/// Returns the name and value of each number of observation `i`; NaN for a missing channel.
 std::vector<std::pair<const char*, double>> values_of_row(const Observations& o, std::size_t i) {
   std::vector<std::pair<const char*, double>> row{
       {"deviation", o.deviation[i]}, {"run", o.run_of(i)}, {"line", o.line_of(i)}};
@@ -97,7 +97,7 @@ std::vector<std::pair<const char*, double>> values_of_row(const Observations& o,
   return row;
 }
 
-/// Where two tables differ; empty if nowhere.
+/// Returns the first difference between two sets of observations in words; empty if there is none.
 std::string difference_of(const Observations& wanted, const Observations& found) {
   if (found.size() != wanted.size())
     return std::to_string(found.size()) + " observations; expected " +
@@ -123,7 +123,8 @@ std::string round_trip_of(const Method& m, const Measured& one, const Observatio
   return difference_of(truth, *found);
 }
 
-/// The observations of the sample, and the same positions with other deviations.
+/// Check: readings that are simulated from observations give the same observations again, with the
+/// deviations of the sample and with random ones.
 Verdict method_round_trip(const Method& m, const Bench& bench) {
   storage::Random random = bench.random(11);
   return each_measured(m, bench, [&](const Measured& one) -> std::string {
@@ -135,7 +136,7 @@ Verdict method_round_trip(const Method& m, const Bench& bench) {
   });
 }
 
-/// Readings as a damaged file gives them.
+/// Returns readings with one column removed, or one value blank or extreme, as in a damaged file.
 Readings with_odd_value(Readings readings, const Method& m, storage::Random& random) {
   static constexpr double odd[] = {0.0, -1.0, 1e-300, 1e300, -1e300, 4294967296.0, 0.5};
   const auto any = [&](std::size_t n) {

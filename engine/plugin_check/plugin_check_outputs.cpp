@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Laws of all that writes files, outputs and controllers; tables have more of them
-// (plugin_check_controllers.cpp).
+// Checks of everything that writes files: outputs and controllers. More checks of tables are in
+// plugin_check_controllers.cpp.
 #include <algorithm>
 #include <charconv>
 #include <set>
@@ -36,7 +36,7 @@ void prepare(const Output& o, const Bench& bench) {
 }
 void prepare(const Controller&, const Bench&) {}
 
-/// What the host would refuse; empty if nothing.
+/// Returns what the host would refuse of the written files; empty if nothing.
 std::string unsound_output(const OutputResult& r) {
   std::set<std::string> names;
   for (const Artifact& a : r.artifacts) {
@@ -49,7 +49,8 @@ std::string unsound_output(const OutputResult& r) {
   return unsound(r);
 }
 
-/// Writes and looks at it; an error is an answer too.
+/// Writes the files of one sample and returns what the host would refuse; empty if nothing, or if
+/// the plugin returns an error, which is allowed.
 template <class Plugin>
 std::string complaint(const Plugin& o, const Sample& s, const Results& results,
                       const Settings& options, const Bench& bench) {
@@ -105,7 +106,7 @@ Verdict output_again(const Plugin& o, const Bench& bench) {
   });
 }
 
-/// Something comes out of at least one sample.
+/// Check: the plugin writes a file for at least one sample, unless it must be requested (`opt_in`).
 template <class Plugin>
 Verdict output_writes(const Plugin& o, const Bench& bench) {
   std::size_t files = 0;
@@ -151,7 +152,8 @@ void replace_texts(Campaign& c, const std::string& text) {
     *t = text;
 }
 
-/// As much of a text as the host takes for the id of a measurement.
+/// Returns the part of a text that the host accepts as id of a measurement: at most 50 bytes,
+/// without slashes and control characters.
 std::string id_of(const std::string& text) {
   std::string id;
   for (const char c : text)
@@ -183,7 +185,7 @@ template <class Plugin>
 Verdict output_hostile(const Plugin& o, const Bench& bench) {
   std::size_t at = 0;
   return each_output(o, bench, [&](const Sample& s, const Results&) -> std::string {
-    // each sample takes some of them in turn, so that all together see all
+    // each sample takes two of the texts in turn, so that all samples together try all of them
     const auto texts = hostile_texts();
     for (std::size_t k = 0; k < 2; ++k) {
       const auto& [name, text] = texts[(at + k) % texts.size()];
@@ -198,7 +200,7 @@ Verdict output_hostile(const Plugin& o, const Bench& bench) {
   });
 }
 
-/// Every value of an option that is worth trying.
+/// Returns the values of an option to try: all choices, the ends of its range, or hostile texts.
 std::vector<Setting> ends_of(const Option& option) {
   std::vector<Setting> ends;
   if (std::holds_alternative<bool>(option.default_value)) return {Setting(true), Setting(false)};
@@ -232,7 +234,8 @@ std::vector<Setting> ends_of(const Option& option) {
   return ends;
 }
 
-/// On the sample in which it writes the most, one option after the other.
+/// Check: tries each value of each option, one option at a time, on the sample for which the plugin
+/// writes the most files.
 template <class Plugin>
 Verdict output_options(const Plugin& o, const Bench& bench) {
   if (o.info.options.empty()) return skipped("it has no options");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Laws of readers: a file is read whole or refused, and what is no reading never becomes one.
+// Checks of readers: a file is read completely or refused, and only readings become readings.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -20,11 +20,12 @@ char any_byte(storage::Random& random) {
   return static_cast<char>(static_cast<unsigned char>(random.uniform() * 256.0));
 }
 
-/// Files this long are long enough for every law; longer ones are damaged at fewer places.
+/// At most 120 numbers of a file are replaced, one at a time; 300 random damages are tried per
+/// file.
 constexpr std::size_t most_tokens = 120, damages = 300;
-constexpr double no_reading = 1e6;  // m or rad: no machine is so long
+constexpr double no_reading = 1e6;  // m or rad: no machine has so large a deviation
 
-/// A file that the reader knows, and the measurement that it is of.
+/// A sample file that the reader recognises, with the campaign and measurement that it belongs to.
 struct ReadFile {
   std::string sample;
   Campaign campaign;
@@ -67,7 +68,8 @@ Expected<Observations> read(const Reader& r, const ReadFile& f, std::string_view
 const char* const no_file =
     "no sample file of its format; put a campaign with one into cases/<name>/campaign.toml";
 
-/// Calls `law` with each file and what is read of it.
+/// Calls `law` with each file of the reader and the observations read from it. Fails with the first
+/// non-empty text that `law` returns.
 Verdict each_file(const Reader& r, const Bench& bench,
                   const std::function<std::string(const ReadFile&, const Observations&)>& law) {
   if (!r.recognises || !r.reads || !r.read) return failed("recognises, reads or read is missing");
@@ -82,11 +84,12 @@ Verdict each_file(const Reader& r, const Bench& bench,
   return passed();
 }
 
-/// A reading, whatever its row: what must not change when something else does.
+/// The numbers of one reading without its row number, to find the same reading in another file.
 using Row = std::vector<double>;
 
 Row row_of(const Observations& o, std::size_t i, bool placed = true) {
-  // by its name: its number is another one when the file ends before the first row of other lines
+  // the name of the line, because its number changes if the file ends before the first row of
+  // others
   const double line =
       o.lines.empty() ? 0.0
                       : static_cast<double>(std::hash<std::string>()(o.lines[o.line_of(i)].name));
@@ -109,7 +112,8 @@ std::string words_of(const Row& row) {
          (row.size() > 3 ? short_text(row[3] * 1e3, 6) + " mm or mrad" : std::string("?"));
 }
 
-/// Readings of `o` that are not in `base`, in words; `lost`: how many of base are missing.
+/// Returns the first reading of `o` that `base` does not contain, in words; empty if there is none.
+/// `lost` receives the number of the `n` readings of `base` that `o` lacks.
 std::string strangers(const std::map<Row, int>& base, std::size_t n, const Observations& o,
                       std::size_t& lost, bool placed = true) {
   auto left = base;
@@ -151,10 +155,11 @@ Verdict reader_empty(const Reader& r, const Bench& bench) {
   });
 }
 
-/// Cut off, a file is refused, or gives readings of the whole one; the last one may be cut too.
+/// Check: a file that is cut off is refused, or gives only readings of the whole file. The last
+/// reading may be cut too.
 Verdict reader_truncated(const Reader& r, const Bench& bench) {
   return each_file(r, bench, [&](const ReadFile& f, const Observations& whole) -> std::string {
-    // a step is a share of the diagonal: where it is depends on how many the file has
+    // the position of a step is not compared: it depends on the number of steps in the file
     const bool placed = f.campaign.measurements[f.measurement].kind != "step-diagonal";
     const auto base = rows_of(whole, placed);
     for (std::size_t k = 1; k < 50; ++k) {
@@ -163,7 +168,8 @@ Verdict reader_truncated(const Reader& r, const Bench& bench) {
       if (!o) continue;
       const std::string cut = "cut off after " + std::to_string(length) + " bytes: ";
       if (const std::string why = unsound(*o); !why.empty()) return cut + why;
-      // not the last reading: a reader may put other lines behind it
+      // The reading of the last source line may be cut, so it is left out. It need not be the last
+      // observation, because a reader may reorder lines.
       const std::uint32_t last =
           o->source_line.empty() ? 0
                                  : *std::max_element(o->source_line.begin(), o->source_line.end());
@@ -202,7 +208,8 @@ struct Token {
   std::size_t at, length;
 };
 
-/// The numbers of a text file, or a choice of them all over it.
+/// Finds the numbers in a text file; of more than `most_tokens`, a random choice from all parts of
+/// it.
 std::vector<Token> numbers_of(std::string_view bytes, storage::Random& random) {
   const auto digit = [&](std::size_t i) {
     return i < bytes.size() && bytes[i] >= '0' && bytes[i] <= '9';
@@ -242,15 +249,16 @@ std::string line_words(const std::string& bytes, std::size_t at) {
              1 + std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
 }
 
-/// Readings that the number at `at` can be of: those of its line.
+/// Returns how many readings a number at byte `at` can affect: those of its source line.
 std::size_t readings_of_line(const Observations& o, const std::string& bytes, std::size_t at) {
-  if (o.source_line.empty()) return 3;  // of a ball
+  if (o.source_line.empty()) return 3;  // the three coordinates of a ball
   const auto line = static_cast<std::uint32_t>(
       1 + std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
   return static_cast<std::size_t>(std::count(o.source_line.begin(), o.source_line.end(), line));
 }
 
-/// What stands for "not taken" is missing or an error, and touches no other reading.
+/// Check: a code for "not measured" gives a missing reading or an error, and leaves all other
+/// readings unchanged.
 Verdict reader_sentinels(const Reader& r, const Bench& bench) {
   storage::Random random = bench.random(7);
   return each_file(r, bench, [&](const ReadFile& f, const Observations& whole) -> std::string {
@@ -293,7 +301,8 @@ Verdict reader_signs(const Reader& r, const Bench& bench) {
   });
 }
 
-/// Where an option of the reader states in which unit a file is; else the file states it.
+/// Check: if an option of the reader states the unit of the file, `inch` gives 25.4 times the
+/// positions of `mm`. Readers without such an option take the unit from the file.
 Verdict reader_inch(const Reader& r, const Bench& bench) {
   const auto has = [](const Option& o, const char* choice) {
     return std::find(o.choices.begin(), o.choices.end(), choice) != o.choices.end();
@@ -310,7 +319,7 @@ Verdict reader_inch(const Reader& r, const Bench& bench) {
       for (std::size_t axis = 0; axis < one->axes.size(); ++axis)
         for (std::size_t i = 0; i < one->size(); ++i) {
           const double a = one->axes[axis].position[i], b = two->axes[axis].position[i];
-          const double times = one->axes[axis].rotary ? 1.0 : 25.4;  // an angle stays what it is
+          const double times = one->axes[axis].rotary ? 1.0 : 25.4;  // angles do not change
           if (std::fabs(times * a - b) > 1e-9 * std::fabs(b))
             return "a target of " + short_text(a * 1e3, 6) + " mm or mrad is one of " +
                    short_text(b * 1e3, 6) + " in inch: expected " + short_text(times, 3) + " times";
@@ -321,7 +330,8 @@ Verdict reader_inch(const Reader& r, const Bench& bench) {
   return skipped("no option has the choices mm and inch");
 }
 
-/// Compared with readings.csv: a file alone does not show whether it was read correctly.
+/// Check: the readings equal those that a person wrote into readings.csv, because a file alone does
+/// not show whether it was read correctly.
 Verdict reader_truth(const Reader& r, const Bench& bench) {
   std::size_t compared = 0;
   Verdict v = each_file(r, bench, [&](const ReadFile& f, const Observations& o) -> std::string {
@@ -336,7 +346,7 @@ Verdict reader_truth(const Reader& r, const Bench& bench) {
   return v;
 }
 
-/// Files of other formats.
+/// Check: the reader does not recognise files of other formats.
 Verdict reader_foreign(const Reader& r, const Bench& bench) {
   storage::Random random = bench.random(9);
   if (!r.recognises || !r.reads || !r.read) return failed("recognises, reads or read is missing");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The samples of `nonio plugin check`: one machine with smooth errors, measured in every way.
+// Makes the samples of `nonio plugin check`: one machine with smooth errors, measured by all kinds
+// of measurement.
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -15,7 +16,7 @@ using Vector = std::array<double, 3>;
 constexpr double um = 1e-6;
 constexpr double turn = 2.0 * std::numbers::pi;
 
-/// A sum of three waves over a metre, or over a turn.
+/// A smooth error: the sum of three sine waves over `over` metres, or over a turn (rad).
 struct Waves {
   std::array<double, 3> size{}, phase{};
   double over = 1.0;
@@ -38,7 +39,7 @@ Waves waves(storage::Random& random, double size, double over) {
   return w;
 }
 
-/// How a line is measured: there and back, so many times.
+/// How a line is measured: number of intervals and runs, directions, reversal and noise (m).
 struct Pass {
   int intervals = 20, runs = 3;
   bool plus = true, minus = true, timed = false, uneven = false;
@@ -55,8 +56,9 @@ class MadeMachine {
     turning_ = waves(random_, 20e-6, turn);
   }
 
-  /// Rows of a file, of the deviation that is sensed from `from` on to `to`; m. `target` of a
-  /// share of the way is in the unit of the file.
+  /// Returns rows of a file: the error (m) that is sensed along `sense` on the way from `from` to
+  /// `to`, relative to the start. `target` converts the fraction of the way into the unit of the
+  /// file.
   template <class Target>
   std::string line(const Vector& from, const Vector& to, const Vector& sense, const Pass& pass,
                    const Target& target) {
@@ -77,7 +79,8 @@ class MadeMachine {
         [&](double share) { return turning_(turn * share); });
   }
 
-  /// After each step of X, Y and Z in turn, four times through the volume of `size`.
+  /// Returns a file with readings after each step of X, Y and Z in turn, along the four body
+  /// diagonals of the volume `size` (m).
   std::string step_diagonals(const Vector& size, int steps) {
     std::string out = "diagonal,step,moved,deviation_um\n";
     const double length = std::sqrt(size[0] * size[0] + size[1] * size[1] + size[2] * size[2]);
@@ -102,7 +105,7 @@ class MadeMachine {
     return out;
   }
 
-  /// A ball that turns about Z, or about Y.
+  /// Returns a file with the centres of a ball that a rotary axis turns about Z, or about Y.
   std::string ball(double first_deg, double step_deg, int n, bool about_y) {
     std::string out = "angle_deg,x_mm,y_mm,z_mm\n";
     for (int i = 0; i < n; ++i) {
@@ -117,7 +120,8 @@ class MadeMachine {
     return out;
   }
 
-  /// A ball on a table C that is mounted on B, at positions of both.
+  /// Returns a file with the centres of a ball on table C, which is mounted on B, at positions of
+  /// both.
   std::string balls_of_two_axes() {
     std::string out = "angle_deg,B_deg,x_mm,y_mm,z_mm\n";
     for (const double b : {-40.0, 0.0, 40.0})
@@ -134,8 +138,8 @@ class MadeMachine {
     return out;
   }
 
-  /// A gauge on a table, along its radius and along its axis, which the control has 20 um from its
-  /// true position.
+  /// Returns a file with readings of a gauge on a table, along its radius and along its axis. The
+  /// control assumes a position that is 20 um from the true one.
   std::string tool_centre(int n) {
     std::string out = "angle_deg,x_mm,y_mm,z_mm,tx,ty,tz,deviation_um,line\n";
     for (const bool along : {false, true})
@@ -226,7 +230,8 @@ Vector along(std::size_t axis, double length) {
   return v;
 }
 
-/// Adds an axis run, or a straightness where it is sensed across.
+/// Adds a measurement along `axis`: positioning if `sensed` is the same axis, otherwise
+/// straightness.
 void add_run(Source& s, MadeMachine& machine, const std::string& id, std::size_t axis,
              std::size_t sensed, double length, const Pass& pass) {
   const char letter = "XYZ"[axis];
@@ -320,7 +325,8 @@ Source step_diagonals(MadeMachine& machine) {
   return s;
 }
 
-/// A circle in both directions, of an askew machine with lost motion.
+/// Returns a campaign with a circle in both directions, of a machine with a squareness error and
+/// lost motion.
 Source circle() {
   Source s{"circle",
            head("circle") + linear_axis('X') + linear_axis('Y') +
@@ -341,7 +347,7 @@ Source circle() {
   return s;
 }
 
-/// A spindle that warms up for two hours, in two sensors.
+/// Returns a campaign with a spindle that warms up for two hours, measured by two sensors.
 Source thermal() {
   Source s{"thermal", head("thermal") + linear_axis('Z') + measured("T", "thermal", ""), {}};
   std::string rows = "time_s,speed_rpm,y_um,z_um,air_c\n";
@@ -356,7 +362,8 @@ Source thermal() {
   return s;
 }
 
-/// Eight turns of a ball against two sensors, an oval journal and a cage.
+/// Returns a campaign with eight turns of a ball between two sensors, with errors of an oval
+/// journal and of a bearing cage.
 Source spindle() {
   Source s{"spindle", head("spindle") + linear_axis('Z') + measured("S", "spindle", ""), {}};
   std::string rows = "angle_deg,x_um,y_um\n";
@@ -372,7 +379,7 @@ Source spindle() {
   return s;
 }
 
-/// Five lengths in seven positions, three times each.
+/// Returns a campaign with five lengths in seven positions, measured three times each.
 Source lengths() {
   Source s{"lengths",
            head("lengths") + linear_axis('X') + "[options.lengths]\nmpe_E0_um = 3.0\n" +

@@ -7,11 +7,13 @@
 
 #include "plugin_check/plugin_checks.h"
 
-/// Files that a person wrote for a case, because the data file alone does not show whether it was
-/// read correctly: readings.csv, table.csv, expected/values.csv, formulas.toml.
+/// Compares a plugin with files that a person wrote for a case: readings.csv, table.csv,
+/// expected/values.csv and formulas.toml. A data file alone does not show whether it was read
+/// correctly.
 namespace nonio::plugin_check::kit {
 
-/// Of a reader: reading by reading, against readings.csv.
+/// Compares observations with readings.csv, reading by reading. Returns the first difference in
+/// words, "" if there is none, and adds the number of compared rows to `compared`.
 std::string differs_from_truth(const Observations& o, const Measurement& m, const Source& source,
                                std::size_t& compared);
 

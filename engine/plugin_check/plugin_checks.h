@@ -15,38 +15,40 @@
 #include "nonio/sdk/plugin.h"
 #include "platform/storage/random.h"
 
-/// What the checks of all kinds of plugins share. They run in a child process, so that a plugin may
-/// crash or hang there.
+/// Types and functions that the checks of all kinds of plugins share. Checks run in a child
+/// process, so that a plugin may crash or hang there.
 namespace nonio::plugin_check::kit {
 
-/// A campaign as it is stored in a folder.
+/// A campaign as its folder contains it: the text of campaign.toml and the bytes of the other
+/// files.
 struct Source {
   std::string name, manifest;
   std::vector<Artifact> files;
 };
 
-/// The same, read.
+/// A campaign that was read from a `Source`.
 struct Sample {
   std::string name;
   Campaign campaign;
   config::RawOptions options;
   std::vector<Observations> observations;
-  std::optional<Results> results{};  ///< of the program's own plugins, where they are known
+  std::optional<Results> results{};  ///< of the program's own plugins, if they were evaluated
 
   const Observations& of(const Measurement& m) const {
     return observations[static_cast<std::size_t>(&m - campaign.measurements.data())];
   }
 };
 
-/// Campaigns of every kind of measurement, made up by the seed.
+/// Makes campaigns with every kind of measurement, whose errors are random numbers of this seed.
 std::vector<Source> made_sources(std::uint64_t seed);
-/// The method of a measurement; null if it is not among them.
+/// Returns the method of a measurement; null if `methods` does not contain it.
 const Method* method_of(const Measurement& m, const std::vector<Method>& methods);
-/// With the first reader that knows each file; an error that names the sample and the file.
+/// Reads a source; each file is read by the first reader that recognises it. An error names the
+/// sample and the file.
 Expected<Sample> open_source(const Source& source, const std::vector<Reader>& readers,
                              const std::vector<Method>& methods);
 
-/// Where a check takes everything from.
+/// The inputs of every check: a seed, samples and all plugins.
 struct Bench {
   std::uint64_t seed = 1;
   std::vector<Source> sources;
@@ -56,10 +58,12 @@ struct Bench {
   std::vector<Effect> effects;
   std::vector<Analysis> analyses;
   Templates templates;
-  reading::Context context;  ///< for the model: without a site
-  /// What `pure` does once everything is ready and only the plugin is still to be called.
+  reading::Context context;  ///< for the model; it contains no site
+  /// Called when everything is ready and only the plugin remains to be called; the check `pure`
+  /// then changes the environment.
   std::function<void()> only_plugin{};
-  reading::Stage stage;  ///< called with what is tried next, for the case that it does not return
+  /// receives the name of each step before it is tried, to report it after a crash
+  reading::Stage stage;
 
   storage::Random random(std::uint64_t stream) const { return {seed, stream}; }
 };
@@ -70,7 +74,7 @@ struct Verdict {
 };
 inline Verdict passed() { return {}; }
 inline Verdict failed(std::string says) { return {Verdict::State::failed, std::move(says)}; }
-/// All of a number, for comparing.
+/// Returns text that contains every bit of a number, for exact comparison.
 inline std::string exact_text(double x) { return std::to_string(std::bit_cast<std::uint64_t>(x)); }
 inline Verdict skipped(std::string says) { return {Verdict::State::skipped, std::move(says)}; }
 
@@ -88,15 +92,15 @@ const std::vector<Check<Effect>>& effect_checks();
 const std::vector<Check<Analysis>>& analysis_checks();
 const std::vector<Check<Output>>& output_checks();
 const std::vector<Check<Controller>>& controller_checks();
-/// The laws that controllers share with outputs.
+/// Returns the checks of written files, which controllers share with outputs.
 std::vector<Check<Controller>> controller_checks_of_files();
 
-/// What is wrong with an option; empty if nothing. `may_be_absent`: an empty default stands for a
-/// key that is not written.
+/// Returns what is wrong with the declaration of an option; empty if nothing. `may_be_absent`: an
+/// empty default means that the key is not written.
 std::string wrong_option(const Option& option, bool may_be_absent);
 
-/// What a plugin makes of all samples, digested; an error states why there is nothing. Calls
-/// `Bench::only_plugin` before the plugin.
+/// Passes with a digest of what a plugin computes for all samples, or skips with the reason why
+/// there is none. Calls `Bench::only_plugin` before the plugin.
 Verdict fingerprint(const Method& method, const Bench& bench);
 Verdict fingerprint(const Reader& reader, const Bench& bench);
 Verdict fingerprint(const Effect& effect, const Bench& bench);
@@ -104,22 +108,24 @@ Verdict fingerprint(const Analysis& analysis, const Bench& bench);
 Verdict fingerprint(const Output& output, const Bench& bench);
 Verdict fingerprint(const Controller& controller, const Bench& bench);
 
-/// Message of `check` about readings, results or files; empty if nothing.
+/// Returns the message of `check` about readings, results or files; empty if they are sound.
 template <class What>
 std::string unsound(const What& what) {
   const auto sound = check(what);
   return sound ? std::string() : sound.error().message;
 }
-/// A rearrangement of n rows.
+/// Returns the row numbers 0 to n - 1 in random order.
 std::vector<std::uint32_t> shuffled(std::size_t n, storage::Random& random);
-/// Readings that are not acceptable.
+/// Returns variants of `o` with unusual readings, each with its name: none, one, one target, huge
+/// positions, missing channels.
 std::vector<std::pair<std::string, Observations>> odd_tables(const Observations& o);
-/// The plugin's defaults, and the settings of the sample.
+/// Returns the plugin's default options, replaced by those that the sample sets.
 Settings settings_for(const Info& info, const Sample& sample);
 Settings settings_for(const Output& output, const Sample& sample);
-/// In addition to these, the numbers of the axes by their order.
+/// Adds to those the numbers of the axes in order, which many controllers require.
 Settings settings_for(const Controller& controller, const Sample& sample);
-/// All results of the analyses and the model for a sample: kept ones, else they are computed.
+/// Returns all results of the analyses and the model for a sample; computes them unless the sample
+/// contains them.
 Results results_of(const Sample& sample, const Bench& bench);
 
 }  // namespace nonio::plugin_check::kit

@@ -9,9 +9,9 @@
 
 namespace nonio::plugin_check {
 
-/// Writes the skeleton of a plugin into a folder that does not exist yet. Skeletons are folders of
-/// files named *.in, in whose names and texts @name@ stands for the plugin's name and @file@ for
-/// the same as a C++ name. Gives the files that it wrote.
+/// Writes the skeleton of a plugin into a folder that does not exist yet, and returns the names of
+/// its files. Skeletons are folders of files named *.in; in their names and texts @name@ becomes
+/// the plugin's name and @file@ the same as a C++ name.
 Expected<std::vector<std::string>> new_plugin(const std::filesystem::path& skeletons,
                                               const std::string& kind, const std::string& name,
                                               const std::filesystem::path& folder);

@@ -10,12 +10,13 @@
 namespace nonio::plugin_check {
 
 struct TemplateCheck {
-  std::vector<Error> errors;         ///< each names the file and the key
-  std::vector<std::string> outputs;  ///< those that looked at their templates
+  std::vector<Error> errors;         ///< each names a file and a key
+  std::vector<std::string> outputs;  ///< outputs that checked their templates
 };
 
-/// What every output reports about its templates: layouts, words of all languages, letters that the
-/// fonts lack. Later folders win. An error if the folders or plugins cannot be read.
+/// Returns what every output reports about its templates: layouts, words of all languages, letters
+/// that the fonts lack. Later folders have precedence. An error if folders or plugins cannot be
+/// read.
 Expected<TemplateCheck> check_templates(const std::vector<std::filesystem::path>& template_folders,
                                         const std::vector<std::filesystem::path>& plugin_folders);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// nonio._nonio: what the package of Python calls. The package has its words (nonio/__init__.py).
+// The extension module nonio._nonio, which the Python package calls. The package documents it
+// (nonio/__init__.py).
 #include <dlfcn.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -24,7 +25,7 @@ namespace nonio::python {
 
 namespace {
 
-/// The exception nonio.Error, thrown without Python's lock.
+/// Becomes the Python exception nonio.Error; thrown while Python's lock is released.
 struct Failure {
   Error error;
 };
@@ -35,7 +36,7 @@ T valued(Expected<T> expected) {
   return *std::move(expected);
 }
 
-/// Where libnonio_engine is: the plugins are in a folder next to it.
+/// Returns the folder of libnonio_engine; the plugins are in a folder next to it.
 fs::path library_folder() {
   Dl_info found{};
   const auto address =
@@ -56,7 +57,7 @@ Quantity quantity_of(const std::string& unit) {
 
 using Columns = std::map<std::string, std::vector<double>>;
 
-/// Readings of one axis in printed units, as a function of Python gets them.
+/// Returns the readings of one axis as columns in printed units, as a function of Python gets them.
 Columns readings_columns(const Observations& o, const AxisReadings& r, const Axis& axis) {
   Columns out;
   const auto put = [&](const char* name, const std::vector<double>& values, Quantity quantity) {
@@ -75,7 +76,7 @@ Columns readings_columns(const Observations& o, const AxisReadings& r, const Axi
 /// An effect whose columns a function of Python computes.
 struct OwnEffect {
   std::string name;
-  std::vector<std::pair<std::string, std::string>> parameters;  ///< name, unit
+  std::vector<std::pair<std::string, std::string>> parameters;  ///< name and unit
   std::vector<std::tuple<std::string, std::string, std::vector<double>>> shapes;
   py::function columns;
 };
@@ -141,7 +142,7 @@ Effect effect_of(OwnEffect given) {
   return effect;
 }
 
-/// A campaign as it was read. Its methods release Python's lock while they compute.
+/// A campaign that was read. Its methods release Python's lock while they compute.
 class OpenedCampaign {
  public:
   OpenedCampaign(const fs::path& folder, std::vector<fs::path> plugins,
@@ -172,7 +173,8 @@ class OpenedCampaign {
     return out;
   }
 
-  /// Names with units, in the order of a file of readings, and values; NaN where one is blank.
+  /// Returns the columns of a measurement, named with their units, in the order of a file of
+  /// readings; NaN for a missing value.
   std::vector<std::pair<std::string, std::vector<double>>> readings(const std::string& id) const {
     const auto found = std::find_if(campaign().measurements.begin(), campaign().measurements.end(),
                                     [&](const Measurement& m) { return m.id == id; });
@@ -213,7 +215,7 @@ class OpenedCampaign {
         place_->context);
   }
 
-  /// nonio-compare/1, and a row for each reading as CSV.
+  /// Returns the comparison as JSON (nonio-compare/1), and as CSV with one row per reading.
   std::pair<std::string, std::string> compare(const std::vector<std::string>& model,
                                               const std::vector<OwnEffect>& effects) const {
     const reading::ReadCampaign read = with(effects);
@@ -278,7 +280,8 @@ py::tuple error_arguments(const Error& e) {
 PYBIND11_MODULE(_nonio, module) {
   using namespace nonio::python;
   module.attr("version") = NONIO_VERSION;
-  static py::object raised;  // outlives the module: an exception may be under way at the end
+  // Outlives the module, because an exception may still be active at its end.
+  static py::object raised;
   module.def("raise_with", [](const py::object& type) { raised = type; });
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {

@@ -17,7 +17,7 @@ namespace {
 
 using storage::Json;
 
-/// What is drawn for one measurement, each from a stream of its own.
+/// Random numbers of one measurement, by purpose; each has a stream of its own.
 enum Stream : std::uint64_t { offsets, noise, misreadings, streams };
 
 storage::Random stream_of(const Specification& s, std::size_t cycle, Stream stream) {
@@ -30,26 +30,26 @@ std::vector<double> shifted_targets(const CycleSpec& c, storage::Random random) 
   const double resolution = c.axis.rotary ? 1e-4 / deg_per_rad : 1e-6;
   for (std::size_t i = 0; i < targets.size(); ++i) {
     double by = random.uniform(-c.offset, c.offset);
-    if (i == 0) by = std::fabs(by);  // the ends stay within the range
+    if (i == 0) by = std::fabs(by);  // end targets stay within the range
     if (i + 1 == targets.size()) by = -std::fabs(by);
     targets[i] = std::round((targets[i] + by) / resolution) * resolution;
   }
   return targets;
 }
 
-/// Readings of the campaign that an effect sees together, and where they come from.
+/// Readings of the campaign to which an effect is applied together, and their origin.
 struct Seen {
   Observations table;
-  std::vector<std::pair<std::size_t, std::size_t>> from;  ///< cycle and row, of each reading
-  const model::Part* part = nullptr;                      ///< none: of a rotary axis
-  double sign = 1.0;                                      ///< of the sum of the effects
+  std::vector<std::pair<std::size_t, std::size_t>> from;  ///< cycle and row of each reading
+  const model::Part* part = nullptr;  ///< null for a measurement of a rotary axis
+  double sign = 1.0;                  ///< sign with which the effects are added
 };
 
-/// The effect as it is of these readings: its place, or nothing if they do not show it.
+/// Returns the axis or place of the effect in these readings; nothing if it does not affect them.
 std::optional<Axis> place_in(const Seen& seen, const EffectSpec& e, const Machine& machine) {
   Effect effect = e.effect;
   if (seen.part != nullptr) {
-    effect.is_nuisance = false;  // the orientation of a straightedge may be stated too
+    effect.is_nuisance = false;  // the orientation of a straightedge may also be simulated
     const auto terms = model::terms_of(*seen.part, machine, {e.name}, {effect});
     if (!terms || terms->empty()) return std::nullopt;
     return terms->front().axis;
@@ -63,7 +63,8 @@ std::optional<Axis> place_in(const Seen& seen, const EffectSpec& e, const Machin
   return place;
 }
 
-/// What the effects see: parts as `explain` has them, and each measurement of a rotary axis.
+/// Returns the tables to which effects are applied: parts as in `explain`, and each measurement of
+/// a rotary axis.
 std::vector<Seen> seen_of(const Specification& s, const std::vector<Observations>& rows,
                           const std::vector<model::Part>& parts) {
   std::vector<Seen> all;
@@ -78,7 +79,8 @@ std::vector<Seen> seen_of(const Specification& s, const std::vector<Observations
   for (std::size_t k = 0; k < s.cycles.size(); ++k) {
     const CycleSpec& c = s.cycles[k];
     if (!c.is("ball-centres") && !c.is("rtcp")) continue;
-    // The axes read a ball at P - e where they are at P; commanded to P they are at P + e.
+    // Ball centres: with the axes at P, the reading of a ball is P - e. RTCP: commanded to P, they
+    // are at P + e.
     Seen seen{rows[k], {}, nullptr, c.is("rtcp") ? -1.0 : 1.0};
     for (std::size_t i = 0; i < rows[k].size(); ++i) seen.from.emplace_back(k, i);
     all.push_back(std::move(seen));
@@ -92,9 +94,9 @@ double rms(const std::vector<double>& values) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// The deviation of all columns: those of a curve are mixed at random and scaled to their RMS. In
-/// space, where not every reading senses it, the functions of a curve are orthogonal over the
-/// places, rms 1.
+/// Returns the deviation caused by all columns. Coefficients of a curve are random, scaled to its
+/// RMS. In space, where not every reading senses it, the basis functions of a curve are orthogonal
+/// over the places, with rms 1.
 std::vector<double> deviation_of_columns(const EffectSpec& e, const Effect::Columns& columns,
                                          storage::Random random) {
   std::vector<double> factor = e.linear, sum(columns.empty() ? 0 : columns[0].size(), 0.0);
@@ -118,7 +120,8 @@ std::vector<double> deviation_of_columns(const EffectSpec& e, const Effect::Colu
   return sum;
 }
 
-/// The shape as written, or the one that the readings and the manifest leave.
+/// Returns the shape as specified; if it is not given, the only value that readings and manifest
+/// allow, or else the usual one.
 Expected<std::vector<double>> shape_of(const EffectSpec& e, const Observations& o,
                                        const Axis& place) {
   std::vector<double> shape;
@@ -153,7 +156,8 @@ Json quantity_json(double value, bool rotary) {
           {"unit", unit_of(deviation_of(rotary)).symbol}};
 }
 
-/// An error along an axis as readings sense it that look in another direction, as `explain` has it.
+/// Returns the factor with which a reading in another direction senses an error along an axis, as
+/// in `explain`.
 double sensed(const Seen& seen, const EffectSpec& e, const Axis& place, std::size_t i) {
   const std::size_t k = coordinate_of(place.name);
   if (seen.part == nullptr || e.effect.instances || seen.table.axes.size() < 2 || place.rotary ||
@@ -162,7 +166,7 @@ double sensed(const Seen& seen, const EffectSpec& e, const Axis& place, std::siz
   return seen.table.sense_of(i)[k];
 }
 
-/// Adds the effect to the rows that show it, and records it in `truth`.
+/// Adds the effect to the rows that it affects, and records it in `truth`.
 Expected<void> add_effect(const EffectSpec& e, const Specification& s, const std::vector<Seen>& all,
                           std::vector<Observations>& rows, Json& truth, storage::Random random) {
   std::vector<double> whole;
@@ -201,14 +205,14 @@ Expected<void> add_effect(const EffectSpec& e, const Specification& s, const std
   return {};
 }
 
-/// The display of a step diagonal is 0 where it begins.
+/// Subtracts the reading at the start of each step diagonal, where the display is set to 0.
 void preset(const CycleSpec& c, Observations& o) {
   if (!c.is("step-diagonal")) return;
   const std::size_t each = 3 * c.steps + 1;
   for (std::size_t i = o.size(); i-- > 0;) o.deviation[i] -= o.deviation[i - i % each];
 }
 
-/// The file of one measurement; records in `truth` what was misread.
+/// Returns the file of one measurement; records simulated misreadings in `truth`.
 Expected<std::string> readings(const Specification& s, std::size_t k, const Observations& o,
                                Json& truth) {
   const CycleSpec& c = s.cycles[k];
@@ -246,7 +250,7 @@ Expected<std::string> readings(const Specification& s, std::size_t k, const Obse
   return std::string(simulated_mark) + "\n" + table_of(*c.method, written);
 }
 
-/// Rotary axes and squares as they were, mm, urad.
+/// Records the simulated rotary axes and squares, in mm and urad.
 void tell_things(const Specification& s, Json& truth) {
   const auto mm = [](const std::array<double, 3>& v) {
     return Json{printed(v[0], Quantity::length), printed(v[1], Quantity::length),
@@ -263,7 +267,7 @@ void tell_things(const Specification& s, Json& truth) {
         {{"name", q.name}, {"error_urad", q.error * 1e6}, {"set_up_urad", q.set_up * 1e6}});
 }
 
-/// The specification's own lines, with no more than one empty line in a row.
+/// Returns the manifest lines of the specification, with at most one empty line in a row.
 std::string manifest_text(const std::string& lines) {
   std::string text = std::string(simulated_mark) + "\n";
   for (const char c : lines)
@@ -293,7 +297,8 @@ config::Checked<Simulated> simulate(std::string_view specification, const std::s
     rows.push_back(made ? std::move(*made) : Observations{});
   }
   if (!errors.empty()) return tl::unexpected(std::move(errors));
-  std::vector<Observations> linear = rows;  // the others have effects of their own
+  // rows without rotary measurements, which have effects of their own
+  std::vector<Observations> linear = rows;
   for (std::size_t k = 0; k < rows.size(); ++k)
     if (s->cycles[k].is("ball-centres") || s->cycles[k].is("rtcp")) linear[k] = {};
   const std::vector<model::Part> parts = model::parts_of(s->campaign, linear);

@@ -16,13 +16,14 @@ struct Simulated {
   std::string truth;  ///< JSON: the simulated errors; to be stored outside of the campaign
 };
 
-/// First line of a simulated campaign.toml; a folder whose manifest has another is not overwritten.
+/// First line of a simulated campaign.toml; a folder whose manifest has another first line is not
+/// overwritten.
 inline constexpr std::string_view simulated_mark =
     "# Simulated by nonio: nobody measured this machine.";
 
-/// A campaign whose effects are known, from a specification (docs/simulate.md): a manifest with
-/// [simulation], a [[cycle]] for each measurement and an [[effect]] for each cause. Same text, same
-/// bytes. `file` is the specification's name in errors.
+/// Simulates a campaign with known effects from a specification (docs/simulate.md): a manifest with
+/// [simulation], a [[cycle]] for each measurement and an [[effect]] for each cause. The same text
+/// gives the same bytes. `file`: name of the specification for errors.
 config::Checked<Simulated> simulate(std::string_view specification, const std::string& file,
                                     const std::vector<Effect>& effects,
                                     const std::vector<Method>& methods);

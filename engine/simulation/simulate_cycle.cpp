@@ -11,7 +11,7 @@
 namespace nonio::simulation {
 namespace {
 
-/// One [[cycle]].
+/// Reads one [[cycle]].
 class CycleReader {
  public:
   CycleReader(const config::TableReader& reader, std::vector<Error>& errors)
@@ -228,7 +228,8 @@ class CycleReader {
     c_.timed = reader_.flag("times").value_or(true);
   }
 
-  /// The feed is the measurement's own; nothing waits on the way.
+  /// Reads the keys of a circle. The feed is that of the measurement; there is no dwell on the
+  /// path.
   void read_circle() {
     if (const auto readings = reader_.integer("readings"))
       c_.readings = static_cast<std::uint32_t>(*readings);
@@ -245,7 +246,7 @@ class CycleReader {
   }
 
   CycleSpec c_;
-  double unit_ = 1e-3;  ///< of the targets
+  double unit_ = 1e-3;  ///< SI value of one unit of the targets
   config::TableReader reader_;
   std::vector<Error>& errors_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Balls on rotary axes that turn exactly.
+// Simulates balls on rotary axes that rotate without error.
 #include <cmath>
 
 #include "simulation/simulate_rows.h"
@@ -18,7 +18,7 @@ Vector cross(const Vector& a, const Vector& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// v turned about n (Rodrigues).
+/// Returns v rotated about n (Rodrigues).
 Vector rotated(const Vector& v, const Vector& n, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   const Vector across = cross(n, v);
@@ -28,7 +28,7 @@ Vector rotated(const Vector& v, const Vector& n, double angle) {
   return out;
 }
 
-/// Axes and lines of the table, and its rows one after the other.
+/// Builds the table: axes and lines first, then rows one after the other.
 class Rows {
  public:
   explicit Rows(const CycleSpec& c) : c_(c), clock_(c) {
@@ -39,8 +39,8 @@ class Rows {
   }
   void line(std::string name, const Vector& sense) { o_.lines.push_back({std::move(name), sense}); }
 
-  /// Reads at each angle: put(angle) adds the readings of one place with `add`. Of a carrier: at its
-  /// positions, one after the other, in each run.
+  /// Visits each angle; put(angle) adds the readings of one position with `add`. If there is a
+  /// carrier, each run repeats this at each of its positions.
   template <class Put>
   void sweep(Put put) {
     last_ = c_.targets.front();
@@ -67,7 +67,7 @@ class Rows {
     o_.run.push_back(run_);
     if (first) {
       clock_.reading(o_, way_);
-    } else {  // of one place
+    } else {  // further readings at the same position
       o_.time.push_back(o_.time.back());
       o_.material.push_back(o_.material.back());
     }
@@ -100,9 +100,9 @@ class Rows {
 
 constexpr std::array<Vector, 3> units{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
-/// Position of the linear axes when the probe is at the ball. A table moves the ball, and its
-/// carrier moves table and ball. A head moves the stylus, which is at the ball with the heads at 0,
-/// and its carrier moves head and stylus; the linear axes compensate that movement.
+/// Returns the positions of the linear axes when the probe is at the ball. A table moves the ball,
+/// and its carrier moves table and ball. A head moves the stylus, which is at the ball with the
+/// heads at 0, and its carrier moves head and stylus; the linear axes compensate that movement.
 Observations centres(const RotarySpec& r, const RotarySpec* carrier, const CycleSpec& c) {
   Rows rows(c);
   for (std::size_t k = 0; k < 3; ++k) rows.line(c.measurement.id + " " + "xyz"[k], units[k]);
@@ -120,10 +120,10 @@ Observations centres(const RotarySpec& r, const RotarySpec* carrier, const Cycle
   return rows.done();
 }
 
-/// The tool against the workpiece, less what the control means, while the axis turns. A table: the
-/// ball of the workpiece goes where the axis takes it, the tool where the control takes it to be.
-/// A head: the ball of the tool goes where the axis takes it, and the linear axes back by what the
-/// control means of it.
+/// Returns the position of the tool relative to the workpiece, minus the one that the control
+/// computes, while the axis turns. Table: the axis moves the ball, and the tool follows the
+/// computed position. Head: the axis moves the tool, and the linear axes compensate the computed
+/// movement.
 Observations with_tool_centre(const RotarySpec& r, const CycleSpec& c) {
   const Vector centre = r.control_centre.value_or(r.centre),
                direction = r.control_direction.value_or(r.direction);

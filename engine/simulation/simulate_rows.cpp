@@ -15,7 +15,7 @@ double material(const CycleSpec::Course& c, double t) {
   return std::round((c.start + c.drift * t + swing) * 100.0) / 100.0;
 }
 
-/// Along the line of a diagonal: axes, with the way of each for a way of 1.
+/// One axis of a diagonal, and its movement per unit of movement along the diagonal.
 struct Side {
   std::string axis;
   std::size_t coordinate = 0;
@@ -43,7 +43,7 @@ Expected<std::vector<Side>> sides_of(const Measurement& m) {
   return sides;
 }
 
-/// One sweep after the other: calls put(target, direction, run).
+/// Performs all passes: calls put(target, direction, run).
 template <class Put>
 void sweep(const CycleSpec& c, const std::vector<double>& targets, Clock& clock, Put put) {
   const auto pass = [&](std::uint32_t run, double direction) {
@@ -118,12 +118,12 @@ Expected<Observations> in_steps(const Specification& s, const CycleSpec& c) {
           c.measurement.id + " " + name + (run == 1 ? "" : " run " + std::to_string(run)), {}};
       for (std::size_t k = 0; k < 3; ++k) line.sense[k] = sign[k] * sides[k].slope;
       o.lines.push_back(line);
-      // Step 0 is where the display is set to 0; the file does not have it.
+      // Step 0 is the position where the display is set to 0; the file does not contain it.
       for (std::uint32_t step = 0; step <= 3 * c.steps; ++step) {
         for (std::size_t k = 0; k < 3; ++k) {
           const Side& side = sides[k];
           const double whole = c.measurement.to.at(side.axis) - side.from;
-          // X, then Y, Z
+          // the axes move in the order X, Y, Z
           const std::uint32_t moved = (step + 2 - static_cast<std::uint32_t>(k)) / 3;
           o.axes[k].position.push_back((sign[k] > 0.0 ? side.from : side.from + whole) +
                                        sign[k] * whole * moved / c.steps);
@@ -140,8 +140,8 @@ Expected<Observations> in_steps(const Specification& s, const CycleSpec& c) {
   return o;
 }
 
-/// Each run counter-clockwise, then clockwise; lines as the reader of the file names them. No
-/// reading is at a reversal itself.
+/// Returns the readings of a circle: each run counter-clockwise, then clockwise; lines are named as
+/// the reader of the file names them. No reading is exactly at a reversal.
 Expected<Observations> on_circle(const CycleSpec& c) {
   Observations o;
   o.measurement = c.measurement.id;
@@ -188,8 +188,8 @@ Expected<Observations> on_circle(const CycleSpec& c) {
   return o;
 }
 
-/// Against a square the readings rise by its set-up on the line of the first axis, fall by it on
-/// the other, and have its error there (math/square.h: b1 + b2 = t + g).
+/// Adds the slopes measured against a square: the set-up on the line of the first axis; the error
+/// of the square minus the set-up on that of the other (math/square.h: b1 + b2 = t + g).
 void put_square(const Specification& s, const CycleSpec& c, Observations& o) {
   for (const SquareSpec& q : s.squares) {
     if (q.name != c.measurement.square) continue;
@@ -206,7 +206,7 @@ void Clock::reading(Observations& o, double way) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   if (!first_) t_ += way / c_.feed + c_.dwell;
   first_ = false;
-  const double ticks = c_.is("circle") ? 1000.0 : 10.0;  // of a second
+  const double ticks = c_.is("circle") ? 1000.0 : 10.0;  // per second
   o.time.push_back(c_.timed ? std::round(t_ * ticks) / ticks : unknown);
   o.material.push_back(c_.temperature ? material(*c_.temperature, t_) : unknown);
 }

@@ -20,7 +20,7 @@ std::string key_of(const Effect::Parameter& parameter, bool rotary) {
 
 namespace {
 
-using Headers = std::map<std::uint64_t, std::string>;  // line -> its topmost table
+using Headers = std::map<std::uint64_t, std::string>;  // line number -> name of its top-level table
 
 void collect_headers(const toml::node& node, const std::string& top, Headers& headers) {
   if (const toml::table* table = node.as_table()) {
@@ -32,8 +32,8 @@ void collect_headers(const toml::node& node, const std::string& top, Headers& he
   }
 }
 
-/// The manifest in the specification: its own lines, with empty ones in place of the simulation's
-/// and of comments, which may reveal what is hidden.
+/// Returns the manifest in the specification: its own lines, with empty lines in place of the
+/// simulation's tables and of comments, which may reveal hidden effects.
 std::string manifest_of(std::string_view text, const toml::table& root) {
   Headers headers;
   for (const auto& [key, node] : root) collect_headers(node, std::string(key.str()), headers);
@@ -53,7 +53,7 @@ std::string manifest_of(std::string_view text, const toml::table& root) {
   return out;
 }
 
-/// The declaration of an [[effect]]: its name, and a number for each parameter.
+/// Declaration of the keys of an [[effect]]: its name, and a number for each parameter.
 class ParameterKeys {
  public:
   ParameterKeys(const Effect& effect, bool rotary) {
@@ -71,7 +71,7 @@ class ParameterKeys {
   config::Key table_{"effect", config::Key::Holds::table, {}};
 };
 
-/// The [[effect]]s.
+/// Reads the [[effect]] tables.
 class EffectReader {
  public:
   EffectReader(Specification& s, const std::string& file, std::vector<Error>& errors)
@@ -86,7 +86,7 @@ class EffectReader {
     errors_.push_back(Error{std::move(message), file_, line});
   }
 
-  /// Kind and axis by name; null with a complaint.
+  /// Finds kind and axis by name; null after an error is reported.
   const Effect* find_effect(config::TableReader& reader, const std::string& name, Axis& axis) {
     const std::size_t colon = name.find(':');
     const std::string kind = name.substr(0, colon),
@@ -105,7 +105,7 @@ class EffectReader {
       reader.error("name",
                    "no effect is called \"" + kind + "\"" + storage::suggestion(kind, kinds));
     else if (found->instances)
-      return found;  // of a place of its own, which the readings must show: straightness:EYX
+      return found;  // an effect in space: straightness:EYX
     else if (machine.axis(on) == nullptr)
       reader.error("name",
                    "the machine has no axis \"" + on + "\"" + storage::suggestion(on, axes));
@@ -147,7 +147,7 @@ class EffectReader {
   std::vector<Error>& errors_;
 };
 
-/// The seed, and formulas that campaign.toml must not contain.
+/// Reads the seed, and formulas that campaign.toml must not contain.
 std::vector<Formula> read_simulation(config::TableReader& top, Specification& s) {
   auto reader = top.table("simulation");
   if (!reader) return {};
@@ -166,7 +166,7 @@ std::vector<Formula> read_simulation(config::TableReader& top, Specification& s)
   return hidden;
 }
 
-/// Formulas as effects; one that cannot be used has been complained of.
+/// Adds formulas as effects; errors of invalid formulas were reported before.
 void add_formulas(const std::vector<Formula>& formulas, Specification& s, const std::string& file,
                   std::vector<Error>& errors) {
   for (const Formula& f : formulas) {

@@ -14,72 +14,73 @@
 
 namespace nonio::simulation {
 
-/// One [[cycle]]: how a measurement is taken. SI.
+/// One [[cycle]]: how a measurement is simulated. SI.
 struct CycleSpec {
   Measurement measurement;
   Axis axis;
-  std::uint64_t line = 0;       ///< of the specification
-  std::vector<double> targets;  ///< ascending; before the random offsets
+  std::uint64_t line = 0;       ///< line in the specification
+  std::vector<double> targets;  ///< ascending, without random shifts
   double offset = 0.0;          ///< largest random shift of a target, m or rad
   std::uint32_t runs = 5;
-  bool pendulum = true;  ///< else every run in `direction`
+  bool pendulum = true;  ///< true: each run in both directions; false: every run in `direction`
   double direction = 1.0;
   bool timed = true;
-  double dwell = 5.0;                                 ///< s
-  double feed = 0.0;                                  ///< m/s or rad/s
-  double pause = 0.0;                                 ///< before each further run, s
-  double noise = 0.0;                                 ///< standard deviation, m or rad
-  double misread = 0.0;                               ///< share of the readings
-  std::pair<double, double> misread_size{8.0, 40.0};  ///< times the noise
+  double dwell = 5.0;    ///< time at each target, s
+  double feed = 0.0;     ///< m/s or rad/s
+  double pause = 0.0;    ///< pause before each further run, s
+  double noise = 0.0;    ///< standard deviation of a reading, m or rad
+  double misread = 0.0;  ///< probability that a reading is misread
+  /// range of the error, in multiples of the noise
+  std::pair<double, double> misread_size{8.0, 40.0};
   struct Course {
     double start = 20.0, drift = 0.0, swing = 0.0, period = 3600.0;  ///< degC, K/s, K, s
   };
   std::optional<Course> temperature;
-  std::uint32_t steps = 0;                    ///< of a diagonal or step diagonal; 0: targets
-  std::uint32_t readings = 720;               ///< of a circle, on a turn
-  double set_up = 0.0;                        ///< of a straightedge against the axis, rad
-  std::vector<std::array<double, 3>> balls;   ///< with the rotary axes at 0, m
-  std::string carrier;                        ///< another rotary axis that turned too, or none
-  std::vector<double> carrier_at;             ///< its positions, rad
-  std::vector<std::array<double, 3>> senses;  ///< of gauges, unit vectors
-  std::string sensor;                         ///< of rtcp: turns, stands or probe
-  std::array<double, 3> ball_offset{};        ///< from where the control takes the ball to be, m
-  /// Of a kind that only its method can write: runs along its axis.
+  std::uint32_t steps = 0;  ///< number of steps of a diagonal or step diagonal; 0: targets are used
+  std::uint32_t readings = 720;               ///< number of readings per turn of a circle
+  double set_up = 0.0;                        ///< angle of a straightedge to the axis, rad
+  std::vector<std::array<double, 3>> balls;   ///< positions with the rotary axes at 0, m
+  std::string carrier;                        ///< another rotary axis that turns too; empty: none
+  std::vector<double> carrier_at;             ///< positions of the carrier, rad
+  std::vector<std::array<double, 3>> senses;  ///< directions of gauges, unit vectors
+  std::string sensor;                         ///< sensor of rtcp: turns, stands or probe
+  std::array<double, 3> ball_offset{};        ///< distance from the position in the control, m
+  /// Set for a kind whose file only its method can write; simulated as runs along its axis.
   const Method* method = nullptr;
   bool is(std::string_view kind) const { return measurement.kind == kind; }
   bool along_axis() const { return is("axis") || method != nullptr; }
 };
 
-/// A rotary axis as it is, and as the control has it. m, unit vectors.
+/// True position of a rotary axis, and its position in the control. m, unit vectors.
 struct RotarySpec {
   std::string axis;
   std::array<double, 3> centre{}, direction{};
   std::optional<std::array<double, 3>> control_centre{}, control_direction{};
-  std::string carries;  ///< table, head
+  std::string carries;  ///< part that the axis carries: table, head
 };
 
-/// A square as it is, rad.
+/// A square: true error and set-up angle, rad.
 struct SquareSpec {
   std::string name;
   double error = 0.0, set_up = 0.0;
 };
 
-/// One [[effect]], its parameters as written.
+/// One [[effect]], with its parameters as specified.
 struct EffectSpec {
   Effect effect;
-  std::string name;  ///< "backlash:X"
+  std::string name;  ///< kind and axis: "backlash:X"
   Axis axis;
   std::uint64_t line = 0;
-  std::vector<double> linear;                ///< SI
-  std::vector<std::optional<double>> shape;  ///< SI; none: the readings fix it
+  std::vector<double> linear;                ///< linear parameters, SI
+  std::vector<std::optional<double>> shape;  ///< SI; none: determined by the readings
 };
 
 struct Specification {
   Campaign campaign;
-  std::string manifest;  ///< the text without what is only for the simulation
+  std::string manifest;  ///< text of the specification without the tables of the simulation
   std::uint64_t seed = 1;
   std::vector<Effect> catalogue;  ///< the plugins' effects, and formulas
-  std::vector<CycleSpec> cycles;  ///< in the order of the measurements
+  std::vector<CycleSpec> cycles;  ///< sorted by measurement
   std::vector<EffectSpec> effects;
   std::vector<RotarySpec> rotaries;
   std::vector<SquareSpec> squares;
@@ -95,17 +96,18 @@ config::Checked<Specification> read_specification(std::string_view text, const s
                                                   const std::vector<Effect>& effects,
                                                   const std::vector<Method>& methods);
 
-/// The [[cycle]]s, one for each measurement, in their order.
+/// Reads the [[cycle]] tables, one for each measurement, in the order of the measurements.
 std::vector<CycleSpec> read_cycles(config::TableReader& top, const Campaign& campaign,
                                    const std::vector<Method>& methods, std::vector<Error>& errors);
 
-/// [[simulation.rotary]] and [[simulation.square]].
+/// Reads [[simulation.rotary]] and [[simulation.square]].
 void read_things(config::TableReader& simulation, Specification& s);
-/// Three numbers at a time, times `scale`; an error for another number of them.
+/// Reads vectors, three numbers each, multiplied by `scale`; error if their number is not a
+/// multiple of three.
 std::vector<std::array<double, 3>> vectors_at(config::TableReader& reader, std::string_view key,
                                               double scale);
 
-/// Quantity of a parameter on this kind of axis, and its key: "b_um", "a_um_per_m".
+/// Return the quantity of a parameter on this kind of axis, and its key: "b_um", "a_um_per_m".
 Quantity quantity_on(const Effect::Parameter& parameter, bool rotary);
 std::string key_of(const Effect::Parameter& parameter, bool rotary);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Of a specification: rotary axes and squares as they are.
+// Reads the rotary axes and squares of a specification.
 #include <algorithm>
 #include <cmath>
 

@@ -18,11 +18,12 @@ std::string in_one_line(const std::vector<Error>& errors) {
   return all;
 }
 
-/// Tables that came into a control on a day that the record of its machine gives.
+/// Returns one event of kind "compensation" for each table that was loaded into a control on a day
+/// that a machine's record states.
 std::vector<config::Event> events_of(const config::MachineRecords& records) {
   std::vector<config::Event> events;
   for (const config::RecordFile& file : records) {
-    if (!file.record) continue;  // its campaigns fail, and state why
+    if (!file.record) continue;  // campaigns of this machine fail and report the error
     for (const auto& [axis, recorded] : file.record->axes) {
       for (const config::ControlState& state : recorded.states) {
         if (state.source == "backup") continue;  // nothing was loaded on that day
@@ -95,7 +96,7 @@ Expected<std::vector<std::string>> HistoryUpdate::end(std::uint64_t last, std::u
 }
 
 void HistoryUpdate::nothing_done() const {
-  // If it cannot be noted, the next run makes the store again.
+  // If the note cannot be written, the next run rebuilds the store.
   if (known_) [[maybe_unused]]
     const auto noted = store::note_known_run(options_.out, *known_);
 }

@@ -12,33 +12,37 @@
 
 namespace nonio::batch {
 
-/// What events.toml, acknowledged.toml and forgotten.toml state, and what site.toml and the records
-/// of the machines state about machines; all that is wrong in one error.
+/// Reads events.toml, acknowledged.toml and forgotten.toml, and adds the aliases and intervals of
+/// site.toml and the events in the records of the machines. All mistakes are reported in one error.
 Expected<store::SiteRecords> read_records(const RunOptions& options,
                                           const reading::Context& context);
 
-/// The laboratory's memory (OUT/history.sqlite) in step with results that are about to change.
+/// Keeps the history of the laboratory (OUT/history.sqlite) consistent with the results while a run
+/// replaces them.
 class HistoryUpdate {
  public:
   HistoryUpdate(const RunOptions& options, const reading::Context& context)
       : options_(options), context_(context) {}
 
-  /// Before the first result is stored. `known`: the run up to which the store is complete, where the plan of
-  /// this run has noted it.
+  /// Has to be called before the first result is stored. Marks the store as possibly outdated.
+  /// `known`: the run up to which the store is complete, as the plan of this run states it.
   Expected<void> begin(std::optional<std::uint64_t> known = {});
   std::optional<std::uint64_t> known() const { return known_; }
-  /// When all are: adds these campaigns. `last` is the run whose end the store should contain,
-  /// `run` the one that it contains from now on. Returns notes for the summary. An error leaves the
-  /// store as it was, and the next run makes it again.
+  /// Has to be called when all results are stored: adds these campaigns to the store. `last` is the
+  /// run up to which the store should be complete before, `run` the one up to which it is complete
+  /// afterwards. Returns notes for the summary. An error leaves the store unchanged, and the next
+  /// run rebuilds it.
   Expected<std::vector<std::string>> end(std::uint64_t last, std::uint64_t run,
                                          const std::vector<std::string>& campaigns,
                                          const Expected<store::SiteRecords>& records);
-  /// No result was stored after `begin`: the store is complete up to the same run as before.
+  /// Has to be called instead of `end` if no result was stored after `begin`: the store remains
+  /// complete up to the same run.
   void nothing_done() const;
-  /// The same between runs, where an outdated store is left to the next run.
+  /// Adds campaigns that were evaluated again between runs. An outdated store is left to the next
+  /// run.
   Expected<std::vector<std::string>> end(const std::vector<std::string>& campaigns,
                                          const Expected<store::SiteRecords>& records);
-  /// Whether the store was made from nothing.
+  /// Whether the store was rebuilt from all results.
   bool rebuilt() const { return rebuilt_; }
 
  private:

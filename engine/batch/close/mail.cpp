@@ -38,10 +38,11 @@ namespace net = Poco::Net;
 
 namespace {
 
-constexpr std::size_t longest_answer = 300;  // bytes, of a message of a server or program
+constexpr std::size_t longest_answer = 300;  // bytes, of a message from a server or program
 constexpr std::size_t longest_subject = 200;
 
-/// One line of printable text: messages of others become part of the summary.
+/// Replaces control characters by spaces and shortens the text to `longest` bytes without cutting a
+/// character.
 std::string one_line(std::string text, std::size_t longest) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
@@ -54,14 +55,16 @@ std::string one_line(std::string text, std::size_t longest) {
   return text;
 }
 
-/// A server may send back what it was sent, also encoded: then nothing of it is stated.
+/// Returns `text`, or a note in its place if `text` contains the secret: a server may send back
+/// what it received.
 std::string without(const std::string& secret, const std::string& text) {
   if (secret.empty()) return text;
   const bool there = text.find(secret) != std::string::npos;
   return there ? "its answer contains a secret that was sent, and is not shown" : text;
 }
 
-/// `=?UTF-8?B?...?=` in pieces, none of which cuts a character (RFC 2047).
+/// Encodes the subject as `=?UTF-8?B?...?=` words, none of which splits a character (RFC 2047).
+/// ASCII subjects are returned unchanged.
 std::string encoded_subject(const std::string& subject) {
   const std::string text = one_line(subject, longest_subject);
   const bool plain = std::all_of(text.begin(), text.end(),
@@ -89,12 +92,12 @@ void fill(net::MailMessage& message, const config::Mail& mail, const Letter& let
     message.addRecipient(net::MailRecipient(net::MailRecipient::PRIMARY_RECIPIENT, to));
   message.setSubject(encoded_subject(letter.subject));
   message.setContentType("text/plain; charset=UTF-8");
-  message.set("Auto-Submitted", "auto-generated");  // RFC 3834: no automatic reply
+  message.set("Auto-Submitted", "auto-generated");  // RFC 3834: prevents automatic replies
   message.setDate(Poco::Timestamp());
   message.setContent(letter.text, net::MailMessage::ENCODING_BASE64);
 }
 
-/// A file without a name.
+/// Returns the descriptor of a file in memory that contains `bytes`; -1 if it cannot be made.
 int file_in_memory(const std::string& bytes) {
   const int file = ::memfd_create("mail", MFD_CLOEXEC);
   if (file < 0) return -1;
@@ -114,7 +117,8 @@ std::string said_in(int file) {
   return one_line(std::move(said), longest_answer);
 }
 
-/// What the program needs of the environment; passwords stay.
+/// Returns the environment variables that the mail program needs; variables with passwords are left
+/// out.
 std::vector<std::string> kept_environment() {
   constexpr std::string_view kept[] = {"PATH=", "HOME=", "USER=", "LOGNAME=", "LANG=", "TZ="};
   std::vector<std::string> all = process::present_environment();
@@ -130,7 +134,7 @@ Expected<std::string> by_program(const config::Mail& mail, const net::MailMessag
   std::ostringstream text;
   message.write(text);
   std::string bytes = text.str();
-  std::erase(bytes, '\r');  // a program on the same machine reads lines of the system
+  std::erase(bytes, '\r');  // a program on the same host expects line ends without CR
   const int input = file_in_memory(bytes), output = file_in_memory({});
   process::ChildEnd end;
   std::vector<std::string> command{mail.sendmail, "-i", "-f", mail.from, "--"};
@@ -153,7 +157,7 @@ net::Context::Ptr context_of(const std::string& trust, const fs::path& site) {
       new net::Context(net::Context::TLS_CLIENT_USE, trust.empty() ? "" : (site / trust),
                        net::Context::VERIFY_STRICT, 9, trust.empty());
   context->requireMinimumProtocol(net::Context::PROTO_TLSV1_2);
-  context->enableExtendedCertificateVerification(true);  // the name of the server, too
+  context->enableExtendedCertificateVerification(true);  // also checks the name of the server
   net::SSLManager::instance().initializeClient(nullptr, new net::RejectCertificateHandler(false),
                                                context);
   return context;
@@ -173,7 +177,7 @@ void log_in(net::SMTPClientSession& session, const std::string& host, const conf
 void converse(net::SecureSMTPClientSession& session, const config::Mail& mail,
               const net::Context::Ptr& context, const std::string& password,
               const net::MailMessage& message) {
-  const std::string own = "localhost";  // the name of this machine is not published
+  const std::string own = "localhost";  // the name of this host is not published
   session.open();
   session.login(own);
   if (mail.tls == config::Mail::Tls::starttls) {
@@ -204,7 +208,8 @@ void talk(const config::Mail& mail, const fs::path& site, const std::string& pas
   }
 }
 
-/// While it lives, a server that hangs up is an error, and no end of the process.
+/// Ignores SIGPIPE during its lifetime, so that a server that closes the connection causes an error
+/// and not the end of the process.
 class WithoutPipeSignal {
  public:
   WithoutPipeSignal() : before_(::signal(SIGPIPE, SIG_IGN)) {}

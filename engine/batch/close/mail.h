@@ -19,22 +19,24 @@ struct Letter {
 /// or fixed is not, nor is a change that is not significant enough.
 bool is_reason_for_mail(const reports::WorkItem& line, config::Mail::On on);
 
-/// Gives the letter to the program or the server of `mail`, once. Paths are relative to `site`. In
-/// a process of its own, which may take `seconds` (s) in all. The password appears in no error.
+/// Sends the letter once, through the program or the server of `mail`. Paths are relative to
+/// `site`. Runs in a child process that may take `seconds` (s) in total. The password appears in no
+/// error.
 Expected<void> send_mail(const config::Mail& mail, const std::filesystem::path& site,
                          const Letter& letter, double seconds = 60.0);
 
-/// POSTs a body of JSON, with header `X-Nonio-Signature: sha256=HEX`, its HMAC by the secret. Any
-/// status but 2xx is an error. In a process of its own, as above; the secret appears in no error.
+/// Sends `body` (JSON) by POST, with the header `X-Nonio-Signature: sha256=HEX`, the HMAC of the
+/// body by the secret. A status other than 2xx is an error. Runs in a child process that may take
+/// `seconds` (s) in total; the secret appears in no error.
 Expected<void> send_webhook(const config::Webhook& webhook, const std::filesystem::path& site,
                             const std::string& body, double seconds = 20.0);
 
-/// The same of `send_webhook`, as `nonio_post`.
+/// Posts the body in this process; exported as `nonio_post` by a library that is loaded late.
 using PostTo = Expected<std::string> (*)(const config::Webhook& webhook,
                                          const std::filesystem::path& site, const std::string& body,
                                          double seconds);
 
-/// The way to the server or program, as `nonio_deliver` of a library that is loaded late
+/// Sends the letter in this process; exported as `nonio_deliver` by a library that is loaded late
 /// (late_library.h). A server may take `seconds` (s).
 using Deliver = Expected<std::string> (*)(const config::Mail& mail,
                                           const std::filesystem::path& site, const Letter& letter,

@@ -29,7 +29,7 @@ bool show_histories(const RunOptions& options, const RunEvents& events,
                     HistoryUpdate& history, const Expected<store::SiteRecords>& records,
                     const std::string& only, RunResult& run) {
   if (!records || !run.history_error.empty())
-    return true;  // reported already; the next run does it
+    return true;  // the error is reported already; the next run writes the reports
   const ShownHistories shown(options, context);
   auto others = shown.others(run.campaigns, *records, history.rebuilt());
   std::string error = others ? std::string() : others.error().message;

@@ -11,15 +11,16 @@
 
 namespace nonio::batch {
 
-/// If the index cannot be written, the run does not fail: it is made again from the results.
+/// Adds the campaigns `done` to the history. If the store cannot be written, the run does not fail:
+/// the error is noted in `run`, and the next run rebuilds the store.
 void write_history(RunResult& run, HistoryUpdate& history, std::uint64_t known,
                    const std::vector<std::string>& done,
                    const Expected<store::SiteRecords>& records, const RunEvents& events);
 
-/// Reports that show another history of their machine than the store has by now are written again:
-/// whatever the order in which campaigns came, each sees all that its day knew. False if it was
-/// interrupted.
-/// `only`: the campaign of a run that is reopened; reports of others are left to the next run.
+/// Writes reports again if they show another history of their machine than the store contains by
+/// now, so that the order in which campaigns are evaluated has no effect. Returns false if it was
+/// interrupted. `only`: the campaign of a run that is reopened; reports of other campaigns are left
+/// to the next run.
 bool show_histories(const RunOptions& options, const RunEvents& events,
                     const reading::Context& context, const RunState& state, ReleaseDesk desk,
                     HistoryUpdate& history, const Expected<store::SiteRecords>& records,

@@ -12,21 +12,24 @@
 
 namespace nonio::batch {
 
-/// Which campaigns show another history of their machine than the store has. A run calls this when
-/// the store contains its results; then those campaigns are done again. Where nothing has changed
-/// since all were right (by OUT/.nonio/histories), no history is looked at.
+/// Finds the campaigns whose documents show another history of their machine than the store
+/// contains. A run calls this when the store contains its results, and evaluates those campaigns
+/// again. If OUT/.nonio/histories notes that all documents are up to date and no entry changed
+/// since, the store is not read.
 class ShownHistories {
  public:
   ShownHistories(const RunOptions& options, const reading::Context& context)
       : options_(options), context_(context) {}
 
-  /// Before the first result is stored, if one is going to be.
+  /// Has to be called before the first result is stored, if one is going to be: marks the histories
+  /// in documents as possibly outdated.
   Expected<void> begin() const;
-  /// By campaign. `looked`: whatever was noted before. Notes nothing.
+  /// Returns, by campaign, the history that its document should show, for campaigns whose document
+  /// shows another one. `looked`: read the store even if all documents are noted as up to date.
   Expected<std::map<std::string, assessment::HistoryBasis>> others(
       const std::vector<CampaignState>& campaigns, const store::SiteRecords& records,
       bool looked) const;
-  /// All are right.
+  /// Notes that all documents show the present history.
   Expected<void> end(const std::vector<CampaignState>& campaigns,
                      const store::SiteRecords& records) const;
 

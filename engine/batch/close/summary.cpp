@@ -25,8 +25,8 @@ std::string where(const Error& e) {
   return text.empty() ? e.message : text + ": " + e.message;
 }
 
-/// Why a campaign was done, in the language of `words`: a fixed text, or a name and what became of
-/// it.
+/// Returns a single reason in the language of `words`. It is a fixed text, or a name followed by
+/// what happened to it.
 std::string one_reason(const std::string& text, const config::TerminalWords& words) {
   if (std::string whole = words.of("reason", text); whole != text) return whole;
   for (const char* what : {" changed", " is missing from the output", " was changed in the output"})
@@ -36,9 +36,10 @@ std::string one_reason(const std::string& text, const config::TerminalWords& wor
   return text;
 }
 
-constexpr std::size_t most_shown = 6;  // of a list, in summary.txt
+constexpr std::size_t most_shown = 6;  // lines of a list that summary.txt shows
 
-/// One list of the summary, as the begin of a text for a person and as lines of JSON for a program.
+/// A list of the summary: its first entries as text for a person, and all entries as lines of JSON
+/// for a program.
 struct List {
   List(const char* list_name, const fs::path& folder)
       : name(list_name), text(storage::Spool::in(folder)), json(storage::Spool::in(folder)) {}
@@ -76,8 +77,9 @@ storage::Json run_json(const evaluation::RunLabel& run) {
   return {{"night", run.number}, {"date", run.date}};
 }
 
-/// Which run this is, and whether campaigns are missing: first of all, so that no reader takes an
-/// old summary for that of this run.
+/// Returns the first line of the summary: number and date of the run, and how many campaigns it and
+/// the previous run saw. It is written first so that no reader takes an old summary for that of
+/// this run.
 std::string run_line(const RunResult& run, const config::TerminalWords& words) {
   std::string line =
       run_words(run.run, words) + "; " + words.counted("seen", run.campaigns.size()) + ", ";
@@ -88,7 +90,7 @@ std::string run_line(const RunResult& run, const config::TerminalWords& words) {
          "\n";
 }
 
-/// New findings of one heading: how many, and where the first are.
+/// Number of new findings with one heading, and the first places.
 struct Fresh {
   std::size_t count = 0;
   std::string where;
@@ -105,7 +107,8 @@ struct Lists {
         fresh("new_findings", folder) {}
   const config::TerminalWords& words;
   List done, unchanged, attention, failed, vanished, fresh;
-  std::map<std::string, Fresh> fresh_by_heading;  ///< those that require action
+  std::map<std::string, Fresh> fresh_by_heading;  ///< new findings with severity warning, by
+                                                  ///< heading
 
   void add(const Vanished& v) {
     vanished.add(
@@ -113,7 +116,7 @@ struct Lists {
         {{"campaign", v.id}, {"folder", v.folder}, {"last_done_night", v.run}, {"message", v.why}});
   }
 
-  /// An error if what the campaign's record states cannot be read.
+  /// Adds a campaign to its lists. An error if its record cannot be read.
   Expected<void> add(const CampaignState& c, const fs::path& out) {
     if (c.status == evaluation::Status::failed) {
       add_failed(c, out);
@@ -147,7 +150,8 @@ struct Lists {
   }
 
  private:
-  /// Since when it has been so, and the folder of results that are still valid.
+  /// Adds a failed campaign with its error, the run since which it has failed, and the folder of
+  /// earlier results that are still valid.
   void add_failed(const CampaignState& c, const fs::path& out) {
     std::string line = c.id + ": " + first_error(c, words);
     storage::Json entry = entry_json(c, first_error(c, {words.templates(), "en"}));
@@ -187,7 +191,8 @@ struct Lists {
   }
 };
 
-/// All numbers, as long as they fit a line.
+/// Returns the line of issued certificates: all numbers if there are at most 8, otherwise the first
+/// and the last.
 std::string issued_line(const std::vector<certificates::RegisterEntry>& issued,
                         const config::TerminalWords& words) {
   constexpr std::size_t most = 8;
@@ -209,7 +214,8 @@ std::string waiting_line(const std::vector<certificates::WaitingDraft>& drafts,
   return line + (drafts.size() > most ? ", ..." : "") + "\n";
 }
 
-/// "12 campaigns: 3 done, 9 unchanged, 0 failed; 2 lines: action required".
+/// Returns the line of counts, for example "12 campaigns: 3 done, 9 unchanged, 0 failed; 2 lines:
+/// action required".
 std::string counts_line(const RunResult& run, const Lists& lists, const WorklistPages& worklist,
                         const std::string& version) {
   const auto n = [](std::size_t count) { return std::to_string(count); };
@@ -225,7 +231,7 @@ std::string counts_line(const RunResult& run, const Lists& lists, const Worklist
          words.counted("asking", worklist.asking) + "\n";
 }
 
-/// One line per heading, those with the most findings first.
+/// Writes one line per heading of new findings, headings with the most findings first.
 void write_fresh(storage::Spool& out, const Lists& lists) {
   if (lists.fresh_by_heading.empty()) return;
   std::vector<std::pair<std::string, Fresh>> all(lists.fresh_by_heading.begin(),
@@ -241,14 +247,15 @@ void write_fresh(storage::Spool& out, const Lists& lists) {
             "\n");
 }
 
-/// A run in which nothing is new and no action is required.
+/// Whether nothing was done, failed, vanished or issued in this run, and no action is required.
 bool is_quiet(const RunResult& run, const Lists& lists, const WorklistPages& worklist) {
   return lists.done.count == 0 && lists.failed.count == 0 && lists.vanished.count == 0 &&
          worklist.asking == 0 && !worklist.json.empty() && run.issued.empty() &&
          run.waiting.empty() && run.notes.empty();
 }
 
-/// What requires action comes first. Of long lists the begin: summary.json has them whole.
+/// Writes summary.txt: failures, losses and actions required come first. Long lists are cut;
+/// summary.json contains them in full.
 void write_text(storage::Spool& out, const RunResult& run, Lists& lists, const std::string& version,
                 const WorklistPages& worklist) {
   const config::TerminalWords& words = lists.words;

@@ -10,16 +10,17 @@
 
 namespace nonio::batch {
 
-/// With its file and line, and "(and 3 more)" in the language of `words`; why it was done where there
-/// is no error.
+/// Returns the campaign's first error with its file and line, followed by "(and 3 more)" in the
+/// language of `words`; without an error, the reason for which the campaign was evaluated.
 std::string first_error(const CampaignState& c, const config::TerminalWords& words);
 
-/// Why a campaign is done or not, in the language of `words`.
+/// Translates the reason for which a campaign was evaluated or not into the language of `words`.
 std::string reason_in(const std::string& text, const config::TerminalWords& words);
 
-/// summary.txt and summary.json (schema nonio-summary/1) of a complete run, written into `out`.
-/// summary.txt speaks the language of `words`, summary.json English. The findings come from the
-/// campaigns' records there, one at a time; the lists grow in files.
+/// Writes summary.txt and summary.json (schema nonio-summary/1) of a complete run into `out`.
+/// summary.txt is in the language of `words`, summary.json in English. Findings are read from the
+/// records of the campaigns one at a time, and long lists are kept in files, so that memory does
+/// not grow with the site.
 Expected<void> write_summary(const RunResult& run, const std::filesystem::path& out,
                              const std::string& version, const config::TerminalWords& words,
                              const WorklistPages& worklist);

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t most_lines = 16;  // of summary.txt: a page
+constexpr std::size_t most_lines = 16;  // lines of summary.txt: one page
 
 bool is_as_it_was(const fs::path& path, const std::string& bytes) {
   std::error_code error;
@@ -26,12 +26,13 @@ bool is_as_it_was(const fs::path& path, const std::string& bytes) {
   return found && *found == bytes;
 }
 
-/// What failed or is lost has lists of its own in summary.txt, with more details.
+/// Whether the line has a separate list in summary.txt: failed and lost campaigns, which are listed
+/// there with more details.
 bool is_in_a_list(const reports::WorkItem& line) {
   return line.kind == reports::WorkItem::Kind::lost || line.kind == reports::WorkItem::Kind::failed;
 }
 
-/// Pages of machines that are not there any more.
+/// Removes pages of machines that no longer exist.
 void remove_old_pages(const fs::path& folder, const std::set<std::string>& present) {
   std::error_code error;
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
@@ -41,7 +42,7 @@ void remove_old_pages(const fs::path& folder, const std::set<std::string>& prese
     }
 }
 
-/// Publishes them, and looks whether the disk gives them back.
+/// Publishes the pages, then reads them back from the disk and reports an error if they differ.
 Expected<void> publish_checked(const fs::path& folder, const std::vector<Artifact>& pages) {
   if (pages.empty()) return {};
   if (auto put = storage::publish(folder, pages); !put) return put;
@@ -54,14 +55,15 @@ Expected<void> publish_checked(const fs::path& folder, const std::vector<Artifac
   return {};
 }
 
-/// Those that are not as they were; index.html last.
+/// Writes the pages that have changed, index.html last.
 Expected<void> write_lists(const fs::path& out, std::vector<Artifact> pages) {
   std::reverse(pages.begin(), pages.end());
   std::erase_if(pages, [&](const Artifact& p) { return is_as_it_was(out / p.name, p.bytes); });
   return publish_checked(out, pages);
 }
 
-/// Those of the machines first.
+/// Writes the pages of the machines, removes those of former machines, then writes the pages of the
+/// site.
 Expected<void> write_pages(const fs::path& out, std::vector<Artifact> pages) {
   std::vector<Artifact> root, machines;
   std::set<std::string> present;
@@ -80,7 +82,7 @@ Expected<void> write_pages(const fs::path& out, std::vector<Artifact> pages) {
   return write_lists(out, std::move(root));
 }
 
-/// Result of the process that makes the pages: the members of `WorklistPages`.
+/// Texts that the child process returns: the members of `WorklistPages`.
 using Texts = std::vector<std::string>;
 
 void add_curves(reports::SiteHistory& site, const fs::path& out,
@@ -91,8 +93,8 @@ void add_curves(reports::SiteHistory& site, const fs::path& out,
   }
 }
 
-/// The mail of the run to the addresses in `[mail]`; empty if no line requires it. Leaves `site` as it
-/// was.
+/// Returns the text of the mail to the addresses in `[mail]`; empty if no line is severe enough for
+/// a mail. `site` is unchanged afterwards.
 Expected<std::string> mail_text(reports::SiteHistory& site, const reading::Context& context,
                                 const std::string& language) {
   if (!context.site.mail) return std::string();
@@ -112,7 +114,7 @@ Expected<std::string> mail_text(reports::SiteHistory& site, const reading::Conte
   return text;
 }
 
-/// The language of the site where its words are there.
+/// Returns the language of the site if its words are available, otherwise "en".
 std::string language_of_pages(const reading::Context& context) {
   const std::string& own = context.site.language;
   return context.templates.tables.contains("words/" + own + "/site") ? own : "en";
@@ -135,7 +137,7 @@ Expected<Texts> texts_of(reports::SiteHistory site, const reading::Context& cont
                site.judged ? "1" : "", mail, actions};
 }
 
-/// All machines anew, with the error curves of each campaign's results.json.
+/// Makes all pages again, with the error curves from each campaign's results.json.
 Expected<Texts> small_worklist(const fs::path& out, const reading::Context& context,
                                const assessment::LastRun& last_run,
                                const std::function<void()>& alive) {
@@ -147,7 +149,7 @@ Expected<Texts> small_worklist(const fs::path& out, const reading::Context& cont
   return texts_of(std::move(site), context);
 }
 
-/// Pages of machines of which nothing is new stay.
+/// Writes the pages of machines whose data have changed; other pages are kept.
 class MachinePages {
  public:
   MachinePages(assessment::Assessment& assessment, const fs::path& out,
@@ -197,7 +199,7 @@ class MachinePages {
   std::vector<std::size_t> which_{};
 };
 
-/// Without error curves, and only of machines of which something is new.
+/// Makes the pages without error curves, and only those of machines with new data.
 Expected<Texts> large_worklist(const fs::path& out, const reading::Context& context,
                                const assessment::LastRun& last_run,
                                const std::function<void()>& alive) {

@@ -10,25 +10,26 @@
 
 namespace nonio::batch {
 
-/// What a run reports to people.
+/// Texts that a run reports to people, and their counts.
 struct WorklistPages {
-  std::string text;  ///< of summary.txt: one line per action, without what failed or is lost
-  std::string json;  ///< the same lines as a list, of summary.json
-  std::uint64_t asking = 0;  ///< lines that are new and no mere notes
-  bool judged = true;        ///< some campaign states a limit
-  std::string actions;  ///< like `json`, in the language of the site: lines that require action
-  std::string mail;     ///< the lines that are grave enough for one; empty: none is
+  std::string text;  ///< for summary.txt: one line per action; failed and lost campaigns are listed
+                     ///< elsewhere
+  std::string json;  ///< the same lines for summary.json, as a list
+  std::uint64_t asking = 0;  ///< number of new lines that require action
+  bool judged = true;        ///< whether at least one campaign states a tolerance limit
+  std::string actions;       ///< lines that require action as JSON, in the language of the site
+  std::string mail;          ///< lines that are severe enough for a mail; empty: no mail
 };
 
-/// What the run knows and the history does not.
+/// Collects what the run knows and the history does not contain: failed and vanished campaigns,
+/// issued certificates, drafts.
 assessment::LastRun last_run_of(const RunResult& run, const std::filesystem::path& out,
                                 const Templates& templates);
 
-/// Assesses the histories of the machines, and writes the pages that are not as they were:
-/// OUT/index.html, machines/, due.html, due.ics, instruments.html, compare.html. In a process of
-/// its own, which may take `disk_seconds` without a sign of life. Of sites with more campaigns than
-/// `most_curves` no error curves are drawn, and machines of which nothing is new are not looked at
-/// again.
+/// Assesses the histories of the machines and writes the pages that have changed: OUT/index.html,
+/// machines/, due.html, due.ics, instruments.html, compare.html. Runs in a child process that may
+/// take `disk_seconds` without a sign of life. For sites with more than `most_curves` campaigns, no
+/// error curves are drawn and machines without new data are not assessed again.
 Expected<WorklistPages> make_worklist(const RunOptions& options, const reading::Context& context,
                                       const assessment::LastRun& last_run,
                                       std::uint64_t most_curves = 5000);

@@ -13,7 +13,7 @@ namespace nonio::batch {
 
 namespace {
 
-/// So many at once: a crash costs no more campaigns than that, and answers fit into the channel.
+/// Campaigns in one batch. A crash loses at most this many, and their answers fit into the channel.
 constexpr std::size_t largest_batch = 64;
 
 struct StoredMessage {
@@ -64,7 +64,7 @@ Expected<void> Committer::give(Given campaign) {
   if (!channel_)
     if (auto started = start(); !started) return started;
   pending_.push_back(campaign);
-  // A process that is dead already is found by done().
+  // If the process has ended already, done() finds it.
   [[maybe_unused]] const ssize_t n = ::send(channel(), &campaign, sizeof campaign, MSG_NOSIGNAL);
   return {};
 }

@@ -14,36 +14,37 @@
 
 namespace nonio::batch {
 
-/// A process that makes staged results durable while the workers go on. What has accumulated while
-/// the disk was busy is flushed at once, so that a fast run needs few flushes and a slow one waits
-/// for none.
+/// Makes staged results durable in a child process while the workers continue. All campaigns that
+/// were given while the disk was busy are flushed together, so a fast run needs few flushes and a
+/// slow run waits for none.
 class Committer {
  public:
   struct Given {
     std::size_t campaign = 0;
-    std::uint32_t losses = 0;  ///< of the disk, before its results were written
+    std::uint32_t losses = 0;  ///< losses reported by the disk before the results were written
   };
   struct Done {
     Given given;
-    std::string error;   ///< empty: stored
-    bool again = false;  ///< the process died over it; its parent may store it
+    std::string error;   ///< why it could not be stored; empty: stored
+    bool again = false;  ///< the process died while storing it; the parent may store it
   };
-  /// Run in the process: stores these campaigns and reports the outcome of each.
+  /// Runs in the child process: stores these campaigns and returns the outcome of each.
   using Task = std::function<std::vector<Expected<void>>(const std::vector<Given>&)>;
 
   explicit Committer(Task task) : task_(std::move(task)) {}
 
-  /// An error if there is no process for it.
+  /// Queues a campaign. An error if the process cannot be started.
   Expected<void> give(Given campaign);
-  /// Those that were given and not answered yet.
+  /// Campaigns that were given and not answered yet.
   const std::vector<Given>& pending() const { return pending_; }
-  /// Ends the process, whatever it is doing.
+  /// Ends the process at once, even while it writes.
   void end();
-  /// What is done by now. If the process died: all that was pending.
+  /// Returns the campaigns that are finished since the last call. If the process died, all pending
+  /// ones are returned.
   std::vector<Done> done();
   int channel() const {
     return channel_.get();
-  }  ///< readable when something is done; -1: no process
+  }  ///< readable when a campaign is finished; -1: no process
 
  private:
   Expected<void> start();

@@ -7,12 +7,12 @@
 
 namespace nonio::batch {
 
-/// Removes what a run that was cut short left in the output folder itself.
+/// Removes temporary files that an interrupted run left directly in the output folder.
 void tidy_root(const std::filesystem::path& out);
 
-/// Nothing half-done is left in a folder that other programs read. Where a run was cut short (`resumed`),
-/// it may lie in folders of campaigns that are not in the site any more. An error if it was
-/// interrupted, or a folder cannot be read.
+/// Removes unfinished files from the results folders, because other programs read them. After an
+/// interrupted run (`resumed`), folders of campaigns that are no longer in the site are included.
+/// An error if it was interrupted or a folder cannot be read.
 Expected<void> tidy_all(const RunResult& run, const std::filesystem::path& out, bool resumed);
 
 }  // namespace nonio::batch

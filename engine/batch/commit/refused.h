@@ -9,8 +9,8 @@
 
 namespace nonio::batch {
 
-/// What the survey has failed: a good result of an earlier run stays, else there is one that states
-/// what is wrong. Several campaigns with one id claim one folder.
+/// Stores failed results for campaigns that the survey refused; good results of an earlier run are
+/// kept instead. Several campaigns with one id share a folder, so only the first of them is stored.
 void store_refused(const RunOptions& options, const reading::Context& context, const RunState& run,
                    const RunEvents& events, std::vector<CampaignState>& campaigns);
 

@@ -23,8 +23,8 @@ evaluation::RecordedFile recorded(const Artifact& a) {
   return {a.name, a.bytes.size(), storage::sha256(a.bytes)};
 }
 
-/// Under a temporary name, whole or not at all: until the record of this run has its name, this
-/// file states to a resumed run why the campaign is done.
+/// Writes the record under a temporary name, completely or not at all. Until it gets its own name,
+/// this file states to a resumed run why the campaign is evaluated.
 Expected<void> write_record(const fs::path& folder, const evaluation::Record& record) {
   const std::string unfinished = std::string(".") + evaluation::record_name;
   const std::string text = evaluation::to_json(record);
@@ -35,7 +35,8 @@ Expected<void> write_record(const fs::path& folder, const evaluation::Record& re
                               [&] { return storage::read_file(path).value_or("") == text; });
 }
 
-/// What the record states of the previous runs.
+/// Copies into `record` the findings of the previous run and the run since which the campaign has
+/// failed.
 Expected<void> look_back(const fs::path& folder, evaluation::Record& record) {
   NONIO_TRY(const auto last, evaluation::last_record(folder));
   if (record.status == evaluation::Status::failed)
@@ -88,7 +89,7 @@ Expected<void> stage(const fs::path& out, const evaluation::Evaluated& e,
     files.push_back({store::earlier_name, std::move(carried.earlier)});
     record.files.push_back(recorded(files.back()));
   }
-  // Last, so that it never speaks of a file that is missing.
+  // results.json is written last, so that it never names a file that is missing.
   files.push_back({evaluation::results_name, std::move(results)});
   record.files.push_back(recorded(files.back()));
 
@@ -103,10 +104,11 @@ Expected<void> stage(const fs::path& out, const evaluation::Evaluated& e,
 
 namespace {
 
-/// The results of one campaign on their way from temporary names to their own.
+/// Moves the results of one campaign from their temporary names to their own names.
 class Move {
  public:
-  /// What a commit that was cut short has done already is not staged any more.
+  /// Takes over the staged record of this run. If the results have their own names already, because
+  /// another process or an interrupted commit renamed them, nothing is left to be done.
   Move(fs::path to, std::uint64_t run, const Expected<void>& sound) : folder_(std::move(to)) {
     auto staged = evaluation::staged_record(folder_);
     if (storage::has_own_names() && is_stored(run)) {
@@ -119,16 +121,17 @@ class Move {
       done_ = sound;
     } else {
       const auto record = evaluation::read_record(folder_);
-      moved_ = record && record->run == run;  // an older one could be taken for that of this run
+      // The record of an older run must not be taken for that of this run.
+      moved_ = record && record->run == run;
       if (!moved_) done_ = fail("nothing is staged in " + folder_.string());
     }
   }
 
-  /// An error if what is on the disk is not what was written.
+  /// Sets an error if the bytes on the disk differ from those that were written.
   void read_back() {
     for (const evaluation::RecordedFile& f : record_.files) {
       const fs::path temporary = storage::temporary_path(folder_, f.name);
-      // A commit that was cut short may have given it its name.
+      // An interrupted commit may have renamed the file already.
       const auto waits = storage::is_there(temporary);
       const auto same = storage::disk_gives_back(waits && !*waits ? folder_ / f.name : temporary,
                                                  f.size, f.sha256);
@@ -143,7 +146,7 @@ class Move {
               (folder_ / evaluation::record_name).string());
   }
 
-  /// The old record, and files of it that the new results do not have.
+  /// Renames the old record, and removes files of the old results that the new ones do not contain.
   void put_old_aside() {
     std::error_code error;
     const bool there = fs::exists(fs::symlink_status(folder_ / evaluation::record_name, error));
@@ -151,7 +154,7 @@ class Move {
     if (there && done_ && storage::has_own_names()) {
       const auto moved = evaluation::last_record(folder_);
       if (moved && *moved && (*moved)->record.run >= record_.run) {
-        // It has taken its place since this process looked.
+        // Another process has stored the results since this process looked.
         rename(folder_ / evaluation::record_before_name, folder_ / evaluation::record_name);
         return leave_to_other();
       }
@@ -172,7 +175,8 @@ class Move {
              [&] { return storage::sha256_of_file(folder_ / f.name).value_or("") == f.sha256; });
   }
   void rename_record() {
-    // The survey takes a file that is younger than the record for one that was touched.
+    // The survey treats a file that is younger than the record as changed, so the record gets the
+    // latest time.
     ::utimensat(AT_FDCWD, storage::temporary_path(folder_, evaluation::record_name).c_str(),
                 nullptr, 0);
     rename(storage::temporary_path(folder_, evaluation::record_name),
@@ -181,7 +185,7 @@ class Move {
              return now && evaluation::to_json(*now) == evaluation::to_json(record_);
            });
     if (!done_) return;
-    // The new results are complete; what is left of the old ones may as well go later.
+    // The new results are complete, so a failure to remove the rest of the old ones does no harm.
     [[maybe_unused]] const auto gone = put_away_record_before(folder_);
   }
 
@@ -212,12 +216,13 @@ class Move {
     return storage::is_artifact_name(name) || name == evaluation::results_name ||
            name == store::earlier_name;
   }
-  /// Whether the present results are of this run, or of a later one that has begun since.
+  /// Whether the present results belong to this run or to a later one.
   bool is_stored(std::uint64_t run) const {
     const auto record = evaluation::read_record(folder_);
     return record && record->run >= run;
   }
-  /// Another process that did the same shard was quicker: what it has stored are the same bytes.
+  /// Leaves the results to another process that did the same shard first: it has stored the same
+  /// bytes.
   void leave_to_other() {
     storage::remove_leftovers(folder_);
     moved_ = true;
@@ -236,8 +241,8 @@ class Move {
     if (const auto renamed = storage::rename_file(from, to, is_ours); !renamed)
       give_up(renamed.error().message);
   }
-  /// The old results as they are, or nothing of them: some may exist already, and if storing others
-  /// was interrupted some may be missing.
+  /// Copies the old results into `last-good`, completely or not at all. Some files may exist
+  /// already, and some may be missing if an earlier attempt was interrupted.
   void keep(const evaluation::Record& old) {
     if (!done_) return;
     const fs::path to = folder_ / evaluation::last_good_name;
@@ -256,7 +261,7 @@ class Move {
   fs::path folder_;
   evaluation::Record record_{};
   std::set<std::string> names_{};
-  bool moved_ = false;  ///< already
+  bool moved_ = false;  ///< the results have their own names already
   Expected<void> done_{};
 };
 
@@ -304,7 +309,7 @@ Expected<void> store(const fs::path& out, const evaluation::Evaluated& evaluated
 }
 
 Expected<void> tidy(const fs::path& folder) {
-  constexpr int tries = 3;  // a refusal may pass
+  constexpr int tries = 3;  // an error of the file system may pass
   auto left = storage::temporaries(folder);
   for (int i = 0; i < tries && (!left || !left->empty()); ++i, left = storage::temporaries(folder))
     storage::remove_leftovers(folder);

@@ -10,7 +10,7 @@
 
 namespace nonio::batch {
 
-/// What the record of a campaign states in addition to its results.
+/// Properties of an evaluation that its record states in addition to the results.
 struct StoreNote {
   std::string folder;
   evaluation::RunLabel run{};
@@ -18,33 +18,32 @@ struct StoreNote {
   bool retry = false;
 };
 
-/// Writes a campaign's files into its output folder under temporary names; `commit` gives them
-/// theirs.
+/// Writes a campaign's files into its output folder under temporary names; `commit` renames them.
 Expected<void> stage(const std::filesystem::path& out, const evaluation::Evaluated& evaluated,
                      const reading::Context& context, const StoreNote& note);
 
 /// A campaign whose files are staged.
 struct Staged {
   std::string id;
-  std::uint32_t losses = 0;  ///< of the disk, before its first file was written
+  std::uint32_t losses = 0;  ///< losses reported by the disk before its first file was written
 };
 
-/// Makes the staged files of these campaigns their results, durably: one flush of the disk serves
-/// all of them. They are read back from the disk first. Then the old record is put aside, and the
-/// new one gets its name last: whenever a record is there, all the files it lists belong together.
-/// Results that a failure replaces which may pass go into the folder `last-good`. One entry for
-/// each campaign.
+/// Makes the staged files of these campaigns their results, durably; one flush of the disk serves
+/// all of them. The files are read back from the disk first. Then the old record is renamed, and
+/// the new record gets its name last, so that a record always lists files that belong together.
+/// Results that are replaced by a temporary failure are kept in the folder `last-good`. Returns one
+/// entry for each campaign.
 std::vector<Expected<void>> commit(const std::filesystem::path& out,
                                    const std::vector<Staged>& campaigns, std::uint64_t run,
                                    const storage::Disk& disk);
 
-/// Both, for one campaign.
+/// Calls `stage` and `commit` for one campaign.
 Expected<void> store(const std::filesystem::path& out, const evaluation::Evaluated& evaluated,
                      const reading::Context& context, const StoreNote& note,
                      const storage::Disk& disk);
 
-/// Removes what is left in a campaign's output folder of results that were not stored, or of
-/// storing them. An error names what cannot be removed.
+/// Removes leftovers of unfinished storing from a campaign's output folder. An error names a file
+/// that cannot be removed.
 Expected<void> tidy(const std::filesystem::path& folder);
 
 }  // namespace nonio::batch

@@ -9,11 +9,11 @@
 
 namespace nonio::batch {
 
-/// Of a run that is reopened: one campaign is to do, every other one stays as the run left it.
-/// Its id; an error if no campaign has that folder or id.
+/// Marks one campaign of a reopened run as to be evaluated and leaves all others as the run left
+/// them. Returns its id; an error if no campaign, or more than one, has that folder or id.
 Expected<std::string> leave_only(const RunOptions& options, const RunState& state, RunResult& run);
 
-/// Campaigns that came after a run that is reopened belong to the next one.
+/// Removes campaigns that were added after the reopened run; the next run evaluates them.
 void leave_out_new(const RunState& state, std::vector<CampaignState>& campaigns);
 
 }  // namespace nonio::batch

@@ -28,7 +28,8 @@ namespace {
 constexpr const char* author = "author";
 constexpr const char* authoriser = "authoriser";
 
-/// Blanks and capital letters make no other person.
+/// Returns the name in lower case with single spaces, so that two spellings of one person are
+/// equal.
 std::string plain_name(const std::string& name) {
   std::string out;
   for (const char c : name) {
@@ -40,7 +41,7 @@ std::string plain_name(const std::string& name) {
   return out;
 }
 
-/// "B. Sample; A. Bianchi": the persons of the laboratory who may authorise.
+/// Splits the list of persons who may authorise certificates, for example "B. Sample; A. Bianchi".
 std::vector<std::string> persons_in(const std::string& text) {
   std::vector<std::string> out;
   for (std::size_t at = 0; at <= text.size();) {
@@ -57,7 +58,7 @@ bool is_one_line(const std::string& text) {
                       [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; });
 }
 
-/// What is wrong with names and reasons; empty if nothing.
+/// Returns what is wrong with the names and reasons of the request; empty if they are valid.
 std::string mistake_in(const ReleaseRequest& request) {
   if (const std::string mistake = certificates::mistake_in_name(request.by); !mistake.empty())
     return "--by: " + mistake;
@@ -68,7 +69,7 @@ std::string mistake_in(const ReleaseRequest& request) {
   return {};
 }
 
-/// Sorted by the findings themselves; what matches no finding comes out as a mistake.
+/// Assigns each reason to its finding. Reasons that match no finding are an error.
 Expected<std::map<std::string, std::string>> reasons_for(const certificates::WaitingDraft& draft,
                                                          const ReleaseRequest& request) {
   std::map<std::string, std::string> reasons;
@@ -132,7 +133,7 @@ class Releaser {
     return std::move(out_);
   }
 
-  /// The name of the user whose password was given.
+  /// Replaces the name of the person by that of the user whose password was given.
   Expected<void> identify() {
     if (request_.user.empty()) return no_user_is_named();
     if (!request_.by.empty()) return fail("--by and --user: expected one of them");
@@ -150,7 +151,8 @@ class Releaser {
     return {};
   }
 
-  /// Whoever has a password states it, and no other person their name.
+  /// Requires a password from a person who has one, and prevents others from using that person's
+  /// name.
   Expected<void> no_user_is_named() const {
     NONIO_TRY(const bool there, storage::is_there(options_.site / certificates::users_name));
     if (!there) return {};
@@ -182,7 +184,7 @@ class Releaser {
     return role_ == authoriser ? may_authorise() : Expected<void>{};
   }
 
-  /// Whoever authorises is one of those whom the laboratory names.
+  /// Checks that the person is in the laboratory's list of persons who may authorise.
   Expected<void> may_authorise() const {
     std::string digest;
     const auto site = config::read_site(options_.site, digest);
@@ -226,7 +228,7 @@ class Releaser {
       if (certificates::likeness_of(by_author->by) == certificates::likeness_of(request_.by))
         return fail("two_persons = true in site.toml: " + by_author->by +
                     " is the author; expected another person as authoriser");
-      // A name is typed by whoever sits there: two persons are two passwords or two accounts.
+      // A name proves no identity: two persons need two passwords or two accounts.
       const bool two_users = !by_author->user.empty() && !request_.user.empty();
       if (by_author->user.empty() != request_.user.empty())
         return fail(
@@ -236,7 +238,7 @@ class Releaser {
         return fail(
             "two_persons = true in site.toml: this process has user numbers of its own (a user "
             "namespace), so that accounts are no proof; expected --user of both");
-      // The name of a computer is changed as easily as a name is typed.
+      // Only the login is compared, because the name of a host can be changed easily.
       const auto login = [](const std::string& account) {
         return account.substr(0, account.find('@'));
       };
@@ -257,7 +259,7 @@ class Releaser {
            (first ? ", approved by " + first->by + " at " + first->at : "");
   }
 
-  /// And holds the draft there against the one that was entered.
+  /// Locks the output folder, and checks that its draft is the one in the register.
   Expected<void> take_output() {
     if (!request_.out.empty()) out_.draft->out = fs::absolute(request_.out).string();
     options_.out = out_.draft->out;
@@ -288,7 +290,7 @@ class Releaser {
     if (!(*place)->no_key.empty()) return refuse((*place)->no_key);
     const certificates::Releasing releasing{seen_, approval, twins_};
     ReleaseDesk desk{&*(*place)->signer, &releasing, {}, &*(*place)->host};
-    // What the store does not contain yet is entered by the next run.
+    // Campaigns that the store does not contain yet are entered by the next run.
     if (auto bases = assessment::history_bases(options_.out, {id_}); bases)
       for (assessment::HistoryBasis& b : *bases) desk.histories.emplace(id_, std::move(b));
     CampaignState campaign;
@@ -300,7 +302,7 @@ class Releaser {
     if (const auto begun = history.begin(); !begun) return fail_with(begun.error().message);
     if (!do_campaigns(options_, events_, (*place)->context, run_, desk, campaigns))
       return fail_with("interrupted");
-    // What is not entered now is entered by the next run.
+    // If the store cannot be updated now, the next run does it.
     [[maybe_unused]] const auto entered =
         history.end({id_}, read_records(options_, (*place)->context));
     auto opened = certificates::Register::open(options_.site, numbering_);
@@ -309,7 +311,7 @@ class Releaser {
     if (!last || !*last || (*last)->number == last_number_)
       return fail_with(campaigns.front().errors.empty() ? "nothing was issued"
                                                         : campaigns.front().errors.front().message);
-    // Another person may have approved it first.
+    // Another person may have approved the draft first.
     const auto first = opened->approval_of((*last)->number);
     if (!first) return fail_with(first.error().message);
     if (!*first || (*first)->by != approval.by || (*first)->at != approval.at ||
@@ -339,8 +341,9 @@ class Releaser {
   RunState run_;
   std::optional<OutputLock> lock_;
   std::string id_, role_, last_number_;
-  certificates::WaitingDraft seen_;  ///< the draft as the register had it when it was read
-  reading::Twins twins_;             ///< what the run knew of other campaigns
+  certificates::WaitingDraft seen_;  ///< the draft as it was first read from the register
+  reading::Twins twins_;             ///< files of readings that other campaigns have too, as the
+                                     ///< run knew them
   Released out_;
 };
 

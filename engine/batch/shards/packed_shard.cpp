@@ -37,7 +37,7 @@ Expected<PackedShard> PackedShard::begin(const RunOptions& options,
         evaluation::copy_results(storage::results_folder(options.out, c.id), folder->path() / c.id);
     if (!copied) return fail(c.id + ": its last results cannot be read: " + copied.error().message);
   }
-  // What is forked from now on has no packs of others open.
+  // Processes that are started from here on inherit no open packs.
   storage::close_packs();
   return PackedShard(std::move(folder));
 }
@@ -94,9 +94,9 @@ Expected<void> PackedShard::hand_over(const RunOptions& options, const RunPlan& 
 
 namespace {
 
-/// Removes the results that a folder has of an earlier run. The record is removed when all files
-/// that only it names are removed; what is left until then does not count as results of this run.
-/// Other files stay.
+/// Removes the results of an earlier run from a campaign's folder; results of this run and other
+/// files are kept. The record is removed after all files that only it names, so that a rest does
+/// not count as results of this run.
 Expected<void> clear_folder(const fs::path& folder, std::uint64_t run) {
   NONIO_TRY(const auto there, storage::is_there(folder));
   if (!there) return {};
@@ -154,7 +154,8 @@ Expected<void> accept_packs(const fs::path& out, const RunPlan& plan,
 
 Expected<void> keep_packs(const fs::path& out) {
   const auto found = find_plan(out);
-  if (!found || !*found) return {};  // a plan that cannot be read is given up with what it has
+  // A plan that cannot be read is cancelled with the packs accepted so far.
+  if (!found || !*found) return {};
   const RunPlan& plan = **found;
   std::vector<ShardRecord> sound;
   for (std::uint64_t shard = 0; shard < plan.shards.size(); ++shard)

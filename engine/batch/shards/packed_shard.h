@@ -12,21 +12,23 @@
 #include "batch/state/run_result.h"
 #include "platform/storage/scratch_folder.h"
 
-/// A shard that does its campaigns in a folder of its host and hands their results over as one file.
+/// A shard that evaluates its campaigns in a folder of its host and hands over their results as one
+/// file, a pack.
 namespace nonio::batch {
 
-/// What the shard has reported, if its pack is there as it was handed over: there is nothing to do then.
+/// Returns the record of the shard if its pack is stored and undamaged; the shard need not be done
+/// again then.
 std::optional<ShardRecord> reported_pack(const std::filesystem::path& out, const RunPlan& plan,
                                          std::uint64_t shard);
 
-/// An output folder of this host alone, with the last results of these campaigns; a temporary.
+/// A temporary output folder on this host that contains the last results of these campaigns.
 class PackedShard {
  public:
   static Expected<PackedShard> begin(const RunOptions& options,
                                      const std::vector<CampaignState>& campaigns);
   const std::filesystem::path& out() const { return folder_->path(); }
-  /// The results of this run into a pack, and that to where all hosts see it. Marks them in `record`; an error
-  /// names a campaign that is not stored.
+  /// Writes the results of this run into a pack and moves it to the shared output folder. Marks the
+  /// packed campaigns in `record`. An error names a campaign that is not stored.
   Expected<void> hand_over(const RunOptions& options, const RunPlan& plan,
                            ShardRecord& record) const;
 
@@ -36,11 +38,12 @@ class PackedShard {
   std::unique_ptr<storage::ScratchFolder> folder_;
 };
 
-/// The packs of these shards count from now on. Results in folders of the same campaigns, of earlier runs, are
-/// removed; those of this run stay, and count.
+/// Accepts the packs of these shards as the results of their campaigns. Results of earlier runs in
+/// the folders of the same campaigns are removed; those of this run are kept.
 Expected<void> accept_packs(const std::filesystem::path& out, const RunPlan& plan,
                             const std::vector<const ShardRecord*>& shards);
-/// Of a plan that is given up: what its shards have handed over counts. Packs that are damaged are left out.
+/// Accepts the packs of a cancelled plan as results, so that the next run continues from them.
+/// Damaged packs are skipped.
 Expected<void> keep_packs(const std::filesystem::path& out);
 
 }  // namespace nonio::batch

@@ -28,7 +28,7 @@ using Action = CampaignState::Action;
 
 namespace {
 
-/// For temporary names: no other process, on no other host, has it.
+/// Returns a token for temporary names that no other process on any host has.
 std::string own_token() {
   std::array<char, 256> host{};
   ::gethostname(host.data(), host.size() - 1);
@@ -41,8 +41,8 @@ std::string own_token() {
   return token + more.data();
 }
 
-/// Into one list, ordered by id. Campaigns that others name only by their ids are added behind the
-/// end, where nothing is done with them.
+/// Returns the campaigns in one list, ordered by id. Campaigns that others name only as twins are
+/// added at the end; nothing is done with them.
 std::vector<CampaignState> states_of(std::vector<Listed> listed, bool whole_site) {
   std::stable_sort(listed.begin(), listed.end(),
                    [](const Listed& a, const Listed& b) { return a.campaign.id < b.campaign.id; });
@@ -71,7 +71,8 @@ std::vector<CampaignState> states_of(std::vector<Listed> listed, bool whole_site
   return states;
 }
 
-/// Stored in this run already: by this shard before it was killed, or by another copy of it.
+/// Takes over the results of a campaign if they were stored in this run already, by this shard
+/// before it was killed or by a copy of it. Returns whether they were.
 bool take_stored(const fs::path& out, std::uint64_t run, CampaignState& c) {
   const auto record = evaluation::read_record(storage::results_folder(out, c.id));
   if (!record || record->run != run) return false;
@@ -108,8 +109,8 @@ std::string numbers_text(const std::vector<std::uint64_t>& numbers) {
          (numbers.size() > most ? " and " + std::to_string(numbers.size() - most) + " more" : "");
 }
 
-/// `try_it` again until it succeeds: on a shared file system what another host has written may
-/// appear some time later.
+/// Repeats `try_it` until it succeeds or `until` has passed, because on a shared file system the
+/// files of another host may appear late.
 template <class Try>
 auto with_patience(std::chrono::steady_clock::time_point until, const Try& try_it) {
   for (;;) {
@@ -120,7 +121,8 @@ auto with_patience(std::chrono::steady_clock::time_point until, const Try& try_i
   }
 }
 
-/// What the shard has handed over before, in place of doing it.
+/// Takes over the results that the shard has handed over before, instead of evaluating its
+/// campaigns.
 void take_reported(const ShardRecord& record, std::vector<CampaignState>& campaigns) {
   for (std::size_t i = 0; i < campaigns.size() && i < record.results.size(); ++i) {
     const ShardResult& r = record.results[i];
@@ -131,8 +133,8 @@ void take_reported(const ShardRecord& record, std::vector<CampaignState>& campai
   }
 }
 
-/// The campaigns of a shard, the first `own` of the run's. An error without a message of the run: it was refused, or
-/// interrupted.
+/// Evaluates the campaigns of a shard: the first `own` of the run's. If the error leaves
+/// `run.error` empty, the shard was refused or interrupted.
 Expected<void> do_part(const RunOptions& options, const RunEvents& events, const RunPlan& plan,
                        std::size_t own, RunResult& run) {
   RunOptions where = options;
@@ -152,7 +154,7 @@ Expected<void> do_part(const RunOptions& options, const RunEvents& events, const
   for (std::size_t i = 0; i < own && !packed; ++i)
     if (take_stored(options.out, plan.run.number, run.campaigns[i])) --to_do;
   events.planned(own, to_do);
-  if (to_do > 0) {  // else no plugin is loaded
+  if (to_do > 0) {  // no plugin is loaded if nothing is to be done
     NONIO_TRY(const auto place, set_up(options));
     const reading::Context& read = place->context;
     if (events.words) events.words(config::TerminalWords(read.templates, read.site.language));
@@ -209,7 +211,7 @@ RunResult run_shard(const RunOptions& options, const RunEvents& events) {
 
 namespace {
 
-/// What this run has stored in a pack, into the folder of the campaign.
+/// Writes the results that this run has stored in a pack into the campaign's own folder.
 Expected<void> take_in_of(const fs::path& out, std::uint64_t run, const std::string& id) {
   const auto record = evaluation::read_record(storage::results_folder(out, id));
   if (!record || record->run != run) return {};
@@ -225,11 +227,11 @@ Expected<void> plan_shards(const RunOptions& options, const reading::Context& co
                                [](const CampaignState& c) { return c.action == Action::todo; });
   if (auto removed = remove_plan(options.out); !removed) return removed;
   if (auto swept = storage::sweep_packs(options.out); !swept) return swept;
-  if (state.resumed)  // of a run or a plan that was cut short
+  if (state.resumed)  // leftovers of an interrupted run or plan
     if (auto tidied = tidy_all(run, options.out, true); !tidied) return tidied;
   for (const CampaignState& c : run.campaigns) {
     if (!state.resumed || c.action != Action::todo || !c.is_campaign) continue;
-    // Its shard would take what this run has stored before for its own.
+    // Otherwise the shard would take over results that this run stored before it was planned again.
     if (auto taken = take_in_of(options.out, state.number, c.id); !taken) return taken;
     const fs::path folder = storage::own_folder(options.out, c.id);
     const auto record = evaluation::read_record(folder);
@@ -267,7 +269,7 @@ bool is_of(const std::vector<ShardResult>& record, const std::vector<Listed>& li
       [](const ShardResult& r, const Listed& l) { return r.campaign == l.campaign.id; });
 }
 
-/// A shard's list and what it has reported.
+/// The list of a shard, and its record.
 struct Reported {
   std::vector<Listed> listed;
   ShardRecord record;
@@ -275,7 +277,8 @@ struct Reported {
 
 using Until = std::chrono::steady_clock::time_point;
 
-/// Its record, with a pack that is whole. None, and why, if it has not reported.
+/// Returns the record of a shard, if it exists and its pack is undamaged; otherwise none, with the
+/// reason in `why` if there is an error.
 std::optional<ShardRecord> sound_record(const fs::path& out, const RunPlan& plan,
                                         std::uint64_t shard, std::string& why) {
   auto record = read_shard_record(out, plan, shard);
@@ -312,7 +315,8 @@ Expected<std::vector<Reported>> reported_by_all(const fs::path& out, const RunPl
               "`, and so on, then `nonio run merge OUT` again");
 }
 
-/// What became of the campaigns of a shard; those without results that should be there are added to `missing`.
+/// Sets the outcome of each campaign of a shard. Campaigns whose stored results cannot be found are
+/// added to `missing`.
 void take_results(const fs::path& out, const RunPlan& plan, std::uint64_t shard, Until until,
                   Reported& reported, std::vector<std::string>& missing) {
   for (std::size_t i = 0; i < reported.listed.size(); ++i) {
@@ -336,7 +340,7 @@ Expected<void> gather(const RunOptions& options, const RunPlan& plan, RunResult&
                      std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                          std::chrono::duration<double>(options.patience));
   NONIO_TRY(auto all, read_rest(options.out, plan));
-  for (Listed& one : all) {  // of a merge that was cut short
+  for (Listed& one : all) {  // campaigns that an interrupted merge has evaluated
     CampaignState& c = one.campaign;
     if (c.action == Action::todo && c.status != evaluation::Status::failed)
       take_stored(options.out, plan.run.number, c);

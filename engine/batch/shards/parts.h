@@ -11,21 +11,22 @@
 
 namespace nonio::batch {
 
-/// One shard of a planned run: `RunResult::campaigns` are those of its list; what is still to do at
-/// the end is left to the merge. It needs neither the register nor the key. Several processes may
-/// do the same shard, at once or one after the other, and leave the same bytes.
+/// Does one shard of a planned run. `RunResult::campaigns` are those of its list; campaigns that
+/// are still to be evaluated at the end are left to the merge. It needs neither the register nor
+/// the key. Several processes may do the same shard, at once or one after the other; they write the
+/// same bytes.
 RunResult run_shard(const RunOptions& options, const RunEvents& events);
 
-/// After the survey: the lists of the shards. The run stays open.
+/// Writes the plan with the lists of the shards after the survey. The run remains in progress.
 Expected<void> plan_shards(const RunOptions& options, const reading::Context& context,
                            const RunState& state, bool register_read, std::size_t own_notes,
                            RunResult& run);
 
-/// What the survey found and the shards have made of it, in place of a survey. An error names the
-/// shards that have not reported and campaigns whose results are missing.
+/// Fills `run` with the campaigns of the plan and the results of the shards, in place of a survey.
+/// An error names shards that have not reported and campaigns whose results are missing.
 Expected<void> gather(const RunOptions& options, const RunPlan& plan, RunResult& run);
 
-/// In the register: why campaigns that failed in a shard were not issued.
+/// Enters into the register why campaigns that failed in a shard got no certificate.
 Expected<void> note_failures(const RunOptions& options, const reading::Context& context,
                              const RunResult& run, bool can_sign);
 

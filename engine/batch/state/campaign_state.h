@@ -11,30 +11,34 @@
 
 namespace nonio::batch {
 
-/// One campaign of the run, as it is known so far. What its record holds (findings) is read again
-/// for the summary.
+/// One campaign of the run and its state so far. The findings in its record are read again for the
+/// summary.
 struct CampaignState {
   std::string id{};
-  std::string folder{};  ///< relative to the site, in the bytes of the file system
-  std::string reason{};  ///< why it is to do, or why not
+  std::string folder{};  ///< relative to the site, as stored in the file system
+  std::string reason{};  ///< why it is to be evaluated, or why not
   std::string
-      history{};  ///< where `shows_history`: digest of it; empty: not known when it was written
+      history{};  ///< if `shows_history`: its digest; empty: the history was not known when the
+                  ///< document was written
   enum class Action : char { todo, done, unchanged } action = Action::todo;
-  evaluation::Status status = evaluation::Status::none;  ///< none while it is to do
-  bool named_by_folder = false;                          ///< its manifest gives no id
-  bool is_campaign = true;     ///< false: a folder whose content is unknown
+  evaluation::Status status = evaluation::Status::none;  ///< none until it is evaluated
+  bool named_by_folder = false;                          ///< the manifest states no id
+  bool is_campaign = true;     ///< false: a folder that could not be listed
   bool shows_history = false;  ///< a document shows the machine's history
 
   using Twin = std::pair<std::uint64_t, std::uint32_t>;
   using TwinBefore = std::pair<std::uint64_t, std::string>;
   std::vector<Error> errors{};
   std::vector<Error>
-      warnings{};  ///< of the manifest: keys with former names, not kept for the next run
-  /// Begin of the SHA-256 of files that another campaign has too, and its position in the list of campaigns.
+      warnings{};  ///< keys with former names in the manifest; not stored for the next run
+  /// Files that another campaign has too: the first 64 bits of the file's SHA-256, and the position
+  /// of the other campaign in the list.
   std::vector<Twin> twins{};
-  /// The same as its record knew it, with the other one's id.
+  /// The shared files that its record states: the same digests, each with the id of the other
+  /// campaign.
   std::vector<TwinBefore> twins_before{};
-  /// Begin of the SHA-256 of each of its files, until they are compared with those of the others.
+  /// First 64 bits of the SHA-256 of each of its files, until they are compared with those of other
+  /// campaigns.
   std::vector<std::uint64_t> readings{};
 };
 

@@ -8,14 +8,15 @@
 
 namespace nonio::batch {
 
-/// Text of which a run has very many (ids, folders): it takes its own length and a byte, copies share it, and it stays
-/// in memory until the process ends. A std::string takes 32 bytes, and from 16 characters on 32 or more besides.
+/// Compact text for values of which a run has very many (ids, folders). It takes its length plus
+/// one byte, copies share it, and it stays in memory until the process ends. A std::string takes 32
+/// bytes, and at least 32 more from 16 characters on.
 class KeptText {
  public:
   KeptText() = default;
   explicit KeptText(std::string_view text);
   KeptText& operator=(std::string_view text) { return *this = KeptText(text); }
-  /// Kept once for all that have it; of the first few hundred such texts.
+  /// Stores equal texts once; this applies to the first few hundred different texts.
   static KeptText shared(std::string_view text);
 
   std::string_view view() const;

@@ -28,8 +28,8 @@ namespace {
 
 constexpr const char* user_name = "user";
 
-/// The process in OUT/.nonio/user. `machine` and `boot` identify this host and its present start;
-/// empty if the system does not provide it.
+/// The content of OUT/.nonio/user: the process that uses the output folder. `machine` and `boot`
+/// identify the host and its present start; empty if the system does not provide them.
 struct User {
   std::string host, machine, boot, job;
   long pid = 0;
@@ -59,7 +59,8 @@ std::string text_of(const User& user) {
          "\n";
 }
 
-/// A file with unreadable content names no process, and is respected all the same.
+/// Parses the content of the user file. An unreadable file yields a user without a name, which
+/// blocks the folder nevertheless.
 User user_in(const std::string& text) {
   const Json json = storage::parse_or_discard(text);
   if (!json.is_object()) return {};
@@ -79,9 +80,11 @@ std::string words_for(const User& user) {
          (user.job.empty() ? "" : " (job " + user.job + ")");
 }
 
-/// Called by the process that has the flock of this host.
+/// Whether the process `user` is known to have ended. Must be called by the process that has the
+/// flock of this host.
 bool is_gone(const User& user, const User& own) {
-  if (!user.boot.empty() && user.boot == own.boot) return true;  // it would have the flock
+  // A running process of this start of the host would have the flock.
+  if (!user.boot.empty() && user.boot == own.boot) return true;
   return !user.machine.empty() && user.machine == own.machine && user.host == own.host;
 }
 
@@ -92,17 +95,17 @@ Expected<std::optional<std::string>> read_user(const fs::path& path) {
   auto text = storage::read_small_file(path);
   if (text) return *text;
   const auto still = storage::is_there(path);
-  if (still && !*still) return std::nullopt;  // removed meanwhile
+  if (still && !*still) return std::nullopt;  // removed in the meantime
   return fail(text.error());
 }
 
-/// Front of the temporary names of this host since it started.
+/// Returns the common beginning of the temporary names that this host has used since it started.
 std::string temporary(const fs::path& path, const User& own) {
   return path.string() + "-" + own.boot.substr(0, own.boot.find('-')) + "-";
 }
 
-/// What processes of this host that were killed have left. Called by the process that has the
-/// flock.
+/// Removes temporary files of killed processes of this host. Must be called by the process that has
+/// the flock.
 void sweep(const fs::path& path, const User& own) {
   const std::string front = temporary(path, own);
   std::error_code error;
@@ -110,15 +113,16 @@ void sweep(const fs::path& path, const User& own) {
     if (entry.path().string().starts_with(front)) ::unlink(entry.path().c_str());
 }
 
-/// An error of the moment would leave the file until the next run.
+/// Removes a temporary file, with a second attempt in case of a transient error.
 void remove_temporary(const std::string& path) {
   if (::unlink(path.c_str()) != 0) ::unlink(path.c_str());
 }
 
 enum class Made { done, taken, no_links };
 
-/// Gives `path` the bytes, if there is no such file. link(2) is one step on every server; two names
-/// prove that it was done, also where the answer was lost and a second try got "exists".
+/// Creates `path` with these bytes unless it exists. link(2) is atomic on every server. If the
+/// answer is lost and a second attempt reports "exists", the link count of 2 proves that the file
+/// was created.
 Expected<Made> make_user(const fs::path& path, const User& user, const std::string& says) {
   std::string own = temporary(path, user) + "XXXXXX";  // mkostemp puts its letters there
   const int fd = ::mkostemp(own.data(), O_CLOEXEC);
@@ -138,11 +142,13 @@ Expected<Made> make_user(const fs::path& path, const User& user, const std::stri
   if (linked == 0 || two_names) return Made::done;
   if (linked == EEXIST) return Made::taken;
   if (linked == EPERM || linked == EOPNOTSUPP || linked == ENOSYS || linked == EMLINK)
-    return Made::no_links;  // FAT, some shares: flock alone
+    // FAT and some shares have no hard links: flock alone protects the folder.
+    return Made::no_links;
   return fail("cannot write " + path.string() + ": " + std::strerror(linked));
 }
 
-/// True if it is ours now; false where files have one name only, and flock is all there is.
+/// True if this process now owns the user file. False on file systems without hard links, where
+/// only flock protects the folder.
 Expected<bool> become_user(const fs::path& out, const fs::path& path, const User& own,
                            const std::string& says) {
   sweep(path, own);
@@ -218,7 +224,7 @@ Expected<OutputLock> OutputLock::take(const fs::path& out, Use use) {
   if (fd < 0)
     return fail("cannot use the output folder " + out.string() + ": " + std::strerror(errno));
   OutputLock lock(fd);
-  // What was killed has processes that end a moment later, as soon as the disk lets them.
+  // Child processes of a killed run may need a moment to end, so the lock is tried repeatedly.
   constexpr int tries = 50;
   int code = EWOULDBLOCK;
   for (int i = 0; i < tries && (code == EWOULDBLOCK || code == EINTR); ++i) {
@@ -260,7 +266,8 @@ OutputLock::~OutputLock() {
     const auto text = read_user(user_);
     if (text && *text == says_) ::unlink(user_.c_str());
   }
-  ::flock(fd_, LOCK_UN);  // for a process that was left behind too, since a disk hangs
+  // Also releases the lock for a child that was left behind because its disk hangs.
+  ::flock(fd_, LOCK_UN);
   ::close(fd_);
 }
 

@@ -9,19 +9,21 @@
 
 namespace nonio::batch {
 
-/// Held while a run uses an output folder; an error names who else does.
+/// Locks an output folder for a run; an error names the process that uses it.
 ///
-/// Two locks. flock on OUT/.nonio/lock holds among the processes of one host, and on most network
-/// file systems among hosts. OUT/.nonio/user, made by link(2), names the process that uses the
-/// folder for itself, and holds among hosts wherever a file can have two names. It is taken over
-/// only if its process is known to have ended: the same start of this host, where flock decides, or
-/// an earlier start of this host. Of another host this is unknown here: `unlock` states it.
+/// Two locks are used. flock on OUT/.nonio/lock works among the processes of one host, and on most
+/// network file systems among hosts. The file OUT/.nonio/user, created by link(2), names the
+/// process that has exclusive use, and works among hosts on every file system with hard links. It
+/// is taken over only if its process is known to have ended: it belongs to the present start of
+/// this host, where flock decides, or to an earlier start of this host. Processes of other hosts
+/// cannot be checked; `unlock` releases their lock.
 class OutputLock {
  public:
   enum class Use {
-    whole,    ///< refused while a run is planned, too
-    planned,  ///< makes, merges or withdraws a plan
-    shard     ///< together with other shards: flock only, since two of the same shard are harmless
+    whole,    ///< exclusive; refused while a run is planned, too
+    planned,  ///< exclusive; for a process that makes, merges or withdraws a plan
+    shard     ///< shared with other shards by flock only, since two processes of the same shard do
+              ///< no harm
   };
   static Expected<OutputLock> take(const std::filesystem::path& out, Use use = Use::whole);
   OutputLock(OutputLock&& other) noexcept;
@@ -32,17 +34,20 @@ class OutputLock {
   explicit OutputLock(int fd) : fd_(fd) {}
   int fd_;
   std::filesystem::path user_{};  ///< OUT/.nonio/user; empty if this does not own it
-  std::string says_{};            ///< its bytes
-  long pid_ = 0;                  ///< of the owner: no process that it starts removes the file
+  std::string says_{};            ///< content of the user file
+  long pid_ = 0;                  ///< process id of the owner, so that its child processes do not
+                                  ///< remove the file
 };
 
-/// Who uses the folder for itself now, for people: "process 17 on host a (job 5)"; empty if no process does.
+/// Describes the process that has exclusive use, for example "process 17 on host a (job 5)"; empty
+/// if there is none.
 std::string user_of(const std::filesystem::path& out);
 
-/// Frees a folder whose process, on another host, is known to have ended; gives who it was, nothing
-/// if there was none. With `alive`, the jobs that a scheduler still has, a job in each line:
-/// refused if the user is of one of them, or of no job (NONIO_JOB of its environment). Refused
-/// while a process of this host uses the folder.
+/// Removes the user file of a process on another host that has ended, and returns a description of
+/// that process; empty if there was none. `alive`: the jobs that a scheduler still runs, one per
+/// line; with it, unlocking is refused if the user belongs to one of these jobs, or to no job
+/// (NONIO_JOB of its environment). Unlocking is also refused while a process of this host uses the
+/// folder.
 Expected<std::string> unlock(const std::filesystem::path& out,
                              const std::optional<std::string>& alive);
 

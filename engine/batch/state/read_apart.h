@@ -12,13 +12,13 @@
 
 namespace nonio::batch {
 
-/// Bytes that a child reads and sends. It may take `seconds` without a sign of life, and is left
-/// behind where this process is asked to stop. The error names `what`.
+/// Returns the bytes that `read` produces in a child process. The child may take `seconds` without
+/// a sign of life; if a stop is requested, it is left behind. An error names `what`.
 Expected<std::string> bytes_apart(const std::string& what, double seconds,
                                   const std::function<std::string(process::SignsOfLife&)>& read);
 
-/// What `read` gives, read in a child: a disk or share that hangs holds up neither this process
-/// nor whoever wants to stop it.
+/// Returns the value of `read`, computed in a child process, so that a disk or share that hangs
+/// blocks neither this process nor a request to stop it.
 template <class T, class Read>
 Expected<T> read_apart(const std::string& what, double seconds, const Read& read) {
   const auto bytes = bytes_apart(what, seconds, [&](process::SignsOfLife& signs) {

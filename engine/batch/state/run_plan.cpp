@@ -26,7 +26,8 @@ using Action = CampaignState::Action;
 
 namespace {
 
-/// Bytes that are not UTF-8 (the name of a folder) are kept as they are, in hexadecimal digits.
+/// Returns the bytes as a JSON string, or as hexadecimal digits if they are not UTF-8 (names of
+/// folders).
 Json exact(const std::string& bytes) {
   if (storage::path_text(bytes) == bytes) return bytes;
   std::string hex;
@@ -63,7 +64,7 @@ std::vector<Error> errors_in(const Json& json) {
   return all;
 }
 
-/// Any other word: it is not evaluated yet.
+/// Parses a status; an unknown word means that the campaign is not evaluated yet.
 evaluation::Status status_in(const Json& json) {
   return evaluation::status_named(json.get<std::string>()).value_or(evaluation::Status::none);
 }
@@ -76,7 +77,7 @@ std::string hex_of(std::uint64_t value) {
   return text.data();
 }
 
-/// One line. What is as usual is left out.
+/// Returns one campaign as a line of JSON; default values are left out.
 std::string line_of(const CampaignState& c, const std::vector<CampaignState>& all) {
   Json json = {{"id", c.id}, {"folder", exact(c.folder)}, {"reason", exact(c.reason)}};
   if (c.action != Action::todo) json["action"] = actions.at(static_cast<std::size_t>(c.action));
@@ -113,7 +114,7 @@ Listed listed_in(const Json& json) {
   return listed;
 }
 
-/// A file of a plan that is not as it was written.
+/// Returns the error for a file of a plan that was changed after it was written.
 Error damaged(const fs::path& path, const std::string& why) {
   return Error{path.string() + " is damaged (" + why + "); plan the run again"};
 }
@@ -135,8 +136,8 @@ Expected<std::vector<Listed>> read_list(const fs::path& path, const RunPlan::Lis
   return all;
 }
 
-/// A list of a plan under its temporary name, line by line, since it may not fit into memory: the
-/// campaigns with the indices `of`. Sets the digest.
+/// Writes the campaigns with the indices `of` as a list of the plan, under its temporary name and
+/// line by line, since a list may not fit into memory. Sets the digest in `list`.
 Expected<void> write_list(const fs::path& folder, const std::string& name,
                           std::span<const std::uint32_t> of,
                           const std::vector<CampaignState>& campaigns, RunPlan::List& list) {
@@ -236,8 +237,8 @@ std::string word_of_its_own() {
   return text.data();
 }
 
-/// It needs the key and the register, which only the host of the merge has. The last record decides
-/// that; of a campaign without one its shard finds out.
+/// Whether the campaign needs the key and the register, which only the host of the merge has. Its
+/// last record decides; for a campaign without a record, its shard finds out.
 bool needs_register(const fs::path& out, const CampaignState& c) {
   const auto last = evaluation::last_record(storage::results_folder(out, c.id));
   return last && *last && ((*last)->record.draft || !(*last)->record.certificate.empty());
@@ -247,12 +248,13 @@ bool is_for_shard(const CampaignState& c) {
   return c.action == Action::todo && c.status != evaluation::Status::failed;
 }
 
-/// Positions of campaigns, those of the first shard first and the rest last. Counts them in the plan.
+/// Returns the positions of the campaigns, those of the first shard first and those of no shard
+/// last. Sets the counts in the plan.
 std::vector<std::uint32_t> by_list(const fs::path& out, RunPlan& plan,
                                    const std::vector<CampaignState>& campaigns) {
   const auto rest = static_cast<std::uint32_t>(plan.shards.size());
   std::vector<std::uint32_t> list_of(campaigns.size(), rest);
-  std::vector<std::size_t> next(plan.shards.size() + 1);  // the next place in each list
+  std::vector<std::size_t> next(plan.shards.size() + 1);  // next free place in each list
   for (std::size_t i = 0; i < campaigns.size(); ++i) {
     const CampaignState& c = campaigns[i];
     const bool to_do = is_for_shard(c);
@@ -287,7 +289,7 @@ Expected<void> write_plan(const fs::path& out, RunPlan& plan,
   const auto list_at = [&](std::size_t i) -> RunPlan::List& {
     return i < plan.shards.size() ? plan.shards[i] : plan.rest;
   };
-  auto done = storage::write_temporaries(folder, {});  // the folder
+  auto done = storage::write_temporaries(folder, {});  // creates the folder
   std::span<const std::uint32_t> left = ordered;
   for (std::size_t i = 0; done && i < names.size(); ++i) {
     RunPlan::List& list = list_at(i);

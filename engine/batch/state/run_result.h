@@ -22,69 +22,73 @@ namespace nonio::batch {
 struct RunOptions {
   std::filesystem::path site, out;
   std::vector<std::filesystem::path> plugin_folders, template_folders;
-  std::filesystem::path own_plugins;  ///< the program's own plugin folder
+  std::filesystem::path own_plugins;  ///< plugin folder of the installed program
   std::size_t jobs = 0;               ///< 0: one for each core
   bool force = false;
-  std::string only{};  ///< a campaign's folder below the site, or its id: that alone, between runs
+  std::string only{};  ///< folder below the site, or id, of the only campaign to evaluate, between
+                       ///< runs
   bool dry_run = false;
-  bool verify_results = false;  ///< compare the digests of all files given out, touched or not
-  std::string date{};           ///< of the run, YYYY-MM-DD; empty: today's
+  bool verify_results = false;  ///< compare the digests of all output files, even if their times
+                                ///< are unchanged
+  std::string date{};           ///< date of the run, YYYY-MM-DD; empty: today
   std::string version;
-  bool as_root = false;  ///< root may run it, whoever can write the plugins
-  bool confine = true;   ///< false: only to measure what confining plugins costs
-  /// Of a run that is done in parts; `whole`: it is not.
+  bool as_root = false;  ///< allow root to run it even if other users can change the plugins
+  bool confine = true;   ///< false: plugins are not confined, to measure what confinement costs
+  /// Part of the run that this process does; `whole`: the run is not divided.
   enum class Step { whole, plan, shard, merge } step = Step::whole;
-  std::uint64_t shard = 0, shards = 0;  ///< which of how many
+  std::uint64_t shard = 0, shards = 0;  ///< index of this shard, and number of shards
   bool pack = false;                    ///< the shard hands its results over as one file
   std::filesystem::path
-      scratch{};          ///< where it does them before; empty: the system's folder for such
-  double patience = 0.0;  ///< s, for results of other hosts to appear here; of a merge
+      scratch{};          ///< local folder of a packed shard; empty: the system's temporary folder
+  double patience = 0.0;  ///< s: how long a merge waits for results of other hosts to appear
 };
 
-/// A campaign that has results and is not in the site any more, or another part of the site that is
-/// lost (SiteParts). Results stay; a person states that this was meant (forgotten.toml).
+/// A campaign that has results and is no longer in the site, or another part of the site that is
+/// lost (SiteParts). The results are kept; forgotten.toml confirms that the removal was intended.
 struct Vanished {
-  std::string id, folder;  ///< folder: where it was, as text; id of a part: the same
-  std::uint64_t run = 0;   ///< in which it was done last
-  std::string why;         ///< what is there instead, and what to do
+  std::string id, folder;  ///< folder: former folder as text; of a part: equal to id
+  std::uint64_t run = 0;   ///< run in which it was evaluated last
+  std::string why;         ///< what is found in its place, and what to do
 };
 
-/// Calls of a run while it is going on.
+/// Callbacks during a run.
 struct RunEvents {
   std::function<void(const std::string& message)> note;
   std::function<void(std::size_t campaigns, std::size_t to_do)> planned;
   std::function<void(const CampaignState&)> finished;
-  std::function<void()> tick;  ///< several times a second, to redraw
-  /// What is done from now on: survey, campaigns, history, pages.
+  std::function<void()> tick;  ///< called several times per second, to redraw
+  /// Called at the beginning of each stage: survey, campaigns, history, pages.
   std::function<void(const char* name)> stage{};
-  /// Before everything else, once site.toml and the templates are read.
+  /// Called first, as soon as site.toml and the templates are read.
   std::function<void(const config::TerminalWords&)> words{};
 };
 
 struct RunResult {
   enum class End { complete, interrupted, refused } end = End::complete;
   evaluation::RunLabel run{};
-  std::optional<std::uint64_t> seen_before{};  ///< campaigns that the previous run saw
-  std::string error;                           ///< of a refused run: usage or configuration
+  std::optional<std::uint64_t> seen_before{};  ///< number of campaigns in the previous run
+  std::string error;                           ///< why a run was refused: usage or configuration
   std::vector<CampaignState> campaigns;        ///< ordered by id
   std::vector<std::string> notes;
-  std::vector<certificates::RegisterEntry>
-      issued;  ///< certificates that are new since the previous run
-  std::vector<certificates::WaitingDraft> waiting;  ///< for their release
+  std::vector<certificates::RegisterEntry> issued;  ///< certificates issued since the previous run
+  std::vector<certificates::WaitingDraft> waiting;  ///< drafts that wait for approval
   std::vector<Vanished> vanished;                   ///< ordered by id
-  std::size_t failed() const;      ///< campaigns, and folders that could not be listed
-  std::size_t lost_parts() const;  ///< so many in `vanished` are no campaigns
-  /// Whether anything failed or vanished, or is not in the history.
+  std::size_t failed() const;      ///< number of failed campaigns and of folders that could not be
+                                   ///< listed
+  std::size_t lost_parts() const;  ///< number of entries in `vanished` that are not campaigns
+  /// Whether anything failed, vanished beyond what site.toml allows, or is missing in the history
+  /// or worklist.
   bool any_failed() const {
     return failed() > 0 || lost_parts() > 0 || vanished.size() > may_vanish ||
            !history_error.empty() || !worklist_error.empty();
   }
-  std::size_t may_vanish = 0;  ///< so many campaigns may vanish, by site.toml
-  std::string actions{};       ///< JSON: lines that require action, in the language of the site
-  std::optional<std::uint64_t> asking{};  ///< lines of the worklist that require action
+  std::size_t may_vanish = 0;  ///< number of campaigns that may vanish, from site.toml
+  std::string actions{};       ///< JSON list of lines that require action, in the language of the
+                               ///< site
+  std::optional<std::uint64_t> asking{};  ///< number of worklist lines that require action
   std::string worklist_error{};           ///< why the pages were not made, or the mail not sent
   std::string history_error{};            ///< why OUT/history.sqlite does not contain this run
-  /// How many campaigns each shard has; of a run that was planned only.
+  /// Number of campaigns in each shard; only for a planned run.
   std::vector<std::uint64_t> planned{};
 };
 

@@ -49,7 +49,8 @@ std::optional<RunEnd> end_in(const storage::Json& json, const char* key) {
   return RunEnd{{*number, known_text(*it, "date")}, *seen, known_count(*it, "failed").value_or(0)};
 }
 
-/// None if there is no such file; an error if it cannot be read or is something else.
+/// Returns OUT/.nonio's state file as JSON, none if it does not exist; an error if it cannot be
+/// read or is damaged.
 Expected<std::optional<storage::Json>> read_state(const fs::path& out) {
   const fs::path path = out / state_folder / state_name;
   std::error_code error;
@@ -61,7 +62,7 @@ Expected<std::optional<storage::Json>> read_state(const fs::path& out) {
   return json;
 }
 
-/// `end`: of a run that is complete; none while it is running.
+/// Writes the state of the run. `end`: for a run that is complete; none while it is running.
 Expected<void> write_state(const fs::path& out, const RunState& run,
                            const std::optional<RunEnd>& end) {
   storage::Json json = {{"schema", "nonio-night/1"}, {"night", run.number},
@@ -74,8 +75,8 @@ Expected<void> write_state(const fs::path& out, const RunState& run,
   return storage::publish(out / state_folder, {{state_name, storage::dump(json)}});
 }
 
-/// Why the results of `site` may not go among those of `other`; empty if they may. A site that was
-/// moved is the same one under another name, and its old folder no longer exists.
+/// Why the results of `site` must not be stored with those of `other`; empty if they may. A site
+/// that was moved is still the same site: its old folder no longer exists.
 std::string other_site(const std::string& other, const std::string& site, const fs::path& out) {
   std::error_code error;
   if (other.empty() || other == site || !fs::is_directory(other, error) ||
@@ -85,7 +86,8 @@ std::string other_site(const std::string& other, const std::string& site, const 
          "; expected a folder of its own for " + site;
 }
 
-/// How the first results that are met in an output folder lie; nothing if there are none.
+/// Returns whether existing results are in hashed folders (OUT/ab/<id>); none if there are no
+/// results.
 std::optional<bool> lie_hashed(const fs::path& out) {
   std::error_code error;
   const auto has_results = [&](const fs::path& folder) {
@@ -117,7 +119,7 @@ std::string today() {
 
 namespace {
 
-/// An error if the results are those of another site that is still there.
+/// Checks the site stated in the state file. An error if it is another site that still exists.
 Expected<void> check_site(const storage::Json& json, const std::string& site, const fs::path& out) {
   const std::string known = known_text(json, "site");
   if (known == site) return {};
@@ -184,7 +186,7 @@ Expected<RunState> begin_run(const RunOptions& options, const std::string& site,
     if (auto own = check_site(json, site, out); !own) return fail(own.error());
     run.resumed = known_text(json, "state") == "running";
     run.number = json["night"].get<std::uint64_t>() + (run.resumed ? 0 : 1);
-    // A forced run that was interrupted is finished as what it was.
+    // An interrupted run that was forced is also finished as a forced run.
     if (run.resumed) run.force = options.force || json.value("force", false);
     if (run.resumed && options.date.empty() && json.contains("date"))
       run.date = known_text(json, "date");

@@ -12,48 +12,50 @@
 
 namespace nonio::batch {
 
-/// What a run keeps for itself in the output folder; no campaign can have its name.
+/// Folder for the run's own files in the output folder; no campaign can have this name.
 inline constexpr const char* state_folder = ".nonio";
-/// In it: the plan of a run that is done in parts, from the plan to the end of the merge.
+/// Folder inside `state_folder` for the plan of a run in shards; it exists from the plan to the end
+/// of the merge.
 inline constexpr const char* plan_folder = "plan";
 inline constexpr const char* plan_name = "plan.json";
 
-/// The number and date of the run. A run that was killed or interrupted keeps its number when it is
-/// resumed, so that its summary is that of an undisturbed one. Kept in OUT/.nonio.
+/// Number and date of the run, stored in OUT/.nonio. A run that was killed or interrupted keeps its
+/// number when it is resumed, so that its summary equals that of an undisturbed run.
 struct RunState {
   std::uint64_t number = 1;
-  std::string date{};            ///< YYYY-MM-DD, as it was given
-  std::optional<RunEnd> last{};  ///< the previous run; none before the first
+  std::string date{};            ///< YYYY-MM-DD, as given
+  std::optional<RunEnd> last{};  ///< the previous complete run; none before the first
   bool force = false;
   bool resumed = false;
-  /// Certificates in the register when the previous run ended, or when the first one began; none
-  /// if the register could not be read.
+  /// Order of the last number in the register when the previous run ended, or when the first one
+  /// began; none if the register could not be read.
   std::optional<std::uint64_t> issued_before{};
-  /// The same when this run began, for one that is reopened.
+  /// Order of the last number in the register when this run began; needed if the run is reopened
+  /// later.
   std::optional<std::uint64_t> issued_at_begin{};
-  bool reopened = false;  ///< a complete run, of which one campaign is done again
-  std::string site{};     ///< whose results they are, its folder
+  bool reopened = false;  ///< a complete run, of which one campaign is evaluated again
+  std::string site{};     ///< folder of the site that the results belong to
   evaluation::RunLabel of() const { return {number, date}; }
 };
 
-/// An error if the folder holds the results of another site that is still there: campaigns of both
-/// would be taken for one another's, and the summary would report one of them only.
+/// Begins or resumes a run. An error if the output folder contains results of another site that
+/// still exists, because the campaigns of both would be mixed.
 Expected<RunState> begin_run(const RunOptions& options, const std::string& site,
                              std::optional<std::uint64_t> issued_so_far);
-/// The last run, which has to be complete, as it was when it began: one campaign of it is done
-/// again. Nothing is written; what is cut short leaves the run complete.
+/// Returns the last run in its state at its beginning, so that one campaign can be evaluated again.
+/// An error if it is not complete. Nothing is written, so an interruption leaves the run complete.
 Expected<RunState> reopen_run(const RunOptions& options, const std::string& site);
-/// The run that was planned, as it was when it began: it is in progress. Nothing is written.
+/// Returns the planned run in its state at its beginning; it is in progress. Nothing is written.
 Expected<RunState> planned_run(const RunOptions& options, const std::string& site,
                                std::uint64_t number);
-/// `run.issued_before` is then what the next one begins with.
+/// Marks the run as complete. The next run takes over `run.issued_before`.
 Expected<void> end_run(const std::filesystem::path& out, const RunState& run, const RunEnd& end);
 
 /// Compares the layout of site.toml (`hashed`: OUT/ab/<id>) with that of existing results, and
-/// marks a new output folder. Results are never moved: another layout is an error.
+/// marks a new output folder. Results are never moved: a different layout is an error.
 Expected<void> settle_folders(const std::filesystem::path& out, bool hashed, bool dry_run);
 
-/// An error while a run is planned and not merged yet: the next run would be refused.
+/// Returns an error while a planned run is not merged, because the next run would be refused.
 Expected<void> check_not_planned(const std::filesystem::path& out);
 
 }  // namespace nonio::batch

@@ -14,24 +14,24 @@ namespace nonio::batch {
 /// The counts of a complete run.
 struct RunEnd {
   evaluation::RunLabel run{};
-  std::uint64_t seen = 0;  ///< campaigns
+  std::uint64_t seen = 0;  ///< number of campaigns
   std::uint64_t failed = 0;
 };
 
-/// The state of an output folder's runs.
+/// The state of the last run in an output folder.
 struct RunStatus {
   enum class State { complete, running, cut_short, planned } state = State::complete;
-  evaluation::RunLabel run{};              ///< the last that began
-  std::optional<RunEnd> last{};            ///< the last that is complete
-  double age = 0.0;                        ///< s since the last summary was written
-  std::uint64_t shards = 0, reported = 0;  ///< of a run that is planned
-  std::string used_by{};  ///< who uses the folder now, for people; "" if no process
+  evaluation::RunLabel run{};              ///< the last run that began
+  std::optional<RunEnd> last{};            ///< the last run that is complete
+  double age = 0.0;                        ///< seconds since the last summary was written
+  std::uint64_t shards = 0, reported = 0;  ///< of a planned run
+  std::string used_by{};  ///< description of the process that uses the folder; empty if none
 };
 
-/// complete, running, planned, cut-short
+/// Returns complete, running, planned or cut-short.
 const char* to_text(RunStatus::State state);
 
-/// An error if no run was begun there, or if its files cannot be read.
+/// Reads the state of the last run. An error if no run began there, or its files cannot be read.
 Expected<RunStatus> run_status(const std::filesystem::path& out);
 
 }  // namespace nonio::batch

@@ -11,7 +11,7 @@
 #include "nonio/sdk/plugin.h"
 #include "platform/storage/serialise.h"
 
-/// What the processes of a run send each other.
+/// Members of the types that the processes of a run send to each other.
 namespace nonio::storage {
 
 NONIO_MEMBERS(Error, a, b, c, d, e)

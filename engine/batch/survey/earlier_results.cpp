@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Finds campaigns by their folders as text.
+/// Index of the campaigns by the text of their folders.
 class ByFolder {
  public:
   ByFolder(const std::vector<CampaignState>& campaigns, std::size_t ordered)
@@ -37,7 +37,8 @@ class ByFolder {
  private:
   const CampaignState* first_;
   const CampaignState* end_;
-  std::map<std::string, const CampaignState*> others_;  // few: not UTF-8, or not in the order
+  // Few: folders that are not UTF-8, or not in the order.
+  std::map<std::string, const CampaignState*> others_;
 };
 
 }  // namespace

@@ -13,14 +13,14 @@
 
 namespace nonio::batch {
 
-/// Results in the output folder under an id that no manifest of this run has, by id.
+/// Results in the output folder whose id no manifest of this run states.
 struct EarlierResult {
-  std::string id, folder;  ///< folder: as text, of the campaign, relative to the site
+  std::string id, folder;  ///< folder: of the campaign, as text, relative to the site
   std::uint64_t run = 0;
   bool failed = false;
 };
 
-/// The campaigns whose manifests give an id, to be found by it. Keeps their positions, four bytes each.
+/// Index of the campaigns whose manifests state an id. It stores positions, four bytes each.
 class ClaimedIds {
  public:
   explicit ClaimedIds(const std::vector<CampaignState>& campaigns);
@@ -31,12 +31,12 @@ class ClaimedIds {
   std::vector<std::uint32_t> by_id_;
 };
 
-/// An error if the folder cannot be listed.
+/// Returns such results, by id. An error if the output folder cannot be listed.
 Expected<std::vector<EarlierResult>> unclaimed_results(const std::filesystem::path& out,
                                                        const ClaimedIds& claimed);
 
-/// What existed before and does not exist in this run. Failed results of a folder that is there
-/// under another id are leftovers, and only noted. The first `ordered` campaigns are in the order
+/// Returns campaigns that existed before and no longer exist. Failed results of a folder that now
+/// has another id are leftovers and are only noted. The first `ordered` campaigns are in the order
 /// of their folders.
 std::vector<Vanished> vanished_of(const std::vector<EarlierResult>& earlier,
                                   const std::vector<CampaignState>& campaigns, std::size_t ordered,

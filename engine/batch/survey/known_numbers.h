@@ -10,19 +10,20 @@
 
 namespace nonio::batch {
 
-/// The entries of the register before the run; nothing if another process keeps it locked.
+/// Entries and drafts in the register before the run.
 struct Known {
   std::vector<certificates::RegisterEntry> numbers;
   std::vector<certificates::WaitingDraft> drafts;
 };
 
-/// An error if the register cannot be read, or is where it would be lost.
-/// `first`: before anything is issued; then a journal that is no chain is an error too.
+/// Reads the register; none if another process keeps it locked. An error if it cannot be read, or
+/// is in a place where it could be lost. `first`: before anything is issued; a broken chain of the
+/// journal is an error then.
 enum class Look { first, again };
 Expected<std::optional<Known>> known_of(const RunOptions& options, const reading::Context& context,
                                         Look look = Look::first);
 
-/// Order of the last number.
+/// Returns the order of the last number; 0 if there is none.
 std::uint64_t issued_so_far(const std::vector<certificates::RegisterEntry>& numbers);
 
 }  // namespace nonio::batch

@@ -32,7 +32,8 @@ std::string_view without_end(std::string_view text) {
   return text.substr(0, last == std::string_view::npos ? 0 : last + 1);
 }
 
-/// What must not look like an edit.
+/// Describes a loss of bytes that cannot be an edit: the file is empty, or cut at its end. Empty
+/// otherwise.
 std::string lost_bytes(std::string_view before, std::string_view now) {
   before = without_end(before), now = without_end(now);
   if (before.empty() || now.size() >= before.size()) return {};
@@ -48,7 +49,8 @@ bool is_record(const std::string& path) {
 }
 std::string asset_of(const std::string& path) { return fs::path(path).stem().string(); }
 
-/// A wrong record replaces no copy: the copy names the machine of the record.
+/// Whether the file is valid. An invalid record replaces no copy, because the copy names the
+/// machine of the record.
 bool is_good(const std::string& path, const std::string& bytes) {
   return !is_record(path) || config::parse_machine(bytes, path, asset_of(path)).has_value();
 }
@@ -67,7 +69,7 @@ Expected<SiteParts> SiteParts::compare(const fs::path& site, const fs::path& out
   parts.site_ = site, parts.out_ = out / state_folder;
   if (auto read = parts.read_inventory(); !read) return fail(read.error());
   if (auto looked = parts.look_at_all(); !looked) return fail(looked.error());
-  // A log with an error removes nothing; the run reports the error where it reads the log.
+  // A log with an error confirms no removal; the run reports the error when it reads the log.
   if (const auto logs = config::read_site_logs(site)) parts.leave_out_removed(logs->forgotten);
   parts.note_lost();
   return parts;
@@ -83,7 +85,7 @@ Expected<void> SiteParts::read_inventory() {
     date_ = json.at("date").get<std::string>();
     run_ = json.at("night").get<std::uint64_t>();
     for (const auto& [path, part] : json.at("files").items()) {
-      // Files are read, written and removed by these names.
+      // These names are used to read, write and remove files, so they must be below the site.
       if (!config::is_site_part(path) || fs::path(path).lexically_normal() != path)
         throw std::runtime_error("no path below the site");
       parts_[path] = {part.at("sha256").get<std::string>(), part.value("last_seen", date_), {}};
@@ -96,7 +98,7 @@ Expected<void> SiteParts::read_inventory() {
   return {};
 }
 
-/// Without the list the copies themselves are the inventory.
+/// If the inventory is missing or damaged, the copies themselves are taken as the inventory.
 Expected<void> SiteParts::read_copies() {
   NONIO_TRY(const auto there, storage::is_there(out_ / copies_folder));
   if (!there) return {};
@@ -155,7 +157,8 @@ void SiteParts::look(const std::string& path) {
   if (is_good(path, *now)) renewed_[path] = std::move(*now);
 }
 
-/// An entry of a later day than the last that saw the file: an older one was for an earlier loss.
+/// Marks lost files as removed on purpose if forgotten.toml names them at a day not before the last
+/// run that saw them. An older entry refers to an earlier loss.
 void SiteParts::leave_out_removed(const std::vector<config::Forgotten>& forgotten) {
   for (const auto& one : parts_) {
     const std::string& path = one.first;
@@ -170,7 +173,7 @@ void SiteParts::leave_out_removed(const std::vector<config::Forgotten>& forgotte
 
 void SiteParts::note_lost() {
   const std::set<std::string> removed(removed_.begin(), removed_.end());
-  std::map<std::string, std::size_t> whole;  // folders of which no file is left
+  std::map<std::string, std::size_t> whole;  // folders of which no file exists any more
   for (const char* folder : part_folders) {
     std::size_t missing = 0;
     const bool all = std::all_of(parts_.begin(), parts_.end(), [&](const auto& p) {
@@ -198,7 +201,8 @@ void SiteParts::note_lost() {
                      damaged_ + "; this run makes the inventory of the site anew"});
 }
 
-/// With the day on which it was seen, its new name if it has one, and where its copy is.
+/// Returns what is wrong with a file, the day on which it was last read, its new name if it was
+/// renamed, and where its copy is.
 std::string SiteParts::why_of(const std::string& path) const {
   const Part& part = parts_.at(path);
   std::string why = part.why;
@@ -242,7 +246,7 @@ void SiteParts::complete(config::MachineRecords& records) const {
 }
 
 Expected<void> SiteParts::keep(const evaluation::RunLabel& run) const {
-  // Copies without a list would be taken for a list that was lost.
+  // Write a list first, because copies without a list would be taken for a lost list.
   NONIO_TRY(const auto listed, storage::is_there(out_ / inventory_name));
   if (!listed)
     if (auto begun = put_inventory(run, parts_); !begun) return begun;

@@ -12,34 +12,36 @@
 
 namespace nonio::batch {
 
-/// The inventory of a site besides its campaigns: site.toml, what people have entered (events.toml,
-/// acknowledged.toml, forgotten.toml), the records of the machines, the site's own templates. The
-/// output folder contains a copy of each file as the last complete run has read it
-/// (OUT/.nonio/site), so that a file that is missing, unreadable, emptied or cut is recognised, and
-/// can be restored.
+/// Inventory of the files of a site apart from its campaigns: site.toml, entries of people
+/// (events.toml, acknowledged.toml, forgotten.toml), records of the machines, and the site's own
+/// templates. The output folder contains a copy of each file as the last complete run read it
+/// (OUT/.nonio/site), so that a missing, unreadable, emptied or cut file is detected and can be
+/// restored.
 class SiteParts {
  public:
-  /// Compares the site with the inventory in `out`; without an inventory nothing is lost. Nothing is
-  /// written. An error if the inventory or the folder of templates cannot be read.
+  /// Compares the site with the inventory in `out`; without an inventory nothing counts as lost.
+  /// Nothing is written. An error if the inventory or the folder of templates cannot be read.
   static Expected<SiteParts> compare(const std::filesystem::path& site,
                                      const std::filesystem::path& out);
 
-  /// What is lost and was not removed on purpose, by path: `id` and `folder` are the path below the
-  /// site. If none of the files of a folder is left, the folder.
+  /// Returns files that are lost and were not removed on purpose, by path; `id` and `folder` are
+  /// the path below the site. If all files of a folder are lost, the folder is returned instead.
   const std::vector<Vanished>& lost() const { return lost_; }
-  /// Without these no result, table or certificate can be trusted: site.toml and templates. Says
-  /// which; empty: none of them is lost.
+  /// Names lost files without which no result, table or certificate can be trusted: site.toml and
+  /// templates. Empty if none is lost.
   std::string refusal() const;
-  /// A record that is lost fails the campaigns of its machine, which its last copy names.
+  /// Marks lost records as invalid in `records`, so that the campaigns of their machines fail; the
+  /// last copy of a record names its machine.
   void complete(config::MachineRecords& records) const;
-  /// Becomes the inventory, with what was found good by this run.
+  /// Writes the files that this run found valid as the new inventory.
   Expected<void> keep(const evaluation::RunLabel& run) const;
 
  private:
   struct Part {
-    std::string sha256;     ///< of the copy
-    std::string last_seen;  ///< YYYY-MM-DD; of what is wrong: of the last run that found it good
-    std::string why;        ///< what is wrong with it now; empty: nothing
+    std::string sha256;     ///< digest of the copy
+    std::string last_seen;  ///< YYYY-MM-DD; for a damaged file, the day of the last run that found
+                            ///< it valid
+    std::string why;        ///< what is wrong with the file now; empty: nothing
   };
 
   Expected<void> read_inventory();
@@ -53,11 +55,12 @@ class SiteParts {
                                const std::map<std::string, Part>& parts) const;
 
   std::filesystem::path site_{}, out_{};
-  std::string date_{}, damaged_{};  ///< of the inventory; why it cannot be read
+  std::string date_{}, damaged_{};  ///< date of the inventory; why the inventory cannot be read
   std::uint64_t run_ = 0;
   std::map<std::string, Part> parts_{};           ///< by path below the site
-  std::map<std::string, std::string> renewed_{};  ///< bytes of those that differ from their copies
-  std::vector<std::string> removed_{};            ///< on purpose
+  std::map<std::string, std::string> renewed_{};  ///< new bytes of files that differ from their
+                                                  ///< copies
+  std::vector<std::string> removed_{};            ///< files that were removed on purpose
   std::vector<Vanished> lost_{};
 };
 

@@ -25,14 +25,15 @@ namespace {
 
 enum class Seen : std::uint64_t { campaign, unlisted, note, all };
 
-/// More remarks than that are counted only.
+/// Remarks beyond this number are only counted.
 constexpr std::size_t most_remarks = 100;
-/// So many folders that hang: the site as a whole does not answer.
+/// If this many folders hang, the site as a whole counts as not answering.
 constexpr std::size_t most_hung = 64;
-/// After so many of them a disk gets no more time than a second.
+/// After this many folders that hang, each further one gets at most one second.
 constexpr std::size_t patient_for = 8;
 
-using Passed = std::map<std::string, std::string>;  // places that hung, and what was stated of them
+// Places that hung, with the messages about them.
+using Passed = std::map<std::string, std::string>;
 
 std::string lower(std::string text) {
   for (char& c : text)
@@ -40,19 +41,19 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// `Campaign.toml`, `campaign.toml.txt`: probably meant as a manifest.
+/// Whether the name is probably meant as that of a manifest: `Campaign.toml`, `campaign.toml.txt`.
 bool is_nearly_manifest(const std::string& name) {
   const std::string word = lower(name), wanted = config::manifest_name;
   return word == wanted || word.starts_with(wanted + ".");
 }
 
 struct FolderNames {
-  std::deque<std::string> folders;  // there may be millions
+  std::deque<std::string> folders;  // a deque, since there may be millions
   std::vector<std::string> links, nearly;
   bool has_manifest = false;
 };
 
-/// Runs in the child.
+/// Walks through the site in the child process.
 class Walker {
  public:
   Walker(fs::path root, const fs::path& out, const Passed& passed, process::SignsOfLife& signs,
@@ -98,7 +99,7 @@ class Walker {
     if (++remarks_ <= most_remarks) tell(Seen::note, text);
   }
 
-  /// False if it hung before.
+  /// Whether the place may be read; false, with the reason reported, if it hung before.
   bool may(const std::string& place) {
     signs_.reading(place);
     const auto hung = passed_.find(place);
@@ -107,7 +108,7 @@ class Walker {
     return false;
   }
 
-  /// The names in a folder, and nothing open afterwards.
+  /// Returns the names in a folder; no descriptor remains open.
   FolderNames list(const std::string& folder) {
     FolderNames names;
     const int fd = ::open(path_of(folder).c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
@@ -173,7 +174,8 @@ class Walker {
              config::manifest_name);
   }
 
-  /// In a campaign's folder a link to other files is nothing to remark on.
+  /// Notes a broken link, or a link to a folder or campaign, which is not followed. Links in a
+  /// campaign's folder are noted only if they lead to a campaign.
   void look_at_link(const std::string& link, bool in_campaign) {
     struct stat info {};
     if (::stat(path_of(link).c_str(), &info) != 0) {
@@ -198,7 +200,7 @@ class Walker {
   std::size_t remarks_ = 0;
 };
 
-/// Takes what came; true once the walk is whole.
+/// Adds the pieces received from the child to `walk`; true when the walk is complete.
 bool take_over(const std::vector<std::string>& pieces, SiteWalk& walk) {
   for (const std::string& piece : pieces) {
     Seen what{};
@@ -221,7 +223,7 @@ bool take_over(const std::vector<std::string>& pieces, SiteWalk& walk) {
   return false;
 }
 
-/// One walk; nothing if it ended early, with what is to be passed over next time.
+/// Walks once. None if the walk ended early; places to be skipped next time are added to `passed`.
 Expected<std::optional<SiteWalk>> try_walk(const fs::path& site, const fs::path& out,
                                            double seconds, bool (*stopped)(), Passed& passed) {
   auto child =

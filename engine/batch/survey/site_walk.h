@@ -9,20 +9,20 @@
 
 namespace nonio::batch {
 
-/// The content of a site. Paths are relative to it, in order; the site itself is ".".
+/// The content of a site. Paths are sorted and relative to the site, which itself is ".".
 struct SiteWalk {
   struct Unlisted {
     std::string folder, why;
   };
   std::vector<std::string> campaigns;  ///< folders with a manifest
-  std::vector<Unlisted> unlisted;      ///< their content is not known
-  std::vector<std::string> notes;      ///< what looks like a campaign and is passed over
+  std::vector<Unlisted> unlisted;      ///< folders that could not be listed
+  std::vector<std::string> notes;      ///< names that look like a campaign and are skipped
 };
 
-/// All folders below a site. Links are not followed: a campaign is a folder inside the site. Hidden
-/// folders and the output folder are left out. The walk is done in a child process with one
-/// descriptor: a folder that gives no answer within `seconds` is an unlisted one. An error if the
-/// site itself cannot be listed. What is returned after `stopped` became true is incomplete.
+/// Finds all folders below a site. Links are not followed, because a campaign is a folder inside
+/// the site; hidden folders and the output folder are left out. Runs in a child process with one
+/// open descriptor. A folder that does not answer within `seconds` is listed as unlisted. An error
+/// if the site itself cannot be listed. If `stopped` becomes true, the result is incomplete.
 Expected<SiteWalk> walk_site(const std::filesystem::path& site, const std::filesystem::path& out,
                              double seconds, bool (*stopped)());
 

@@ -29,12 +29,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// So many campaigns for one process: starting it is then cheap, and a crash costs little.
+/// Campaigns given to one process: starting it is then cheap, and a crash costs little.
 constexpr std::size_t campaigns_in_batch = 2000;
-/// After so many that hang, a disk gets no more time than a second.
+/// After this many campaigns whose files hang, each further one gets at most one second.
 constexpr std::size_t most_patience = 8;
 
-/// For a number that was issued before.
+/// Returns the error for an issued number that the register does not contain.
 Error unknown_number(const std::string& number, const std::filesystem::path& out) {
   return Error{"the register of certificates does not know the number " + number + ", which " +
                out.string() +
@@ -54,7 +54,7 @@ class Pool {
 
   Expected<void> run(std::span<const std::uint32_t> which) {
     const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-    // Several for each core, so that all end at about the same time.
+    // Several batches per core, so that all cores end at about the same time.
     const std::size_t size =
         std::clamp(which.size() / (4 * cores), std::size_t{1}, campaigns_in_batch);
     while ((!which.empty() || !todo_.empty() || !children_.empty()) && !in_.stopped()) {
@@ -111,7 +111,9 @@ class Pool {
     batches_.erase(batches_.begin() + static_cast<std::ptrdiff_t>(i));
   }
 
-  /// The campaign that it was at is tried alone, or failed; the others are done by another process.
+  /// Handles a child that died or hangs. If the files of its current campaign hang, the campaign
+  /// fails; otherwise it is tried alone, at most twice more. Another process continues with the
+  /// others.
   void cut_short(process::Watched& child, const Batch& batch, bool silent, double patience) {
     const std::size_t at =
         std::clamp<std::size_t>(child.signs().index, batch.received, batch.campaigns.size() - 1);
@@ -143,23 +145,23 @@ class Pool {
 
   const SurveyInput& in_;
   std::vector<CampaignState>& states_;
-  std::vector<Batch> todo_;  // before all others
+  std::vector<Batch> todo_;  // batches that go before all others
   std::vector<process::Watched> children_;
-  std::vector<Batch> batches_;  // of the children
+  std::vector<Batch> batches_;  // batches of the children
   std::map<std::uint32_t, int> trials_;
   std::size_t hung_ = 0;
   std::string unknown_;
 };
 
-/// Looks at the campaigns `which` of `states` and completes them, on all cores, in child processes
-/// that may hang or crash without harm to the run. An error only if no process can be had, or if
-/// the register does not know a number.
+/// Examines the campaigns `which` of `states` and completes their states, on all cores, in child
+/// processes that may hang or crash without harm to the run. An error if no process can be started,
+/// or if the register does not contain an issued number.
 Expected<void> look_at_all(const SurveyInput& input, std::span<const std::uint32_t> which,
                            std::vector<CampaignState>& states) {
   return Pool(input, states).run(which);
 }
 
-/// An id for a campaign whose manifest does not give one: its folder's name.
+/// Makes an id from the name of the folder, for a campaign whose manifest states none.
 std::string folder_id(const std::string& folder) {
   std::string id = folder == "." ? "campaign" : fs::path(folder).filename().string();
   for (char& c : id) {
@@ -170,14 +172,14 @@ std::string folder_id(const std::string& folder) {
   return id.substr(0, 100);
 }
 
-/// A name for each campaign whose manifest gives none: the one under which its folder has results,
-/// else the folder's, which gives way to every id that is taken.
+/// Sets an id for each campaign whose manifest states none: the id under which its folder has
+/// results, otherwise one from the folder's name that no other campaign has.
 void name_by_folder(std::vector<CampaignState>& states, const std::vector<EarlierResult>& earlier,
                     const ClaimedIds& claimed) {
   std::map<std::string_view, std::string_view> known;  // id by folder
   std::set<std::string> taken;
   for (const EarlierResult& e : earlier) {
-    // A name that was made of the folder itself gives way to one that a manifest gave.
+    // A name that was made from the folder is replaced by one that a manifest stated.
     const auto [at, is_new] = known.emplace(e.folder, e.id);
     if (!is_new && !e.failed) at->second = e.id;
     taken.insert(e.id);
@@ -197,8 +199,8 @@ void name_by_folder(std::vector<CampaignState>& states, const std::vector<Earlie
   }
 }
 
-/// Different campaigns with one id: none of them may claim the output folder. The message names a
-/// few of them only, since all of them carry it.
+/// Fails campaigns that have the same id, since each would write to the same output folder. Every
+/// message names at most four of their folders.
 void fail_collisions(std::vector<CampaignState>& states) {
   constexpr std::size_t most_named = 4;
   for (std::size_t i = 0; i < states.size();) {
@@ -238,7 +240,8 @@ CampaignState failed_folder(const SiteWalk::Unlisted& unlisted) {
   return state;
 }
 
-/// Whether other campaigns share readings as they did when the record was written.
+/// Marks the campaign as to be evaluated if the set of campaigns that share its readings has
+/// changed since its record was written.
 void compare_twins(CampaignState& state, const std::vector<CampaignState>& all) {
   const reading::Twins before = state.twins_before;
   state.twins_before = {};

@@ -15,32 +15,34 @@ namespace nonio::batch {
 struct SurveyInput {
   std::filesystem::path site, out;
   const reading::Context& context;
-  std::uint64_t run;  ///< the one that is being done
+  std::uint64_t run;  ///< number of the present run
   bool force;
-  /// All of the site's register, and the campaigns whose drafts wait there; none while another
-  /// process keeps it locked: then it is not consulted.
+  /// Entries of the site's register, and the campaigns with drafts in it; none while another
+  /// process keeps it locked: then numbers are not checked.
   std::optional<std::vector<certificates::RegisterEntry>> numbers;
   std::set<std::string> drafts;
-  std::vector<std::string>& notes;  ///< what was passed over, for the summary
-  bool (*stopped)();            ///< called repeatedly; if it becomes true, the result is incomplete
-  bool verify_results = false;  ///< digests decide of all files given out
+  std::vector<std::string>& notes;  ///< notes on skipped names, for the summary
+  bool (*stopped)();            ///< whether to stop, called repeatedly; after true the result is
+                                ///< incomplete
+  bool verify_results = false;  ///< compare the digests of all output files, not only their times
 };
 
 struct Surveyed {
-  std::vector<CampaignState> campaigns;  ///< by id
-  std::vector<Vanished> vanished;        ///< by id
+  std::vector<CampaignState> campaigns;  ///< sorted by id
+  std::vector<Vanished> vanished;        ///< sorted by id
 };
 
-/// All campaigns of a site, each with what is to be done with it and why. Failed, and not to be
-/// evaluated, are: campaigns whose ids collide, campaigns whose files give no answer, and, as
-/// entries of their own, folders that cannot be listed. The site is read in child processes.
+/// Finds all campaigns of a site and decides what is to be done with each, and why. Campaigns with
+/// the same id and campaigns whose files do not answer are failed and not evaluated; folders that
+/// cannot be listed are failed entries of their own. The site is read in child processes.
 Expected<Surveyed> survey(const SurveyInput& input);
 
-/// The last step of a survey: in the order of ids and folders, with collisions and shared readings.
+/// Last step of a survey: sorts the campaigns by id and folder, fails equal ids, and compares
+/// shared readings.
 void set_in_order(std::vector<CampaignState>& campaigns);
 
-/// An error if the output folder has a number that the register does not know: numbers would be
-/// used twice. For a run whose survey could not consult it.
+/// Returns an error if the output folder contains a number that the register does not: numbers
+/// would be used twice. For a run whose survey could not read the register.
 Expected<void> check_numbers(const std::filesystem::path& out,
                              const std::vector<CampaignState>& campaigns,
                              const std::vector<certificates::RegisterEntry>& numbers);

@@ -40,13 +40,14 @@ CampaignState ChangeDetector::at(const CampaignState& known, bool rough) {
   state.named_by_folder = known.named_by_folder;
   signs_.reading((fs::path(known.folder) / config::manifest_name).string());
   const auto text = storage::read_small_file(in_.site / known.folder / config::manifest_name);
-  if (!text) {  // its worker reports why
+  if (!text) {  // the worker reports why it cannot be read
     state.named_by_folder = true;
     state.reason = "no earlier result";
     return state;
   }
   const std::string digest = storage::sha256(*text);
-  // Parsed in full only where a full reading did not are the same before.
+  // Extract the id only; the manifest is parsed in full if it differs from that of the last
+  // results.
   if (state.id.empty()) state.id = config::extract_id(*text);
   Last last = last_of(state.id);
   const bool as_before = last && *last &&
@@ -97,8 +98,8 @@ ChangeDetector::Last ChangeDetector::last_of(const std::string& id) {
   return last;
 }
 
-/// If storing the results of this run was interrupted: why the campaign was done. The files to
-/// compare with are no longer those of the previous run.
+/// Returns the reason of an evaluation of this run that was staged and not completely stored; empty
+/// if there is none. The output files are then no longer those of the previous run.
 std::string ChangeDetector::staged_reason(const CampaignState& state) const {
   const auto staged = evaluation::staged_record(storage::own_folder(in_.out, state.id));
   return staged && *staged && (*staged)->run == in_.run ? (*staged)->reason : "";
@@ -177,8 +178,8 @@ std::optional<std::uint64_t> ChangeDetector::look_at_file(const CampaignState& s
   return now ? std::optional(storage::short_digest(*now)) : std::nullopt;
 }
 
-/// A file of the right size that is not younger than the record was not touched since; of another
-/// one the content decides.
+/// Adds output files that are missing or changed to `why`. A file of the recorded size that is not
+/// younger than the record is unchanged; otherwise its digest decides.
 void ChangeDetector::look_at_outputs(const CampaignState& state, const evaluation::Record& record,
                                      std::vector<std::string>& why) {
   const fs::path folder = storage::results_folder(in_.out, state.id);

@@ -14,29 +14,31 @@
 
 namespace nonio::batch {
 
-/// What is to be done with a campaign, and why: its contents against those of its last result. Runs
-/// in a child process of the survey, since it reads the site.
+/// Decides what is to be done with a campaign, and why, by comparing its files with those of its
+/// last result. Runs in a child process of the survey, since it reads the site.
 class ChangeDetector {
  public:
   ChangeDetector(const SurveyInput& input, process::SignsOfLife& signs);
 
-  /// Of a campaign of which the folder is known, and the id where its manifest gives none. `rough`:
-  /// without parsing the manifest, which brought down the process before.
+  /// Returns the state of a campaign whose folder is known, and whose id if its manifest states
+  /// none. `rough`: do not parse the manifest, because that crashed the process before.
   CampaignState at(const CampaignState& known, bool rough);
-  /// A number that was issued and that the register does not know; empty if all is well.
+  /// An issued number that the register does not contain; empty if there is none.
   const std::string& unknown_number() const { return unknown_; }
 
  private:
   using Last = Expected<std::optional<evaluation::LastRecord>>;
 
-  /// The id that the manifest gives; notes the digests of its files in the state.
+  /// Parses the manifest and returns its id; stores the digests of the campaign's files in the
+  /// state.
   std::string read_whole(CampaignState& state, const std::string& manifest, bool rough);
   Last last_of(const std::string& id);
   std::string staged_reason(const CampaignState& state) const;
   void judge(CampaignState& state, const Last& last, const std::string& manifest_digest);
   std::string changes(CampaignState& state, const evaluation::Record& record,
                       const std::string& manifest_digest);
-  /// Adds what is not as it was; the begin of the file's digest.
+  /// Adds to `why` if the file differs from `digest`. Returns the first 64 bits of its present
+  /// digest; none if it cannot be read.
   std::optional<std::uint64_t> look_at_file(const CampaignState& state, const std::string& name,
                                             const std::string& digest,
                                             std::vector<std::string>& why);

@@ -9,7 +9,8 @@ namespace nonio::batch {
 
 namespace {
 
-/// Digests that are there more than once, in order: few, so that the campaigns need not be kept with all of them.
+/// Returns the digests that occur more than once, sorted. They are few, so the campaigns need not
+/// be stored with all digests.
 std::vector<std::uint64_t> found_again(const std::vector<CampaignState>& campaigns) {
   std::size_t count = 0;
   for (const CampaignState& c : campaigns) count += c.readings.size();

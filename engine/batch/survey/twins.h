@@ -8,15 +8,15 @@
 
 namespace nonio::batch {
 
-/// Files of readings that several campaigns have: each campaign gets the one with the smallest id
-/// that is not its own. Campaigns are in the order of their ids; takes their `readings`. One sort,
-/// whatever is shared.
+/// Finds files of readings that several campaigns have, and notes for each campaign the smallest id
+/// of another campaign with the file. Campaigns must be in the order of their ids; their `readings`
+/// are moved out. Takes one sort, however many files are shared.
 void find_twins(std::vector<CampaignState>& campaigns);
 
-/// As the evaluation requires them, in order.
+/// Returns the twins of a campaign by id, sorted, as the evaluation requires them.
 reading::Twins twins_of(const CampaignState& campaign, const std::vector<CampaignState>& all);
 
-/// Of a record: what the run knew when it was written.
+/// Returns the twins that a record states.
 reading::Twins twins_of(const reading::Inputs& inputs);
 
 }  // namespace nonio::batch

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Messages of the process with the plugins, first byte.
+// First byte of each message of the process with the plugins.
 constexpr char wants_file = 'f', has_analysed = 'a', has_done = 'e';
 
 int ask_for_file(int stream, const fs::path& path) {
@@ -32,7 +32,8 @@ int ask_for_file(int stream, const fs::path& path) {
   return -1;
 }
 
-/// Says what is analysed; where a number is required, all of it, and waits for the number.
+/// Reports that the campaign is analysed. If a number is required, sends the results and waits for
+/// the number.
 std::optional<evaluation::AssignedNumber> ask_for_number(
     int stream, const evaluation::AnalysedCampaign& analysed) {
   if (!analysed.number) {
@@ -48,7 +49,8 @@ std::optional<evaluation::AssignedNumber> ask_for_number(
   return assigned;
 }
 
-/// What no honest process reports: these values decide which files are written.
+/// Why the answer cannot come from a process of this program; empty if it can. These values decide
+/// which files are written.
 std::string unsound_answer(const evaluation::Evaluated& e, const std::string& id) {
   if (e.campaign.id != id) return "another campaign's results";
   if (e.status != evaluation::Status::ok && e.status != evaluation::Status::attention &&
@@ -95,12 +97,13 @@ void evaluate_for(int stream, const reading::Context& context, process::SharedSt
   }
 }
 
-/// Files of the campaign, and nothing else that this user could read.
+/// Sends the descriptor of a file of the campaign to the other process. Files outside the campaign
+/// and secrets are refused.
 bool Evaluator::hand_out(const fs::path& folder, const std::string& path) const {
   std::error_code error;
   const fs::path root = fs::path(path).is_absolute() ? storage::real_folder(folder, error) : folder;
   const std::string inside = fs::path(path).lexically_relative(root).string();
-  // A manifest may be a link to anywhere, as for the survey.
+  // A manifest may be a link to any place, as in the survey.
   const auto full = inside == config::manifest_name
                         ? Expected<fs::path>(folder / config::manifest_name)
                         : storage::path_inside(folder, inside);
@@ -155,7 +158,7 @@ Expected<evaluation::Evaluated> Evaluator::write_documents(
     return fail(no_process_of_ours);
   if (const std::string why = unsound_answer(evaluated, id); !why.empty())
     return fail("the process that evaluates gave " + why);
-  // A certificate is what was assigned here; the other side only names its campaign.
+  // The certificate is the one assigned here; the other process only fills in its output.
   if (evaluated.certificate) {
     if (!assigned || !assigned->certificate) return fail(no_process_of_ours);
     assigned->certificate->output = evaluated.certificate->output;

@@ -13,33 +13,38 @@
 
 namespace nonio::batch {
 
-/// In the process with the plugins: evaluates the campaigns that the other side names, until the
-/// connection ends. It can open no file: the other side hands it those of the campaign.
+/// Runs in the process with the plugins: evaluates the campaigns that the other process names,
+/// until the connection ends. It can open no files; the other process sends descriptors of the
+/// campaign's files.
 void evaluate_for(int stream, const reading::Context& context, process::SharedStatus& stage,
                   Prints& prints);
 
-/// In the process that has files, register and signer, and no plugin code.
+/// Controls the process with the plugins. Used in the process that has access to files, register
+/// and signer, and no plugin code.
 class Evaluator {
  public:
-  /// `secrets`: files that are not handed over.
+  /// `secrets`: files that are never sent to the other process.
   Evaluator(int stream, std::vector<std::filesystem::path> secrets)
       : stream_(stream), secrets_(std::move(secrets)) {}
 
-  /// What the other side has made of a campaign before its number is known.
+  /// Results of the analysis, before the campaign has a number.
   struct Analysed {
     evaluation::Evaluated evaluated;                  ///< only where a number is required
-    std::optional<std::vector<std::string>> missing;  ///< for a number; none: none is required
+    std::optional<std::vector<std::string>> missing;  ///< what is missing for a number; none: no
+                                                      ///< number is required
   };
 
-  /// `read_campaign` and `analyse`, done by the other side. If that has ended, this process ends
-  /// too: its parent knows why. An error: it states what no process of ours reports.
+  /// Calls `read_campaign` and `analyse` in the other process. If that process has ended, this
+  /// process ends too; the parent knows why. An error if the answer cannot come from a process of
+  /// this program.
   Expected<Analysed> analyse(const std::filesystem::path& folder, const std::string& id,
                              const reading::Twins& twins,
                              const std::optional<HistorySoFar>& history);
-  /// `write_documents` of the same campaign. `assigned`: where a number was wanted.
+  /// Calls `write_documents` for the same campaign in the other process. `assigned`: the number, if
+  /// one was required.
   Expected<evaluation::Evaluated> write_documents(
       const std::string& id, std::optional<evaluation::AssignedNumber> assigned);
-  /// Whether the memory of the other side has grown noticeably.
+  /// Whether the memory of the other process has grown noticeably.
   bool grown() const { return grown_; }
 
  private:

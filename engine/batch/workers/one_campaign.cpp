@@ -23,8 +23,8 @@ constexpr const char* register_elsewhere = "the register of certificates is on a
 constexpr const char* register_locked =
     "the certificate register has been locked by another process since the run started";
 
-/// Memory that was refused, and a disk or share that did not answer, show nothing about the
-/// readings.
+/// Whether the error comes from the host and not from the readings: lack of memory, or a disk or
+/// share that does not answer.
 bool is_of_the_machine(const Error& e) {
   if (e.message.find("out of memory") != e.message.npos) return true;
   constexpr int codes[] = {EIO, ESTALE, ETIMEDOUT, ENOTCONN, EHOSTDOWN, EHOSTUNREACH, ENOMEM};
@@ -44,7 +44,8 @@ void fail_certificate(evaluation::Evaluated& evaluated, const Error& why) {
   evaluated.retry = true;
 }
 
-/// Refused while the register is not known to be sound, or another process keeps it to itself.
+/// Draws a number for the campaign. Returns an error in `AssignedNumber` if the register is on
+/// another host, damaged or locked; `locked` is set if it may be available later.
 evaluation::AssignedNumber number_of(const SiteWork& site, const RegisterState& state,
                                      const evaluation::Evaluated& evaluated,
                                      const std::vector<std::string>& missing,
@@ -83,7 +84,8 @@ bool wants_signature(const evaluation::Evaluated& evaluated) {
   });
 }
 
-/// Read, analysed, numbered, written. `as_draft`: without a number, whatever the rules state.
+/// Evaluates a campaign in the other process: reads, analyses, numbers and writes it. `as_draft`:
+/// without a number, whatever the rules state.
 Expected<evaluation::Evaluated> evaluated_apart(const SiteWork& site, const RegisterState& state,
                                                 const CampaignState& c, const fs::path& folder,
                                                 certificates::CampaignFiles& files, bool as_draft,
@@ -98,8 +100,8 @@ Expected<evaluation::Evaluated> evaluated_apart(const SiteWork& site, const Regi
   return evaluator.write_documents(c.id, std::move(number));
 }
 
-/// Evaluated and, where it is to be, signed and entered. `locked`: not yet, since the register
-/// is.
+/// Evaluates a campaign and, if required, signs its certificate and enters it into the register.
+/// `locked`: set if this has to wait for the register.
 Expected<evaluation::Evaluated> certified(const SiteWork& site, const RegisterState& state,
                                           const CampaignState& c, process::SharedStatus& stage,
                                           bool& locked, Evaluator& evaluator) {
@@ -125,7 +127,8 @@ Expected<evaluation::Evaluated> certified(const SiteWork& site, const RegisterSt
   return evaluation;
 }
 
-/// In the worker's process, which has no plugin code: that runs at the other end of the stream.
+/// Does one campaign in the worker, which contains no plugin code: plugins run at the other end of
+/// the stream.
 Answer work(const SiteWork& site, const RegisterState& state, std::size_t index, bool first,
             process::SharedStatus& stage, Evaluator& evaluator, bool& shows_history) {
   if (first && site.signer != nullptr) site.signer->leave_to_worker();

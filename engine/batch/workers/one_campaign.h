@@ -15,7 +15,7 @@
 
 namespace nonio::batch {
 
-/// What all campaigns of a run, or the one that is released, share.
+/// Data shared by all campaigns of a run, or by the one that is approved.
 struct SiteWork {
   const RunOptions& options;
   const reading::Context& context;
@@ -23,24 +23,24 @@ struct SiteWork {
   const std::vector<CampaignState>& campaigns;
   const certificates::Numbers& numbers;
   certificates::Signer* signer;  ///< null: nothing is signed
-  const reading::Twins* twins;   ///< of the one campaign that is released; null: it is a run
-  /// Of campaigns whose documents show their machine's history.
+  const reading::Twins* twins;   ///< twins of the campaign that is approved; null in a run
+  /// History by campaign, for campaigns whose documents show it.
   const std::map<std::string, assessment::HistoryBasis>& histories;
-  bool elsewhere = false;  ///< register and key are: what needs them waits
+  bool elsewhere = false;  ///< register and key are on another host: campaigns that need them wait
 };
 
 /// The register of certificates, as known when a worker is started.
 struct RegisterState {
-  bool read = true;         ///< false: another process keeps it to itself
-  std::string unsound{};    ///< why no number is drawn; empty: it is sound
-  bool last_trial = false;  ///< no process waits for it any longer
+  bool read = true;         ///< false: another process keeps it locked
+  std::string unsound{};    ///< why no number can be drawn; empty: numbers can be drawn
+  bool last_trial = false;  ///< last attempt: the lock is not waited for any longer
 };
 
-/// In the worker's process, which has no plugin code: that runs at the other end of the evaluator's
-/// stream. Evaluates one campaign, numbers and signs it where that is required, and stages its
-/// files. `first`: no campaign was done in this process before. What plugins throw is caught where
-/// they are called. With Answer::not_stored the stage states why. `shows_history`: whether a
-/// document of the campaign shows the machine's.
+/// Does one campaign in the worker, which contains no plugin code: plugins run at the other end of
+/// the evaluator's stream. Evaluates it, numbers and signs it where required, and stages its files.
+/// `first`: the first campaign of this process. Exceptions of plugins are caught where they are
+/// called. With Answer::not_stored, `stage` states why. `shows_history`: set if a document of the
+/// campaign shows the machine's history.
 Answer do_campaign(const SiteWork& site, const RegisterState& state, std::size_t index, bool first,
                    process::SharedStatus& stage, Evaluator& evaluator, bool& shows_history);
 

@@ -37,13 +37,13 @@ constexpr const char* loading_process = "the process that loads plugins";
 constexpr double load_seconds = 10.0, prepare_seconds = 30.0, answer_seconds = 30.0;
 constexpr std::string_view preparing = "prepare ", died = "died";
 constexpr int most_unexplained = 3;
-constexpr std::size_t most_prints = 16 << 10;  // bytes
+constexpr std::size_t most_prints = 16 << 10;  // bytes of plugin output that are printed
 
-/// Message of the process that loads plugins when it is ready.
+/// Message of the loading process when all plugins are loaded.
 struct Ready {
   loader::Catalogue catalogue;
   std::vector<std::string> said;
-  std::string refused;  ///< why it cannot go on; empty: it can
+  std::string refused;  ///< why the process cannot continue; empty: it can
 };
 
 void take_input() {
@@ -51,7 +51,7 @@ void take_input() {
   if (nothing >= 0) ::dup2(nothing, STDIN_FILENO);
 }
 
-/// Why the answer will not come any more; empty if it may.
+/// Waits up to 50 ms. Returns whether the stream can be read.
 bool is_ready(int stream) {
   pollfd one{stream, POLLIN, 0};
   constexpr int now_and_then = 50;  // ms
@@ -86,8 +86,8 @@ void PluginHost::end() {
 }
 
 Expected<loader::Catalogue> PluginHost::start() {
-  constexpr int most_trials = 100;  // each leaves something out
-  int unexplained = 0;              // what the system refuses now it may give in a moment
+  constexpr int most_trials = 100;  // each attempt leaves out one more plugin
+  int unexplained = 0;              // deaths without a known plugin: lack of memory may pass
   for (int i = 0; i < most_trials; ++i) {
     auto loaded = load_once();
     const bool again =
@@ -130,14 +130,15 @@ Expected<loader::Catalogue> PluginHost::load_once() {
   const std::string where = progress.get();
   Error error{where.empty() ? std::string(loading_process) + " died: " + why : why};
   error.key = where.empty() ? died : preparing;
-  // Who dies once may have been refused memory, who is killed was so from outside; who hangs has
-  // cost its limit.
+  // A process that died once may have lacked memory, and one that was killed was killed from
+  // outside, so both get another attempt. A plugin that hangs gets none.
   const int most_deaths = why.starts_with("signal 9 ") ? 5 : 1;
   if (!where.empty() && (!hung.empty() || ++died_at_[where] > most_deaths)) leave_out(where, why);
   return fail(error);
 }
 
-/// Every step has a limit of its own.
+/// Waits for the message of the loading process. Each step, such as loading one plugin, has its own
+/// time limit; `hung` states why the wait was given up.
 Expected<std::string> PluginHost::answer(int stream, process::SharedStatus& progress,
                                          std::string& hung) {
   std::string last;
@@ -153,7 +154,8 @@ Expected<std::string> PluginHost::answer(int stream, process::SharedStatus& prog
       hung = "no answer within " + std::to_string(static_cast<int>(limit)) + " s";
     if (!hung.empty()) return fail(hung);
   }
-  constexpr timeval patience{5, 0};  // it is complete, or a plugin plays with it
+  // A complete message is read at once; a plugin may have sent a part of one.
+  constexpr timeval patience{5, 0};
   ::setsockopt(stream, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   std::string text;
   if (!process::read_text(stream, text)) return fail("no answer");
@@ -181,7 +183,8 @@ Expected<process::Child> PluginHost::make_process(process::Handle stream,
     pollfd one{control_.get(), POLLIN, 0};
     const bool heard = sent && ::poll(&one, 1, static_cast<int>(1000 * answer_seconds)) > 0;
     auto hello = heard ? process::receive_descriptors(control_.get()) : fail("no answer");
-    // The kernel identifies it: a child of ours, and not the one that loads.
+    // The kernel states the sender, which must be a child of this process other than the loading
+    // one.
     if (hello && hello->word == 'h' && hello->sender > 0 && hello->sender != child_.pid()) {
       siginfo_t info{};
       if (::waitid(P_PID, static_cast<id_t>(hello->sender), &info, WEXITED | WNOHANG | WNOWAIT) ==
@@ -226,7 +229,8 @@ void PluginHost::say(std::string_view text) {
 // ---- in the process that loads plugins
 
 std::string PluginHost::check_secrets() const {
-  if (!process::lacking_confinement().empty()) return {};  // reported already
+  // The lack of confinement is reported already.
+  if (!process::lacking_confinement().empty()) return {};
   for (const fs::path& secret : request_.secrets) {
     const process::Handle file(::open(secret.c_str(), O_RDONLY | O_CLOEXEC));
     if (file)
@@ -251,7 +255,7 @@ bool is_prepared(const Output& output, const Templates& templates) {
 
 loader::Plugins& PluginHost::load_all(process::SharedStatus& progress,
                                       std::vector<std::string>& said, Prints& prints) const {
-  auto* plugins = new loader::Plugins;  // never unloaded
+  auto* plugins = new loader::Plugins;  // plugins are never unloaded
   for (const fs::path& path : plugins->files_in(request_.folders)) {
     progress.set(path.string());
     const auto known = refused_.find(path);
@@ -265,7 +269,7 @@ loader::Plugins& PluginHost::load_all(process::SharedStatus& progress,
   for (const Output& output : plugins->outputs()) {
     if (output.prepare == nullptr || unprepared_.contains(output.info.name)) continue;
     progress.set(std::string(preparing) + output.info.name);
-    // What the system refuses now it may give in a moment.
+    // Lack of memory may pass, so it is tried twice.
     if (!is_prepared(output, request_.context.templates) &&
         !is_prepared(output, request_.context.templates))
       said.push_back("output " + output.info.name + " could not prepare: it threw an exception");
@@ -284,7 +288,8 @@ void PluginHost::serve(int control, int catalogue, int prints, process::SharedSt
   std::sort(kept.begin(), kept.end());
   process::close_others(kept);
   process::forget_environment();
-  storage::sha256("");  // the library behind it reads its settings now or never
+  // Lets the library behind it read its settings before files are out of reach.
+  storage::sha256("");
   std::vector<fs::path> readable = request_.folders;
   readable.insert(readable.end(), request_.readable.begin(), request_.readable.end());
   Ready ready;
@@ -306,8 +311,8 @@ void PluginHost::make_sibling(int control, int prints) {
   auto asked = process::receive_descriptors(control);
   if (!asked) ::_exit(0);  // the main process has ended
   if (asked->descriptors.size() != 2) return;
-  // As a child of the main process, which waits for it and ends it. No lock is held: this process
-  // has one thread.
+  // The clone becomes a child of the main process, which waits for it and ends it. No lock can be
+  // held, since this process has one thread.
   const long pid = ::syscall(SYS_clone, CLONE_PARENT | SIGCHLD, nullptr, nullptr, nullptr, nullptr);
   if (pid != 0) return;
   process::init_child();

@@ -15,40 +15,42 @@
 
 namespace nonio::batch {
 
-/// Folders of the libraries that plugins need, in addition to their own folders; `own_plugins`: next to the
-/// program.
+/// Returns the folders of libraries that plugins need in addition to their own folders.
+/// `own_plugins`: plugin folder of the program, next to which its libraries are.
 std::vector<std::filesystem::path> library_folders(const std::filesystem::path& own_plugins);
 
-/// The one process that loads plugins, confined before it does. It makes the processes that
-/// evaluate, as children of the main process, which has no plugin code. What a plugin brings down
-/// while it is loaded or prepared is left out the next time; one that hangs costs its limit once.
+/// Controls the only process that loads plugins; it is confined before it loads them. It starts the
+/// processes that evaluate as children of the main process, which contains no plugin code. A plugin
+/// that crashes the process while it is loaded or prepared is left out at the next attempt; one
+/// that hangs is left out after its time limit.
 class PluginHost {
  public:
   struct Request {
-    std::vector<std::filesystem::path> folders;  ///< of plugins
-    /// Further folders that contain libraries of plugins.
+    std::vector<std::filesystem::path> folders;  ///< folders that contain plugins
+    /// Further folders that plugins may read, since they contain their libraries.
     std::vector<std::filesystem::path> readable;
     /// Files that plugins must not read: the signing key and its password.
     std::vector<std::filesystem::path> secrets;
-    reading::Context& context;  ///< its `plugins` are set in the process that loads them
-    bool (*stopped)();          ///< may be null
+    reading::Context& context;  ///< its `plugins` are set in the loading process
+    bool (*stopped)();          ///< whether a stop is requested; may be null
     bool confine = true;
   };
   explicit PluginHost(Request request);
   PluginHost(const PluginHost&) = delete;
   PluginHost& operator=(const PluginHost&) = delete;
-  /// Ends it, and whatever plugins have left running.
+  /// Ends the process and all processes that plugins have left running.
   ~PluginHost();
 
-  /// What was loaded; an error if nothing can be.
+  /// Loads the plugins and returns their catalogue; an error if nothing can be loaded.
   Expected<loader::Catalogue> start();
-  /// What went wrong, and what the kernel lacks.
+  /// Notes on plugins that failed, and on confinement that the kernel does not support.
   const std::vector<std::string>& notes() const { return notes_; }
 
-  /// A process that evaluates campaigns for whoever has the other end of `stream`, and states in
-  /// `stage` what it is about to call. Made anew if the process that loads has died.
+  /// Starts a process that evaluates campaigns for the owner of the other end of `stream`, and
+  /// reports in `stage` what it is about to call. Starts the loading process again if that has
+  /// died.
   Expected<process::Child> make_process(process::Handle stream, const process::SharedStatus& stage);
-  /// Passes on what plugins have printed, up to a limit.
+  /// Prints what plugins have printed, up to a limit for all plugins together.
   void pass_on_prints();
 
  private:
@@ -56,7 +58,7 @@ class PluginHost {
   void serve(int control, int catalogue, int prints, process::SharedStatus& progress);
   loader::Plugins& load_all(process::SharedStatus& progress, std::vector<std::string>& said,
                             Prints& prints) const;
-  /// With a limit for all plugins together.
+  /// Prints `text`, up to a limit for all plugins together.
   void say(std::string_view text);
   void make_sibling(int control, int prints);
   std::string check_secrets() const;
@@ -66,13 +68,14 @@ class PluginHost {
 
   Request request_;
   std::vector<std::string> notes_;
-  std::map<std::filesystem::path, std::string> refused_;  ///< and why
-  std::map<std::string, std::string> unprepared_;         ///< outputs, and why
-  std::map<std::string, int> died_at_;                    ///< how often it died where
+  std::map<std::filesystem::path, std::string> refused_;  ///< plugins that are not loaded, and why
+  std::map<std::string, std::string> unprepared_;         ///< outputs that are not prepared, and
+                                                          ///< why
+  std::map<std::string, int> died_at_;                    ///< number of deaths by stage
   std::vector<pid_t> children_before_;
   process::Child child_;
   process::Handle control_, prints_;
-  /// What a process that evaluates has printed and not passed on when it died.
+  /// Output of an evaluating process that was not printed before it died.
   struct LastWords {
     pid_t pid;
     process::Handle reading;
@@ -80,7 +83,7 @@ class PluginHost {
   };
   std::vector<LastWords> last_words_;
   std::size_t printed_ = 0;
-  int deaths_ = 0;  ///< since a process was made
+  int deaths_ = 0;  ///< deaths since the last process was started
 };
 
 }  // namespace nonio::batch

@@ -29,9 +29,9 @@ namespace {
 
 using Action = CampaignState::Action;
 
-/// A worker is replaced after so many campaigns: starting one is then cheap, and what plugins may
-/// leave in its memory does not accumulate. Plugins of other folders than the program's own were
-/// not tested with it: with one of them every campaign gets a process of its own.
+/// A worker is replaced after this many campaigns: starting one is then cheap, and what plugins
+/// leave in its memory does not accumulate. If plugins from other folders than the program's own
+/// are loaded, every campaign gets its own process, since they were not tested with this program.
 constexpr std::size_t campaigns_per_worker = 64;
 
 std::string day_of(std::time_t time) {
@@ -77,7 +77,7 @@ class Runner {
         campaigns_per_worker_(context.plugins->all_from(options.own_plugins) ? campaigns_per_worker
                                                                              : 1) {}
 
-  /// False if it was interrupted.
+  /// Does all campaigns. Returns false if it was interrupted.
   bool run() {
     process::keep_freed_memory();
     const std::size_t jobs =
@@ -100,7 +100,7 @@ class Runner {
   }
 
  private:
-  /// The next campaign to do; those that get a second trial first.
+  /// Returns the next campaign to do; campaigns with a second attempt come first.
   std::optional<std::size_t> next() {
     if (!again_.empty()) {
       const std::size_t campaign = again_.back();
@@ -128,7 +128,8 @@ class Runner {
     give(workers_.back(), campaign);
   }
 
-  /// What the system refuses now it may give in a moment; the others go on meanwhile.
+  /// Queues the campaign again if no process could be started, because the lack of resources may
+  /// pass. After 20 failures in a row the campaign fails.
   void not_started(std::size_t campaign, const std::string& why) {
     constexpr int most = 20;
     if (++starts_failed_ >= most) {
@@ -147,8 +148,8 @@ class Runner {
                               std::chrono::duration<double>(context_.site.limits.seconds)));
   }
 
-  /// What is evaluated is stored, what is not is given up. A disk that does not answer does not
-  /// hold up the one who wants to stop.
+  /// Ends the workers; evaluated campaigns are still stored, others are given up. Waits at most 10
+  /// s for the disk.
   void stop() {
     for (Worker& w : workers_) {
       w.end();
@@ -165,8 +166,8 @@ class Runner {
       storage::remove_leftovers(storage::own_folder(options_.out, campaigns_[g.campaign].id));
   }
 
-  /// What needs the register that another process keeps to itself is done when all else is, or by
-  /// the next run.
+  /// Waits for the register, which another process keeps locked, when all other campaigns are done;
+  /// after the time limit its campaigns are left to the next run.
   void wait_for_register() {
     using Clock = Worker::Clock;
     const config::Numbering& numbering = context_.site.numbering;
@@ -214,8 +215,8 @@ class Runner {
     events_.tick();
   }
 
-  /// Whether the worker may do another campaign. It may not after one that failed, and it makes
-  /// room for a second trial, which is the first campaign of a new worker.
+  /// Handles the answer of a worker. Returns whether the worker may do another campaign: not after
+  /// a failure, and not if a campaign waits for a second attempt in a new worker.
   bool take(Worker& worker, Answer answer) {
     switch (answer) {
       case Answer::ok:
@@ -250,8 +251,8 @@ class Runner {
     c.history = shown && basis != histories_.end() ? basis->second.sha256 : "";
   }
 
-  /// What an earlier campaign left behind in the process may be the cause: only what fails in a new
-  /// process has failed.
+  /// Handles a campaign without results. It gets a second attempt in a new process, unless it was
+  /// the first campaign of its process, because an earlier campaign may be the cause.
   void not_done(Worker& worker, const std::string& why) {
     worker.end();
     if (worker.given() > 1)
@@ -264,7 +265,7 @@ class Runner {
     return {campaigns_[g.campaign].id, g.losses};
   }
 
-  /// The error, empty if there is none.
+  /// Stores the campaign in this process. Returns the error, empty if there is none.
   std::string commit_here(const Committer::Given& given) const {
     const auto stored = commit(options_.out, {staged_of(given)}, run_.number, disk_).front();
     return stored ? "" : stored.error().message;
@@ -273,7 +274,7 @@ class Runner {
   void store_staged(std::size_t campaign) {
     const Committer::Given given{campaign, losses_[campaign]};
     if (committer_.give(given)) return;
-    // Without a process of its own it takes a little longer.
+    // No committer process can be started, so this process stores it.
     settle(campaign, commit_here(given));
   }
 
@@ -314,12 +315,12 @@ class Runner {
     return s;
   }
 
-  /// The worker did not come back with results: the campaign is failed, and states why.
+  /// Fails a campaign whose worker returned no results, and stores the reason.
   void lost(std::size_t index, const std::string& why) {
     CampaignState& c = campaigns_[index];
     note_failure(c.id, why);
     if (work_.twins != nullptr)
-      return finish(index, evaluation::Status::failed, {Error{why}});  // the draft stays
+      return finish(index, evaluation::Status::failed, {Error{why}});  // the draft is kept
     evaluation::Evaluated evaluated;
     evaluated.campaign.id = c.id;
     evaluated.status = evaluation::Status::failed;
@@ -332,7 +333,7 @@ class Runner {
     finish(index, evaluation::Status::failed, std::move(evaluated.results.errors));
   }
 
-  /// In the register. A share that hangs costs its limit once.
+  /// Enters a failure into the register. After a share has hung once, it is not tried again.
   void note_failure(const std::string& campaign, const std::string& why) {
     if (register_hangs_ || work_.elsewhere) return;
     const auto noted =
@@ -361,18 +362,18 @@ class Runner {
   const std::vector<fs::path> secrets_;
   const certificates::Numbers numbers_;
   const SiteWork work_;
-  NumbersCheck recheck_;  ///< null: done
+  NumbersCheck recheck_;  ///< null: the register was checked
   RegisterState register_;
   const std::map<std::string, assessment::HistoryBasis>& histories_;
   std::vector<CampaignState>& campaigns_;
-  const storage::Disk disk_;           ///< before the first process that writes
-  std::vector<std::uint32_t> losses_;  ///< of the disk, when each campaign was begun
+  const storage::Disk disk_;           ///< must be constructed before the first process that writes
+  std::vector<std::uint32_t> losses_;  ///< losses reported by the disk when each campaign was begun
   Committer committer_;
   const std::size_t campaigns_per_worker_;
   std::size_t next_ = 0;
-  int starts_failed_ = 0;             ///< one after the other
-  std::vector<std::size_t> again_;    ///< get a second trial
-  std::vector<std::size_t> waiting_;  ///< need the register, which is locked
+  int starts_failed_ = 0;             ///< failures in a row
+  std::vector<std::size_t> again_;    ///< campaigns with a second attempt
+  std::vector<std::size_t> waiting_;  ///< campaigns that need the register, which is locked
   std::optional<Worker::Clock::time_point> give_up_;
   bool register_hangs_ = false;
   std::vector<Worker> workers_;

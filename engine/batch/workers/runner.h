@@ -15,22 +15,24 @@
 
 namespace nonio::batch {
 
-/// Called with all numbers of the register once it could be read; an error: no number is drawn.
+/// Called with all numbers of the register as soon as it can be read. After an error no number is
+/// drawn.
 using NumbersCheck = std::function<Expected<void>(const std::vector<certificates::RegisterEntry>&)>;
 
-/// What certificates need.
+/// What the workers need to issue certificates.
 struct ReleaseDesk {
   certificates::Signer* signer = nullptr;              ///< null: nothing is signed
-  const certificates::Releasing* releasing = nullptr;  ///< null: it is a run
-  NumbersCheck recheck{};                              ///< empty: the register was read before
-  PluginHost* plugins = nullptr;                       ///< makes the processes that evaluate
-  /// Of campaigns whose documents show their machine's history; the others do without.
+  const certificates::Releasing* releasing = nullptr;  ///< null: a run, not an approval
+  NumbersCheck recheck{};                              ///< empty: the register was checked before
+  PluginHost* plugins = nullptr;                       ///< starts the processes that evaluate
+  /// History by campaign, for campaigns whose documents show it; others are evaluated without one.
   std::map<std::string, assessment::HistoryBasis> histories{};
-  /// Register and key are on another host: campaigns that need them stay to do.
+  /// Register and key are on another host: campaigns that need them are left to the merge.
   bool elsewhere = false;
 };
 
-/// Does every campaign that is to do, in workers of its own. False if it was interrupted.
+/// Evaluates every campaign that is to be evaluated, in worker processes. Returns false if it was
+/// interrupted.
 bool do_campaigns(const RunOptions& options, const RunEvents& events,
                   const reading::Context& context, const RunState& run, const ReleaseDesk& desk,
                   std::vector<CampaignState>& campaigns);

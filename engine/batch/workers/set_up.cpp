@@ -28,8 +28,8 @@ std::string all_of(const std::vector<Error>& errors) {
   return text;
 }
 
-/// Notes for the summary: no signature is possible, the signing certificate expires within a month,
-/// or there is no time-stamp server.
+/// Adds notes for summary.txt: no signature is possible, the signing certificate expires within 30
+/// days, or there is no time-stamp server.
 void note_key(SetUp& place, bool is_stamped) {
   constexpr sign::Time month = sign::Time{30} * 86400;
   std::vector<std::string>& notes = place.notes;
@@ -50,9 +50,9 @@ void note_key(SetUp& place, bool is_stamped) {
         " (`nonio certificate extend` can add a time stamp until then)";
 }
 
-/// A folder, or a plugin in it, that others than root and the owner of the program can change;
-/// empty: there is none. Whoever can change the plugins in the program's folder can change the
-/// program too.
+/// Returns a plugin folder, or a plugin, that users other than root and the owner of the program
+/// can change; empty if there is none. The program's own folder is not checked, because whoever can
+/// change it can change the program too.
 std::string changeable_by_others(const RunOptions& options) {
   struct stat own {};
   ::stat(options.own_plugins.c_str(), &own);
@@ -71,7 +71,8 @@ std::string changeable_by_others(const RunOptions& options) {
   return {};
 }
 
-/// What root does with a plugin is not undone by any confinement that has a gap.
+/// Refuses to run as root if other users can change the plugins, because a gap in the confinement
+/// would give them root's rights.
 Expected<void> check_user(const RunOptions& options) {
   if (::geteuid() != 0 || options.as_root) return {};
   if (const std::string path = changeable_by_others(options); !path.empty())
@@ -80,7 +81,7 @@ Expected<void> check_user(const RunOptions& options) {
   return {};
 }
 
-/// In a process of their own.
+/// Loads the plugins in a separate process.
 Expected<void> load_plugins(SetUp& place, const RunOptions& options) {
   PluginHost& host = place.host.emplace(
       PluginHost::Request{options.plugin_folders, library_folders(options.own_plugins),
@@ -119,7 +120,8 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
   context.machines = std::move(*machines);
   const bool signs =
       options.step == RunOptions::Step::whole || options.step == RunOptions::Step::merge;
-  if (context.site.signing && !options.dry_run && signs) {  // before any plugin is in the memory
+  // The key's process is started before any plugin is in the memory.
+  if (context.site.signing && !options.dry_run && signs) {
     place->signer.emplace(*context.site.signing, options.site, context.site.limits.disk_seconds);
     note_key(*place, !context.site.signing->time_stamp.empty());
   }

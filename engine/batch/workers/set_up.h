@@ -13,20 +13,21 @@
 
 namespace nonio::batch {
 
-/// What a run, or a release, works with: site, key, templates, plugins. Stays where it is.
+/// Everything that a run or an approval works with: site, key, templates, plugins. Its address must
+/// not change.
 struct SetUp {
   reading::Context context;
   std::optional<certificates::Signer> signer;
-  loader::Plugins plugins;  ///< their declarations: this process has none of their code
+  loader::Plugins plugins;  ///< declarations only: this process contains no plugin code
   std::optional<PluginHost> host;
   SiteParts parts;
-  std::vector<std::string> notes;  ///< for the reader of the summary
-  std::string unstamped;           ///< for the summary alone: it is the same in every run
-  std::string no_key;              ///< why nothing can be signed; empty: it can
+  std::vector<std::string> notes;  ///< notes for the summary
+  std::string unstamped;           ///< note for the summary only: it is the same in every run
+  std::string no_key;              ///< why nothing can be signed; empty: signing works
 };
 
-/// An error states all mistakes of the site. The process that holds the key is made before any
-/// plugin is loaded.
+/// Reads the site and starts the plugin host. An error states all mistakes of the site. The process
+/// that holds the key is started before any plugin is loaded.
 Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options);
 
 }  // namespace nonio::batch

@@ -66,7 +66,7 @@ void Worker::give(std::size_t campaign, Clock::duration limit) {
   campaign_ = campaign;
   ++given_;
   deadline_ = Clock::now() + limit;
-  // A worker that is dead already is found by answer().
+  // If the worker has ended already, answer() finds it.
   [[maybe_unused]] const ssize_t n = ::send(channel(), &campaign, sizeof campaign, MSG_NOSIGNAL);
 }
 
@@ -81,7 +81,7 @@ std::optional<Answer> Worker::answer() {
       return message.answer;
     }
     if (gone || !silent) return Answer::none;
-    // What a plugin left running may hold the channel open.
+    // A process that a plugin left running may keep the channel open.
     gone = child_.has_ended();
     if (!gone) return std::nullopt;
   }

@@ -15,15 +15,15 @@
 
 namespace nonio::batch {
 
-/// Report of a worker at the end of a campaign.
+/// Answer of a worker at the end of a campaign.
 enum class Answer : char {
   ok,
   attention,
   failed,
-  again,       ///< failed, and not written: it may owe that to the worker's earlier campaigns
+  again,       ///< failed and not written; an earlier campaign of the worker may be the cause
   waits,       ///< needs the register of certificates, which another process keeps locked
   not_stored,  ///< the worker's message states why
-  none,        ///< the process ended without a word
+  none,        ///< the process ended without an answer
 };
 
 class PluginHost;
@@ -32,22 +32,23 @@ struct Outcome {
   Outcome(Answer a, bool has_grown = false, bool history = false)
       : answer(a), grown(has_grown), shows_history(history) {}  // NOLINT: an answer is one
   Answer answer;
-  bool grown;          ///< the memory of a process that works for this one
-  bool shows_history;  ///< a document of the campaign requests the machine's
+  bool grown;          ///< whether the memory of the evaluating process has grown
+  bool shows_history;  ///< whether a document of the campaign shows the machine's history
 };
 
-/// A process that does campaigns one after the other, as its parent names them; with another one
-/// for what plugins do; at the end both are killed, and everything that they left running. Moved,
-/// not copied.
+/// A process that does the campaigns that its parent names, one after the other, together with a
+/// second process that runs the plugins. At the end both are killed, with everything that they left
+/// running. Movable, not copyable.
 class Worker {
  public:
   using Clock = std::chrono::steady_clock;
-  /// Run in the process; `first`: no campaign was done in it before.
+  /// Runs in the worker. `first`: the first campaign of this process.
   using Task =
       std::function<Outcome(std::size_t campaign, bool first, process::SharedStatus& stage)>;
 
   static Expected<Worker> start(const Task& task, double memory_MB);
-  /// With a process that has the plugins at the other end of the stream that the task is made with.
+  /// Starts a worker with a process that runs the plugins at the other end of the stream that
+  /// `task` receives.
   static Expected<Worker> start(PluginHost& plugins, const std::function<Task(int stream)>& task,
                                 double memory_MB);
 
@@ -60,11 +61,12 @@ class Worker {
 
   /// Whether the memory of the process has grown noticeably since its start.
   bool grown() const { return grown_; }
-  /// Of the campaign that was answered last.
+  /// Whether a document of the last answered campaign shows the machine's history.
   bool shows_history() const { return shows_history_; }
-  /// The answer to the campaign that was given last, if there is one yet.
+  /// Returns the answer to the campaign that was given last; none if there is none yet.
   std::optional<Answer> answer();
-  /// After Answer::none: what became of the process, or of the one with the plugins.
+  /// Ends the worker. After Answer::none, returns how its process, or the one with the plugins, had
+  /// ended.
   process::ChildEnd end();
 
  private:
@@ -79,8 +81,8 @@ class Worker {
   bool grown_ = false, shows_history_ = false;
 };
 
-/// Returns when one of them may have an answer, when `other` (a descriptor, or -1) can be read, or
-/// soon.
+/// Returns when a worker may have an answer, when the descriptor `other` (or -1) can be read, or
+/// after a short time.
 void wait_for_answer(const std::vector<Worker>& workers, int other = -1);
 
 }  // namespace nonio::batch

@@ -9,24 +9,24 @@
 #include "campaign/config/keys.h"
 #include "nonio/sdk/settings.h"
 
-/// A key is declared together with the member that it fills:
+/// Declares a key together with the member that it fills:
 ///   {"dwell_s", into<&Measurement::dwell>, "Dwell at a target.", seconds, not_negative}
-/// `TableReader::fill` reads all keys of a table. A member that no key of this kind can fill is an
-/// error of the compiler. What is absent leaves its member as it is.
+/// `TableReader::fill` reads all keys of a table. A member that no kind of key can fill is a
+/// compile-time error. A key that is absent leaves its member unchanged.
 namespace nonio::config {
 
 using Span = std::pair<double, double>;
 using Numbers = std::map<std::string, double>;
 using Translations = std::map<std::string, std::string>;
-/// Of a text with choices: `Choice::value`.
+/// Index of the chosen text: its `Choice::value`.
 struct Chosen {
   int value = 0;
 };
 
-/// The value as it is declared, in the unit of the member; none where it is absent, empty or wrong.
+/// Returns the value of a key in the unit of the member; none if it is absent, empty or wrong.
 template <class T>
 std::optional<T> value_of(TableReader&, const Key&);
-// Defined with the reader.
+// The specializations are defined with the reader (toml_reader.cpp).
 template <>
 std::optional<std::string> value_of(TableReader&, const Key&);
 template <>
@@ -50,13 +50,14 @@ std::optional<Numbers> value_of(TableReader&, const Key&);
 template <>
 std::optional<Translations> value_of(TableReader&, const Key&);
 
-/// Fills one struct for each table under the key: `add` makes it, `check` is called after its keys.
+/// Fills one struct for each table under the key. `add` creates the struct, `check` is called after
+/// its keys were read.
 void read_tables(TableReader&, const Key&, void* outer, void* (*add)(void* outer, std::string_view),
                  void (*check)(TableReader&, void* inner, void* outer));
 
 namespace binding {
 
-/// The kind of key that fills a member, and the value that it is made of.
+/// Pairs the kind of key that fills a member with the type of the value that is read.
 template <Key::Holds h, class T>
 struct As {
   static constexpr Key::Holds holds = h;
@@ -102,7 +103,7 @@ struct Plain<std::optional<T>> {
 template <class T>
 inline constexpr char tag = 0;
 
-/// The member at the end of a path: &Manifest::campaign, &Campaign::id.
+/// Accesses the member at the end of a path of members: &Manifest::campaign, &Campaign::id.
 template <auto First, auto... Rest>
 struct Path {
   using Class = decltype(class_of(First));
@@ -116,7 +117,7 @@ struct Path {
   using Value = typename Plain<Member>::Type;
 };
 
-/// What is absent or wrong leaves `to` as it is.
+/// Reads a key into `to`; an absent or wrong value leaves `to` unchanged.
 template <class Kind, class Value, class Member>
 void read(TableReader& reader, const Key& key, Member& to) {
   auto value = value_of<typename Kind::Type>(reader, key);
@@ -219,34 +220,35 @@ template <auto... path>
 inline constexpr Key::Into day = as<binding::As<date, std::string>, path...>;
 template <auto... path>
 inline constexpr Key::Into number_or_0 = as<binding::As<number_or_none, double>, path...>;
-/// A bool by `choices`.
+/// Fills a bool with the value of the chosen text (`choices`).
 template <auto... path>
 inline constexpr Key::Into chosen = as<binding::As<text, Chosen>, path...>;
-/// A table, if the member is a struct or optional; tables, if it is a vector or map. `check` is
-/// called with the reader, what was read and, if it takes it, what the outer table fills.
+/// Fills a struct or optional from a table, a vector or map from a list of tables. `check` is
+/// called after each table with the reader, the filled struct and, if it takes it, the struct of
+/// the outer table.
 template <auto check, auto... path>
 inline constexpr Key::Into checked = binding::nested<check, binding::Path<path...>>();
 template <auto... path>
 inline constexpr Key::Into nested = checked<nullptr, path...>;
-/// Tables under any name, in a vector.
+/// Fills a vector from tables under any name.
 template <auto check, auto... path>
 inline constexpr Key::Into by_names =
     binding::nested<check, binding::Path<path...>, named_tables>();
-/// A table whose keys fill the same struct as the keys next to it.
+/// Fills the same struct as the keys of the outer table from a table.
 template <class T, auto check = nullptr>
 inline constexpr Key::Into same =
     binding::table<check, table, T, T>([](void* outer, std::string_view) { return outer; });
-/// A file.
+/// Declares a whole file whose keys fill a T.
 template <class T>
 inline constexpr Key::Into file{table, nullptr, nullptr, &binding::tag<T>};
-/// By a function of its own: of the member, and of its struct if it takes it.
+/// Reads a key by the function `read`, which takes the member and, if declared so, its struct.
 template <auto read, Key::Holds holds, auto... path>
 inline constexpr Key::Into by = binding::by<read, holds, binding::Path<path...>>();
-/// Tables that are read by name, each filling such a struct.
+/// Declares tables that the code reads by name, each into a T.
 template <class T>
 inline constexpr Key::Into tables_of{tables, nullptr, nullptr, &binding::tag<T>};
 
-/// The keys of both.
+/// Concatenates two arrays of keys.
 template <std::size_t n, std::size_t m>
 consteval std::array<Key, n + m> joined(const Key (&first)[n], const Key (&second)[m]) {
   return [&]<std::size_t... i, std::size_t... j>(std::index_sequence<i...>,
@@ -303,7 +305,7 @@ constexpr auto longest(std::size_t entries) {
 }
 inline constexpr auto distinct = [](Key& key) { key.distinct = true; };
 inline constexpr auto secret = [](Key& key) { key.may_be_secret = true; };
-/// A C turns about X, Y, Z (ISO 841).
+/// Sets the default of `kind` by the name of an axis: A, B and C are rotary (ISO 841).
 inline constexpr auto kind_by_name = [](Key& key) {
   key.initials = "ABC", key.by_name = "kind", key.named_so = "rotary";
 };

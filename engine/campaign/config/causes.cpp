@@ -30,7 +30,7 @@ Cause read_cause(TableReader& reader) {
   return c;
 }
 
-/// The name of a file in messages: its path in the site.
+/// Returns the name of a file in messages: its path in the site or in the templates.
 std::string place_of(std::string_view name) {
   return name.starts_with(site_causes)
              ? std::string(causes_folder) + "/" + std::string(name.substr(site_causes.size()))
@@ -102,8 +102,8 @@ void read_file(const std::string& name, std::string_view text,
   top.finish();
 }
 
-/// Every campaign asks for them, and to read them takes a tenth of a short command: they are kept
-/// until others are asked for.
+/// Returns the causes in these templates. The last result is kept, because every campaign needs it
+/// and reading it takes a tenth of the time of a short command.
 std::shared_ptr<const Read> read_in(const Templates& templates) {
   static std::mutex one_at_a_time;
   static std::shared_ptr<const Read> last;

@@ -11,42 +11,43 @@
 #include "campaign/config/manifest.h"
 #include "nonio/sdk/settings.h"
 
-/// The library of causes: effects as formulas that no plugin has, in causes/*.toml of the templates
-/// and in SITE/causes/*.toml.
+/// The library of causes: effects as formulas that no plugin provides, in causes/*.toml of the
+/// templates and in SITE/causes/*.toml.
 namespace nonio::config {
 
-/// Files of SITE/causes among the templates.
+/// Prefix of the files of SITE/causes among the templates.
 inline constexpr std::string_view site_causes = "causes/site/";
 
 struct Cause {
-  Formula formula;  ///< without an axis: of every axis of its kind
+  Formula formula;  ///< without an axis: for every axis of its kind
   bool rotary = false;
   std::string title, is, size, appearance, similar, remedy;  ///< English
   std::map<std::string, std::string> titles{};               ///< by language
   std::string prior;                                         ///< common, rare, very-rare
   std::vector<std::string> columns{};  ///< "time_s": readings without times do not show it
   bool compensable = false;
-  std::string file;  ///< of the formula's line
+  std::string file;  ///< file of the formula, for messages
 
-  /// 2 ln of the odds against it before there are readings, an effect of the catalogue being even.
+  /// Returns 2 ln of the odds against the cause before readings are known: 0 for a common one, as
+  /// for effects of plugins, otherwise 2 ln 10 (rare) or 2 ln 100 (very rare).
   double price() const;
-  /// `tried` as in `formula_effect`.
+  /// Makes the effect of the formula. `tried`: see `formula_effect`.
   Expected<Effect> effect(bool tried) const;
 };
 
-/// Whether a file of the templates is one of the library.
+/// Whether a file of the templates belongs to the library of causes.
 bool is_causes_file(std::string_view name);
 
 using Library = std::shared_ptr<const std::vector<Cause>>;
 
-/// All causes in these templates, in the order of their files; a name may be there once. Those of
-/// the site are tried.
+/// Returns all causes in these templates in the order of their files. An error if a name is used
+/// twice, or if a formula of the site is invalid.
 Checked<Library> causes_in(const Templates& templates);
 
-/// Keys with former names in these files, each with file and line.
+/// Returns a warning with file and line for each key with a former name.
 std::vector<Error> warnings_of_causes(const Templates& templates);
 
-/// Adds their texts to the words of the effects.
+/// Adds the texts of the causes to the words for effects in the templates.
 void add_words(const std::vector<Cause>& causes, Templates& templates);
 
 }  // namespace nonio::config

@@ -5,9 +5,8 @@
 
 namespace nonio::config {
 
-/// `[certificate]`: the keys that site.toml and a campaign share, those of a campaign alone, those
-/// of site.toml alone.
-/// The values of the campaign, else those of the site, else the defaults.
+/// Combines `[certificate]` of a campaign and of site.toml: for each key the campaign's value,
+/// otherwise the site's, otherwise the default.
 CertificateTexts certificate_of(const CertificateTexts& site, const CertificateTexts& campaign);
 
 }  // namespace nonio::config

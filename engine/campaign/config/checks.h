@@ -7,8 +7,8 @@
 #include "campaign/config/manifest.h"
 #include "campaign/config/site_logs.h"
 
-/// What is checked and settled of a table after its keys were read: what depends on several of
-/// them. The third argument is what the table around it fills.
+/// Functions that check and complete a table after its keys were read, for conditions that involve
+/// several keys. The third argument is the struct that the outer table fills.
 namespace nonio::config {
 
 void read_options(TableReader&, const Key&, RawOptions&);
@@ -37,7 +37,7 @@ void read_as_written(TableReader&, const Key&, std::map<std::string, double>& se
 void check_state(TableReader&, ControlState&);
 void check_recorded_axis(TableReader&, RecordedAxis&);
 
-/// Whether an earlier one has the same name as the last one.
+/// Whether an earlier element has the same name as the last one.
 template <class T>
 bool given_before(const std::vector<T>& all, std::string T::*name) {
   for (std::size_t i = 0; i + 1 < all.size(); ++i)
@@ -45,7 +45,7 @@ bool given_before(const std::vector<T>& all, std::string T::*name) {
   return false;
 }
 
-/// What one of the files of site_logs.h has.
+/// The entries in one of the files of site_logs.h.
 struct Entries {
   std::vector<Event> events;
   std::vector<Acknowledgement> acknowledged;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keys of campaign.toml and site.toml under the names of an earlier version.
+// Renames keys of campaign.toml and site.toml that have their names of an earlier version.
 #include <algorithm>
 
 #include "campaign/config/toml_reader.h"
@@ -7,7 +7,7 @@
 namespace nonio::config {
 namespace {
 
-/// The version that no longer accepts them.
+/// First version that refuses the former names.
 constexpr const char* accepted_until = "0.3";
 
 struct FormerFinding {
@@ -46,7 +46,7 @@ class Renaming {
     if (old == in.end() || in.contains(key.name)) return;
     const std::uint64_t line = old->first.source().begin.line;
     note(key, place, line);
-    // Each further [[header]] of a list names the key again.
+    // In a list, each further [[header]] contains the former name too and gets a line.
     if (const toml::array* list = old->second.as_array())
       for (const toml::node& one : *list)
         if (const toml::table* headed = one.as_table();

@@ -17,17 +17,17 @@ namespace {
 
 std::string symbol_of(Quantity q) { return std::string(FormulaUnit{q, {}}.symbol()); }
 
-/// One printed unit, in SI.
+/// Returns one printed unit of the parameter in SI units.
 double amount(const Formula::Parameter& p) { return 1.0 / unit_of(p.quantity).per_si; }
 
-/// Proves on readings made up for it that the expression is finite, linear in its linear
-/// parameters and of the unit of a deviation.
+/// Checks on random readings that the expression is finite, linear in its linear parameters, and
+/// has the unit of a deviation.
 class Trial {
  public:
   Trial(const Formula& formula, const Axis& axis, Expression& expression)
       : formula_(formula), axis_(axis), expression_(expression), point_(expression.slots()) {}
 
-  /// What is wrong, or "".
+  /// Returns what is wrong with the expression; "" if nothing.
   std::string run() {
     largest_.assign(formula_.parameters.size(), 0.0);
     for (const auto& p : formula_.parameters)
@@ -48,7 +48,8 @@ class Trial {
 
   bool linear(std::size_t k) const { return !formula_.parameters[k].range; }
 
-  /// Trial point n; the first is the middle of the travel at the start, shapes at their low end.
+  /// Sets `point_` to trial point n. Point 0 is the middle of the travel at the start, with the
+  /// lowest value of each shape.
   void draw(int n) {
     const auto between = [&](double low, double high) {
       return low + (high - low) * numbers_.uniform();
@@ -85,7 +86,7 @@ class Trial {
     }
   }
 
-  /// The point with all linear parameters 0, but number `k` times `factor`.
+  /// Returns the point with linear parameter `k` times `factor` and all other linear parameters 0.
   std::vector<double> only(std::size_t k, double factor) const {
     std::vector<double> point = point_;
     for (std::size_t other = 0; other < formula_.parameters.size(); ++other)
@@ -121,7 +122,8 @@ class Trial {
     return {};
   }
 
-  /// A deviation scales with the unit of length (an angle with none), and with no other.
+  /// Returns an error unless the term of parameter k scales with the unit of length as a deviation
+  /// does (not at all for an angle) and does not depend on the units of time and temperature.
   std::string wrong_unit(std::size_t k, double one) {
     constexpr std::array<const char*, 3> names{"length", "time", "temperature"};
     constexpr int bits = 10;
@@ -185,7 +187,7 @@ std::vector<double> search(const Formula::Parameter& p, int count) {
   return grid;
 }
 
-/// None unless every reading has a value.
+/// Returns the mean of a column; none unless every reading has a value.
 std::optional<double> mean_of_all(const Observations& o, const std::vector<double>& column) {
   double sum = 0.0;
   for (const double x : column) sum += x;
@@ -193,7 +195,8 @@ std::optional<double> mean_of_all(const Observations& o, const std::vector<doubl
   return sum / static_cast<double>(column.size());
 }
 
-/// What the expression uses besides position, direction, time and run: nothing that is missing.
+/// Quantities other than position, direction, time and run that an expression uses; `met` checks
+/// that the readings or the axis contain them.
 struct Wants {
   bool K, pitch, teeth, air, pressure, humidity;
 
@@ -212,8 +215,8 @@ struct Wants {
   }
 };
 
-/// The expression of the formula that was last in use: columns are made for one value of its shapes
-/// after the other, and to understand it costs as much as 200 readings.
+/// Returns the parsed expression of a formula. The last one is kept, because columns are computed
+/// for one shape value after another, and parsing takes as long as 200 readings.
 Expected<Expression>& understood(const std::shared_ptr<const Formula>& formula, const Axis& axis) {
   struct Last {
     std::shared_ptr<const Formula> formula;
@@ -295,7 +298,7 @@ Expected<Effect> formula_effect(const Formula& formula, const Axis& axis, bool t
   e.info = {formula.name, "formula", formula.expression, {}};
   const auto searched = std::count_if(formula.parameters.begin(), formula.parameters.end(),
                                       [](const auto& p) { return p.range.has_value(); });
-  // The search between the values of the grid does the rest: with more shapes fewer of each.
+  // With several shapes each has fewer values; the search then refines between these values.
   const int values = searched < 2 ? most : searched == 2 ? most * 5 / 16 : most / 9;
   for (const Formula::Parameter& p : formula.parameters) {
     const Effect::Parameter parameter{p.name, "of the formula", p.quantity};

@@ -49,7 +49,8 @@ constexpr std::array<Name, 9> units{{{"m", 1.0, distance},
 
 constexpr std::size_t most_characters = 400;
 
-/// What the parser would take and no formula needs: assignments, texts, several results.
+/// Returns an error for text that the parser would accept and no formula needs: assignments,
+/// strings, several results; otherwise "".
 std::string forbidden(const std::string& text) {
   if (text.size() > most_characters)
     return "expected " + std::to_string(most_characters) + " characters at most, found " +
@@ -121,7 +122,7 @@ Dimension dimension_of(Quantity quantity) {
   }
 }
 
-/// The parser holds the addresses of `slots`, which therefore never move.
+/// The parser stores the addresses of `slots`, so its elements must not move.
 struct Expression::Parser {
   mu::Parser parser;
   std::vector<double> slots;

@@ -11,7 +11,7 @@
 
 namespace nonio::config {
 
-/// Powers of length, time and temperature; an angle has none.
+/// Exponents of length, time and temperature in a unit; all 0 for an angle.
 using Dimension = std::array<int, 3>;
 
 /// The expression of a formula over slots: variables, units, parameters, each a number in SI.
@@ -24,7 +24,7 @@ class Expression {
     t,
     K,
     run,
-    // A parameter may have the name of one of these: then it is the parameter.
+    // A parameter may have one of the following names, which then means the parameter.
     length,
     duration,
     runs,
@@ -36,22 +36,22 @@ class Expression {
     variables
   };
 
-  /// Fails where the expression cannot be understood, with its position. `known`: it was understood
-  /// before, so that only the names in it are declared.
+  /// Parses an expression; an error contains the position. `known`: it was parsed before, so that
+  /// only the names that occur in it are declared.
   static Expected<Expression> parse(const Formula& formula, const Axis& axis, bool known = false);
   Expression(Expression&&) noexcept;
   Expression& operator=(Expression&&) noexcept;
   ~Expression();
 
-  /// Slots with the units in place, variables and parameters 0.
+  /// Returns the slots with the values of the units; variables and parameters are 0.
   std::vector<double> slots() const;
   static std::size_t parameter_slot(std::size_t k);
-  /// The same quantities in a system whose unit number `k` (0 length, 1 time, 2 temperature) is
-  /// smaller by 2^bits.
+  /// Converts slots into units of which number `k` (0 length, 1 time, 2 temperature) is smaller by
+  /// a factor 2^bits.
   std::vector<double> in_finer_units(std::vector<double> slots, std::size_t k, int bits) const;
-  /// NaN or infinite where the expression has no value there.
+  /// Evaluates the expression; NaN or infinite where it has no value.
   double value(const std::vector<double>& slots);
-  /// The same of the slots in place.
+  /// Returns the slots that `value()` without an argument uses, to be changed in place.
   std::vector<double>& in_place();
   double value();
   bool uses(const std::string& name) const;

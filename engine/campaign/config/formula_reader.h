@@ -6,9 +6,8 @@
 
 namespace nonio::config {
 
-/// [[formula]] of [model], or of a simulation: read and tried, so that what is wrong with them is
-/// stated with the rest.
-/// The last formula, after its keys were read.
+/// Checks and tries the last formula of [model] or of a simulation after its keys were read, so
+/// that its errors are reported together with all others.
 void check_formula(TableReader& reader, std::vector<Formula>& all, const Machine& machine);
 
 }  // namespace nonio::config

@@ -41,9 +41,9 @@ inline constexpr std::array<FormulaUnit, 18> formula_units{
      {Quantity::temperature_difference, "temperature difference"},
      {Quantity::number, "none: a number"}}};
 
-/// The quantity that is printed in this unit; none if no quantity is.
+/// Returns the quantity that is printed in this unit; none if no quantity is.
 std::optional<Quantity> quantity_of(std::string_view unit);
-/// "um (deviation), mm (position), ...": what `quantity_of` knows.
+/// Returns a list of all units for messages: "um (deviation), mm (position or period), ...".
 std::string known_units();
 
 }  // namespace nonio::config

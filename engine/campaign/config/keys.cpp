@@ -6,7 +6,7 @@
 namespace nonio::config {
 namespace {
 
-/// Letters of a class as in a pattern: "a-z0-9_-".
+/// Whether a class of letters such as "a-z0-9_-" contains a character.
 bool has_letter(std::string_view letters, char c) {
   for (std::size_t i = 0; i < letters.size(); ++i) {
     const bool range = i + 2 < letters.size() && letters[i + 1] == '-';

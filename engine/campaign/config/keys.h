@@ -9,8 +9,8 @@
 #include <string_view>
 #include <type_traits>
 
-/// The keys of Nonio's TOML files as data. `TableReader` fills structs by them, `schema.cpp` makes a
-/// JSON schema of them; a check across several keys is a function of checks.h.
+/// Declares the keys of Nonio's TOML files as data. `TableReader` uses them to fill structs,
+/// `schema.cpp` to make a JSON schema. Checks that involve several keys are functions of checks.h.
 namespace nonio::config {
 
 struct Choice {
@@ -19,7 +19,7 @@ struct Choice {
   int value = 0;               ///< of the enum or bool that it is chosen for
 };
 
-/// A key of the same table has one of these values.
+/// Condition that another key of the same table has one of these values.
 struct When {
   std::string_view key{};
   std::span<const std::string_view> values{};
@@ -35,7 +35,8 @@ struct TextRule {
   std::string_view begins{};
 };
 
-/// What is known only at run time, of the loaded plugins.
+/// Kind of name that a text contains. Valid names are known only at run time, from the loaded
+/// plugins.
 enum class Named { nothing, method, reader, effect, analysis, output, control };
 
 class TableReader;
@@ -51,19 +52,20 @@ struct Key {
     texts,           ///< a list
     numbers,         ///< a list
     wholes,          ///< a list of whole numbers
-    span,            ///< two numbers, the smaller one first
+    span,            ///< two numbers, the smaller first
     number_table,    ///< numbers under any name
     translations,    ///< a text, or texts by language
     table,           ///< with the keys `keys`
     tables,          ///< a list of them: [[name]]
     named_tables,    ///< tables of that kind under any name
     options,         ///< a table for each plugin, with its options
-    anything,        ///< a table that is not looked into
-    by_kind          ///< declared differently by the kinds that have it
+    anything,        ///< a table whose content is not checked
+    by_kind          ///< declared differently by different methods
   };
 
-  /// What a key holds, and where its value goes: into a member of the struct that its table fills.
-  /// Made by bind.h, or of `Holds` alone: such a key is checked, and read by its name if at all.
+  /// Kind of value of a key, and the function that reads it into a member of the struct that the
+  /// table fills. bind.h makes it. A key that is made from `Holds` alone is only checked, unless
+  /// code reads it by name.
   struct Into {
     Holds holds;
     void (*read)(TableReader&, const Key&, void* object) = nullptr;
@@ -81,34 +83,36 @@ struct Key {
   std::string_view help;  ///< plain English; the first letter is a capital
   Into into;
   std::string_view unit{};       ///< as in docs: "um", "mm or deg"; empty: none
-  double scale = 1.0;            ///< from this unit to that of the member
-  std::string_view otherwise{};  ///< the default, if it is a value
+  double scale = 1.0;            ///< factor from this unit to that of the member
+  std::string_view otherwise{};  ///< the default in documentation, if it is a value
   bool required = false;
-  When only{};    ///< elsewhere the key is unknown
-  When needed{};  ///< there it is required
-  /// Of what is required or needed: "x: is missing: " and this. Empty: "x is missing".
+  When only{};    ///< condition without which the key is unknown
+  When needed{};  ///< condition under which the key is required
+  /// Text after "x: is missing: " in the message about a missing key; empty: the message is "x is
+  /// missing".
   std::string_view missing{};
   /// Message about a value that the following limits refuse; {} is replaced by the value.
   std::string_view wanted{};
-  bool may_be_secret = false;             ///< of a text: no message repeats it
-  std::span<const Choice> choices{};      ///< of a text
-  Named named = Named::nothing;           ///< of a text or of each in a list
-  TextRule text{};                        ///< of a text or of each in a list
-  std::optional<double> least{}, most{};  ///< of a number or of each in a list or table
-  bool above = false;                     ///< `least` itself is too small
-  std::size_t longest_list = 0;           ///< of a list; 0: any
-  bool distinct = false;                  ///< of a list: nothing twice
-  std::span<const Key> keys{};            ///< of a table
-  /// Of named_tables: where the name begins with one of these letters, the key `by_name` of the
-  /// table is `named_so` unless it states otherwise.
+  bool may_be_secret = false;             ///< for a text: no message repeats the value
+  std::span<const Choice> choices{};      ///< for a text
+  Named named = Named::nothing;           ///< for a text, or each text of a list
+  TextRule text{};                        ///< for a text, or each text of a list
+  std::optional<double> least{}, most{};  ///< for a number, or each number of a list or table
+  bool above = false;                     ///< the value must be greater than `least`
+  std::size_t longest_list = 0;           ///< for a list; 0: no limit
+  bool distinct = false;                  ///< for a list: all elements must differ
+  std::span<const Key> keys{};            ///< for a table
+  /// For named_tables: if the name of a table begins with one of these letters, its key `by_name`
+  /// has the default `named_so`.
   std::string_view initials{};
   std::string_view by_name{};
   std::string_view named_so{};
-  /// Name of an earlier version. It is accepted with a warning; schema and reference omit it.
+  /// Name of the key in an earlier version. It is accepted with a warning; schema and reference
+  /// omit it.
   std::string_view former{};
 
-  /// Attributes: choices, keys, `Named`, and those of bind.h. In a constant, what is thrown here is
-  /// an error of the compiler.
+  /// Attributes are choices, keys, `Named` and the attributes of bind.h. For a constant, an
+  /// exception in this constructor is a compile-time error.
   template <class... Attributes>
   constexpr Key(std::string_view n, Into i, std::string_view h, const Attributes&... attributes)
       : name(n), holds(i.holds), help(h), into(i) {
@@ -128,26 +132,28 @@ struct Key {
   constexpr void set(const Attribute& attribute) { attribute(*this); }
 };
 
-/// The whole file as one table: what is not named here is unknown.
+/// Each function declares a file as one table; keys that it does not contain are unknown.
 const Key& campaign_file();
 const Key& site_file();
-/// SITE/machines/<asset>.toml.
+/// Declares SITE/machines/<asset>.toml.
 const Key& machine_file();
-/// SITE/events.toml, acknowledged.toml and forgotten.toml: entries of people about machines.
+/// Declare SITE/events.toml, acknowledged.toml and forgotten.toml, entries of people about
+/// machines.
 const Key& events_file();
 const Key& acknowledged_file();
 const Key& forgotten_file();
-/// SITE/users.toml: accounts of the page of a site.
+/// Declares SITE/users.toml, the accounts of a site's live page.
 const Key& users_file();
-/// causes/*.toml of the templates and of a site.
+/// Declares causes/*.toml of the templates and of a site.
 const Key& causes_file();
-/// What a specification of `nonio model simulate` has besides campaign.toml.
+/// Declares the part of a specification of `nonio model simulate` that campaign.toml does not
+/// contain.
 const Key& specification_file();
-/// What determines the kind of axis that a cycle moves; settled by the code that reads cycles.
+/// Condition on the kind of axis that a cycle moves; the code that reads cycles settles it.
 inline constexpr std::string_view cycle_axis = "(axis)";
 
-/// Files that a run writes next to the folders of the campaigns, and files of a site next to its
-/// campaigns: no campaign can have such a name.
+/// Names that a campaign must not have, because a run writes such files next to the campaigns'
+/// folders or a site contains them.
 inline constexpr std::string_view reserved_names[] = {"summary.json",
                                                       "summary.txt",
                                                       "history.sqlite",
@@ -166,9 +172,9 @@ inline constexpr std::string_view reserved_names[] = {"summary.json",
                                                       "acknowledged.toml",
                                                       "forgotten.toml",
                                                       "templates"};
-/// Its record is the file of that name in SITE/machines.
+/// Rule for an asset: the machine's record is the file of that name in SITE/machines.
 inline constexpr TextRule asset_rule{.not_letters = "/\\\n\t", .not_first = ". ", .longest = 100};
-/// Folders of results are named by it.
+/// Message and rule for the id of a campaign, which names its folder of results.
 inline constexpr const char* campaign_id_wanted =
     "expected a-z 0-9 . _ - and no more than 100, not starting with . or -, and no name of a file "
     "of the program (summary.json, machines); found \"{}\"";
@@ -178,7 +184,7 @@ inline constexpr TextRule campaign_id_rule{
 bool obeys(std::string_view text, const TextRule& rule);
 bool in_range(double value, const Key& key);
 const Key* find_key(std::span<const Key> keys, std::string_view name);
-/// Whether an axis is rotary by its name (ISO 841: A, B, C turn about X, Y, Z).
+/// Whether an axis is rotary according to its name (ISO 841: A, B, C turn about X, Y, Z).
 bool rotary_by_name(std::string_view axis);
 
 }  // namespace nonio::config

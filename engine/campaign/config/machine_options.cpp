@@ -20,19 +20,19 @@ std::uint64_t line_in(const KeyLines& lines, const std::string& key) {
   return found == lines.end() ? 0 : found->second;
 }
 
-/// "machines/S-0042.toml:7".
+/// Returns the file and line of a key in a record: "machines/S-0042.toml:7".
 std::string place_in(const MachineRecord& record, const std::string& key) {
   const std::uint64_t line = line_in(record.lines, key);
   return record.file + (line == 0 ? "" : ":" + std::to_string(line));
 }
 
-/// The key of the record that a setting of option `axes` comes from.
+/// Returns the key of the record from which a setting of option `axes` comes.
 std::string key_of(const std::string& axis, const std::string& setting) {
   const bool travel = setting.starts_with("from_") || setting.starts_with("to_");
   return "axes." + axis + "." + (travel ? "travel" : setting);
 }
 
-/// Every axis that tables of the campaign may be of.
+/// Returns all axes for which the campaign may give tables.
 std::set<std::string> axes_of(const Campaign& campaign) {
   std::set<std::string> names;
   for (const Axis& a : campaign.machine.axes) {
@@ -76,7 +76,7 @@ class Layers {
   NumberTables tables() const { return tables_; }
 
  private:
-  /// `settle_options` has refused what is none.
+  /// Returns the tables of option `axes`. Invalid ones were already refused by `settle_options`.
   NumberTables tables_in(const RawOptions& options) const {
     const auto plugin = options.find(output_.name);
     if (plugin == options.end()) return {};
@@ -87,13 +87,14 @@ class Layers {
     return list == nullptr ? NumberTables{} : number_tables_of(*list).value_or(NumberTables{});
   }
 
-  /// A later setting replaces an earlier one.
+  /// Adds settings of an axis; they replace earlier ones.
   void add(const std::string& axis, const NumberTable& settings) {
     NumberTable& all = tables_[axis];
     for (const auto& [key, value] : settings) all[key] = value;
   }
 
-  /// The line of a key of the manifest: its own line if it is in a table.
+  /// Returns an error with the line of a key of the manifest; for axes written as texts it is the
+  /// line of the option.
   Error at_axes(const std::string& message, const std::string& axis, const std::string& key) const {
     const auto plugin = manifest_.options.find(output_.name);
     std::uint64_t line =
@@ -126,7 +127,8 @@ class Layers {
     return key + "=" + in_digits(value);
   }
 
-  /// A number that another axis of the machine has: the table would go to that one.
+  /// Reports a number that belongs to another axis of the machine, because the table would be
+  /// loaded for that axis.
   void look_for_owner(const std::string& axis, const std::string& key, double number,
                       std::vector<Error>& errors) const {
     for (const auto& [name, recorded] : record_->axes)
@@ -138,7 +140,8 @@ class Layers {
                                  axis, key));
   }
 
-  /// What was in the parameter while measured, as these plugins take it.
+  /// Adds the backlash value that was active during the measurement to the settings of an axis, in
+  /// their unit. A different value in the settings is an error.
   void add_backlash(const Axis& a, std::vector<Error>& errors) {
     if (!a.active_backlash) return;
     const std::string key = a.rotary ? "backlash_deg" : "backlash_mm";

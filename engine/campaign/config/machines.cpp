@@ -39,7 +39,7 @@ void same_number_twice(const MachineRecord& record, TableReader& top) {
     }
 }
 
-/// The files that the record names, from inside of the site.
+/// Reads the table files that a record names; their paths must be inside the site.
 Expected<std::map<std::string, std::vector<Artifact>>> tables_of(const MachineRecord& record,
                                                                  const fs::path& site) {
   std::map<std::string, std::vector<Artifact>> tables;
@@ -205,7 +205,7 @@ std::string machine_input(const Machine& m) {
 
 namespace {
 
-/// Whose record it is.
+/// Returns a machine with the maker and serial number of a record.
 Machine machine_of(const RecordFile& r) {
   Machine out;
   out.maker = r.record ? r.record->maker : r.maker;
@@ -213,7 +213,8 @@ Machine machine_of(const RecordFile& r) {
   return out;
 }
 
-/// Not readable, and the machine is not known.
+/// Whether a record cannot be read and its machine is not known, so that it may concern any
+/// machine.
 bool may_be_of_any(const RecordFile& r) { return !r.record && r.maker.empty() && r.serial.empty(); }
 
 }  // namespace

@@ -10,24 +10,25 @@
 
 #include "campaign/config/manifest.h"
 
-/// The machines of a site: SITE/machines/<asset>.toml has the data that campaigns do not measure.
+/// The machines of a site: SITE/machines/<asset>.toml contains data that campaigns do not measure.
 namespace nonio::config {
 
 inline constexpr const char* machines_folder = "machines";
 
-/// What was in the control for one axis, from one day on.
+/// The table and backlash value in the control for one axis, from one day on.
 struct ControlState {
   std::string since{};                 ///< YYYY-MM-DD
   std::optional<std::string> table{};  ///< files below the site; empty: there was none
   std::optional<double> backlash{};    ///< m or rad; 0: there was none
   std::string source = "stated";       ///< stated by a person, backup, nonio
   std::string sha256{};                ///< of the files; empty: not stated
-  std::string files{};                 ///< of the table: a name in RecordFile::tables
+  std::string files{};                 ///< name of the table's files in RecordFile::tables
   std::string key{};                   ///< axes.X, or axes.X.state
   std::uint64_t line_of_table = 0, line_of_since = 0;
 
-  /// What was loaded on a day applies to later days, because the time of the day is not known. What
-  /// a backup of that day contains was in the control while the machine was measured.
+  /// Whether the state applies on a day. A state loaded on a day applies to later days only,
+  /// because the time of day is not known. A state from a backup applies to the day of the backup
+  /// too.
   bool counts_on(const std::string& day) const {
     return source == "backup" ? day >= since : day > since;
   }
@@ -35,14 +36,14 @@ struct ControlState {
 
 struct RecordedAxis {
   bool rotary = false;
-  std::string name{};  ///< in the control, where it is called otherwise
-  /// As option `axes` of the controls has them: number, reference_mm, from_mm, to_mm,
-  /// resolution_um, largest_um, slope_um_per_m, and the same of rotary axes.
+  std::string name{};  ///< name in the control, if it differs
+  /// Settings under the names of option `axes` of the controllers: number, reference_mm, from_mm,
+  /// to_mm, resolution_um, largest_um, slope_um_per_m, and the corresponding ones of rotary axes.
   std::map<std::string, double> settings{};
   std::vector<ControlState> states{};  ///< by day
   ControlState present{};              ///< as stated for the axis; in `states` if it has a day
 
-  /// What was in the control on this day; null: not known.
+  /// Returns the state of the control on this day; null if it is not known.
   const ControlState* state_on(const std::string& day) const;
 };
 
@@ -54,15 +55,16 @@ struct MachineRecord {
   KeyLines lines{};
 };
 
-/// SHA-256 of the files of a table, whatever their names and their order.
+/// Returns the SHA-256 of the files of a table, independent of their names and order.
 std::string table_sha256(const std::vector<Artifact>& files);
 
-/// All that is wrong with the file at once, each with its line. `asset`: what the file is called.
+/// Parses a record. Returns all errors of the file at once, each with its line. `asset`: the
+/// machine that the name of the file states.
 Checked<MachineRecord> parse_machine(std::string_view text, const std::string& file,
                                      const std::string& asset);
 
-/// One file of the folder. One that is wrong fails the campaigns of its machine; if that is
-/// not known, all campaigns that name no asset and for whose machine no other record exists.
+/// A file of SITE/machines. A record with errors fails the campaigns of its machine. If its machine
+/// is not known, it fails all campaigns that name no asset and have no other record.
 struct RecordFile {
   std::string asset;   ///< the name of the file
   std::string bytes;   ///< empty where it cannot be read
@@ -70,35 +72,36 @@ struct RecordFile {
   Checked<MachineRecord> record;
   std::map<std::string, std::vector<Artifact>>
       tables{};                   ///< those that are or were in the control, by ControlState::files
-  std::string maker{}, serial{};  ///< of a record that is wrong: as it was when it was right last
+  std::string maker{}, serial{};  ///< of a record with errors: from its last valid version
 };
 using MachineRecords = std::vector<RecordFile>;
 
-/// The records of a site by asset; an error if the folder cannot be read.
+/// Reads the records of a site, sorted by asset; an error if the folder cannot be read.
 Expected<MachineRecords> read_machines(const std::filesystem::path& site);
 
-/// How a campaign's machine is called in `Inputs`: by its asset, else by maker and serial; empty
-/// where neither is stated.
+/// Returns the name of a campaign's machine in `Inputs`: by its asset, otherwise by maker and
+/// serial number; empty if neither is stated.
 std::string machine_input(const Machine& machine);
-/// Prefix of such a name in `Inputs`.
+/// Prefix of the names that `machine_input` returns.
 inline constexpr std::string_view machine_prefix = "machine ";
-/// The record's digest, `absent` where there is none.
+/// Returns the digest of the records of this machine; `absent` if there is none.
 std::string machine_digest(const MachineRecords& records, std::string_view input);
 
-/// The record of this machine; null: there is none. It may be wrong: then it is, or may be, that of
-/// the machine. An error where two have its maker and serial.
+/// Returns the record of a machine; null if there is none. It may be a record with errors that
+/// belongs, or may belong, to the machine. An error if two records have its maker and serial
+/// number.
 Expected<const RecordFile*> record_of(const MachineRecords& records, const Machine& machine);
 
-/// Contradictions between the manifest and the record of its machine, with both places.
+/// Returns contradictions between a manifest and the record of its machine, with both places.
 std::vector<Error> contradictions(const Manifest& manifest, const MachineRecord& record);
 
-/// What a table output works with: of each axis in option `axes` what site.toml states, over it
-/// what the record of the machine does, over that the campaign. Entries of site.toml for axes that
-/// the campaign has not are left out. Where the campaign contradicts the record, an error.
+/// Returns the options with which a controller writes tables. For each axis in option `axes`, the
+/// record of the machine overrides site.toml, and the campaign overrides both; axes of site.toml
+/// that the campaign lacks are left out. An error if the campaign contradicts the record.
 Checked<Settings> settle_table_options(const Info& output, const RawOptions& site,
                                        const Manifest& manifest, const MachineRecord* record);
 
-/// A record with its tables in one text, which travels in what is signed, and back.
+/// Converts a record with its tables into one text, which is attached to signed files, and back.
 inline constexpr const char* machine_record_name = "machine-record.json";
 std::string packed(const RecordFile& record);
 Expected<RecordFile> unpacked_record(std::string_view json);

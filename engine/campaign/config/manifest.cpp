@@ -21,7 +21,8 @@ namespace {
 constexpr double mm = 1e-3, um = 1e-6;
 constexpr double deg = 1.0 / deg_per_rad, arcsec = 1.0 / arcsec_per_rad;
 
-/// A coefficient in 1/K under the key for um/(m K) would leave the length as it is, in silence.
+/// Reports a coefficient of expansion that is probably in 1/K: read as um/(m K), it would have no
+/// effect without any message.
 void check_expansion(TableReader& reader, const std::optional<double>& value) {
   constexpr double least = 1e-3;
   if (value && *value != 0.0 && std::fabs(*value) < least * um)
@@ -34,8 +35,8 @@ NumberTable scaled(NumberTable table, double scale) {
   return table;
 }
 
-/// A circle goes from its centre (`from`) to its point at 0 deg (`to`): on the first axis of its
-/// plane.
+/// Sets `from` to the centre of a circle and `to` to its point at 0 deg, on the first axis of the
+/// plane (m).
 void fill_circle(TableReader& reader, Measurement& m) {
   const std::string plane = m.settings.text("plane");
   const NumberTable centre = scaled(m.settings.table("centre"), mm);
@@ -53,7 +54,7 @@ void fill_circle(TableReader& reader, Measurement& m) {
     if (!m.from.contains(axis)) m.at[axis] = position;
 }
 
-/// The members of a measurement that keys of a method fill, whichever method has them. SI.
+/// Fills the members of a measurement that keys of any method fill. SI units.
 void fill_members(TableReader& reader, Measurement& m) {
   const Settings& s = m.settings;
   m.axis = s.text("axis");
@@ -70,7 +71,7 @@ void fill_members(TableReader& reader, Measurement& m) {
   for (const auto& [axis, position] : scaled(s.table("to"), mm)) m.to[axis] = position;
 }
 
-/// What several keys of a method have to agree in.
+/// Checks the conditions that involve several keys of a method.
 void check_members(TableReader& reader, const Measurement& m) {
   if (!m.axis.empty() && m.settings.text("lateral") == m.axis)
     reader.error("lateral", "expected another axis than " + m.axis +
@@ -83,7 +84,7 @@ void check_members(TableReader& reader, const Measurement& m) {
     reader.error("square_turned", "expected the key square as well");
 }
 
-/// The keys of every method.
+/// Checks the keys that all methods share.
 void check_common(TableReader& reader, Measurement& m) {
   if (reader.contains("state") && !m.state) m.state.emplace();
   for (const auto& [linear, rotary] :
@@ -99,7 +100,8 @@ void refuse_kind(TableReader& reader, const std::string& kind, const std::vector
   reader.error("kind", storage::not_one_of(kinds, kind));
 }
 
-/// Without `methods` only the keys of every method are read, and others are accepted.
+/// Reads one [[measurement]]. Without `methods` it reads only the keys that all methods share and
+/// accepts all others.
 void read_measurement(TableReader& common, const std::vector<Method>* methods, Measurement& m) {
   const std::string kind = common.raw()["kind"].value_or(std::string());
   const auto method = methods == nullptr
@@ -132,13 +134,14 @@ void read_measurement(TableReader& common, const std::vector<Method>* methods, M
   reader.finish();
 }
 
-/// Where the machine's axes are named, a measured one that is not among them is worth a finding.
+/// Adds a measured axis to the machine. If the machine names its axes and this is not one of them,
+/// a finding will report it.
 void add_axis(const std::string& name, bool any_named, Manifest& manifest) {
   manifest.campaign.machine.axes.push_back(Axis{.name = name, .rotary = rotary_by_name(name)});
   if (any_named) manifest.undeclared_axes.push_back(name);
 }
 
-/// A straightedge that was turned over: the same line, and each measurement in one pair.
+/// Checks that each `reversal_of` names a straightness of the same line, and names it only once.
 void check_reversals(std::vector<TableReader>& list, const std::vector<Measurement>& all) {
   std::set<std::string> taken;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -156,7 +159,7 @@ void check_reversals(std::vector<TableReader>& list, const std::vector<Measureme
   }
 }
 
-/// A line on the face of a square: of a square that there is, and once in each of its positions.
+/// Checks that each `square` names a [[square]], and that each line is measured once per position.
 void check_squares(std::vector<TableReader>& list, const Campaign& campaign) {
   std::set<std::string> seen;
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -174,7 +177,7 @@ void check_squares(std::vector<TableReader>& list, const Campaign& campaign) {
   }
 }
 
-/// A manifest while it is read.
+/// A manifest while it is read, with the methods that declare its keys.
 struct Reading : Manifest {
   const std::vector<Method>* methods = nullptr;
 };
@@ -203,7 +206,7 @@ void check_square(TableReader& reader, Square& square, Manifest& manifest) {
     reader.error("id", "\"" + square.name + "\" is given twice");
 }
 
-/// A result has one limit, in the unit of its key.
+/// Reads tolerances; a second limit for the same result is an error.
 void read_tolerances(TableReader& reader, const Key& key, std::vector<Tolerance>& tolerances) {
   for (const Quantity q : {Quantity::deviation, Quantity::small_angle, Quantity::angular_deviation,
                            Quantity::deviation_per_length}) {
@@ -270,8 +273,8 @@ void check_campaign(TableReader& reader, Manifest& manifest) {
     reader.error("end_date", "expected a day that is not before date, " + campaign.date);
 }
 
-/// toml++ keeps tables sorted by name; the order in which a machine's axes are written matters to
-/// controllers that number them.
+/// Sorts the axes by their lines in the file: toml++ sorts tables by name, but controllers that
+/// number the axes need the written order.
 void restore_axis_order(TableReader& reader, Machine& machine) {
   const toml::table* axes = reader.raw()["axes"].as_table();
   if (axes == nullptr) return;

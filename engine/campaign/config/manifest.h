@@ -19,16 +19,16 @@ inline constexpr const char* site_name = "site.toml";
 inline constexpr const char* templates_folder = "templates";
 inline constexpr const char* causes_folder = "causes";
 
-/// Stands for the SHA-256 of a file that cannot be read.
+/// Used in place of the SHA-256 of a file that cannot be read.
 inline constexpr const char* absent = "absent";
 
-/// `[options.<plugin>]` as written, with the line of each key.
+/// A value of `[options.<plugin>]` as written, with its file and line.
 struct RawOption {
   Setting value;
   std::string file;
   std::uint64_t line = 0;
 };
-/// Tables in their former form as texts: "X number=1 step_mm=50".
+/// Parses tables in their former form as texts: "X number=1 step_mm=50".
 Expected<NumberTables> number_tables_of(const std::vector<std::string>& entries);
 
 using RawOptions = std::map<std::string, std::map<std::string, RawOption>>;
@@ -41,8 +41,8 @@ struct RunChoice {
   std::optional<std::vector<std::string>> analyses, outputs;  ///< absent: all that apply
 };
 
-/// `[[tables.accept]]`: a finding that makes readings implausible, and why a table may be
-/// written from them all the same.
+/// `[[tables.accept]]`: a finding that would prevent tables, and the reason why a table may be
+/// written in spite of it.
 struct AcceptedFinding {
   std::string finding, reason;
   std::uint64_t line = 0;
@@ -51,7 +51,7 @@ struct AcceptedFinding {
 struct Manifest {
   Campaign campaign;
   std::string purpose{};  ///< periodic, acceptance, after-repair, check; empty: not stated
-  std::vector<std::string> undeclared_axes{};  ///< measured, and not among [machine.axes]
+  std::vector<std::string> undeclared_axes{};  ///< measured, but not in [machine.axes]
   std::vector<AcceptedFinding> accepted{};
   RunChoice run;
   RawOptions options;
@@ -66,7 +66,7 @@ struct Limits {
   std::size_t missing_campaigns = 0;  ///< of the previous run that may be missing
 };
 
-/// `[[alias]]` of site.toml: two names of one machine.
+/// `[[alias]]` of site.toml: another name of a machine, and its asset.
 struct Alias {
   std::string name, asset, why;
   std::uint64_t line_of_asset = 0;
@@ -80,51 +80,52 @@ struct DatabaseChoice {
   std::string register_schema{};  ///< empty: the register of certificate numbers is a file
 };
 
-/// `[[due]]` of site.toml: months from the last campaign to the next. machine empty: all that no
-/// other rule names.
+/// `[[due]]` of site.toml: months from the last campaign to the next. An empty machine stands for
+/// all machines without a rule of their own.
 struct DueRule {
   std::string machine;
   int months = 0;
 };
 
-/// One whom `verify` expects, and from which day to which: keys are replaced.
+/// A signer that `verify` accepts, and the days between which it signs, because keys are replaced.
 struct SignerRule {
   std::string who;          ///< subject of the certificate, or its SHA-256
   std::string from, until;  ///< YYYY-MM-DD, both included; may be empty
 };
 
-/// `[signing]` of site.toml: where the key is, where its password comes from, time stamps, and whom
-/// `verify` expects and trusts. Paths are relative to the site.
+/// `[signing]` of site.toml: the key, the source of its password, the time-stamp server, and the
+/// signers and roots that `verify` accepts. Paths are relative to the site.
 struct Signing {
   std::string pkcs12, pkcs11, module, certificates;
   std::string password_file, password_env, password_credential;  ///< exactly one
-  /// `trust`: one root for signers and for time servers; else each has its own file.
+  /// `trust`: one root for signers and time servers; otherwise each has a file of its own.
   std::string trust, signer_roots, time_stamp_roots, revocation;
-  std::string signer;  ///< the only one, at any time; else `signers`
+  std::string signer;  ///< the only accepted signer, without dates; otherwise `signers`
   std::vector<SignerRule> signers{};
   std::string time_stamp;           ///< address of the server; empty: none
-  bool time_stamp_required = true;  ///< no answer: no certificate
+  bool time_stamp_required = true;  ///< without an answer no certificate is issued
   int time_stamp_seconds = 10;
 };
 
-/// Of `[certificate]`: a finding that does not hold up an automatic release.
+/// `[[certificate.accept]]`: a finding that does not prevent an automatic approval.
 struct AcceptedRule {
   std::string finding;  ///< its id, or "kind.*": all whose id begins with "kind."
   std::string reason;
 };
 
-/// `[certificate]` of site.toml: how its certificates are released and numbered.
+/// `[certificate]` of site.toml: how certificates are approved and numbered.
 struct Numbering {
   std::string pattern = "{year}-{number:4}";          ///< the sequence begins anew with each year
   std::string register_file = "certificates.sqlite";  ///< relative to the site
   std::optional<DatabaseChoice> server{};  ///< in place of the file; its schema is the register's
-  double patience = 60.0;                  ///< s, with a register that another process keeps locked
-  bool automatic = false;                  ///< a run may release what no finding prevents
+  double patience = 60.0;                  ///< s to wait while another process locks the register
+  /// a run may approve a certificate that no finding prevents
+  bool automatic = false;
   std::vector<AcceptedRule> accepted{};
-  bool two_persons = false;  ///< author and authoriser must not be the same
+  bool two_persons = false;  ///< author and approver must be different persons
 };
 
-/// `[mail]` of site.toml: to whom a run writes, how, and from which severity on.
+/// `[mail]` of site.toml: to whom and how a run sends mail, and from which severity on.
 struct Mail {
   enum class On {
     lost,
@@ -144,11 +145,11 @@ struct Mail {
   std::string password_file, password_env, password_credential;  ///< exactly one with `user`
 };
 
-/// `[webhook]` of site.toml: which program gets new lines of the worklist.
+/// `[webhook]` of site.toml: the address that receives new lines of the worklist.
 struct Webhook {
   std::string url;          ///< https, or http on this machine
-  std::string secret_file;  ///< what signs them
-  std::string trust;        ///< as of the mail
+  std::string secret_file;  ///< key of the HMAC that signs the lines
+  std::string trust;        ///< as in `Mail`
 };
 
 struct SiteFile {
@@ -161,11 +162,11 @@ struct SiteFile {
   RunChoice run;
   RawOptions options;
   Limits limits;
-  std::vector<Alias> aliases{};  ///< each name once; no asset is a name
-  std::vector<DueRule> due{};    ///< one for each machine at most
+  std::vector<Alias> aliases{};  ///< each name once; no name is an asset
+  std::vector<DueRule> due{};    ///< at most one per machine
   std::optional<DatabaseChoice> database{};
   KeyLines lines;
-  std::string language = "en";    ///< of the terminal and of summary.txt
+  std::string language = "en";    ///< language of the terminal and of summary.txt
   bool hashed_folders = false;    ///< results in OUT/ab/<id>
   std::string settings;           ///< TOML: the part of the file that certificates depend on
   std::string evaluation;         ///< TOML: the part of it that results depend on
@@ -175,30 +176,30 @@ struct SiteFile {
 template <class T>
 using Checked = tl::expected<T, std::vector<Error>>;
 
-/// All that is wrong with the file at once, each with its line.
+/// Parses a manifest. Returns all errors of the file at once, each with its line.
 Checked<Manifest> parse_manifest(std::string_view text, const std::string& file,
                                  const std::vector<Method>& methods);
-/// For a process that has no plugins: any kind is accepted, keys of methods are not read, and the
-/// members of Measurement that they fill are empty.
+/// Parses a manifest in a process without plugins: any kind is accepted, keys of methods are not
+/// read, and the members of Measurement that they fill stay empty.
 Checked<Manifest> parse_without_methods(std::string_view text, const std::string& file);
 Checked<SiteFile> parse_site(std::string_view text, const std::string& file);
 
-/// The id of a manifest that may be broken elsewhere; empty if none can be seen.
+/// Returns the id in a manifest that may have errors elsewhere; empty if it cannot be read.
 std::string extract_id(std::string_view text);
 bool is_campaign_id(std::string_view id);
 
-/// The options of one plugin: defaults, then the site's, then the campaign's; each checked for
-/// name, kind, range and choice. `others`: of plugins of another kind with the same name, which
-/// share its table.
+/// Returns the options of one plugin: defaults, overridden by the site's, then by the campaign's.
+/// Each is checked for name, kind, range and choice. `others`: options of plugins of another kind
+/// with the same name, which share the table.
 Checked<Settings> settle_options(const Info& plugin, const RawOptions& site,
                                  const RawOptions& campaign,
                                  const std::vector<Option>& others = {});
 
-/// A TOML file of templates/ as flat settings.
+/// Parses a TOML file of templates/ into settings without nested tables.
 Expected<Settings> parse_settings(std::string_view text, const std::string& file);
 
-/// The options of a plugin from the texts of a command line, "axes" with commas between entries;
-/// the others have their defaults.
+/// Returns the options of a plugin from the texts of a command line, with defaults for those that
+/// are missing. In "axes" commas separate the entries.
 Checked<Settings> options_from(const Info& plugin, const std::map<std::string, std::string>& texts);
 
 }  // namespace nonio::config

@@ -13,7 +13,7 @@ using Holds = Key::Holds;
 
 std::span<const Key> common_keys() { return find_key(campaign_file().keys, "measurement")->keys; }
 
-/// The kind of key for values of an option.
+/// Returns the kind of key that reads values of an option.
 Holds holds_of(const Setting& value) {
   return std::visit(
       []<class T>(const T&) {
@@ -25,7 +25,7 @@ Holds holds_of(const Setting& value) {
       value);
 }
 
-/// Keeps the default, which is there, where the key is not.
+/// Reads an option of a method into the settings; without the key the default remains.
 void read_setting(TableReader& reader, const Key& key, void* measurement) {
   auto& values = static_cast<Measurement*>(measurement)->settings.values;
   std::visit(
@@ -36,7 +36,8 @@ void read_setting(TableReader& reader, const Key& key, void* measurement) {
       values.find(key.name)->second);
 }
 
-/// What is expected of a value, where the method does not state it.
+/// Returns what a message states as expected: the method's text, otherwise the limits of the
+/// option.
 std::string expected_of(const Option& option) {
   if (!option.expected.empty()) return option.expected;
   if (std::holds_alternative<std::string>(option.default_value)) {

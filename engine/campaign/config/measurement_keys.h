@@ -8,14 +8,15 @@
 #include "campaign/config/keys.h"
 #include "nonio/sdk/plugin.h"
 
-/// The keys of [[measurement]]: those of every method, and those that a method declares. What is
-/// made here refers to the methods, which have to outlive it.
+/// Declares the keys of [[measurement]]: those that all methods share and those of each method. The
+/// classes refer to the methods, which must outlive them.
 namespace nonio::config {
 
-/// A key of [[measurement]] that no method may declare, since every method has it; null if none.
+/// Returns a key of [[measurement]] that all methods share, which no method may declare; null if
+/// there is none of this name.
 const Key* common_key(std::string_view name);
 
-/// The table [[measurement]] of one kind.
+/// Declaration of [[measurement]] for one method.
 class KindKeys {
  public:
   explicit KindKeys(const Method& method);
@@ -33,8 +34,9 @@ class KindKeys {
   Key table_;
 };
 
-/// campaign.toml with the keys of all methods in [[measurement]], each only where the kind declares
-/// it. A key that two kinds declare differently is `Key::Holds::by_kind`.
+/// Declaration of campaign.toml with the keys of all methods in [[measurement]]; each key is
+/// allowed only for the kinds that declare it. A key that two kinds declare differently is
+/// `Key::Holds::by_kind`.
 class CampaignKeys {
  public:
   explicit CampaignKeys(const std::vector<Method>& methods);
@@ -50,7 +52,7 @@ class CampaignKeys {
   };
   std::deque<KindKeys> of_kinds_;
   std::vector<Key> measurement_, top_;
-  std::deque<Kinds> kinds_;  ///< of the keys behind the common ones
+  std::deque<Kinds> kinds_;  ///< conditions of the keys after the common ones
   Key file_;
 };
 

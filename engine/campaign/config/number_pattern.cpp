@@ -15,7 +15,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-/// The place for the number in a pattern: "{number:4}".
+/// Position of the number in a pattern such as "{year}-{number:4}".
 struct Place {
   std::size_t begin = std::string::npos, size = 0, digits = 1;
 };

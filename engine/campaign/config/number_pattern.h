@@ -8,12 +8,12 @@
 
 namespace nonio::config {
 
-/// Numbers of one sequence have one counter, however many digits they are printed with: the pattern
-/// with its year.
+/// Returns the key of the counter that a number uses: the pattern with its year, without digits.
+/// Numbers of the same sequence share a counter, whatever their number of digits.
 std::string sequence_of(const std::string& pattern, const std::string& year);
 
-/// `[certificate] numbering` with its places filled. An error if the result cannot be a number,
-/// which is part of file names and is printed.
+/// Returns the certificate number for the pattern `[certificate] numbering`. An error if the result
+/// is not allowed as a number, which is printed and is part of file names.
 Expected<std::string> number_text(const std::string& pattern, const std::string& year,
                                   std::uint64_t number);
 

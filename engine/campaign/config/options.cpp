@@ -21,7 +21,7 @@ const char* kind_of(const Setting& setting) {
   return kinds[setting.index()];
 }
 
-/// "X reference_mm=0 step_mm=50", the form in manifests before there were tables.
+/// Parses an entry in the form of former manifests: "X reference_mm=0 step_mm=50".
 Expected<void> take_entry(const std::string& entry, NumberTables& out) {
   std::istringstream words(entry);
   std::string name, word;
@@ -59,8 +59,8 @@ Expected<NumberTables> number_tables_of(const std::vector<std::string>& entries)
 
 namespace {
 
-/// The setting as the declared kind; a whole number will do where a number is required, an empty
-/// list for any, and "X number=1" for a table X. Else why not.
+/// Converts a setting to the declared kind: a whole number becomes a number, an empty list a list
+/// of numbers, "X number=1" a table X. Other differences are an error.
 Expected<Setting> as_declared(const Setting& found, const Setting& declared) {
   if (found.index() == declared.index()) return found;
   if (const auto* i = std::get_if<std::int64_t>(&found);
@@ -106,7 +106,8 @@ std::string choice_complaint(const Option& option, const Setting& setting) {
   return storage::not_one_of(all, found);
 }
 
-/// What is not a valid setting in an option: of a table, its first key that is not a number.
+/// Returns the error about an option that is not a valid setting; in a table it names the first key
+/// that is not a number.
 Error wrong_option(const std::string& place, const toml::node& value, const std::string& file) {
   if (const toml::table* tables = value.as_table())
     for (const auto& [name, node] : *tables) {
@@ -232,7 +233,8 @@ std::optional<double> finite_number(std::string_view text) {
   return number;
 }
 
-/// Numbers between commas; what is none stays a text, which is refused where the kind is looked at.
+/// Parses numbers separated by commas. Other text is returned unchanged and refused when its kind
+/// is checked.
 Setting numbers_of(std::string_view text) {
   std::vector<double> numbers;
   for (const std::string& part : parted(text))
@@ -243,7 +245,7 @@ Setting numbers_of(std::string_view text) {
   return numbers;
 }
 
-/// What was written on a command line, as the kind that the option has.
+/// Converts a text of the command line into a setting of the kind that the option declares.
 Setting setting_of(std::string_view text, const Option* declared) {
   if (declared != nullptr && std::holds_alternative<std::string>(declared->default_value))
     return std::string(text);

@@ -10,21 +10,22 @@
 
 namespace nonio::config {
 
-/// The files in which keys and passwords lie, wherever they are.
+/// Returns all files that contain keys or passwords, in the site and in systemd's credentials.
 std::vector<std::filesystem::path> secret_files(const SiteFile& file,
                                                 const std::filesystem::path& site);
 
-/// Whoever can read a key or a password can use it. `what`: "the signing key".
+/// Returns an error if other users have access to a file, because they could use its key or
+/// password. `what`: name in the message, "the signing key".
 Expected<void> check_secret(const std::filesystem::path& path, const std::string& what);
 
-/// From where a password comes: exactly one of these.
+/// The source of a password; exactly one of the three is not empty.
 struct PasswordSource {
   const std::string &file, &env, &credential;
   std::string what;     ///< "the key's password"
   std::string section;  ///< of site.toml
 };
 
-/// Without the end of its line.
+/// Reads a password from its source, without the line feed at its end.
 Expected<std::string> read_password(const PasswordSource&, const std::filesystem::path& site);
 
 }  // namespace nonio::config

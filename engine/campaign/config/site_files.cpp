@@ -53,7 +53,8 @@ Expected<SiteFiles> read_site_files(const fs::path& site,
   reading(site / site_name);
   NONIO_TRY(auto settings, read_settings(site));
   files.settings = std::move(settings);
-  // Read again where they are used; here a share that hangs is noticed.
+  // The records are read again where they are used. They are read here to notice a share that
+  // hangs.
   reading(site / machines_folder);
   if (const auto machines = read_machines(site); !machines) return fail(machines.error());
   reading(site / "templates");
@@ -98,7 +99,7 @@ Expected<std::string> from_hex(const std::string& text) {
 fs::path site_of(const fs::path& campaign) {
   std::error_code error;
   const fs::path start = fs::canonical(campaign, error);
-  // One that cannot be looked at is not none: reading it reports the error.
+  // If a path cannot be examined, it is treated as existing: reading it then reports the error.
   const auto has = [](const char* name) {
     return
         [name](const fs::path& folder) { return storage::is_there(folder / name).value_or(true); };

@@ -12,32 +12,33 @@
 
 namespace nonio::config {
 
-/// site.toml of a site, if there is one; every error with its line.
+/// Reads site.toml, with defaults if it does not exist; each error has its line. `digest` receives
+/// the SHA-256 of the file.
 Checked<SiteFile> read_site(const std::filesystem::path& site, std::string& digest);
 
-/// The site's own files that hold for all its campaigns, as they are read.
+/// The files of a site that apply to all its campaigns.
 struct SiteFiles {
   std::optional<std::string> settings{};  ///< site.toml; none: there is no such file
   TemplateFiles templates{};
 };
 
-/// `reading` is called with each path before it is read.
+/// Reads the files of a site. `reading` is called with each path before it is read.
 Expected<SiteFiles> read_site_files(
     const std::filesystem::path& site,
     const std::function<void(const std::filesystem::path&)>& reading);
 
-/// The same from files that were read.
+/// Parses site.toml from files that `read_site_files` has read; each error has its line.
 Checked<SiteFile> site_in(const SiteFiles& files, std::string& digest);
 
-/// `folders`, then the site's own templates and causes if it has some.
+/// Returns `folders`, followed by the site's own templates and causes if they exist.
 Expected<std::vector<std::filesystem::path>> with_site_templates(
     std::vector<std::filesystem::path> folders, const std::filesystem::path& site);
 
 std::string to_hex(std::string_view bytes);
 Expected<std::string> from_hex(const std::string& text);
 
-/// The nearest folder at or above the campaign that holds a site.toml, else one with records of
-/// machines, else one with causes; else the campaign's own.
+/// Returns the nearest folder at or above the campaign that contains site.toml, otherwise
+/// machines/, otherwise causes/; if there is none, the campaign's folder.
 std::filesystem::path site_of(const std::filesystem::path& campaign);
 
 }  // namespace nonio::config

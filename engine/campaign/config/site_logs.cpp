@@ -32,7 +32,7 @@ bool takes_back(const Withdrawal& w, const Acknowledgement& a) {
          a.quantity == w.quantity;
 }
 
-/// What a file of entries has.
+/// Parses one of the files and removes withdrawn acknowledgements.
 Checked<Entries> parse_log(std::string_view text, const std::string& file, const Key& declaration) {
   auto root = parse_toml(text, file);
   if (!root) return tl::unexpected(std::vector<Error>{root.error()});
@@ -74,7 +74,8 @@ Expected<void> take_log(const fs::path& site, const char* name,
   return {};
 }
 
-/// A basic string of TOML. Control characters stay as escapes, which the reader refuses in words.
+/// Returns a TOML string. Control characters are escaped, and the reader refuses them with a
+/// message.
 std::string quoted(const std::string& text) {
   constexpr const char* digits = "0123456789ABCDEF";
   std::string out = "\"";
@@ -90,7 +91,7 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-/// `[[name]]` and its keys, in the order in which they are declared.
+/// Builds the text of an entry: `[[name]]` and its keys, in the order of the calls.
 class Entry {
  public:
   explicit Entry(const char* name) : text_(std::string("[[") + name + "]]\n") {}
@@ -98,7 +99,7 @@ class Entry {
     if (!value.empty()) text_ += std::string(key) + " = " + quoted(value) + "\n";
     return *this;
   }
-  /// As it is: what is no day is refused when the file is read again.
+  /// Adds a date. Text that is not a date is quoted and refused when the file is read again.
   Entry& date(const char* key, const std::string& value) {
     const bool is_day =
         value.find_first_not_of("0123456789-") == std::string::npos && !value.empty();
@@ -118,7 +119,8 @@ class Entry {
   std::string text_;
 };
 
-/// One writer at a time among ours; an editor shows when the file is read again.
+/// A lock against other Nonio processes that write to the site. A change by an editor is noticed
+/// when the file is read again.
 class SiteLock {
  public:
   explicit SiteLock(const fs::path& site)
@@ -142,7 +144,7 @@ class SiteLock {
 std::vector<Error> one(Error error) { return {std::move(error)}; }
 
 using Check = std::function<Checked<std::size_t>(const std::string&)>;
-/// Whether so many entries count after one was added, of so many before.
+/// Checks the number of valid entries before and after an entry was added.
 using Adds = bool (*)(std::size_t before, std::size_t after);
 
 Checked<void> append(
@@ -184,7 +186,8 @@ Check counts(Checked<std::vector<T>> (*parse)(std::string_view, const std::strin
 
 }  // namespace
 
-/// A reason that excuses something is read next to a name for years.
+/// Checks an entry after its keys were read: it needs a reason in words, because the reason is
+/// shown for years. Former ids of findings are renamed.
 template <class Entry>
 void check_entry(TableReader& reader, Entry& entry) {
   entry.line = reader.line();

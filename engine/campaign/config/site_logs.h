@@ -10,29 +10,30 @@
 
 #include "campaign/config/manifest.h"
 
-/// Entries of people about machines: SITE/events.toml, acknowledged.toml, forgotten.toml.
+/// Entries that people write about machines: SITE/events.toml, acknowledged.toml, forgotten.toml.
 namespace nonio::config {
 
 inline constexpr const char* events_name = "events.toml";
 inline constexpr const char* acknowledged_name = "acknowledged.toml";
 inline constexpr const char* forgotten_name = "forgotten.toml";
 
-/// Whether this is a file or folder of a site besides its campaigns, as a path below the site.
+/// Whether a path below the site is a file or folder of the site itself, not of a campaign.
 bool is_site_part(std::string_view path);
 
 struct Event {
-  std::string date, machine, axis, kind, text, by;  ///< axis: empty: the whole machine
+  std::string date, machine, axis, kind, text, by;  ///< empty axis: the whole machine
   std::uint64_t line = 0;
 };
 
 struct Acknowledgement {
   std::string date, finding, machine, axis, quantity, until;
-  std::optional<double> value{}, U{};  ///< of the quantity on that day, in its unit
+  std::optional<double> value{}, U{};  ///< value of the quantity on that day, in its unit
   std::string by, why;
   std::uint64_t line = 0;
 };
 
-/// Takes back the acknowledgements above it that have the same four names.
+/// Withdraws all acknowledgements above it in the file that have the same finding, machine, axis
+/// and quantity.
 struct Withdrawal {
   std::string date, finding, machine, axis, quantity, by, why;
   std::uint64_t line = 0;
@@ -40,7 +41,7 @@ struct Withdrawal {
 
 struct Forgotten {
   std::string date;
-  std::string campaign;  ///< or a path for which `is_site_part` holds
+  std::string campaign;  ///< or a path that fulfils `is_site_part`
   std::string by, why;
   std::uint64_t line = 0;
 };
@@ -51,22 +52,22 @@ struct SiteLogs {
   std::vector<Forgotten> forgotten{};
 };
 
-/// All that is wrong with a file at once, each with its line.
+/// Parses a file. Returns all its errors at once, each with its line.
 Checked<std::vector<Event>> parse_events(std::string_view text, const std::string& file);
-/// Those that count: what was withdrawn is left out.
+/// Returns the valid acknowledgements, without withdrawn ones.
 Checked<std::vector<Acknowledgement>> parse_acknowledged(std::string_view text,
                                                          const std::string& file);
 Checked<std::vector<Forgotten>> parse_forgotten(std::string_view text, const std::string& file);
 
-/// The three files of a site; a missing one is empty.
+/// Reads the three files of a site; a missing file is treated as empty.
 Checked<SiteLogs> read_site_logs(const std::filesystem::path& site);
 
-/// Adds an entry at the end of the file, after all that it contains, comments included; a missing
-/// file is made. Refused, and nothing written, if the file has errors, if it would have errors with
-/// the entry, or if another process writes it meanwhile.
+/// Adds an entry at the end of a file and leaves its content, including comments, unchanged; a
+/// missing file is created. Nothing is written if the file has errors, would have errors with the
+/// entry, or is being written by another process.
 Checked<void> add_event(const std::filesystem::path& site, const Event& event);
 Checked<void> add_acknowledgement(const std::filesystem::path& site, const Acknowledgement& known);
-/// Refused if nothing that counts has its names.
+/// Adds a withdrawal; an error if there is no valid acknowledgement to withdraw.
 Checked<void> add_withdrawal(const std::filesystem::path& site, const Withdrawal& withdrawal);
 Checked<void> add_forgotten(const std::filesystem::path& site, const Forgotten& forgotten);
 

@@ -10,9 +10,10 @@
 
 namespace nonio::config {
 
-/// "a.ini,b.ini": the files of one table.
+/// Reads the files of one table from a list such as "a.ini,b.ini".
 Expected<std::vector<Artifact>> read_table_files(const std::string& list);
-/// The same from inside of a folder, each of at most 1 MB.
+/// Reads the files of one table from a list of paths inside the folder `base`, each file at most 1
+/// MB.
 Expected<std::vector<Artifact>> read_table_files(const std::string& list,
                                                  const std::filesystem::path& base);
 

@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 Expected<std::map<std::string, fs::path>> template_paths(const fs::path& folder) {
   std::map<std::string, fs::path> files;
   std::error_code error;
-  std::vector<fs::path> above{fs::canonical(folder, error)};  // the folders that the walk is in
+  // the folders that contain the current file
+  std::vector<fs::path> above{fs::canonical(folder, error)};
   fs::recursive_directory_iterator it(folder, fs::directory_options::follow_directory_symlink,
                                       error);
   for (; !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
@@ -41,14 +42,15 @@ Expected<std::map<std::string, fs::path>> template_paths(const fs::path& folder)
 
 namespace {
 
-/// Whether a file is carried along: not fonts, which are large and in every installation.
+/// Whether a file is attached to signed files. Fonts are not, because they are large and part of
+/// every installation.
 bool travels(std::string_view name) { return !name.starts_with("fonts/"); }
 
 }  // namespace
 
 namespace {
 
-/// Causes of a site lie next to its templates.
+/// Returns the path of a template; causes of a site are in the folder next to its templates.
 fs::path path_of(const TemplateFiles& own, const std::string& name) {
   return name.starts_with(site_causes)
              ? own.folder.parent_path() / causes_folder / name.substr(site_causes.size())

@@ -12,36 +12,39 @@
 
 namespace nonio::config {
 
-/// Templates that were read already: names below the folder, and bytes.
+/// Templates that were already read: bytes by path below the folder.
 struct TemplateFiles {
   std::filesystem::path folder{};
   std::map<std::string, std::string> files{};
 };
 
-/// Every file below a folder, links to folders followed, as paths relative to it.
+/// Returns every file below a folder by its path relative to the folder; links to folders are
+/// followed.
 Expected<std::map<std::string, std::filesystem::path>> template_paths(
     const std::filesystem::path& folder);
 
-/// All template folders laid over each other, the later ones winning, and one digest of them.
-/// `json`, if wanted: all of them in one text, from which `templates_from` has them again.
-/// `own` wins over all folders. `below`, if any: only files whose names begin with one of these.
+/// Reads template folders: a file of a later folder replaces the same file of earlier ones, and
+/// files in `own` replace all. `digest` receives a digest of all files, `json` one text with all of
+/// them, which `templates_from` reads. With `below`, only files are read whose names begin with one
+/// of these.
 Expected<Templates> read_templates(const std::vector<std::filesystem::path>& folders,
                                    std::string& digest, std::string* json = nullptr,
                                    const TemplateFiles& own = {},
                                    const std::vector<std::string>& below = {});
 
-/// What sentences in `language` need: its words, the English ones for those that it lacks, and the
-/// causes. No fonts and pages, which take most of the time.
+/// Returns the beginnings of file names (`below` of `read_templates`) for sentences in `language`:
+/// its words, the English ones as a replacement, and the causes. Fonts and pages take most of the
+/// time and are left out.
 std::vector<std::string> words_in(const std::string& language);
 
-/// Templates that travelled in a signed file.
+/// Templates that were attached to a signed file.
 struct CarriedTemplates {
   Templates templates;
-  std::string sha256;                ///< as `read_templates` gives it
-  std::vector<std::string> strange;  ///< names of those that differ from the installed ones
-  std::string missing{};  ///< a font (they do not travel) that is not installed as it was then
+  std::string sha256;                ///< digest, as `read_templates` returns it
+  std::vector<std::string> strange;  ///< names of files that differ from the installed ones
+  std::string missing{};  ///< a font that differs from the one used then (fonts are not attached)
 };
-/// An error if the text is not as `read_templates` writes it.
+/// Reads attached templates. An error if the text is not in the form that `read_templates` writes.
 Expected<CarriedTemplates> templates_from(std::string_view json, const Templates& installed,
                                           std::string_view installed_json);
 

@@ -10,8 +10,8 @@
 
 namespace nonio::config {
 
-/// What the terminal and summary.txt state, in the language of the site:
-/// templates/words/<language>/terminal.toml, and English where a language has no text.
+/// Texts of the terminal and of summary.txt in the language of the site:
+/// templates/words/<language>/terminal.toml; a missing text is taken from English.
 class TerminalWords {
  public:
   using Parts = std::vector<std::pair<std::string, std::string>>;
@@ -19,14 +19,17 @@ class TerminalWords {
   TerminalWords(const Templates& templates, std::string language)
       : templates_(templates), language_(std::move(language)) {}
 
-  /// The text of that name, each `{part}` replaced; the name itself if there is no such text.
+  /// Returns the text of this name with each `{part}` replaced; the name itself if there is no
+  /// text.
   std::string operator()(std::string_view name, const Parts& parts = {}) const;
-  /// The text `<name>.one` for a count of 1, else `<name>.many`; `{count}` is the count.
+  /// Returns the text `<name>.one` for a count of 1, otherwise `<name>.many`, with `{count}`
+  /// replaced.
   std::string counted(std::string_view name, std::size_t count, Parts parts = {}) const;
-  /// A fixed text of the program (a reason, a decision) in the language; itself if it has no entry.
+  /// Translates a fixed text of the program (a reason, a decision) by a list of the templates;
+  /// returns it unchanged if there is no entry.
   std::string of(std::string_view list, const std::string& text) const;
 
-  /// A number with the decimal sign of the language.
+  /// Returns a number with the decimal sign of the language.
   std::string number(std::string text) const;
 
   const std::string& language() const { return language_; }

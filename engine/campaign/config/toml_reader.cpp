@@ -15,14 +15,14 @@ namespace {
 
 std::uint64_t line_of_node(const toml::node& node) { return node.source().begin.line; }
 
-/// `words` with `value` in place of {}.
+/// Returns `words` with {} replaced by `value`.
 std::string filled(std::string_view words, std::string_view value) {
   std::string text(words);
   if (const std::size_t at = text.find("{}"); at != std::string::npos) text.replace(at, 2, value);
   return text;
 }
 
-/// "um (deviation), mm (position or period)".
+/// Lists choices for a message: "um (deviation), mm (position or period)".
 std::string list_of(std::span<const Choice> choices) {
   std::string list;
   for (const Choice& c : choices)
@@ -334,7 +334,7 @@ const toml::table* TableReader::table_at(const Key& key) {
   return node->as_table();
 }
 
-/// Of what is not declared with a member.
+/// Checks a key that is declared without a member.
 void TableReader::check(const Key& key) {
   using enum Key::Holds;
   switch (key.holds) {

@@ -15,24 +15,23 @@
 
 namespace nonio::config {
 
-/// One table of a TOML file, read key by key according to its declaration. What is wrong is
-/// collected, not thrown. A key that is read and not declared, or read as something else than
-/// declared, is a mistake of the program: std::logic_error.
+/// Reads one table of a TOML file according to its declaration. Errors of the file are collected,
+/// not thrown. To read a key that is not declared, or is declared with another kind, is a
+/// programming error and throws std::logic_error.
 class TableReader {
  public:
-  /// The file itself: `declaration` is of a table, and stays where it is.
+  /// Reads the file as a table; `declaration` must outlive the reader.
   TableReader(const toml::table& table, const Key& declaration, const std::string& file,
               std::vector<Error>& errors)
       : TableReader(table, declaration, {}, file, errors) {}
 
-  /// Reads all keys of the table into the members that they are declared with, as far as they are,
-  /// and checks the others.
+  /// Reads all keys that are declared with a member into `object`, and checks the others.
   template <class T>
   void fill(T& object) {
     fill(&object, &binding::tag<T>);
   }
 
-  // For what is not declared with a member, by name.
+  // Read keys that are declared without a member, by name.
   std::string text(std::string_view key);
   std::optional<double> number(std::string_view key);
   std::optional<int> integer(std::string_view key);
@@ -41,28 +40,29 @@ class TableReader {
   std::optional<TableReader> table(std::string_view key);
   std::vector<TableReader> tables(std::string_view key);
 
-  /// For conditions of the declaration: what `key` is where the table does not state that.
+  /// Sets the value of `key` for conditions of the declaration, for tables that do not contain the
+  /// key.
   void settle(std::string_view key, std::string_view value) { settled_ = {key, value}; }
-  /// What was settled: for a table under any name by the host, "linear" or "rotary".
+  /// Returns the settled value: for an axis "linear" or "rotary".
   std::string_view settled() const { return settled_.second; }
-  /// The same table, read further with another declaration.
+  /// Returns a reader of the same table with another declaration.
   TableReader declared(const Key& declaration) const;
-  /// Reports every unknown key, with the nearest known one. A key that is declared and was not read
-  /// is a std::logic_error.
+  /// Reports every unknown key with the nearest known one. Throws std::logic_error for a declared
+  /// key that was not read.
   void finish();
 
   void error(std::string_view key, std::string message);
   void error(Error error) { errors_.push_back(std::move(error)); }
-  /// Whether anything is wrong in this table since its keys were read.
+  /// Whether this table has an error that was found since `fill` began.
   bool has_errors() const { return errors_.size() > errors_before_; }
   const toml::table* anything(const Key& key) { return table_at(key); }
-  /// As it is declared: one, a list, or those under any name, which know it.
+  /// Returns readers of the tables under a key: of one table, a list, or tables under any name.
   std::vector<TableReader> tables(const Key& key);
   bool contains(std::string_view key) const { return table_.contains(key); }
   std::uint64_t line_of(std::string_view key) const;
   std::uint64_t line() const { return table_.source().begin.line; }
   const std::string& file() const { return file_; }
-  /// Of a table under any name: that name.
+  /// Returns the name of this table if it is one under any name.
   const std::string& name() const { return name_; }
   const toml::table& raw() const { return table_; }
   const std::string& place() const { return place_; }
@@ -89,7 +89,7 @@ class TableReader {
 
   void fill(void* object, const void* type);
   const Key& find(std::string_view name, Key::Holds as) const;
-  /// Null where the table does not have it, which is reported if it is needed.
+  /// Returns the value of a key; null if it is missing, which is reported if the key is needed.
   const toml::node* take(const Key& key);
   bool holds(const When& when) const;
   bool is_needed(const Key& key) const { return key.required || holds(key.needed); }
@@ -115,29 +115,31 @@ class TableReader {
   std::vector<const Key*> read_;
 };
 
-/// The whole file, or one error with its line.
+/// Parses a whole TOML file; otherwise returns the first error with its line.
 Expected<toml::table> parse_toml(std::string_view text, const std::string& file);
 
-/// A key of a file that has the name of an earlier version, or the header of a table with such a
-/// key, or the id of a finding with such a name.
+/// A key with the name of an earlier version. It may also be the header of a table, or the id of a
+/// finding.
 struct FormerKey {
-  std::string place;         ///< of the table that contains it: "machine.axes.X"; empty: the file
+  std::string place;         ///< table that contains it: "machine.axes.X"; empty: the file
   std::string former, name;  ///< "table_on", "active_table"
   std::uint64_t line = 0;    ///< 1-based
-  bool is_value = false;     ///< the id of a finding
+  bool is_value = false;     ///< it is the id of a finding
 };
-/// Renames keys with former names in `table` as `declaration` requires; all later code sees
-/// the present names. In the order of the lines. Where a table has both names, the former one stays unknown.
+/// Renames the keys in `table` that have former names according to `declaration`, so that all later
+/// code finds the present names. Returns them in the order of their lines. A former name next to
+/// the present one is not renamed and stays unknown.
 std::vector<FormerKey> rename_former_keys(toml::table& table, const Key& declaration);
-/// A warning for each, without those of further headers of the same key.
+/// Returns a warning for each key, but only one for repeated headers of the same key.
 std::vector<Error> warnings_of(const std::vector<FormerKey>& keys, const std::string& file);
 
-/// Adds the line of each key below a table to `lines`: "axes.X.number".
+/// Adds the line of each key below a table to `lines`, by names such as "axes.X.number".
 void note_lines(const toml::table& table, const std::string& prefix, KeyLines& lines);
 
 std::string type_name(const toml::node& node);
 
-/// A value, or tables of numbers, as a setting; nothing for other tables, dates and mixed arrays.
+/// Converts a value, or tables of numbers, into a setting; none for other tables, dates and mixed
+/// arrays.
 std::optional<Setting> to_setting(const toml::node& node);
 
 }  // namespace nonio::config

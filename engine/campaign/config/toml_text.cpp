@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text to TOML, and its values as settings. What they mean is toml_reader.cpp's.
+// Parses text to TOML and converts its values to settings. toml_reader.cpp interprets them.
 #include <algorithm>
 #include <cmath>
 
@@ -15,14 +15,14 @@ bool is_bare_key_character(char c) {
          c == '_';
 }
 
-/// Input for which toml++ 3.3 has undefined behaviour instead of an error: a byte outside ASCII
-/// that is in neither a string nor a comment, or where a text is continued after a backslash; and a
-/// table header that does not begin with a key.
+/// Finds text for which toml++ 3.3 has undefined behaviour instead of an error: a byte outside
+/// ASCII that is neither in a string nor in a comment, or where a string continues after a
+/// backslash; and a table header that does not begin with a key.
 class Precheck {
  public:
   explicit Precheck(std::string_view text) : text_(text) {}
 
-  /// The complaint, or "" if the parser may have the text; `line` is where the reading stopped.
+  /// Returns the error, or "" if toml++ may parse the text; `line` receives the line of the error.
   std::string run(std::uint64_t& line) {
     line = 1;
     bool line_begins = true;
@@ -52,7 +52,8 @@ class Precheck {
   }
 
  private:
-  /// There toml++ reads on in the word, and may find in it what is part of a string here.
+  /// Whether a quote opens in the middle of a word. toml++ continues the word there, and may find
+  /// in it what is part of a string here.
   bool quote_within_word() const {
     const bool opens = closing_.empty() && (text_[at_] == '"' || text_[at_] == '\'');
     return opens &&
@@ -60,8 +61,8 @@ class Precheck {
                                         std::string_view::npos));
   }
 
-  /// There toml++ tests whether it is one more blank to skip, which it implements for few such
-  /// characters.
+  /// Whether a string continues with a character outside ASCII after a backslash and blanks. toml++
+  /// tests whether it is one more blank, but implements the test for few such characters.
   bool goes_on_outside_ascii() const {
     if (text_[at_] != '\\' || closing_ != "\"\"\"") return false;
     const std::size_t next = text_.find_first_not_of(" \t\r\n", at_ + 1);
@@ -100,7 +101,8 @@ class Precheck {
     return !closing_.empty() || static_cast<unsigned char>(c) < 0x80;
   }
 
-  /// Outside strings and comments: keys or values, and whether a value without quotes has begun.
+  /// Processes a character outside of strings and comments: tracks whether a key or value is
+  /// expected, and whether a value without quotes has begun.
   void step_outside(char c) {
     if (c == '.' && !wants_value_) ++dots_;
     if (std::string_view("=,{").find(c) != std::string_view::npos) dots_ = 0;
@@ -113,7 +115,7 @@ class Precheck {
     } else if (c == '=') {
       wants_value_ = true;
     } else if (c == '[' || c == '{') {
-      // A bracket where a key is expected is that of a table's header, which contains keys.
+      // a bracket where a key is expected begins a table header, which contains keys
       open_ += wants_value_ ? c : '{';
       wants_value_ = open_.back() == '[';
     } else {
@@ -124,15 +126,15 @@ class Precheck {
   std::string_view text_;
   std::size_t at_ = 0;
   std::string_view closing_;  // of the string or comment that is open
-  std::string open_;          // brackets: [ holds values, { keys
+  std::string open_;          // open brackets: [ contains values, { contains keys
   bool wants_value_ = false, in_word_ = false;
-  /// Of the key. Tables are read, copied and freed by functions that call themselves: hundreds of
-  /// thousands of them, one within the other, would end the process.
+  /// Limits of dots in a key and of open brackets. toml++ reads, copies and frees tables
+  /// recursively, so that hundreds of thousands of nested tables would end the process.
   static constexpr std::size_t most_dots = 31, most_open = 64;
   std::size_t dots_ = 0;
 };
 
-/// The value of a line if it is a date with points, as Europe writes it: "23.3.2026".
+/// Returns the value of a line if it is a European date with points, "23.3.2026"; otherwise "".
 std::string dotted_date(std::string_view text, std::uint64_t line) {
   for (; line > 1 && text.find('\n') != text.npos; --line) text.remove_prefix(text.find('\n') + 1);
   text = text.substr(0, text.find_first_of("#\r\n"));
@@ -160,7 +162,7 @@ Expected<toml::table> parse_toml(std::string_view text, const std::string& file)
       return fail(
           Error{"expected a date such as 2026-03-23, found " + date, file, e.source().begin.line});
     const std::string complaint(e.description());
-    // Windows' editors call their old code page ANSI.
+    // Editors on Windows call an 8-bit code page "ANSI".
     return fail(
         Error{complaint.find("utf-8") == complaint.npos
                   ? "not valid TOML: " + complaint
@@ -208,7 +210,7 @@ std::string type_name(const toml::node& node) {
 
 namespace {
 
-/// Tables that hold finite numbers and nothing else.
+/// Converts a table whose tables contain only finite numbers; none for any other table.
 std::optional<Setting> number_tables(const toml::table& table) {
   NumberTables tables;
   for (const auto& [name, node] : table) {

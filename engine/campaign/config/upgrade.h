@@ -18,13 +18,13 @@ struct UpgradedLine {
 
 struct UpgradedFile {
   std::string text;
-  std::vector<UpgradedLine> lines;  ///< that differ; empty: the text is as it was
+  std::vector<UpgradedLine> lines;  ///< lines that differ; empty: nothing was changed
 };
 
-/// The text of a file with the present names of keys in place of former ones. Everything else,
-/// comments, order, line ends and the mark of UTF-8 included, keeps its bytes. The result is read
-/// again: if it does not have the same content, nothing is returned but an error with the line that
-/// has to be changed by hand.
+/// Returns the text of a file with former names of keys replaced by the present ones. All other
+/// bytes, including comments, order, line ends and the byte order mark, stay the same. The result
+/// is parsed again. If its content differs, an error with the line that must be changed by hand is
+/// returned.
 Expected<UpgradedFile> upgraded(std::string_view text, const Key& declaration,
                                 const std::string& file);
 

@@ -33,10 +33,11 @@ AxisCorrection correction_of(const std::vector<LoadedTable>& tables, const std::
 
 namespace {
 
-/// Of a scan with more targets than any table has points nothing is kept.
+/// Scans with more targets than this are not stored, because no table has so many points.
 constexpr std::size_t most_targets = 500;
 
-/// Standard uncertainty of a mean at a target, of the scatter of its readings; 0 with one run.
+/// Returns the standard uncertainty of a mean at a target from the scatter of the readings; 0 with
+/// one run.
 double u_of_mean(const math::AxisTest& test) {
   double squares = 0.0, n = 0.0, means = 0.0;
   for (std::size_t i = 0; i < test.targets.size(); ++i)
@@ -92,7 +93,8 @@ class OfCampaign {
     return out;
   }
 
-  /// Of an axis that was measured twice it is not known which of the tables is loaded.
+  /// Returns what the written tables add along an axis; none if the axis was measured twice,
+  /// because it is not known which of the tables is loaded.
   std::optional<AxisCorrection> written(const std::string& axis, const Measurement& m) const {
     const Campaign& campaign = read_.manifest->campaign;
     const auto many = std::count_if(

@@ -8,7 +8,7 @@ namespace nonio::evaluation {
 
 namespace {
 
-/// A limit, and of what it is one.
+/// A tolerance, with the measurement and axis that it applies to.
 struct Held {
   std::string measurement, axis;
   Tolerance tolerance;
@@ -35,7 +35,7 @@ bool is_in_unit_of(const Tolerance& tolerance, const Value& v) {
   return unit_of(v.quantity).symbol == unit_of(tolerance.quantity).symbol;
 }
 
-/// One decision for each value of this name and unit; false if there is none.
+/// Adds a decision for each value with the name and unit of the tolerance; false if there is none.
 bool add_decisions(const Campaign& campaign, const std::vector<Results::Analysed>& analyses,
                    const Held& held, std::vector<Conformity>& out) {
   const std::size_t before = out.size();

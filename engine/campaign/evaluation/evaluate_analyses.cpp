@@ -17,7 +17,7 @@ namespace nonio::evaluation {
 
 namespace {
 
-/// The smallest U of this quantity; 0 if none is stated.
+/// Returns the smallest U (CMC) of a quantity measured over `length` (m); 0 if none is stated.
 double floor_of(const Cmc& cmc, Quantity q, double length) {
   switch (q) {
     case Quantity::length:
@@ -33,8 +33,8 @@ double floor_of(const Cmc& cmc, Quantity q, double length) {
   }
 }
 
-/// An accredited laboratory's smallest uncertainty, `[laboratory.cmc]`: no result of the evaluation
-/// keeps a smaller U. length: that it was measured over, m. Nothing happens without accreditation.
+/// Raises each U of an evaluation to at least the smallest uncertainty of an accredited laboratory,
+/// `[laboratory.cmc]`. length: over which it was measured, m. Does nothing without accreditation.
 /// Source: the policy of ILAC-P14 that U on a certificate is not below the CMC; its text was not at
 /// hand.
 void apply_cmc(const Laboratory& laboratory, double length, Evaluation& e) {
@@ -63,7 +63,8 @@ void apply_cmc(const Laboratory& laboratory, double length, Evaluation& e) {
     e.findings.push_back({.id = "uncertainty.cmc", .texts = {{"results", std::move(raised)}}});
 }
 
-/// Readings that were excluded without a reason. The evaluation is valid; no certificate is issued.
+/// Adds a finding if readings were excluded without a reason: the evaluation is valid, but no
+/// certificate is issued.
 void note_reasons_missing(const Measurement& m, Evaluation& evaluation) {
   if (m.exclude.empty() || has_content(m.exclude_reason)) return;
   evaluation.findings.push_back(
@@ -73,7 +74,8 @@ void note_reasons_missing(const Measurement& m, Evaluation& evaluation) {
        .texts = {{"file", m.file}, {"id", m.id}}});
 }
 
-/// Over which an evaluation was measured: its budget's, or as far as the axes moved.
+/// Returns the length over which an evaluation was measured: that of its budget, otherwise the
+/// largest travel of its linear axes, in m.
 double measured_length(const reading::ReadCampaign& read, const Evaluation& e,
                        const Measurement* measurement) {
   if (e.budget) return e.budget->length;
@@ -88,7 +90,8 @@ double measured_length(const reading::ReadCampaign& read, const Evaluation& e,
   return most;
 }
 
-/// Of an analysis that does not state what is followed; only values in the budget will be.
+/// Marks all values of an analysis that does not state which of its values are followed. Only
+/// values in its uncertainty budget are used.
 void follow_all(const std::string& plugin, const Measurement* m, Evaluation& e) {
   for (Value& v : e.values) {
     v.followed = {plugin + ':' + v.name, m == nullptr ? std::string() : m->axis};
@@ -98,7 +101,8 @@ void follow_all(const std::string& plugin, const Measurement* m, Evaluation& e) 
   }
 }
 
-/// Of one measurement, or of the campaign if there is none.
+/// Runs an analysis for one measurement, or for the campaign if `measurement` is null. Errors are
+/// reported, and the result is then none.
 std::optional<Results::Analysed> analysed_with(
     const Work& work, const Analysis& analysis, const Measurement* measurement,
     const std::function<Expected<Evaluation>(const Settings&)>& call) {

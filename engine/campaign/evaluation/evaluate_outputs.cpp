@@ -24,7 +24,7 @@ std::string comma_list(const std::vector<std::string>& names) {
   return text;
 }
 
-/// Whether a controller writes tables for the machine's control, if it has one.
+/// Reports an error if no controller writes tables for the control that the machine states.
 void check_control(const Work& work) {
   const std::string& control = work.campaign().machine.control;
   std::vector<std::string> tables;
@@ -35,8 +35,8 @@ void check_control(const Work& work) {
                                                    "; there are " + comma_list(tables)));
 }
 
-/// A table of another control than the machine's: the manifest that requests it is wrong, and of
-/// what site.toml requests all machines it is left out.
+/// Whether a controller is that of the machine's record. If it is not, an error is reported if the
+/// manifest requests it; if site.toml requests it for all machines, it is only left out.
 bool is_control_of_record(const Work& work, const std::string& controller) {
   const auto& machine = work.read.machine;
   if (!machine || machine->control.empty() || machine->control == controller) return true;
@@ -47,7 +47,7 @@ bool is_control_of_record(const Work& work, const std::string& controller) {
   return false;
 }
 
-/// How axes are written now, for a manifest that has them as texts.
+/// Adds a note that shows the present form of option `axes` to a manifest that has it as texts.
 void note_axes_as_texts(const Work& work, const Info& controller, const Settings& settled,
                         std::vector<Remark>& notes) {
   const auto& options = work.read.manifest->options;
@@ -116,7 +116,7 @@ WantedPlugins wanted_plugins(const Work& work, std::vector<Remark>& notes) {
 
 namespace {
 
-/// Where the manifest requests the output, if the error does not know better.
+/// Sets the place of an error to the line that requests the output, unless it has a better one.
 void place_at_output(const Work& work, const std::string& name, Error& error) {
   const config::Manifest& manifest = *work.read.manifest;
   const config::SiteFile& site = work.context.site;
@@ -139,7 +139,8 @@ void keep_result(const Info& output, OutputResult result, Results& results) {
   results.outputs.push_back({output.name, output.version, std::move(result)});
 }
 
-/// What the plugin gives, if that is sound; else an error of the campaign.
+/// Stores the result of a plugin; if it is an error or unsound, reports it as an error of the
+/// campaign.
 void take_result(const Work& work, const Info& plugin, const std::string& who,
                  Expected<OutputResult> result, Results& results) {
   if (result)
@@ -150,7 +151,7 @@ void take_result(const Work& work, const Info& plugin, const std::string& who,
   work.report(std::move(result.error()));
 }
 
-/// A finding in place of a table.
+/// Returns a result that contains a finding in place of a table.
 OutputResult no_table(const char* id, const Info& controller, const char* why,
                       const std::string& text) {
   OutputResult nothing;
@@ -159,11 +160,12 @@ OutputResult no_table(const char* id, const Info& controller, const char* why,
   return nothing;
 }
 
-/// What the tables take where the manifest requires them of the model and not of the readings; an
-/// error if there is no model.
+/// Readings predicted by the model, from which the tables are made if the manifest requires this;
+/// an error if there is no model.
 using ModelReadings = std::optional<Expected<std::vector<Observations>>>;
 
-/// On top of what was on while the campaign was measured: the new table takes its place.
+/// Writes a table that replaces the active compensation: the active tables are first removed from
+/// the readings and results.
 Expected<OutputResult> write_over_present(const Work& work, const WantedController& w,
                                           const ModelReadings& of_model, const Results& results) {
   const reading::ReadCampaign& read = work.read;
@@ -197,7 +199,7 @@ Expected<OutputResult> table_of(const Work& work, const WantedController& w,
   auto written = write_over_present(work, w, of_model, results);
   if (!written && !w.asked && written.error().key.empty())
     written = no_table("table.not-written", info, "why", written.error().message);
-  if (written && !w.asked)  // a control that the machine may not even have
+  if (written && !w.asked)  // the machine may not have this control
     for (Finding& f : written->findings)
       if (f.id == "table.axis-number" || f.id == "table.active-not-stated") f.attention = false;
   return written;
@@ -221,7 +223,7 @@ void write_tables(const Work& work, const std::vector<WantedController>& wanted,
 
 namespace {
 
-/// The output that is issued under a number; null if there is none, or an error.
+/// Returns the output that is issued under a number; null if there is none, or after an error.
 const WantedOutput* numbered_output(const Work& work, const std::vector<WantedOutput>& wanted) {
   const WantedOutput* numbered = nullptr;
   for (const WantedOutput& w : wanted) {
@@ -279,7 +281,8 @@ std::optional<NumberRequest> number_request(const Work& work,
 
 namespace {
 
-/// Of the one that is issued under a number, what has become of it.
+/// Stores the answer of the register for the output that is issued under a number: the certificate,
+/// or a finding that states what is missing.
 void take_number(const Work& work, NumberRequest request, const AssignedNumber* assigned,
                  const std::vector<WantedOutput>& documents, Evaluated& out) {
   if (assigned != nullptr && assigned->error) {
@@ -301,7 +304,7 @@ void take_number(const Work& work, NumberRequest request, const AssignedNumber* 
       keep_result(w.output->info, std::move(request.incomplete), out.results);
 }
 
-/// What was issued is not written again.
+/// Returns the files of a certificate as they were issued, because they are not written again.
 OutputResult as_issued(const Certificate& certificate, const std::string& output) {
   OutputResult issued;
   for (const IssuedFile& f : certificate.files)

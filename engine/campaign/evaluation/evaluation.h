@@ -10,21 +10,21 @@
 #include "campaign/evaluation/evaluate.h"
 #include "campaign/reading/campaign_reader.h"
 
-/// One campaign from its folder to its artifacts is four calls in a row, each of which takes what
-/// the one before has made:
+/// Evaluates one campaign from its folder to its output files in four steps, each of which takes
+/// the result of the previous one:
 ///
 ///   read_campaign    the files of the folder        -> observations
 ///   analyse          observations                   -> analyses, models, decisions, tables
-///   assign a number (numbering.h; optional)       -> what is issued under it, or why nothing is
-///   write_documents  all of that                    -> artifacts
+///   assign a number  (numbering.h; optional)        -> the certificate, or why there is none
+///   write_documents  all results                    -> output files
 ///
-/// The first two and the last are done by the process with the plugins, the third by the one with
-/// the register (computing.h).
+/// The process with the plugins runs steps 1, 2 and 4; the process with the register runs step 3
+/// (computing.h).
 namespace nonio::evaluation {
 
-/// A controller whose tables are to be written. Without `asked` a table that the control cannot
-/// have is a finding and does not fail the campaign: it was tried only because the control of the
-/// machine is not stated.
+/// A controller whose tables are to be written. If it was not `asked` for, it is only tried,
+/// because the machine's control is not stated: a table that the control cannot have is then a
+/// finding and does not fail the campaign.
 struct WantedController {
   const Controller* controller = nullptr;
   Settings options;
@@ -35,37 +35,39 @@ struct WantedController {
 struct WantedOutput {
   const Output* output = nullptr;
   Settings options;
-  bool history = false;  ///< it shows the machine's
+  bool history = false;  ///< it shows the history of the machine
 };
 
-/// The output that is issued under a number, and what it lacks for one.
+/// A request for a certificate number: the output that is issued, and what it lacks.
 struct NumberRequest {
   std::string output;
   std::vector<std::string> missing;  ///< keys to fill, findings to correct
-  OutputResult incomplete;           ///< what is found of its traceability
+  OutputResult incomplete;           ///< findings about its traceability
 };
 
-/// A campaign of which everything is evaluated and no document written.
+/// A campaign that is completely evaluated, before its documents are written.
 struct AnalysedCampaign {
   reading::ReadCampaign read;
-  Evaluated evaluated;                  ///< with the tables
-  std::vector<WantedOutput> documents;  ///< what follows
-  std::optional<NumberRequest> number;  ///< none: nothing is issued under one
+  Evaluated evaluated;                  ///< including the tables
+  std::vector<WantedOutput> documents;  ///< documents to write next
+  std::optional<NumberRequest> number;  ///< none: no output is issued under a number
 };
 
 AnalysedCampaign analyse(reading::ReadCampaign read, const std::string& id,
                          const reading::Context& context, const reading::Stage& stage,
                          const reading::Twins& twins);
 
-/// `assigned`: the answer to `AnalysedCampaign::number`; null where no number is drawn. `history`:
-/// of the machine up to this campaign; null where it is not known.
+/// Writes the documents of a campaign. `assigned`: the answer to `AnalysedCampaign::number`; null
+/// if no number is assigned. `history`: of the machine up to this campaign; null if it is not
+/// known.
 Evaluated write_documents(AnalysedCampaign analysed, const AssignedNumber* assigned,
                           const reading::Context& context, const reading::Stage& stage,
                           const HistorySoFar* history = nullptr);
 
-// Steps of `analyse` and `write_documents`.
+// Steps of `analyse` and `write_documents`:
 
-/// What the calls of one campaign share: where errors go, each with the line that is to blame.
+/// The state that the steps of one campaign share: its inputs, and the list to which errors are
+/// reported with the line that causes them.
 struct Work {
   const reading::Context& context;
   const reading::Stage& stage;
@@ -74,23 +76,24 @@ struct Work {
 
   const Campaign& campaign() const { return read.manifest->campaign; }
   void report(Error error) const;
-  /// With its line in the manifest or in site.toml.
+  /// Adds the line in the manifest or in site.toml to an error of a plugin.
   void locate_error(Error& error, const std::string& plugin = {}) const;
-  /// An error that a key of the manifest is to blame for.
+  /// Returns an error that names a key of the manifest and its line.
   Error error_at(std::string key, const std::string& message) const;
-  /// The options of a plugin; what is wrong with them is reported.
+  /// Returns the options of a plugin; reports errors in them.
   std::optional<Settings> settle(const Info& info) const;
-  /// What the plugin reports of itself; an error is reported, and means no.
+  /// Returns whether a plugin states that it applies. An error of the plugin is reported and means
+  /// no.
   bool asks_to_apply(const std::string& who, const std::string& where,
                      const std::function<bool()>& ask) const;
-  /// What runs if neither manifest nor site names plugins.
+  /// Whether a plugin runs if neither manifest nor site names plugins.
   bool is_chosen_by_itself(const Info& info) const;
 };
 
-/// Names of a list under `[run]`; none: all that apply.
+/// Names of plugins in a list of `[run]`; none: all plugins that apply.
 using PluginNames = std::optional<std::vector<std::string>>;
 
-/// The plugins that are requested, in that order; without names all.
+/// Returns the plugins with these names in their order; without names all that run by default.
 template <class Plugin>
 std::vector<const Plugin*> chosen_plugins(const Work& work, const std::vector<Plugin>& all,
                                           const PluginNames& names) {
@@ -111,44 +114,44 @@ bool has_plugin(const std::vector<Plugin>& all, const std::string& name) {
   return std::any_of(all.begin(), all.end(), [&](const Plugin& p) { return p.info.name == name; });
 }
 
-/// A name that no plugin of the kind has is an error.
+/// Reports each name that no plugin of this kind has.
 void report_absent(const Work& work, const char* kind, const char* key, const PluginNames& names,
                    const std::function<bool(const std::string&)>& is_there);
 
-/// Of the analyses that are requested; then of the model, if one is.
+/// Run the requested analyses, and the models if the manifest requests them.
 std::vector<Results::Analysed> run_analyses(const Work& work);
 std::vector<Results::Analysed> fit_models(const Work& work, std::vector<ModelFit>& models);
 
-/// Ids of the findings of `analyses` for which no table is written: what looks like a mistake in
-/// the files and was not accepted with a reason. An accepted finding states that.
+/// Returns the ids of the findings that prevent tables: signs of a mistake in the files that were
+/// not accepted with a reason. Adds the reason to an accepted finding.
 std::vector<std::string> open_doubts(const Work& work, std::vector<Results::Analysed>& analyses);
 
-/// Measurements that no analysis and no model has used, reported so that they are not overlooked.
+/// Returns a remark for each measurement that no analysis and no model has used.
 std::vector<Remark> unevaluated(const reading::ReadCampaign& read, const Results& results);
 
-/// Values against the tolerances of the manifest.
+/// Compares values with the tolerances of the manifest and returns the decisions.
 std::vector<Conformity> held_against_tolerances(const Campaign& campaign,
                                                 const std::vector<Results::Analysed>& analyses);
 
-/// Tolerances of measurements in another unit than the result that they name.
+/// Reports tolerances whose unit differs from that of the result that they name.
 void report_other_units(const Work& work, const std::vector<Results::Analysed>& analyses);
 
-/// The controllers and outputs that are requested and apply; notes how their options are written
-/// now. Nothing after an error.
+/// The requested controllers and outputs that apply; empty after an error. `notes` receives remarks
+/// about options in their former form.
 struct WantedPlugins {
   std::vector<WantedController> controllers;
   std::vector<WantedOutput> outputs;
 };
 WantedPlugins wanted_plugins(const Work& work, std::vector<Remark>& notes);
-/// `doubts`: as `open_doubts` gives them.
+/// Writes the tables of the controllers into `results`. `doubts`: the result of `open_doubts`.
 void write_tables(const Work& work, const std::vector<WantedController>& wanted,
                   const std::vector<std::string>& doubts, Results& results);
-/// None where nothing is issued under a number, or after an error.
+/// Returns the request for a number; none if no output is issued under one, or after an error.
 std::optional<NumberRequest> number_request(const Work& work,
                                             const std::vector<WantedOutput>& documents,
                                             const Results& results);
 
-/// What is wrong with a plugin's answer. `taken`: outputs whose files have their names already.
+/// Checks the result of a plugin. `taken`: results whose files already use their names.
 Expected<void> check_output(const OutputResult& result, const std::vector<Results::Written>& taken);
 
 }  // namespace nonio::evaluation

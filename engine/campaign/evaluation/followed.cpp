@@ -12,7 +12,8 @@ namespace nonio::evaluation {
 
 namespace {
 
-/// Another certificate is another draw of its error. Empty if it is not distinguishable.
+/// Returns a name of the instrument including its calibration, because its error changes with each
+/// calibration; empty if it has no serial number.
 std::string instrument_source(const Instrument& i) {
   if (i.serial.empty()) return {};
   std::string out = "instrument";
@@ -39,7 +40,8 @@ std::optional<double> mean_temperature(const Observations& o) {
   return n > 0.0 ? std::optional(sum / n) : std::nullopt;
 }
 
-/// What is shared goes under its source; without one it is new in each campaign.
+/// Adds a standard uncertainty under the source that campaigns share. Without a source it is
+/// regarded as new in each campaign, and its square is added to `variance`.
 void put_common(FollowedQuantity& to, double& variance, const std::string& source, double u) {
   if (u == 0.0) return;
   if (source.empty())
@@ -59,7 +61,8 @@ void put_conditions(FollowedQuantity& to, const math::AxisTest& test, const Camp
   if (!m.lateral.empty()) to.texts.emplace_back("across", m.lateral);
 }
 
-/// Of the readings of one axis, along it or across it.
+/// Returns the followed quantities of the readings of one axis, along or across it; none for other
+/// measurements.
 std::optional<FollowedGroup> of_axis(const reading::ReadCampaign& read, std::size_t index) {
   const Campaign& campaign = read.manifest->campaign;
   const Measurement& m = campaign.measurements[index];
@@ -94,7 +97,8 @@ std::optional<FollowedGroup> of_axis(const reading::ReadCampaign& read, std::siz
   return out;
 }
 
-/// Values with a budget: what the instrument has in common is in its contributions.
+/// Returns the followed values that have a budget; its contributions state what the instrument
+/// contributes.
 std::optional<FollowedGroup> of_budget(const Results::Analysed& a, const Campaign& campaign) {
   if (!a.evaluation.budget) return std::nullopt;
   const UncertaintyBudget& budget = *a.evaluation.budget;
@@ -128,7 +132,7 @@ std::optional<FollowedGroup> of_budget(const Results::Analysed& a, const Campaig
   }
   if (out.quantities.empty()) return std::nullopt;
   const std::size_t n = variances.size();
-  out.covariance.assign(n * n, 0.0);  // the correlation of these values is not known here
+  out.covariance.assign(n * n, 0.0);  // the correlation between these values is not known
   for (std::size_t i = 0; i < n; ++i) out.covariance[i * n + i] = variances[i];
   return out;
 }
@@ -139,8 +143,9 @@ std::string effects_of(const ModelFit& fit) {
   return out;
 }
 
-/// Not followed by their names: parameters of curves, whose knots differ between campaigns, and
-/// scales, which `scale` follows with what the instrument and temperatures have in them.
+/// Whether a parameter of a model is followed. Parameters of curves are not, because their knots
+/// differ between campaigns. Scales are not, because `scale` follows them with the parts of
+/// instrument and temperature.
 bool is_followed(const ModelFit& fit, const ModelFit::Parameter& p) {
   const auto effect = std::find_if(fit.effects.begin(), fit.effects.end(),
                                    [&](const ModelFit::Effect& e) { return e.name == p.effect; });
@@ -148,7 +153,7 @@ bool is_followed(const ModelFit& fit, const ModelFit::Parameter& p) {
          (effect == fit.effects.end() || !effect->curve);
 }
 
-/// Linear parameters of a model, with their covariance.
+/// Returns the linear parameters of a model, with their covariance.
 std::optional<FollowedGroup> of_model(const ModelFit& fit, const Campaign& campaign) {
   FollowedGroup out;
   std::vector<std::size_t> kept;
@@ -201,8 +206,8 @@ void put_quantity(JsonWriter& json, const FollowedQuantity& q) {
   json.end_object();
 }
 
-/// Upper triangle, row by row, in the units of the quantities. Nothing where a correlation is no
-/// more than what rounding leaves.
+/// Writes the upper triangle of the covariance row by row, in the units of the quantities. A
+/// correlation that is only a rounding error is written as 0.
 void put_covariance(JsonWriter& json, const FollowedGroup& group, std::size_t first) {
   const std::size_t n = group.quantities.size();
   json.begin_object();

@@ -13,40 +13,41 @@
 
 namespace nonio::evaluation {
 
-/// One quantity of a campaign that is followed over the campaigns of its machine
+/// A quantity of a campaign that is compared between the campaigns of its machine
 /// (nonio/math/followed.h).
 struct FollowedQuantity {
-  /// Standard uncertainty, signed, that other campaigns with the same source have with it.
+  /// Signed standard uncertainty that campaigns with the same source have in common.
   struct Common {
     std::string source;
     double u = 0.0;
   };
-  std::string measurement;  ///< empty: of the campaign
-  std::string axis;         ///< of the control; X1 and X2 of a gantry are two
+  std::string measurement;  ///< empty: the whole campaign
+  std::string axis;         ///< name in the control; X1 and X2 of a gantry are two axes
   std::string name;
   double value = 0.0;
   Quantity quantity = Quantity::deviation;
-  double u = 0.0;  ///< standard uncertainty of what is new in each campaign
+  double u = 0.0;  ///< standard uncertainty of the part that is new in each campaign
   std::vector<Common> common{};
   std::string state{};  ///< as-found, as-left
-  /// What campaigns must have alike to be compared; numbers in printed units.
+  /// Conditions that must be equal for campaigns to be comparable; numbers in printed units.
   std::vector<std::pair<std::string, double>> numbers{};
   std::vector<std::pair<std::string, std::string>> texts{};
-  std::vector<std::string> not_stated{};  ///< keys: `u` lacks what they would give
+  /// keys whose uncertainty `u` does not contain, because they are not stated
+  std::vector<std::string> not_stated{};
 };
 
 /// Quantities that were estimated together, and the covariance of their u, row by row; SI.
 struct FollowedGroup {
   std::vector<FollowedQuantity> quantities;
   std::vector<double> covariance;
-  /// Of quantities that are functions of values at targets.
+  /// Only for quantities that are functions of values at targets.
   std::optional<ComparedTargets> targets{};
 };
 
-/// Of everything that was evaluated. Nothing of measurements without an uncertainty.
+/// Returns the followed quantities of all results, without measurements that have no uncertainty.
 std::vector<FollowedGroup> followed_of(const reading::ReadCampaign& read, const Results& results);
 
-/// Members `followed` and `followed_covariance` of results.json.
+/// Writes the members `followed` and `followed_covariance` of results.json.
 void put_followed(JsonWriter& json, const std::vector<FollowedGroup>& groups);
 
 }  // namespace nonio::evaluation

@@ -67,7 +67,8 @@ const storage::Json& list_in(const storage::Json& object, const char* key) {
 }
 
 FileChange change_in(const storage::Json& json) {
-  if (json.is_string()) return {json.get<std::string>()};  // as before version 2 of the register
+  // written before version 2 of the register
+  if (json.is_string()) return {json.get<std::string>()};
   FileChange file{text_in(json, "file")};
   for (const storage::Json& place : list_in(json, "places")) {
     if (!place.is_object()) continue;

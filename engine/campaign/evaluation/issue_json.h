@@ -7,9 +7,10 @@
 
 namespace nonio::evaluation {
 
-/// The key `certificate` of results.json: all that a certificate prints in addition to the results.
+/// Writes the key `certificate` of results.json: what a certificate prints in addition to the
+/// results.
 void put_certificate(JsonWriter& json, const Certificate& certificate);
-/// Its content; what is missing stays empty.
+/// Reads the key `certificate`; missing members stay empty.
 Certificate certificate_of(const storage::Json& json);
 
 }  // namespace nonio::evaluation

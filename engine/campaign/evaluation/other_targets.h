@@ -14,17 +14,17 @@ struct OtherTargets;
 
 namespace nonio::evaluation {
 
-/// What the history needs to compare a campaign with others that have other targets.
-/// (nonio/math/followed.h)
+/// Data for comparing a campaign with campaigns that have other targets (nonio/math/followed.h).
 struct ComparedTargets {
   struct Fit {
     double beyond = 0.0, dof = 0.0;
     std::vector<double> coefficients{}, covariance{}, share{};
-    std::vector<double> sinusoids{};  ///< three of each: value, variance, share
+    std::vector<double> sinusoids{};  ///< value, variance and share of each
     std::vector<double> residuals{};  ///< by target
   };
 
-  std::uint64_t digest = 0;  ///< of the targets, to 1 um or 0.001 deg: the same targets, the same
+  /// digest of the targets to 1 um or 0.001 deg: equal for equal targets
+  std::uint64_t digest = 0;
   double from = 0.0, to = 0.0;
   bool rotary = false;
   std::vector<double> of_readings{}, share{};
@@ -33,7 +33,7 @@ struct ComparedTargets {
 
 ComparedTargets compared_targets(const nonio::math::AxisTest&, const nonio::math::OtherTargets&);
 
-/// Member `other_targets`. variances: of the quantities' u, SI.
+/// Writes the member `other_targets`. variances: squares of u of the quantities, SI units.
 void put_other_targets(JsonWriter& json, const ComparedTargets&,
                        const std::vector<Quantity>& quantities,
                        const std::vector<double>& variances);

@@ -13,7 +13,7 @@
 
 namespace nonio::evaluation {
 
-/// The parts of a finding by which the next run recognises it.
+/// The parts of a finding by which the next run recognizes it.
 struct KnownFinding {
   std::string measurement, id, title;
   bool attention = false;
@@ -34,32 +34,34 @@ struct RecordedFile {
 /// A run, by its number and the date it was given.
 struct RunLabel {
   std::uint64_t number = 0;
-  std::string date;  ///< YYYY-MM-DD; empty: of a version that did not note it
+  std::string date;  ///< YYYY-MM-DD; empty if an older version wrote it
 };
 
-/// Since when what the history keeps of a campaign (laboratory/store/entry.h) is as it is.
+/// The run since which the history's data of a campaign have not changed
+/// (laboratory/store/entry.h).
 struct IndexedSince {
   RunLabel run{};
-  std::string version;  ///< that evaluated it so first
-  std::string sha256;   ///< of what is kept
+  std::string version;  ///< version that first evaluated it so
+  std::string sha256;   ///< digest of the data
 };
 
-/// `run.json`, stored with the results of a campaign: from what they were made, when (in which run)
-/// and why. It holds no time, so that equal runs leave equal bytes.
+/// `run.json`, stored with the results of a campaign: from what, in which run and why they were
+/// made. It contains no time, so that equal runs write equal bytes.
 struct Record {
-  std::string folder;  ///< of the campaign, relative to the site
+  std::string folder;  ///< folder of the campaign, relative to the site
   std::uint64_t run = 0;
-  std::string date;  ///< of that run
+  std::string date;  ///< date of that run
   std::string reason;
   Status status = Status::none;
-  bool retry = false;  ///< it failed for a reason that does not lie in its content
-  std::optional<RunLabel> failed_since{};  ///< the first of the runs in which it failed
+  bool retry = false;  ///< it failed for a reason that is not part of its content
+  std::optional<RunLabel> failed_since{};  ///< first run of those in which it failed
   reading::Inputs inputs;
-  std::optional<IndexedSince> indexed{};  ///< none: it failed for a reason that may pass
+  std::optional<IndexedSince> indexed{};  ///< none: it failed for a temporary reason
   std::string certificate;                ///< its number; empty: none
-  bool draft = false;                     ///< of a certificate that waits for its release
+  bool draft = false;                     ///< the certificate is a draft that waits for approval
   std::vector<RecordedFile> files;
-  std::optional<ShownHistory> history{};  ///< that a document shows; none: no document requests it
+  /// history that a document shows; none: no document shows it
+  std::optional<ShownHistory> history{};
   std::vector<Error> errors;
   std::string language{};                        ///< of the site, for `nonio show`; empty: English
   std::vector<KnownFinding> findings, previous;  ///< previous: of the last run before this one
@@ -67,28 +69,30 @@ struct Record {
 
 inline constexpr const char* record_name = "run.json";
 inline constexpr const char* results_name = "results.json";
-/// The old record while new results take the place of its files.
+/// Name of the old record while new results replace its files.
 inline constexpr const char* record_before_name = ".run.json.before";
-/// The folder, in that of a campaign which failed for a reason that may pass, with its last
-/// results.
+/// Name of the folder with the last results of a campaign that failed for a temporary reason; it is
+/// inside the campaign's folder of results.
 inline constexpr const char* last_good_name = "last-good";
 
 std::string to_json(const Record& record);
-/// An error if the file is not a record; no distinction why, since it is then simply made anew.
+/// Reads a record. The error does not state why a file is not a record, because the campaign is
+/// then simply evaluated again.
 Expected<Record> read_record(const std::filesystem::path& campaign_output);
 
-/// The record of the last results: `run.json`, or, where storing others was cut short, the one that
-/// was put aside for it (then `whole` is false: its files need not be there any more).
+/// The record of the last results: `run.json`, or, if storing new results was interrupted, the old
+/// record that was kept (then `whole` is false, and its files may be missing).
 struct LastRecord {
   Record record;
   bool whole = true;
 };
-/// None if there is none, or none that this version reads; an error if the disk does not give it.
+/// Reads the last record; none if there is none that this version can read. An error if the disk
+/// cannot be read.
 Expected<std::optional<LastRecord>> last_record(const std::filesystem::path& campaign_output);
-/// Of results that are written under temporary names.
+/// Reads the record of results that still have temporary names.
 Expected<std::optional<Record>> staged_record(const std::filesystem::path& campaign_output);
 
-/// The findings of all analyses and outputs, each once, with their English titles.
+/// Returns the findings of all analyses and outputs, each once, with their English titles.
 std::vector<KnownFinding> known_findings(const Results& results, const Templates& templates,
                                          const std::string& language = "en");
 

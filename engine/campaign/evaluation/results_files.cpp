@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* earlier_name = "earlier.json";
 
-/// Of one record, which comes last; nothing if there is none.
+/// Adds the files that the record in a folder names, and the record last; nothing if there is none.
 Expected<void> add_files(const fs::path& folder, const std::string& before,
                          std::vector<RecordedFile>& all) {
   const fs::path path = folder / record_name;
@@ -63,7 +63,8 @@ Expected<std::string> read_result(const fs::path& folder, const RecordedFile& fi
 
 namespace {
 
-/// What is damaged is missing then, so that the campaign is evaluated anew; but earlier.json is the only copy.
+/// Reads the files to copy. A damaged file is left out, so that the campaign is evaluated again; a
+/// damaged earlier.json is an error, because it is the only copy.
 Expected<std::vector<Artifact>> files_to_copy(const fs::path& folder) {
   std::vector<Artifact> files;
   NONIO_TRY(const auto last, last_record(folder));

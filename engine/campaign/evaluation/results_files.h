@@ -7,21 +7,22 @@
 
 #include "campaign/evaluation/record.h"
 
-/// The files of a campaign's results, wherever they lie (platform/storage/packed_results.h).
+/// The files of a campaign's results, in a folder or in a pack (platform/storage/packed_results.h).
 namespace nonio::evaluation {
 
-/// All that its record names and the record itself, the last one; before them those of `last-good`,
-/// as "last-good/report.pdf". Empty if there is no record. An error if a name would lead out of the
+/// Returns the files that the record names, with the record last; before them those of `last-good`,
+/// as "last-good/report.pdf". Empty if there is no record. An error if a name leads out of the
 /// folder, or if a pack has files of the campaign that its record does not name.
 Expected<std::vector<RecordedFile>> results_files(const std::filesystem::path& folder);
-/// Reads a file with the digest of its record. An error names the file.
+/// Reads a file and compares it with the digest in its record. An error names the file.
 Expected<std::string> read_result(const std::filesystem::path& folder, const RecordedFile& file);
 
-/// Where the results of a campaign lie in a pack: writes them into its own folder, the record last, after which that
-/// counts. A file that is damaged is left out, unless it is the only copy of something.
+/// Writes the results of a campaign in a pack into the campaign's own folder, with the record last;
+/// from then on the folder is used. A damaged file is left out; a damaged file that is the only
+/// copy of its data is an error.
 Expected<void> take_in(const std::filesystem::path& out, const std::string& id);
-/// The same, from one output folder to another that knows nothing of the campaign: what is there of its results, and
-/// of those on their way into their place. Nothing where there are none.
+/// Copies the results of a campaign, including those that are being stored, to the folder `to` of
+/// another output folder that has no results of the campaign. Does nothing if there are none.
 Expected<void> copy_results(const std::filesystem::path& folder, const std::filesystem::path& to);
 
 }  // namespace nonio::evaluation

@@ -9,10 +9,10 @@
 
 namespace nonio::evaluation {
 
-/// results.json (schema nonio-results/1); `files` are the artifacts of all outputs in their order.
+/// Returns results.json (schema nonio-results/1). `files`: the output files in their order.
 std::string results_json(const Evaluated& evaluated, const reading::Context& context,
                          const std::vector<RecordedFile>& files);
-/// The same, of artifacts that were not stored.
+/// Returns results.json (schema nonio-results/1) for output files that were not stored.
 std::string results_json(const Evaluated& evaluated, const reading::Context& context);
 
 const char* to_text(Decision decision);

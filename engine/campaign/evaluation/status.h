@@ -6,12 +6,13 @@
 
 namespace nonio::evaluation {
 
-/// What came of a campaign. `none`: not evaluated yet.
+/// Outcome of a campaign; `none`: it was not evaluated yet.
 enum class Status : char { none, ok, attention, failed };
 
-/// "ok", "attention", "failed"; "" of `none`. JSON, the summary and the terminal have these words.
+/// Returns "ok", "attention" or "failed", the words in JSON, the summary and the terminal; "" for
+/// `none`.
 const char* to_text(Status status);
-/// None if no evaluated campaign has this word.
+/// Returns the status with this word; none if there is none.
 std::optional<Status> status_named(std::string_view word);
 
 }  // namespace nonio::evaluation

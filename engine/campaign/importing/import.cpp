@@ -20,13 +20,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// 20240302 as 2024-03-02.
+/// Converts a date such as 20240302 to 2024-03-02; other text stays unchanged.
 std::string iso_date(const std::string& date) {
   if (date.size() != 8) return date;
   return date.substr(0, 4) + "-" + date.substr(4, 2) + "-" + date.substr(6);
 }
 
-/// The places of a name put into a text; nothing if it requires one that the name does not have.
+/// Replaces each {place} in a text by its value from the name; none if the name lacks one.
 std::optional<std::string> filled_in(const std::string& text, const Places& places) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -44,8 +44,8 @@ std::optional<std::string> filled_in(const std::string& text, const Places& plac
   return out;
 }
 
-/// Without `campaign` in the rule: all places but those of one measurement, as in
-/// 2024-03-02-fp12; ids are of small letters.
+/// Returns the id of the campaign to which a file belongs. Without `campaign` in the rule it
+/// consists of all places except axis and id, as in 2024-03-02-fp12. Capital letters become small.
 std::string campaign_of(const ImportRule& rule, const Places& places) {
   std::string id;
   if (!rule.campaign.empty()) {
@@ -63,7 +63,8 @@ std::string campaign_of(const ImportRule& rule, const Places& places) {
   return id;
 }
 
-/// The same readings in other bytes (line ends, a comment) are the same readings.
+/// Returns a digest of the readings, which is the same for equal readings in different bytes (line
+/// ends, a comment).
 std::string digest_of(const Observations& o) {
   std::string bytes;
   const auto put = [&](const auto& column) {
@@ -100,7 +101,7 @@ class Importer {
   }
 
  private:
-  /// Every file of the folder in the order of their names; links are not followed.
+  /// Returns every file of the folder, sorted by name; links are not followed.
   Expected<std::vector<std::string>> files() const {
     std::error_code error;
     const fs::path root = fs::canonical(request_.folder, error);
@@ -184,8 +185,8 @@ class Importer {
     return {};
   }
 
-  /// Whether a folder has all these files, and its manifest a measurement of each: imported before,
-  /// and perhaps filled in since.
+  /// Whether a folder contains all these files, and its manifest a measurement for each: then it
+  /// was imported before, and its manifest may have been completed since.
   static bool is_there(const fs::path& folder, const ImportedCampaign& campaign,
                        const std::vector<Found>& found) {
     std::error_code error;
@@ -251,7 +252,7 @@ class Importer {
                              (request_.rule.axes.empty() ? "" : ", as the rule states"));
   }
 
-  /// campaign.toml; what is still to be filled is a comment at the beginning and in its place.
+  /// Returns campaign.toml. What is still missing is a comment at the beginning and in its place.
   std::string manifest_of(const ImportedCampaign& campaign, const Places& places) const {
     toml::table root;
     if (auto extra = config::parse_toml(request_.rule.manifest, "rule"); extra)
@@ -279,8 +280,8 @@ class Importer {
     }
     return out.str();
   }
-  /// What the request states about the machine; else the rule's manifest, else the name of the
-  /// file.
+  /// Sets the keys of the machine from the request, otherwise from the rule's manifest, otherwise
+  /// from the name of the file.
   void put_machine(toml::table& machine, const Places& places) const {
     for (const auto& [key, place, said] :
          {std::tuple("asset", "asset", &request_.asset),
@@ -301,8 +302,8 @@ class Importer {
     return text;
   }
 
-  /// Reads every file as a run would. The files are read also if names or ids are given
-  /// twice.
+  /// Reads every file as a run would, also if names or ids are given twice, and notes what is
+  /// missing or wrong.
   void check(ImportedCampaign& campaign, const std::vector<Found>& found) {
     if (const auto manifest = manifest_to_read(campaign, found.front().places)) {
       const Machine& machine = manifest->campaign.machine;
@@ -317,7 +318,7 @@ class Importer {
         if (digest.empty()) continue;
         const auto [same, fresh] = first.try_emplace(digest, file.file);
         if (fresh) continue;
-        // Name and id are perhaps those of the other file too; one sentence is enough.
+        // the name and id may also equal those of the other file; one sentence is enough
         file.same_as = same->second;
         file.lacks = {"the same readings as " + file.same_as +
                       "; exclude one of them, in the rule: exclude = [\"" + file.file + "\"]"};
@@ -336,7 +337,7 @@ class Importer {
     return !file.axis.empty() || request_.rule.kind == "observations";
   }
 
-  /// All files that can be read, under names and ids of their own.
+  /// Returns a manifest with all files that can be read, under provisional names and ids.
   config::Checked<config::Manifest> manifest_to_read(const ImportedCampaign& campaign,
                                                      const Places& places) const {
     ImportedCampaign all;
@@ -352,7 +353,7 @@ class Importer {
                                   plugins_.methods());
   }
 
-  /// Digest of the readings of a file; empty if there are none or they cannot be read.
+  /// Reads a file and returns the digest of its readings; empty if it has none or cannot be read.
   std::string look_into(const config::Manifest& manifest, Measurement m, ImportedFile& file,
                         const Found& found) const {
     m.id = file.measurement;
@@ -391,7 +392,7 @@ class Importer {
         *reader, {bytes, manifest.campaign, m, *options, {}, plugins_.method(m.kind)});
   }
 
-  /// Of site.toml, if the site exists already.
+  /// Returns the options in site.toml if the site already exists.
   config::RawOptions site_options() const {
     const auto text = storage::read_file(request_.out / "site.toml");
     if (!text) return {};

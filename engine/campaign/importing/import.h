@@ -13,28 +13,29 @@
 
 namespace nonio::importing {
 
-/// How the names of files encode what was measured.
+/// The rule by which the names of files state what was measured.
 struct ImportRule {
   std::string pattern;               ///< "{machine}_{axis}_{date}.rtl"
   std::string campaign;              ///< id of the campaign, with places; empty: see campaign_of
   std::string kind = "axis";         ///< of every measurement
   std::string reader;                ///< empty: by content
-  std::vector<std::string> exclude;  ///< files are passed over whose path holds one of these
+  std::vector<std::string> exclude;  ///< a file is skipped if its path contains one of these
   std::string axis;                  ///< of every file; empty: the text at {axis}
-  /// Texts accepted at {axis}, and the axis of the machine that each means; empty: see `fits`.
+  /// Texts accepted at {axis}, and the axis of the machine that each stands for; empty: names of
+  /// axes.
   std::map<std::string, std::string, std::less<>> axes;
   std::string manifest;  ///< TOML: further content of every campaign.toml
 };
 
 using Places = std::map<std::string, std::string, std::less<>>;
 
-/// A pattern alone, or a TOML file with `pattern`, `campaign`, `kind`, `reader`, `exclude`, `axis`
-/// and the tables [axes] and [manifest].
+/// Read a rule: a pattern alone, or a TOML file with `pattern`, `campaign`, `kind`, `reader`,
+/// `exclude`, `axis` and the tables [axes] and [manifest].
 config::Checked<ImportRule> import_rule_of_pattern(const std::string& pattern);
 config::Checked<ImportRule> parse_import_rule(std::string_view text, const std::string& file);
 
-/// Every way to read the path by the pattern, two at most; a pattern without "/" is for the file's
-/// name alone.
+/// Returns the ways in which the pattern matches a path, at most two. A pattern without "/" applies
+/// to the name of the file only.
 std::vector<Places> readings_of_name(const ImportRule& rule, const std::string& path);
 
 struct ImportedFile {
@@ -42,8 +43,8 @@ struct ImportedFile {
   std::string name;  ///< in the campaign
   std::string measurement, axis, reader;
   std::uint64_t readings = 0, missing = 0;
-  std::vector<std::string> lacks;  ///< what has to be stated or corrected before it can be read
-  std::string same_as;             ///< the file that has the same readings
+  std::vector<std::string> lacks;  ///< what must be stated or corrected first
+  std::string same_as;             ///< a file with the same readings
   std::vector<std::string>
       assumed;  ///< what was derived from the name or the rule, not stated literally
 };
@@ -75,8 +76,8 @@ struct ImportRequest {
   bool dry_run = false;
 };
 
-/// Makes campaigns from a folder of files. A campaign's folder is new and appears whole; nothing
-/// that is there is touched. Where all of it exists already, there is nothing to do.
+/// Makes campaigns from a folder of files. Each campaign's folder is new and appears completely;
+/// existing files are not changed, and a campaign that was imported completely is skipped.
 Expected<ImportReport> import_folder(const ImportRequest& request, const loader::Plugins& plugins);
 
 }  // namespace nonio::importing

@@ -9,7 +9,7 @@ namespace nonio::importing {
 
 namespace {
 
-/// A pattern taken apart: text and places in turn.
+/// A part of a pattern: a text, or the name of a place in braces.
 struct Token {
   std::string text;
   bool place = false;
@@ -34,8 +34,8 @@ Expected<std::vector<Token>> tokens_of(const std::string& pattern) {
       return fail(
           "pattern: expected {name} of small letters, or {*} for what does not count, found \"" +
           pattern.substr(i) + "\"");
-    // An axis and a date end where they are no axis and no date any more; what can be read in two
-    // ways all the same is not imported.
+    // The end of an axis or date can be recognized by its form. A name that still has two readings
+    // is not imported.
     const auto bounded = [](const std::string& place) {
       return place == "axis" || place == "date";
     };
@@ -55,8 +55,8 @@ bool all_of_digits(std::string_view text) {
          std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// An axis of a machine: capital letters and digits, or a small letter of ISO 841 and digits (x,
-/// u2), which means the capital one.
+/// Whether a text names an axis of a machine: capital letters and digits, or a small letter of ISO
+/// 841 and digits (x, u2), which means the capital one.
 bool is_axis(std::string_view text) {
   if (text.empty() || text.size() > 8) return false;
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
@@ -67,8 +67,8 @@ bool is_axis(std::string_view text) {
          });
 }
 
-/// Whether a place can hold this text. A date has its year first, as all other orders can be taken
-/// for one another. What does not count may be nothing.
+/// Whether a place can contain this text. A date must begin with the year, because all other orders
+/// are ambiguous. {*} may be empty.
 bool fits(const ImportRule& rule, const std::string& place, std::string_view text) {
   if (text.find('/') != text.npos) return false;
   if (place == "*") return true;
@@ -88,12 +88,14 @@ class Matcher {
       : rule_(rule), tokens_(tokens), text_(text) {}
   std::vector<Places> match() {
     from(0, 0);
-    if (steps_ > most_steps) found_.resize(2);  // not looked at to the end, so not known to be one
+    // too many steps: the result is treated as ambiguous
+    if (steps_ > most_steps) found_.resize(2);
     return std::move(found_);
   }
 
  private:
-  /// Counts only readings that differ in a place that counts.
+  /// Matches the tokens from `token` on with the text from `at` on. Matches that differ only in {*}
+  /// are the same.
   void from(std::size_t token, std::size_t at) {
     if (found_.size() > 1 || ++steps_ > most_steps) return;
     if (token == tokens_.size()) {
@@ -110,7 +112,7 @@ class Matcher {
       const std::string_view part = text_.substr(at, length);
       if (part.ends_with('/')) return;
       if (!fits(rule_, t.text, part)) continue;
-      // A place that is given twice has the same text both times.
+      // A place that is given twice must have the same text both times.
       const auto known = now_.find(t.text);
       if (known != now_.end() && known->second != part) continue;
       const bool names = t.text != "*" && known == now_.end();
@@ -164,7 +166,7 @@ constexpr config::Key rule_keys[] = {
 constexpr config::Key rule_file{"rule", config::declared::file<ImportRule>, "Rule of an import.",
                                 rule_keys};
 
-/// The axes that a rule states are axes, and stated in one place.
+/// Checks that the axes in a rule are valid names and are stated in one place only.
 void check_axes(const ImportRule& rule, config::TableReader& reader) {
   const auto axis = [](const std::string& name) {
     return is_axis(name) && name[0] >= 'A' && name[0] <= 'Z';

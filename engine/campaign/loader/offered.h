@@ -12,7 +12,7 @@
 
 namespace nonio::loader {
 
-/// What a file registers: it is taken whole or not at all.
+/// Collects the plugins that a file registers; they are accepted all together or not at all.
 class Offered final : public Registry {
  public:
   void add(Method method) override {
@@ -26,7 +26,7 @@ class Offered final : public Registry {
   void add(Output output) override { take("output", std::move(output)); }
   void add(Controller c) override { take("controller", std::move(c)); }
 
-  /// What is wrong with the first of them that cannot be used; empty: nothing.
+  /// Returns what is wrong with the first plugin that cannot be used; empty if nothing.
   const std::string& incomplete() const { return incomplete_; }
   void give_to(Registry& registry) {
     for (auto& one : all_) std::visit([&](auto& plugin) { registry.add(std::move(plugin)); }, one);

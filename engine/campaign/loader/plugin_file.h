@@ -7,7 +7,8 @@
 
 namespace nonio::loader {
 
-/// The entry of a library that may be called, or why not. The library is never unloaded.
+/// Loads a library and returns its entry; an error if it is not a plugin for this program. The
+/// library is never unloaded.
 Expected<const PluginEntry*> open_entry(const std::filesystem::path& path);
 
 }  // namespace nonio::loader

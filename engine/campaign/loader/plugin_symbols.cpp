@@ -12,7 +12,7 @@ namespace nonio::loader {
 
 namespace {
 
-/// A table of the file; nothing where it would reach over the end.
+/// Reads a table of the file; empty if it would exceed the end of the file.
 template <class Entry>
 std::vector<Entry> entries(std::string_view bytes, std::uint64_t at, std::uint64_t n) {
   if (at > bytes.size() || n > (bytes.size() - at) / sizeof(Entry)) return {};
@@ -34,8 +34,8 @@ std::string text_at(std::string_view bytes, std::uint64_t at) {
 
 }  // namespace
 
-// Not boost::dll::library_info: it reads the table of names that `strip` removes, and does not
-// distinguish weak symbols from others.
+// Replaces boost::dll::library_info, which reads the table of names that `strip` removes, and does
+// not distinguish weak symbols.
 Expected<std::vector<std::string>> exported_symbols(const std::filesystem::path& library) {
   NONIO_TRY(const auto file, storage::MappedFile::open(library));
   const std::string_view bytes = file.bytes();

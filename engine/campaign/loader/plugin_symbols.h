@@ -9,8 +9,8 @@
 
 namespace nonio::loader {
 
-/// What an ELF library exports, without what every compiler leaves in it: weak copies of the
-/// standard library's templates.
+/// Returns the symbols that an ELF library exports, without weak copies of templates of the
+/// standard library, which every compiler adds.
 Expected<std::vector<std::string>> exported_symbols(const std::filesystem::path& library);
 
 }  // namespace nonio::loader

@@ -28,7 +28,7 @@ namespace {
 constexpr double probe_seconds = 10.0;
 constexpr const char* out_of_memory = "could not be loaded: out of memory";
 
-/// The libraries of all plugins, for the life of the process: never unloaded.
+/// Returns the libraries of all plugins, which are never unloaded while the process runs.
 std::vector<dll::shared_library>& libraries() {
   static auto* kept = new std::vector<dll::shared_library>;
   return *kept;
@@ -54,7 +54,8 @@ Expected<const PluginEntry*> open_entry(const fs::path& path) {
 
 namespace {
 
-/// Why this one must be refused; empty if it registers as it should.
+/// Loads and registers a file as a trial. Returns why it must be refused; empty if it registers
+/// correctly.
 std::string try_registering(const fs::path& path) {
   struct Nobody final : Registry {
     void add(Method) override {}
@@ -79,13 +80,13 @@ std::string try_registering(const fs::path& path) {
 }
 
 struct Probed {
-  std::vector<std::string> refusals;  ///< as far as the child came
+  std::vector<std::string> refusals;  ///< for the files before the child ended
   process::ChildEnd end;
 };
 
-/// Loads and registers in a child, one after the other.
+/// Tries the files one after another in one child process.
 Probed probe_in_child(std::span<const fs::path> paths) {
-  std::vector<process::SharedStatus> said(paths.size());  // empty until that one is through
+  std::vector<process::SharedStatus> said(paths.size());  // empty until that file was tried
   for (const process::SharedStatus& words : said)
     if (!words.valid()) return {{}, {false, "no memory"}};
   auto child = process::Child::start("the plugins", {}, [&] {
@@ -104,22 +105,23 @@ Probed probe_in_child(std::span<const fs::path> paths) {
   return probed;
 }
 
-/// SIGKILL comes from outside (a person, the system without memory), so it shows nothing about the
-/// plugin.
+/// Whether the child was killed by SIGKILL. It is sent from outside (by a person, or by a system
+/// without memory), so it shows nothing about the plugin.
 bool is_killed(const Probed& p) {
   return p.refusals.empty() && !p.end.well && !p.end.overdue &&
          p.end.words.starts_with("signal 9 ");
 }
 
-/// Why each must be refused. All together, since a child takes longer than a plugin; one that the
-/// child did not survive is tried again alone, so that none pays for those before it.
+/// Returns for each file why it must be refused; empty if it is accepted. All files are tried in
+/// one child, because a child takes longer to start than a plugin. A file with which the child
+/// ended is tried again alone, so that it is not blamed for the files before it.
 std::vector<std::string> probe(std::span<const fs::path> paths) {
   std::vector<std::string> refusals;
   while (refusals.size() < paths.size()) {
     Probed together = probe_in_child(paths.subspan(refusals.size()));
     for (std::string& r : together.refusals) refusals.push_back(std::move(r));
     if (refusals.size() == paths.size()) break;
-    if (together.end.overdue) {  // its limit is spent
+    if (together.end.overdue) {  // the time limit is used up
       refusals.push_back("did not survive loading: " + together.end.words);
       continue;
     }
@@ -182,7 +184,7 @@ std::vector<fs::path> Plugins::files_in(const std::vector<fs::path>& folders) {
     std::vector<fs::path> here;
     std::error_code error;
     const fs::path real = fs::canonical(folder, error);
-    error.clear();  // whoever lists a missing folder reports that
+    error.clear();  // the caller that lists a missing folder reports it
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
       if (it->path().extension() == ".so" && it->is_regular_file()) {
         const bool resolved = !real.empty() && !it->is_symlink(error);
@@ -226,7 +228,8 @@ void Plugins::load_file(const fs::path& path, const std::string& refusal) {
   const process::Muted muted;
   try {
     auto entry = open_entry(path);
-    if (!entry) entry = open_entry(path);  // a temporary failure would change the results of a run
+    // a temporary failure must not change the results of a run
+    if (!entry) entry = open_entry(path);
     Offered offered;
     if (entry) (*entry)->add_to(offered);
     file.refused = entry ? offered.incomplete() : entry.error().message;
@@ -261,8 +264,8 @@ Expected<std::string> Plugins::digest() const {
 
 namespace {
 
-/// The kind whose plugins a site names in the same list, `[run] outputs`: so no name is twice
-/// there.
+/// Returns the other kind of plugins that `[run] outputs` may name, because names must be unique in
+/// this list; other kinds are returned unchanged.
 std::string_view named_with(std::string_view kind) {
   return kind == "output" ? "controller" : kind == "controller" ? "output" : kind;
 }
@@ -271,7 +274,8 @@ std::string_view named_with(std::string_view kind) {
 
 bool Plugins::accept(std::string_view kind, const Info& info) {
   const std::string name = std::string(kind) + " " + info.name;
-  const fs::path path = files_.empty() ? fs::path() : files_.back().path;  // none: added by hand
+  // none: added without a file
+  const fs::path path = files_.empty() ? fs::path() : files_.back().path;
   const std::string other = std::string(named_with(kind)) + " " + info.name;
   for (const auto& [known, where] : names_)
     if (known == name || known == other) {
@@ -311,8 +315,8 @@ const Method* Plugins::method(std::string_view kind) const {
 
 namespace {
 
-/// Whether a file that was refused may have this plugin: by its name, or that of the kind, as
-/// Nonio's own libraries are called.
+/// Whether a refused file may contain this plugin: its name contains that of the plugin, or it is
+/// named after the kind, as Nonio's own libraries are.
 bool may_contain(const fs::path& file, std::string_view kind, std::string_view name) {
   const std::string stem = file.stem().string();
   const std::string all = kind == "analysis" ? "analyses" : std::string(kind) + "s";

@@ -10,14 +10,14 @@
 
 namespace nonio::loader {
 
-/// One file in a plugin folder: what it brought, or why it was refused.
+/// A file in a plugin folder: the plugins that it registered, or why it was refused.
 struct PluginFile {
   std::filesystem::path path;
   std::string refused;               ///< empty: loaded
   std::vector<std::string> brought;  ///< "analysis iso230-2 1.0.0", ...
 };
 
-/// The declarations of plugins, as data: how a process knows them that has none of their code.
+/// The declarations of all plugins as data, for a process that has none of their code.
 struct Catalogue {
   std::vector<PluginFile> files;
   std::vector<std::string> conflicts;
@@ -29,39 +29,39 @@ struct Catalogue {
 class Plugins final : public Registry {
  public:
   Plugins() = default;
-  /// Their descriptions; nothing of them can be called.
+  /// Makes an object with the declarations only; none of the plugins can be called.
   explicit Plugins(Catalogue catalogue);
   Catalogue catalogue() const;
 
-  /// The shared libraries of the folders, in their order; a folder that cannot be read is a
-  /// conflict.
+  /// Returns the shared libraries in the folders, in their order. A folder that cannot be read is
+  /// recorded as a conflict.
   std::vector<std::filesystem::path> files_in(const std::vector<std::filesystem::path>& folders);
-  /// Loads and registers one; if `refusal` is not empty, only that is recorded. To be called in a
-  /// process that may come to harm.
+  /// Loads and registers a file, or only records `refusal` if it is not empty. Call it in a process
+  /// that a plugin may crash.
   void load_file(const std::filesystem::path& path, const std::string& refusal);
 
-  /// Loads every shared library of the folders, in their order. They are first loaded and
-  /// registered in a child process, so that one which crashes or hangs there is refused instead of
-  /// loaded; the ABI tag is compared before anything in it is called.
+  /// Loads every shared library of the folders, in their order. Each is first tried in a child
+  /// process: a file that crashes or hangs there is refused. The ABI tag is compared before any of
+  /// its functions is called.
   void load(const std::vector<std::filesystem::path>& folders);
 
   const std::vector<PluginFile>& files() const { return files_; }
-  /// Two plugins of one kind with the same name, each with both paths; outputs and controllers are
-  /// one kind in this.
+  /// Messages about two plugins of one kind with the same name, with both paths. Outputs and
+  /// controllers are regarded as one kind.
   const std::vector<std::string>& conflicts() const { return conflicts_; }
-  /// Whether every plugin that was loaded is in this folder.
+  /// Whether all loaded plugins are in this folder.
   bool all_from(const std::filesystem::path& folder) const;
-  /// One digest over the files of all that was loaded; reads them.
+  /// Reads all files of loaded plugins and returns one digest of them.
   Expected<std::string> digest() const;
 
   const std::vector<Method>& methods() const { return methods_; }
-  /// The method of this kind of measurement; null if none is loaded.
+  /// Returns the method for this kind of measurement; null if none is loaded.
   const Method* method(std::string_view kind) const;
   const std::vector<Reader>& readers() const { return readers_; }
   const std::vector<Effect>& effects() const { return effects_; }
   const std::vector<Analysis>& analyses() const { return analyses_; }
   const std::vector<Output>& outputs() const { return outputs_; }
-  /// The first output with this role; null if there is none.
+  /// Returns the first output with this role; null if there is none.
   const Output* output_of(Output::Role role) const {
     for (const Output& o : outputs_)
       if (o.role == role) return &o;
@@ -69,15 +69,17 @@ class Plugins final : public Registry {
   }
   const std::vector<Controller>& controllers() const { return controllers_; }
 
-  /// Options of plugins of other kinds with the same name: [options.<name>] is a table of all.
+  /// Returns the options of plugins of other kinds with the same name, because they share the table
+  /// [options.<name>].
   std::vector<Option> options_of_namesakes(const Info& plugin) const;
 
-  /// Why a plugin of that name is missing, with the nearest name; of an output also among the
-  /// controllers, which `[run] outputs` names with them.
+  /// Returns a message why a plugin of this name is missing, with the nearest name. For an output,
+  /// names of controllers are included, because `[run] outputs` may name them too.
   std::string absence(std::string_view kind, std::string_view name) const;
-  /// Every file that was refused, with the reason; empty if none was.
+  /// Returns every refused file with its reason; empty if none was refused.
   std::string refusals() const;
-  /// A note for each reason: after an update that may be all plugins for one.
+  /// Returns a note per reason of refusal, because after an update all plugins may be refused for
+  /// one reason.
   std::vector<std::string> refusal_notes() const;
 
   void add(Method) override;

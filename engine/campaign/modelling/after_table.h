@@ -8,12 +8,12 @@
 
 namespace nonio::modelling {
 
-/// What remains of the readings of a part if a table in the control compensates the compensable
-/// effects of the model: RMS of all readings about the zero of their line, weighted as in the fit
-/// (equal to the RMS of the fit if every effect is compensable and the readings are independent);
-/// of each measurement of one axis E, A and R of ISO 230-2 with k = 2 (math/iso230_2.h), NaN where
-/// the readings do not give them. A prediction: a control's table has points and steps, and
-/// `nonio table predict` reads a real one.
+/// Predicts what remains of the readings of a part if a table in the control compensates the
+/// compensable effects of the model. `rms` is the RMS of all readings about the zero of their line,
+/// weighted as in the fit; it equals the RMS of the fit if every effect is compensable and the
+/// readings are independent. `tests` contains E, A and R of ISO 230-2 with k = 2 (math/iso230_2.h)
+/// for each measurement of one axis, NaN if the readings do not give them. A real table has points
+/// and steps; `nonio table predict` evaluates one.
 struct AfterTable {
   struct Positioning {
     double E, A, R;  ///< m or rad
@@ -22,7 +22,7 @@ struct AfterTable {
     std::string measurement;
     Positioning before, after;
   };
-  std::vector<std::string> effects;    ///< those that are compensated; empty: none is compensable
+  std::vector<std::string> effects;    ///< the compensated effects; empty: none is compensable
   double rms_before = 0.0, rms = 0.0;  ///< m or rad
   std::vector<Test> tests;             ///< empty where no axis is measured along itself
 };

@@ -13,7 +13,7 @@ namespace nonio::modelling {
 
 namespace {
 
-/// Kind and axis, without the groups of lines ("@adjustment").
+/// Splits an effect into kind and axis, without the groups of lines ("@adjustment").
 std::pair<std::string, std::string> split(const std::string& effect) {
   const std::size_t colon = effect.find(':');
   if (colon == std::string::npos) return {effect, ""};
@@ -35,12 +35,13 @@ std::vector<std::string> known_names(const reading::ReadCampaign& read) {
   return names;
 }
 
-/// ISO 230-1 letters: "XY", "EYX", "X".
+/// Whether a text has the form of ISO 230-1 letters: "XY", "EYX", "X".
 bool can_be_in_space(const std::string& of) {
   return !of.empty() && of.find_first_not_of("EXYZABC0123456789") == std::string::npos;
 }
 
-/// "heat:t4/x1+x2": a channel, and displacements, that a measurement over time has.
+/// Returns an error unless a measurement over time has the channel and the displacements of an
+/// effect such as "heat:t4/x1+x2".
 std::string mistake_of_channel(const std::string& effect, const Effect& known,
                                const reading::ReadCampaign& read) {
   for (const model::Part& part : model::parts_of(read.manifest->campaign, read.observations)) {
@@ -64,7 +65,7 @@ std::string mistake_of(const std::string& written, const reading::ReadCampaign& 
   const auto [kind, axis] = split(effect);
   const auto is_kind = [&, &k = kind](const Effect& e) { return e.info.name == k; };
   const auto known = std::find_if(read.effects.begin(), read.effects.end(), is_kind);
-  // It is tested whether all effects apply to all readings: only where it is stated.
+  // computed only for a message, because it tests all effects on all readings
   const auto nearest = [&] { return storage::suggestion(effect, known_names(read)); };
   if (kind.empty() || axis.empty())
     return "expected kind:axis, such as backlash:X; found \"" + effect + "\"" + nearest();
@@ -106,7 +107,7 @@ bool PartModel::shows(const std::string& written) const {
   const std::string effect = entry_of(written).effect;
   if (part.kind == model::Part::Kind::axis && split(effect).second == part.name) return true;
   if (!model::is_for(part, effect)) return false;
-  // Of a course "heat:t4/x1" is its heat:t4 where it is among the terms.
+  // In a course, the effect "heat:t4/x1" belongs to the term heat:t4.
   const std::string name =
       part.kind == model::Part::Kind::course ? effect.substr(0, effect.find('/')) : effect;
   for (const auto* list : {&terms, &catalogue})
@@ -180,7 +181,8 @@ Expected<void> without_mistakes(const std::vector<std::string>& effects,
 
 namespace {
 
-/// Subtracts the prediction of the effect from the readings; nothing where they do not show it.
+/// Subtracts the prediction of an effect with a stated value from the readings; does nothing if the
+/// readings do not show the effect.
 Expected<void> hold(PartModel& part, const Entry& entry, const Machine& machine,
                     const std::vector<Effect>& effects) {
   NONIO_TRY(auto terms, model::terms_of(part.part, machine, {entry.effect}, effects));
@@ -199,7 +201,7 @@ Expected<void> hold(PartModel& part, const Entry& entry, const Machine& machine,
   return {};
 }
 
-/// The held terms after those of the fit.
+/// Appends the held terms to the terms of the fit.
 void append_held(const PartModel& part, model::Fit& fit) {
   for (const PartModel::Held& h : part.held) {
     fit.terms.push_back(h.term);
@@ -211,7 +213,7 @@ void append_held(const PartModel& part, model::Fit& fit) {
   }
 }
 
-/// What may be added to a model with these held terms.
+/// Returns the catalogue without the held terms of the part.
 std::vector<model::Term> without_held(std::vector<model::Term> catalogue, const PartModel& part) {
   std::erase_if(catalogue, [&](const model::Term& t) {
     return std::any_of(part.held.begin(), part.held.end(),
@@ -362,7 +364,8 @@ std::vector<model::Term> library_of(const PartModel& part, std::shared_ptr<const
 
 namespace {
 
-/// With values of its own for each group an effect is only worth a line where they explain more.
+/// Removes candidates with separate values for each group, unless they explain more than the effect
+/// with a common value.
 void leave_out_weaker_groups(model::Explanation& e) {
   std::map<std::string, double> score;
   for (const model::Candidate& c : e.candidates) score[c.term.name()] = c.score;
@@ -375,23 +378,24 @@ void leave_out_weaker_groups(model::Explanation& e) {
   });
 }
 
-/// Whether the effect that is named may be the shadow of a cause: its shape was searched, or
-/// something was recorded that no effect of the catalogue follows.
+/// Whether the named effect may be the image of another cause: its shape was searched, or a
+/// quantity was recorded that no effect of the catalogue depends on.
 bool may_imitate(const PartModel& part, const model::Candidate& named) {
   const Observations& o = part.part.table;
   return !named.term.effect->shapes.empty() || !o.air.empty() || !o.pressure.empty() ||
          !o.humidity.empty();
 }
 
-/// Common effects first: where those of the catalogue leave an error unexplained, or may imitate a
-/// cause, they are searched together with the causes of the library. What then is missing is the
-/// answer, if it holds at most one cause and if what is named has evidence by itself: another set is
-/// a description of what none of its effects is. Whether there is an error at all is settled before.
-/// The rate of false alarms is that of the second search: its noise has no longer what the first left.
+/// Searches the causes of the library together with the catalogue, if the catalogue leaves an error
+/// unexplained or names an effect that may imitate a cause. The new result replaces `out` if it
+/// contains at most one cause, and if the named effect has evidence by itself; any other set only
+/// describes an error that none of its effects causes. Whether there is an error at all was decided
+/// before. The rate of false alarms is that of the second search, whose noise no longer contains
+/// what the first search left unexplained.
 void look_up_library(const PartModel& part, std::uint64_t seed, const model::Groundwork* known,
                      model::Explanation& out) {
   using Kind = model::Verdict::Kind;
-  // Where nothing was repeated, many of so many shapes describe what is left.
+  // Without repeated readings, many of the numerous shapes would describe the remaining error.
   if (!out.comparison.floor || part.library == nullptr) return;
   const bool explained = out.verdict.kind == Kind::missing;
   if (explained ? !may_imitate(part, out.candidates.front()) : out.verdict.kind != Kind::unknown)
@@ -425,7 +429,7 @@ Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t s
     if (out && with_library) look_up_library(part, seed, known, *out);
     if (out) leave_out_weaker_groups(*out);
     if (out) append_held(part, out->comparison.fit);
-    // None vanishes in silence.
+    // effects that do not apply are listed with the reason
     if (out)
       out->candidates.insert(out->candidates.end(), part.left_out.begin(), part.left_out.end());
     return out;

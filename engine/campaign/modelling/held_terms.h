@@ -8,23 +8,23 @@
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/plugin.h"
 
-/// Effects of a model whose value is stated and not fitted: "squareness:XY = 12.3 arcsec".
+/// Effects of a model whose value is stated instead of fitted: "squareness:XY = 12.3 arcsec".
 namespace nonio::modelling {
 
 /// An entry of [model] effects.
 struct Entry {
   std::string effect;                  ///< "squareness:XY"
   std::optional<std::string> value{};  ///< "12.3 arcsec"; none: it is fitted
-  /// As the manifest has it: one blank around "=" and before the unit.
+  /// Returns the entry as a manifest has it: one blank around "=" and before the unit.
   std::string text() const { return value ? effect + " = " + *value : effect; }
 };
 Entry entry_of(const std::string& written);
 
-/// The entry of this effect, fitted or held; null if the model does not have it.
+/// Returns the entry for an effect, fitted or held; null if the model does not contain it.
 const std::string* find_effect(const std::vector<std::string>& model, const std::string& effect);
 
-/// The stated value in SI. Only an effect with one parameter and without shapes can be held. Errors
-/// state what was expected. `rotary`: of the axis of the effect.
+/// Returns the stated value in SI units. Only an effect with one parameter and without shapes can
+/// be held. An error states what was expected. `rotary`: the axis of the effect is rotary.
 Expected<double> held_value(const Entry& entry, const Effect& effect, bool rotary);
 
 }  // namespace nonio::modelling

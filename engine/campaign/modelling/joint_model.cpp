@@ -18,7 +18,8 @@ namespace {
 using model::Holds;
 using storage::Json;
 
-constexpr std::size_t most_readings = 20000;  // of one campaign: its columns are kept
+// per campaign, because its columns are kept in memory
+constexpr std::size_t most_readings = 20000;
 
 const char* name_of(Holds holds) {
   switch (holds) {
@@ -32,7 +33,8 @@ const char* name_of(Holds holds) {
   return "own";
 }
 
-/// The parts that can be explained together, by name.
+/// Returns the parts that can be explained together, by name, and adds all others to `left_out`.
+/// `trouble` receives the error of a campaign whose model has a mistake.
 std::map<std::string, std::vector<std::pair<const reading::ReadCampaign*, PartModel>>> common_parts(
     const std::vector<const reading::ReadCampaign*>& campaigns, Expected<void>& trouble,
     std::vector<std::string>& left_out) {
@@ -69,7 +71,7 @@ std::map<std::string, std::vector<std::pair<const reading::ReadCampaign*, PartMo
   return out;
 }
 
-/// More values than a sentence has: its size is printed.
+/// Whether a group has more values than a sentence can list; then only its RMS is printed.
 bool is_curve(const std::vector<model::Parameter>& group) {
   return std::count_if(group.begin(), group.end(), [](const auto& p) { return !p.shape; }) > 3;
 }
@@ -94,7 +96,7 @@ std::string place_text(const Together& t, std::size_t campaign) {
   return t.campaigns[campaign] + (t.dates[campaign].empty() ? "" : " (" + t.dates[campaign] + ")");
 }
 
-/// Whether the values of the group may all be zero.
+/// Whether all values of the group may be zero (chi-squared test, p > 0.001).
 bool is_absent(const std::vector<model::Parameter>& group) {
   constexpr double least_p = 0.001;
   double squares = 0.0, count = 0.0;
@@ -103,7 +105,7 @@ bool is_absent(const std::vector<model::Parameter>& group) {
   return math::chi2_upper(squares, count) > least_p;
 }
 
-/// The campaigns with the least and the largest first value.
+/// Returns the indices of the campaigns with the smallest and the largest first value.
 std::pair<std::size_t, std::size_t> extremes(const model::JointEffect& e) {
   std::pair<std::size_t, std::size_t> out{e.groups.size(), e.groups.size()};
   for (std::size_t g = 0; g < e.groups.size(); ++g) {
@@ -209,8 +211,8 @@ std::vector<model::Member> members_of(const Together& t) {
   return members;
 }
 
-/// The cause of the library that a campaign alone shows is a candidate in all of them: without it
-/// others would be named for it. Whether there is one.
+/// Adds each cause of the library that a campaign alone shows to the catalogue of all campaigns,
+/// because otherwise another effect would be named for it. Returns whether there is such a cause.
 bool add_named_causes(Together& t, std::uint64_t seed) {
   std::set<std::string> named;
   for (const PartModel& part : t.parts)
@@ -315,7 +317,7 @@ std::string sentence_of(const model::JointEffect& e, const Together& t,
 std::string sentence_of(const Together& t, const config::TerminalWords& say) {
   const model::JointExplanation& x = t.explanation;
   const Quantity q = t.deviation();
-  // A small effect of many campaigns is in a digit that is not printed otherwise.
+  // an effect in many campaigns may be so small that it needs a further digit
   constexpr int usual = 3, most = 5;
   const auto text_of = [&](double v, int digits) { return short_text(printed(v, q), digits); };
   const int digits = text_of(x.rms, usual) == text_of(x.rms_after, usual) ? most : usual;

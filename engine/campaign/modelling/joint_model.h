@@ -10,34 +10,35 @@
 
 namespace nonio::modelling {
 
-/// The same axis in several campaigns, in the order of their dates, and what they show together.
+/// One axis in several campaigns, in the order of their dates, and the explanation of all together.
 struct Together {
   std::string part;  ///< "X"
   std::vector<std::string> campaigns, dates;
   std::vector<PartModel> parts;
-  std::vector<std::string> effects;  ///< of the models of the campaigns
+  std::vector<std::string> effects;  ///< effects in the models of the campaigns
   model::JointExplanation explanation;
-  std::vector<std::shared_ptr<const void>> keeps{};  ///< effects beyond those of the campaigns
+  std::vector<std::shared_ptr<const void>> keeps{};  ///< owns effects that no campaign owns
 
   Quantity deviation() const { return parts.front().deviation(); }
 };
 
-/// Runs of each axis that two campaigns or more measured, with their own models. What cannot be
-/// explained together (other parts, axes of one campaign) is named in `left_out`: "<campaign> <part>".
+/// Explains the runs of each axis that at least two campaigns measured, with their own models. What
+/// cannot be explained together (other parts, axes of one campaign) is added to `left_out` as
+/// "<campaign> <part>".
 Expected<std::vector<Together>> explain_together(
     const std::vector<const reading::ReadCampaign*>& campaigns, std::uint64_t seed,
     std::vector<std::string>& left_out);
 
-/// The part whose verdict asks most.
+/// Returns the index of the part with the most severe verdict.
 std::size_t most_severe(const std::vector<Together>& all);
 
-/// One sentence: where the effect has which value.
+/// Returns a sentence with the values of an effect in the campaigns.
 std::string sentence_of(const model::JointEffect& effect, const Together& together,
                         const config::TerminalWords& say);
-/// The verdict in one sentence.
+/// Returns the verdict as a sentence.
 std::string sentence_of(const Together& together, const config::TerminalWords& say);
 
-/// docs/json.md: nonio-explain/1 of several campaigns.
+/// Returns the JSON nonio-explain/1 of several campaigns (docs/json.md).
 std::string together_json(const std::vector<Together>& all, const config::TerminalWords& say,
                           std::uint64_t seed, const std::vector<std::string>& left_out,
                           const std::vector<Error>& errors);

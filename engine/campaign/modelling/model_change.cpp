@@ -15,8 +15,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The part that shows the effect, with this model; none if it was not measured. Only where the
-/// model does not have the effect must the catalogue state which part that is.
+/// Compares the part that shows an effect with this model; none if no measurement shows it. The
+/// catalogue, which finds the part, is only made if the model does not contain the effect.
 Expected<std::optional<Compared>> compare_axis(const reading::ReadCampaign& read,
                                                const std::vector<std::string>& effects,
                                                const std::string& effect) {
@@ -53,7 +53,8 @@ ModelStep step_of(const Change& change, const std::string& effect, bool add) {
   return step;
 }
 
-/// The file as it was read; a change that another process has written meanwhile is not overwritten.
+/// Returns the text of campaign.toml; an error if another process has changed the file since it was
+/// read.
 Expected<std::string> unchanged_manifest(const fs::path& folder,
                                          const reading::ReadCampaign& read) {
   std::error_code error;
@@ -84,7 +85,8 @@ Expected<void> write(const fs::path& folder, const reading::ReadCampaign& read,
       folder, {{history_name, std::move(history)}, {config::manifest_name, std::move(edited)}});
 }
 
-/// From one model to the next. `known`: a comparison of the first one, if there is one already.
+/// Changes the model by one edit and compares it before and after. `known`: an existing comparison
+/// of the model before.
 Expected<Change> changed(const reading::ReadCampaign& read, const std::vector<std::string>& model,
                          const ModelEdit& edit, const Compared* known) {
   const std::string& effect = edit.effect;
@@ -117,7 +119,7 @@ Expected<Change> changed(const reading::ReadCampaign& read, const std::vector<st
   return change;
 }
 
-/// Takes the readings of these lines out, as the next start would read the file.
+/// Removes the readings in these lines, as the next reading of the file would.
 Expected<void> leave_out(reading::ReadCampaign& read, const Exclusion& one) {
   const auto& all = read.manifest->campaign.measurements;
   const auto m = std::find_if(all.begin(), all.end(),

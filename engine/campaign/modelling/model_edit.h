@@ -10,18 +10,19 @@
 
 namespace nonio::modelling {
 
-/// The text of a campaign.toml with one effect more, or less, in the list `effects` of [model].
-/// Every other byte stays: comments, order, line ends. The result is parsed again; what would not
-/// be exactly the change that was meant is refused.
+/// Returns the text of a campaign.toml with an effect added to the list `effects` of [model], or
+/// removed from it. All other bytes stay the same: comments, order, line ends. The result is parsed
+/// again; an error if it differs from the old content in anything else.
 Expected<std::string> with_effect(std::string_view manifest, const std::string& effect);
 Expected<std::string> without_effect(std::string_view manifest, const std::string& effect);
 
-/// The same of other keys. Lines that `exclude` of the measurement has already are not repeated; a
-/// reason that is there stays, a new one comes behind it.
+/// Returns the text of a campaign.toml with `lines` added to `exclude` of a measurement, except
+/// those already in the list, and with `why` added to the reason.
 Expected<std::string> with_excluded(std::string_view manifest, const std::string& measurement,
                                     const std::vector<std::uint32_t>& lines,
                                     const std::string& why);
-/// `screw_pitch_mm` of an axis that campaign.toml describes.
+/// Returns the text of a campaign.toml with `screw_pitch_mm` (mm) set for an axis that it
+/// describes.
 Expected<std::string> with_period(std::string_view manifest, const std::string& axis, double mm);
 
 }  // namespace nonio::modelling

@@ -156,9 +156,9 @@ void put_fit(ModelFit& out, const PartModel& part, const model::Comparison& c) {
   for (const model::Suspect& s : c.suspects) out.suspects.push_back({s.row, s.minimal_detectable});
 }
 
-constexpr std::size_t most_refitted = 20000;  // readings: fits of more cost seconds
+constexpr std::size_t most_refitted = 20000;  // readings; fits of more take seconds
 
-/// Which of these terms are in, in the order of the model.
+/// Returns the terms that are marked in `in`, in the order of the model.
 std::vector<model::Term> chosen(const std::vector<model::Term>& terms,
                                 const std::vector<char>& in) {
   std::vector<model::Term> out;
@@ -167,15 +167,15 @@ std::vector<model::Term> chosen(const std::vector<model::Term>& terms,
   return out;
 }
 
-/// The unknowns of the set-up, which every model has.
+/// Marks the terms of the set-up, which every model contains.
 std::vector<char> set_up_of(const std::vector<model::Term>& terms) {
   std::vector<char> in;
   for (const model::Term& term : terms) in.push_back(term.effect->is_nuisance ? 1 : 0);
   return in;
 }
 
-/// The effects in the order in which each takes most away from what those before it leave, with the
-/// shapes of the whole model. Of long tables in the order of the model.
+/// Returns the effects in the order in which each reduces the remaining RMS most, with the shapes
+/// of the whole model. For tables with more than 20000 readings it is the order of the model.
 std::vector<std::size_t> falling_order(const PartModel& part, const model::Fit& whole) {
   std::vector<std::size_t> order;
   std::vector<char> in = set_up_of(part.terms);
@@ -198,7 +198,7 @@ std::vector<std::size_t> falling_order(const PartModel& part, const model::Fit& 
   return order;
 }
 
-/// The error as the model grows; a step that cannot be fitted alone is left out.
+/// Adds the RMS after each effect is added in turn; a step that cannot be fitted is left out.
 void put_steps(ModelFit& out, const PartModel& part, const model::Comparison& whole) {
   const std::vector<std::size_t> order = falling_order(part, whole.fit);
   PartModel grown = part;
@@ -216,7 +216,7 @@ void put_steps(ModelFit& out, const PartModel& part, const model::Comparison& wh
 void put_candidates(ModelFit& out, const PartModel& part, const model::Explanation& e) {
   for (const model::Candidate& c : e.candidates) {
     if (!is_ranked(c) || !(c.score > 0.0)) continue;
-    // Correlated readings: evidence that the search also finds without a cause does not count.
+    // in correlated readings, evidence that the search also finds without a cause is left out
     if (part.part.kind == model::Part::Kind::course && !(c.p < e.verdict.false_alarms)) continue;
     const bool certain =
         std::find(e.certain.begin(), e.certain.end(), c.term.name()) != e.certain.end();
@@ -227,8 +227,8 @@ void put_candidates(ModelFit& out, const PartModel& part, const model::Explanati
   out.next = next_findings(e, part);
 }
 
-/// The axis that moved, if only one did in all the readings; a line has the phase of no other
-/// screw.
+/// Returns the axis that moved if only one moved in all readings; otherwise null, because the phase
+/// of a screw is then not defined along the line.
 const Axis* one_moved(const model::Part& part) {
   const Axis* moved = nullptr;
   for (const auto& column : part.table.axes) {
@@ -242,7 +242,7 @@ const Axis* one_moved(const model::Part& part) {
   return moved;
 }
 
-/// The value that documents draw.
+/// Returns the fit of a part with all data that documents show.
 ModelFit value_of(const PartModel& part, const model::Explanation& e) {
   ModelFit out = fitted_value(part, e.comparison);
   put_steps(out, part, e.comparison);
@@ -259,7 +259,7 @@ ModelFit value_of(const PartModel& part, const model::Explanation& e) {
   return out;
 }
 
-/// Rows of a measurement that give each place, once from each direction.
+/// Marks rows of a measurement so that each position and direction occurs once.
 std::vector<char> first_of_each(const Observations& o) {
   std::set<std::vector<double>> seen;
   std::vector<char> kept(o.size(), 0);
@@ -274,7 +274,7 @@ std::vector<char> first_of_each(const Observations& o) {
   return kept;
 }
 
-/// Deviations of the part's readings, each replaced by the prediction of the compensable effects.
+/// Returns the prediction of the compensable effects for each reading, in m or rad.
 std::vector<double> compensable_part(const model::Fit& fit) {
   std::vector<double> said(fit.residual.size(), 0.0);
   for (std::size_t t = 0; t < fit.terms.size(); ++t) {
@@ -376,7 +376,8 @@ Expected<std::vector<Observations>> compensable_readings(const reading::ReadCamp
   auto parts = part_models(read, campaign.model);
   if (!parts) return fail(parts.error());
   std::vector<Observations> out = read.observations;
-  std::set<std::size_t> done;  // a measurement that belongs to two states of the machine is in two
+  // a measurement that belongs to two states of the machine is in two parts
+  std::set<std::size_t> done;
   for (const PartModel& part : *parts) {
     const auto compared = compare_part(part);
     if (!compared)

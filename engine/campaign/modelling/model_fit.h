@@ -7,33 +7,34 @@
 #include "campaign/modelling/campaign_model.h"
 #include "nonio/sdk/results.h"
 
-/// The nightly analysis of campaigns with a [model]. It belongs to the host, as it needs the
-/// effects of all plugins; in results.json it has the plugin name "model-fit".
+/// The analysis of campaigns with a [model] in each run. It belongs to the host, because it needs
+/// the effects of all plugins; its plugin name in results.json is "model-fit".
 namespace nonio::modelling {
 
 struct ModelFits {
   std::vector<Results::Analysed> analyses;
-  std::vector<ModelFit> models;  ///< of those that could be fitted
+  std::vector<ModelFit> models;  ///< of the parts that could be fitted
 };
 
-/// One entry for each axis with readings, under its first measurement. A model that cannot be
-/// fitted is a finding; one that names what does not exist is an error.
+/// Fits the model of each part with readings and returns it under the part's first measurement. A
+/// model that cannot be fitted is a finding; a name that does not exist in it is an error.
 Expected<ModelFits> model_fit(const reading::ReadCampaign& read, const reading::Context& context);
 
-/// The readings of a part as documents draw them, of no model: all that was measured is left.
+/// Returns the readings of a part for documents without a model: the residuals are the readings.
 ModelFit measured_value(const PartModel& part);
 
-/// A comparison as documents draw it: readings, residuals, effects, parameters, noise floor; without
-/// what an explanation adds.
+/// Returns a comparison for documents: readings, residuals, effects, parameters and noise floor,
+/// without the results of an explanation.
 ModelFit fitted_value(const PartModel& part, const model::Comparison& comparison);
 
-/// As `nonio model drop` would leave it, for each effect of the model; none of more than 20,000
-/// readings, whose fits take seconds.
+/// Returns, for each effect of the model, the fit without it (as after `nonio model drop`); empty
+/// for more than 20,000 readings, whose fits take seconds.
 std::vector<ModelFit::Without> without_each(const PartModel& part);
 
-/// What a table takes where the manifest states compensate = "model": for each target and direction
-/// that was measured, one reading that is the sum of the model's compensable effects. None of an
-/// axis whose model has no such effect; measurements that are not of an axis stay as they are.
+/// Returns the readings from which tables are made if the manifest states compensate = "model": for
+/// each target and direction that was measured, one reading, the sum of the model's compensable
+/// effects. It is empty for an axis whose model has no such effect; measurements without an axis
+/// stay unchanged.
 Expected<std::vector<Observations>> compensable_readings(const reading::ReadCampaign& read,
                                                          std::vector<Remark>& notes);
 

@@ -13,26 +13,25 @@
 
 namespace nonio::modelling {
 
-/// Readings that do not count any more: lines of the file of one measurement.
+/// Readings that were excluded: lines in the file of one measurement.
 struct Exclusion {
   std::string measurement;
   std::vector<std::uint32_t> lines;
   std::string why;
 };
 
-/// The period of an axis that was set.
+/// A new value for the screw pitch of an axis.
 struct Period {
   std::string axis;
   double mm = 0.0;
 };
 
-/// One change of the model, as it was noted when it was made: of an effect, or of what its fit
-/// depends on.
+/// One recorded change of the model: of an effect, or of data on which its fit depends.
 struct ModelStep {
   std::string effect;
-  bool added = true;  ///< else dropped
+  bool added = true;  ///< false: dropped
   Quantity quantity = Quantity::deviation;
-  /// m or rad; absent where that model could not be fitted.
+  /// RMS in m or rad; none if that model could not be fitted.
   std::optional<double> rms_before{}, rms_after{};
   std::optional<double> cv_before{}, cv_after{}, floor{};  ///< cross-validation; noise floor
   std::string why{};                                       ///< comment of a person; usually empty
@@ -40,16 +39,16 @@ struct ModelStep {
   std::optional<Period> period{};
 };
 
-/// File next to campaign.toml: one JSON object per line for each change of the model, oldest first.
-/// It contains no time, so that the same changes give the same bytes. It is a record for people:
-/// nothing is computed from it, and a run does not read it.
+/// Name of the history next to campaign.toml: one JSON object per line for each change of the
+/// model, oldest first. It contains no time, so that the same changes give the same bytes. It is a
+/// record for people: no program computes from it, and a run does not read it.
 inline constexpr const char* history_name = "model-history.jsonl";
 
 std::string history_line(const ModelStep& step);
-/// Errors carry the line.
+/// Parses a history. An error contains the line.
 Expected<std::vector<ModelStep>> parse_history(std::string_view text);
 
-/// Of a campaign's folder; empty if there is none.
+/// Reads the history in a campaign's folder; empty if there is none.
 Expected<std::vector<ModelStep>> read_history(const std::filesystem::path& folder);
 
 }  // namespace nonio::modelling

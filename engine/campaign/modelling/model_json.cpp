@@ -12,7 +12,7 @@ namespace nonio::modelling {
 
 namespace {
 
-/// Whether a person stated the shape, so that it was not searched.
+/// Whether a person stated the value of the shape, so that it was not searched.
 bool is_stated(const model::Parameter& p, const std::vector<model::Term>& terms) {
   return p.shape && std::any_of(terms.begin(), terms.end(), [&](const model::Term& t) {
            return t.name() == p.effect && model::has_stated(t) &&
@@ -112,7 +112,7 @@ const char* zero_text(model::Noise::Zero zero) {
   return "steady";
 }
 
-/// Correlation of the noise, and its effect on the weights and u.
+/// Writes the correlation of the noise and how it is used in the weights and in u.
 void put_noise(storage::Json& json, const model::Fit& fit, Quantity q) {
   const model::Noise& noise = fit.noise;
   storage::Json one = {{"zero", zero_text(noise.zero)}};
@@ -174,7 +174,8 @@ storage::Json positioning_json(const AfterTable::Positioning& p, Quantity q) {
   return json;
 }
 
-/// What a table in the control would leave; nothing where the model has nothing for a table.
+/// Writes what would remain after compensation by a table; nothing if the model has no compensable
+/// effect.
 void put_after_table(storage::Json& json, const PartModel& part, const model::Fit& fit,
                      Quantity q) {
   const AfterTable predicted = after_table(part, fit);
@@ -248,7 +249,7 @@ storage::Json candidate_json(const model::Candidate& c, const PartModel& part, d
   return json;
 }
 
-/// Why an effect is no candidate, in which lines of the file, and what would help.
+/// Returns why an effect is not a candidate, in which lines of the file, and what would help.
 storage::Json unseen_json(const model::Candidate& c, const PartModel& part,
                           const Campaign& campaign, const ModelWords& words) {
   const std::string says = words.unseen(c, place_of(part, campaign, c.rows));
@@ -295,7 +296,7 @@ storage::Json plans_json(const std::vector<model::Plan>& plans, const ModelWords
   return list;
 }
 
-/// The values of an effect in each group, with the expanded uncertainty.
+/// Returns the values of an effect in each group with their expanded uncertainty.
 storage::Json values_json(const std::vector<model::Parameter>& parameters) {
   storage::Json list = storage::Json::array();
   for (const model::Parameter& p : parameters) {
@@ -322,7 +323,7 @@ storage::Json verdict_json(const Explained& e, const ModelWords& words) {
   json["says"] = words.verdict(e.explanation, e.part);
   if (const std::string text = words.card(v.effect, "is"); !text.empty()) json["is"] = text;
   if (const std::string text = words.card(v.effect, "remedy"); !text.empty())
-    json["remedy"] = json["cure"] = text;  // the former name for one version
+    json["remedy"] = json["cure"] = text;  // former name, kept for one version
   storage::put(json, "suspects_share", v.suspects_share, Quantity::ratio);
   return json;
 }
@@ -366,7 +367,8 @@ storage::Json statements_json(const std::vector<model::Statement>& statements,
   return list;
 }
 
-/// Of a displacement over time: how it was judged, and which effects cannot be separated.
+/// Writes the additional results for a displacement over time: its cross-validation, and which
+/// effects are not identifiable separately.
 void put_course(storage::Json& json, const PartModel& part, const model::Explanation& e) {
   if (part.part.kind != model::Part::Kind::course) return;
   json["part"] = part.part.name;
@@ -512,7 +514,7 @@ std::string explain_json(const std::vector<Explained>& all, const Campaign& camp
     put_explained(json, all[most_severe(all)], campaign, words);
     json["axis"] = all[most_severe(all)].part.part.name;
   }
-  // Of displacements over time there are parts even where there is one.
+  // displacements over time are written as parts even if there is only one
   if (all.size() != 1 || all.front().part.part.kind == model::Part::Kind::course) {
     storage::Json parts = storage::Json::array();
     for (const Explained& e : all) {

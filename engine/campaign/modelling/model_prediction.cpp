@@ -8,7 +8,8 @@ namespace nonio::modelling {
 
 namespace {
 
-/// Of a displacement over time the one of that name; else the part of that name and kind.
+/// Returns the part of the same kind and name; for a displacement over time otherwise the first
+/// part with the same displacement. Null if there is none.
 const PartModel* same_part(const std::vector<PartModel>& parts, const PartModel& wanted) {
   const PartModel* found = nullptr;
   for (const PartModel& part : parts) {

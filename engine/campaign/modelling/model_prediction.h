@@ -7,22 +7,23 @@
 #include "campaign/modelling/model_words.h"
 #include "nonio/model/prediction.h"
 
-/// The model of one campaign applied to the readings of another one.
+/// Applies the model of one campaign to the readings of another campaign.
 namespace nonio::modelling {
 
-/// One displacement of the readings that the model has not seen.
+/// The prediction of one displacement in readings to which the model was not fitted.
 struct Predicted {
   PartModel seen, unseen;
   model::Prediction prediction;
 };
 
-/// Every displacement of `unseen` that `seen` has too: by measurement and name, else by name alone.
-/// The model is that of the manifest of `seen`; only the zero is new, unless `zero_kept`. None: an
-/// error that names what both have.
+/// Returns a prediction for every displacement of `unseen` that `seen` contains too, matched by
+/// measurement and name, otherwise by name. The model is that of the manifest of `seen`; only the
+/// zero is fitted again, unless `zero_kept`. If no displacement matches, an error lists those of
+/// both.
 Expected<std::vector<Predicted>> predictions(const reading::ReadCampaign& seen,
                                              const reading::ReadCampaign& unseen, bool zero_kept);
 
-/// Schema nonio-predict/1 (docs/json.md).
+/// Returns the JSON nonio-predict/1 (docs/json.md).
 std::string predict_json(const std::vector<Predicted>& all, const Campaign& seen,
                          const Campaign& unseen, const ModelWords& words, bool zero_kept);
 

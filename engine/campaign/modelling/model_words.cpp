@@ -88,7 +88,8 @@ Finding description_finding(const model::Description& d, const PartModel& part) 
 }
 
 Finding false_alarms_finding(const model::Verdict& v) {
-  // For none in n the upper end of Wilson's 95 % interval is stated: z^2/(n + z^2).
+  // If there was none in n trials, the upper end of Wilson's 95 % interval is stated: z^2/(n +
+  // z^2).
   const double n = static_cast<double>(v.trials), z2 = 1.959964 * 1.959964;
   const bool any = v.false_alarms > 0.0;
   const double share = any ? v.false_alarms : z2 / (n + z2);
@@ -164,7 +165,8 @@ class Next {
           {{"effect", s.weakest}});
   }
 
-  /// The cheapest that separates them.
+  /// Proposes the cheapest plan that separates the effects; without one, to measure over a wider
+  /// range.
   void plan() {
     if (e_.plans.empty()) return;
     const auto good = std::find_if(e_.plans.begin(), e_.plans.end(),
@@ -287,7 +289,7 @@ Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
   if ((v.kind == Kind::nothing || v.kind == Kind::unknown) && !e.comparison.floor)
     f.id += "-without-floor";
   if (v.kind == Kind::nothing && part.part.kind == model::Part::Kind::course && e.comparison.floor)
-    f.id += "-over-time";  // its noise floor is that of successive readings
+    f.id += "-over-time";  // the noise floor over time comes from successive readings
   if (const model::Fit& fit = e.comparison.fit; v.kind == Kind::nothing && e.comparison.floor &&
                                                 fit.noise.zero == model::Noise::Zero::of_pass) {
     f.id += "-of-passes";
@@ -501,7 +503,8 @@ std::vector<std::string> ModelWords::noise(const model::Fit& fit, const PartMode
   const model::Noise& noise = fit.noise;
   const Quantity q = part.deviation();
   std::vector<std::string> out;
-  if (part.part.kind == model::Part::Kind::course) return out;  // always so, and in u
+  // readings over time always have correlated noise, and u contains it
+  if (part.part.kind == model::Part::Kind::course) return out;
   if (noise.neighbours > 0.0 && noise.p < significant_below)
     out.push_back(says("noise.neighbours",
                        {{"r", std::round(100.0 * noise.measured) / 100.0, Quantity::number},
@@ -552,9 +555,9 @@ std::string ModelWords::unmeasured(const std::string& effect) const {
 std::string ModelWords::card(const std::string& effect, const std::string& what) const {
   const std::string name = "effect." + kind_of(effect) + "." + what;
   std::string text = words(templates_, language_, name);
-  // Causes of the library have English texts at least.
+  // causes of the library have at least English texts
   if (text.empty()) text = words(templates_, "en", name);
-  // Words of a plugin that has the former name of the key.
+  // a plugin may use the former name of the key
   return text.empty() && what == "remedy" ? card(effect, "cure") : text;
 }
 

@@ -10,7 +10,7 @@
 #include "nonio/sdk/settings.h"
 #include "platform/storage/nearest.h"
 
-/// Sentences about a model, from templates/words/<language>/model.toml.
+/// Returns sentences about a model, from templates/words/<language>/model.toml.
 namespace nonio::modelling {
 
 class ModelWords {
@@ -18,81 +18,81 @@ class ModelWords {
   ModelWords(const Templates& templates, std::string language)
       : templates_(templates), language_(std::move(language)) {}
 
-  /// Labels and phrases of the terminal in the same language.
+  /// Returns labels and phrases for the terminal in the same language.
   config::TerminalWords terminal() const { return {templates_, language_}; }
 
-  /// How far a model holds for readings that it has not seen.
+  /// States how well a model predicts readings to which it was not fitted.
   std::string prediction(const model::Prediction& p, const PartModel& part) const;
   std::string place(const model::Place& place, Quantity deviation) const;
   std::string statement(const model::Statement& statement, Quantity deviation) const;
   std::string verdict(const model::Explanation& explanation, const PartModel& part) const;
   std::string candidate(const model::Candidate& candidate, const PartModel& part,
                         double rms_before) const;
-  /// Why these readings cannot show it.
+  /// States why these readings cannot show an effect.
   std::string unseen(const model::Candidate& candidate, const RowsPlace& rows) const;
   std::string temperature_interpolated(const RowsPlace& rows) const;
-  /// Two effects that cancel each other: neither is shown.
+  /// States that two effects cancel each other, so that neither is shown.
   std::string cancelling(const std::string& one, const std::string& other) const;
   std::string plan(const model::Plan& plan) const;
-  /// The candidates without evidence in one sentence, with the smallest that would be seen; "" if
-  /// there is none.
+  /// Lists the candidates without evidence in one sentence, with the smallest size that would be
+  /// detected; "" if there is none.
   std::string no_sign(const model::Explanation& explanation, const PartModel& part) const;
-  /// What to measure next, a sentence each.
+  /// States what to measure next, one sentence per proposal.
   std::vector<std::string> next(const model::Explanation& explanation, const PartModel& part) const;
   std::string false_alarms(const model::Verdict& verdict) const;
   std::string lack_of_fit(const model::Comparison& comparison, Quantity deviation) const;
-  /// "RMS 0.7 um, from -1.1 um at 210 mm to 0.9 um at 640 mm"
+  /// Returns "RMS 0.7 um, from -1.1 um at 210 mm to 0.9 um at 640 mm".
   std::string curve(const ModelFit::Curve& curve, const PartModel& part) const;
   std::string suspect(const model::Suspect& suspect, const ReadingPlace& place,
                       Quantity deviation) const;
   std::string below_uncertainty(const std::string& effect) const;
-  /// A gain that no body has.
+  /// States that the gain of a channel is larger than any machine can have.
   std::string gain_too_large(const model::Parameter& gain) const;
-  /// A curve in space some of whose parameters are counted to other effects.
+  /// States how many parameters of a curve in space are attributed to other effects.
   std::string not_identifiable(const std::string& effect, std::size_t parameters) const;
-  /// Measurements that do not state the positions of the other axes.
   std::string description(const model::Description&, const PartModel&) const;
   std::string order_assumed(const std::string& measurement) const;
-  /// How the noise of a fit is other than independent readings of one scatter; mostly nothing.
+  /// States how the noise of a fit differs from independent readings with one scatter; usually
+  /// empty.
   std::vector<std::string> noise(const model::Fit& fit, const PartModel& part) const;
-  /// What thermal tests of the campaign state for this part, a sentence an axis.
+  /// States what thermal tests of the campaign give for this part, one sentence per axis.
   std::vector<std::string> time_constants(const PartModel& part, const model::Fit& fit) const;
   std::string order_unknown() const;
   std::string has_unstated_position() const;
   std::string unmeasured(const std::string& effect) const;
-  /// What the catalogue states about an effect by its kind: "is", "size", "looks", "cure"; "" if
-  /// nothing.
+  /// Returns the catalogue's text about an effect of this kind: `what` is "is", "size", "looks" or
+  /// "remedy"; "" if there is none.
   std::string card(const std::string& effect, const std::string& what) const;
 
  private:
   std::string says(const std::string& id, std::vector<Number> numbers,
                    std::vector<std::pair<std::string, std::string>> texts) const;
-  /// The values of an effect in each group of measurements, with U.
+  /// Lists the values of an effect in each group of measurements, with U.
   std::string differs(const model::Candidate& candidate) const;
 
   const Templates& templates_;
   std::string language_;
 };
 
-/// The same as findings, for documents in any language: ids "verdict.*" and "place.*".
+/// The same statements as findings, for documents in any language: ids "verdict.*" and "place.*".
 Finding verdict_finding(const model::Explanation& explanation, const PartModel& part);
 Finding place_finding(const model::Place& place, Quantity deviation);
 Finding plan_finding(const model::Plan& plan);
 Finding description_finding(const model::Description& description, const PartModel& part);
 Finding false_alarms_finding(const model::Verdict& verdict);
-/// How far what is left goes beyond the noise.
+/// States by how much the remaining deviations exceed the noise.
 Finding left_finding(const model::Comparison& comparison, Quantity deviation);
 std::vector<Finding> no_sign_findings(const model::Explanation& explanation, const PartModel& part);
 std::vector<Finding> next_findings(const model::Explanation& explanation, const PartModel& part);
 
-/// Of a curve in the fit what its parameters come to; nothing of other effects.
+/// Returns the curve that the parameters of a term give; none if the term is not a curve.
 std::optional<ModelFit::Curve> curve_of(const PartModel& part, const model::Fit& fit,
                                         std::size_t term);
 
-/// " (D1)" of a place on one line, else nothing.
+/// Returns " (D1)" for a place on one line; otherwise "".
 std::string on_line(const model::Place& place);
 
-/// "12.5 mm", "run 3": where a place is largest; "" if it is not at one place.
+/// Returns where a place is largest, "12.5 mm" or "run 3"; "" if it is not at one place.
 std::string where_largest(const model::Place& place, const std::string& language);
 
 }  // namespace nonio::modelling

@@ -11,7 +11,7 @@ namespace nonio::modelling {
 
 namespace {
 
-/// Values of one name: a column for each unit that some part has.
+/// Columns for values of one name: one column per unit that any part uses.
 struct Columns {
   std::string name;
   std::vector<Quantity> units{};

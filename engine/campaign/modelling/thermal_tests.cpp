@@ -12,7 +12,7 @@ namespace {
 
 Number minutes(const char* name, double s) { return {name, s / 60.0, Quantity::number}; }
 
-/// The effect that requests the time constant of this axis.
+/// Returns the term that needs the time constant of this axis; null if there is none.
 const model::Term* asks(const PartModel& part, const std::string& axis) {
   for (const auto* list : {&part.terms, &part.catalogue})
     for (const model::Term& term : *list)
@@ -20,7 +20,8 @@ const model::Term* asks(const PartModel& part, const std::string& axis) {
   return nullptr;
 }
 
-/// The term as it is fitted, with its time constant; null if it is not in the model.
+/// Returns the fitted time constant of a term and sets `term` to the fitted term; null if it is not
+/// in the model.
 const model::Parameter* fitted_tau(const model::Fit& fit, const model::Term& asked,
                                    const model::Term*& term) {
   for (const model::Term& t : fit.terms)
@@ -30,7 +31,7 @@ const model::Parameter* fitted_tau(const model::Fit& fit, const model::Term& ask
   return nullptr;
 }
 
-/// The readings take another value than the tests state.
+/// Returns a finding that compares the time constant from the readings with that from the tests.
 Finding own_value(const model::TimeConstant& stated, const model::Parameter& tau, Finding f) {
   const double apart = std::fabs(std::log(tau.value / stated.tau));
   const double u = std::hypot(tau.u / tau.value, stated.u / stated.tau);

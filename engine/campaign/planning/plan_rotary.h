@@ -5,7 +5,7 @@
 
 #include "nonio/math/rotary_plan.h"
 
-/// What `nonio plan rotary` prints.
+/// Computes what `nonio plan rotary` prints.
 namespace nonio::planning {
 
 struct RotaryRow {
@@ -13,12 +13,13 @@ struct RotaryRow {
   math::RotaryPlanU u;
 };
 
-/// Simulated: the plan of the user first, then 3, 4, 5 and 10 balls at its radius and at 500 and
-/// 50 mm. An error is that of the user's own plan; others that are not sound are left out.
+/// Simulates plans: first the user's, then 3, 4, 5 and 10 balls at its radius, at 500 mm and at 50
+/// mm. An invalid plan of the user is an error; other invalid plans are left out.
 Expected<std::vector<RotaryRow>> rotary_rows(const math::RotaryPlan& own, std::size_t trials,
                                              std::uint64_t seed);
 
-/// The fewest balls for a wanted U (k = 2; m, rad; 0: none) at the plan's radius.
+/// Returns the smallest number of balls with which the given U is reached (k = 2; m, rad; 0: not
+/// required) at the radius of the plan.
 Expected<std::size_t> fewest_balls(const math::RotaryPlan& own, double U_centre,
                                    double U_direction);
 

@@ -40,7 +40,7 @@ namespace {
 
 const Campaign& campaign_in(const ReadCampaign& out) { return out.manifest->campaign; }
 
-/// False if it cannot be read.
+/// Reads the manifest into `out`; false if it cannot be read.
 bool read_manifest(const CampaignSource& from, ReadCampaign& out) {
   from.stage("reading campaign.toml");
   const auto text = storage::read_small_file(from.folder / config::manifest_name);
@@ -66,8 +66,8 @@ bool read_manifest(const CampaignSource& from, ReadCampaign& out) {
   return true;
 }
 
-/// The compensation that the record states applies to measurements of later days, unless the
-/// manifest states it.
+/// Takes the active compensation from the machine's record for an axis, unless the manifest states
+/// it.
 void take_present_state(const config::RecordFile& file, Axis& axis, ReadCampaign& out) {
   const auto found = file.record->axes.find(axis.name);
   if (found == file.record->axes.end()) return;
@@ -81,7 +81,7 @@ void take_present_state(const config::RecordFile& file, Axis& axis, ReadCampaign
   if (!axis.active_backlash) axis.active_backlash = state->backlash;
 }
 
-/// Takes from the site's record of the machine what the manifest does not state.
+/// Adds what the site's record of the machine states and the manifest does not.
 void look_up_machine(const CampaignSource& from, ReadCampaign& out) {
   Machine& machine = out.manifest->campaign.machine;
   const std::string input = config::machine_input(machine);
@@ -106,7 +106,7 @@ void look_up_machine(const CampaignSource& from, ReadCampaign& out) {
   for (Axis& axis : machine.axes) take_present_state(file, axis, out);
 }
 
-/// In the order of the list.
+/// Records the digests of table files under the names in `list`, in its order.
 void note_tables(ReadCampaign& out, const std::string& list, const std::vector<Artifact>& files) {
   std::size_t from = 0;
   for (const Artifact& f : files) {
@@ -116,7 +116,7 @@ void note_tables(ReadCampaign& out, const std::string& list, const std::vector<A
   }
 }
 
-/// The tables that were on while it was measured.
+/// Reads the tables that were active during the measurement.
 void look_up_active_tables(const CampaignSource& from, ReadCampaign& out) {
   for (const Axis& axis : campaign_in(out).machine.axes) {
     if (!axis.active_table || axis.active_table->empty() || out.active_tables.contains(axis.name))
@@ -136,7 +136,7 @@ void look_up_active_tables(const CampaignSource& from, ReadCampaign& out) {
                                "\"off\" contradicts active_table of axis " + m.axis));
 }
 
-/// The stated part of the effect's prediction; empty if nothing.
+/// Returns which existing effect a formula repeats on the readings, as a sentence; empty if none.
 std::string copied(const ReadCampaign& out, const std::vector<model::Part>& parts, const Axis& axis,
                    const Effect& effect) {
   for (const model::Part& part : parts) {
@@ -152,7 +152,7 @@ std::string copied(const ReadCampaign& out, const std::vector<model::Part>& part
   return {};
 }
 
-/// The campaign's own effects join those of the plugins.
+/// Adds the formulas of the campaign to the effects of the plugins.
 void add_own_effects(ReadCampaign& out) {
   if (campaign_in(out).formulas.empty()) return;
   const auto parts = model::parts_of(campaign_in(out), out.observations);
@@ -179,7 +179,7 @@ void add_own_effects(ReadCampaign& out) {
   }
 }
 
-/// The model names an effect that neither a plugin nor the campaign has.
+/// Whether the model names an effect that neither a plugin nor the campaign has.
 bool names_a_cause(const ReadCampaign& out) {
   const auto known = [&](const std::string& name) {
     return std::any_of(out.effects.begin(), out.effects.end(),
@@ -191,7 +191,7 @@ bool names_a_cause(const ReadCampaign& out) {
   });
 }
 
-/// Why a cause cannot have its name, or nothing.
+/// Returns an error if the name of a cause is already used.
 std::optional<Error> name_taken(const config::Cause& cause, const ReadCampaign& read) {
   const std::string& name = cause.formula.name;
   for (const Formula& own : read.manifest->campaign.formulas)
@@ -208,8 +208,8 @@ std::optional<Error> name_taken(const config::Cause& cause, const ReadCampaign& 
   return std::nullopt;
 }
 
-/// Causes are searched by an explanation. They are effects where any may be named; only there is a
-/// name that is taken an error.
+/// Adds the library of causes, which an explanation searches. Its causes become effects if the
+/// context or the model requires it; only then is a name that is already used an error.
 void add_library(const Context& context, ReadCampaign& out) {
   auto causes = config::causes_in(context.templates);
   if (!causes) {

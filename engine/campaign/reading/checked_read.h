@@ -7,7 +7,7 @@
 
 namespace nonio::reading {
 
-/// The first bytes of a file, by which readers recognise it.
+/// Returns the first 4096 bytes of a file, by which readers recognise it.
 inline std::string_view head_of(std::string_view bytes) { return bytes.substr(0, 4096); }
 
 /// Whether a reader reads the columns that this method declares.
@@ -15,14 +15,14 @@ inline bool reads_columns_of(const Reader& reader, const Method* method) {
   return reader.reads_columns && method != nullptr && !method->columns.empty();
 }
 
-/// Whether it reads a measurement of this method: one with columns of its own is asked for by its
-/// name, any other by what it observes.
+/// Asks a reader whether it reads a measurement of this method. A method with columns of its own is
+/// identified by its name, any other by the kind that it is observed as.
 inline bool reads(const Reader& reader, const Measurement& m, const Method* method) {
   const bool of_its_own = method != nullptr && !method->columns.empty();
   return reader.reads(of_its_own ? method_name(m) : m.kind);
 }
 
-/// What a reader makes of a file, if all that comes later may rely on it.
+/// Reads a file and checks that later code may rely on the observations.
 inline Expected<Observations> checked_read(const Reader& reader, const ReadInput& input) {
   const std::string who = "reader " + reader.info.name;
   auto observations = process::guarded(who, [&] { return reader.read(input); });

@@ -13,7 +13,7 @@
 
 namespace nonio::reading {
 
-/// What every campaign of a run shares.
+/// Data that all campaigns of a run share.
 struct Context {
   std::string version;
   config::SiteFile site;
@@ -21,31 +21,32 @@ struct Context {
   config::MachineRecords machines{};  ///< of the site
   const loader::Plugins* plugins = nullptr;
   std::string plugins_sha256;  ///< empty where no results are recorded
-  std::string today{};         ///< YYYY-MM-DD; empty where no day is too late
+  std::string today{};         ///< YYYY-MM-DD; empty: no date is too late
   Templates templates;
   std::string templates_sha256;
-  std::string templates_json{};  ///< see `read_templates`; travels in what is signed
-  bool every_cause = false;      ///< of the library is an effect; else where a model names one
+  std::string templates_json{};  ///< see `read_templates`; attached to signed files
+  /// every cause of the library is an effect; otherwise only if a model names one
+  bool every_cause = false;
 };
 
-/// What a campaign's results depend on, in the order in which a change is reported.
+/// Data on which a campaign's results depend, in the order in which a change is reported.
 using Inputs = std::vector<std::pair<std::string, std::string>>;  // name, SHA-256
 
-/// How a measurement file is called in `Inputs`.
+/// Returns the name of a measurement file in `Inputs`.
 std::string input_name(const std::string& file);
 
-/// How it is called in `Inputs` that another campaign has the same file; its value is that
-/// campaign's id.
+/// Returns the name under which `Inputs` records that another campaign has the same file; the value
+/// is the id of that campaign.
 std::string shared_name(const std::string& file);
 
-/// The parts of `Inputs` that all campaigns share.
+/// Returns the inputs that all campaigns share.
 Inputs shared_inputs(const Context& context);
 
-/// Called with the name of what is called next, for the case that it does not return.
+/// Called with the name of each step before it begins, to report it if the step does not return.
 using Stage = std::function<void(const std::string&)>;
 
-/// Files of readings (the first 64 bits of their SHA-256) that another campaign has too, and its
-/// id.
+/// Files of readings that other campaigns contain too: the first 64 bits of their SHA-256, and the
+/// id of the other campaign.
 using Twins = std::vector<std::pair<std::uint64_t, std::string>>;
 
 }  // namespace nonio::reading

@@ -7,7 +7,7 @@
 
 namespace nonio::reading {
 
-/// "campaign.toml:12 (target_mm): ..."
+/// Returns an error as text: "campaign.toml:12 (target_mm): ...".
 std::string text_of(const Error& error);
 
 }  // namespace nonio::reading

@@ -32,7 +32,8 @@ void take_out_zeros(const Observations& o, std::vector<double>& v) {
   for (std::size_t i = 0; i < v.size(); ++i) v[i] -= sum[line(i)] / count[line(i)];
 }
 
-/// Orthonormal basis (Gram-Schmidt, twice) of what is left once every line has its own zero.
+/// Returns an orthonormal basis of the columns (Gram-Schmidt, twice) after subtraction of a zero
+/// for each line.
 Columns span_of(const Observations& o, Columns columns) {
   constexpr double dependent = 1e-8;
   Columns basis;
@@ -48,7 +49,7 @@ Columns span_of(const Observations& o, Columns columns) {
   return basis;
 }
 
-/// Sine of the largest angle between two spans; 1 if one has more dimensions.
+/// Returns the sine of the largest angle between two spans; 1 if their dimensions differ.
 double apart(const Columns& a, const Columns& b) {
   if (a.size() != b.size()) return 1.0;
   double most = 0.0;
@@ -59,7 +60,7 @@ double apart(const Columns& a, const Columns& b) {
   return most;
 }
 
-/// The least distance of `own` to the effect over one shape, or none.
+/// Searches the smallest distance between `own` and an effect over the values of its shape.
 class Nearest {
  public:
   Nearest(const Observations& o, const Axis& axis, const Effect& effect, const Columns& own)
@@ -77,7 +78,7 @@ class Nearest {
       if (!effect_.shapes[k].usual) searched = k, ++free;
     }
     if (free == 0) return at(usual_);
-    if (free > 1) return 1.0;  // none in the catalogue
+    if (free > 1) return 1.0;  // no effect of the catalogue has two
     searched_ = searched;
     const auto grid = effect_.shapes[searched].grid(o_, axis_);
     double least = 1.0;
@@ -90,7 +91,7 @@ class Nearest {
   }
 
  private:
-  /// With this value of the shape that is searched, and the usual ones of others.
+  /// Returns the distance for this value of the searched shape and usual values of the others.
   double with(double value) const {
     std::vector<double> shape = usual_;
     shape[searched_] = value;

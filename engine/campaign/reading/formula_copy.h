@@ -10,10 +10,10 @@
 
 namespace nonio::reading {
 
-/// Name of the effect of the catalogue that is the same as `own` on these readings: its columns
-/// span the same space once every line has its own zero. "zero" if nothing but that is left; "" if
-/// `own` is new. Shapes of the catalogue are searched, those of `own` are in the middle of their
-/// grids.
+/// Returns the name of the effect of the catalogue that equals `own` on these readings: its columns
+/// span the same space after subtraction of a zero for each line. "zero" if nothing remains after
+/// the subtraction, "" if `own` is new. Shapes of the catalogue are searched; those of `own` are in
+/// the middle of their grids.
 Expected<std::string> copy_of(const Observations& observations, const Axis& axis, const Effect& own,
                               const std::vector<Effect>& catalogue);
 

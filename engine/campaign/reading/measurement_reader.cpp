@@ -24,7 +24,8 @@ void keep_distinct(std::vector<double>& x) {
   x.erase(std::unique(x.begin(), x.end()), x.end());
 }
 
-/// Memory follows the number of positions, not of readings: thinned whenever it has doubled.
+/// Returns the distinct positions, sorted. Memory is proportional to the number of positions, not
+/// of readings, because duplicates are removed whenever the list has doubled.
 std::vector<double> distinct(const std::vector<double>& positions) {
   std::vector<double> out;
   std::size_t limit = 1U << 16U;
@@ -39,8 +40,8 @@ std::vector<double> distinct(const std::vector<double>& positions) {
   return out;
 }
 
-/// Every position that has a neighbour as near as that, and how many readings it has. A group does
-/// not reach further than the tolerance from its first position.
+/// Groups positions that are closer together than the tolerance, with a count of 0 readings each. A
+/// group extends no further than the tolerance from its first position.
 std::vector<std::map<double, std::size_t>> groups_of(const std::vector<double>& x) {
   std::vector<std::map<double, std::size_t>> groups;
   for (std::size_t i = 0; i < x.size();) {
@@ -82,19 +83,19 @@ std::size_t join(std::vector<double>& positions) {
   return moved;
 }
 
-/// Makes positions of an axis that lie within `grid_tolerance` of one another one position: the one
-/// that most readings have. The last digits of what a file computed or rounded would otherwise make
-/// two targets of one, each with too few readings. Returns how many positions were moved.
+/// Joins positions of an axis within `grid_tolerance` of each other to the one with the most
+/// readings. Otherwise rounded digits in a file would make two targets of one, each with too few
+/// readings. Returns the number of positions that were changed.
 std::size_t join_targets(Observations& o) {
   std::size_t moved = 0;
   for (auto& axis : o.axes) moved += join(axis.position);
   return moved;
 }
 
-/// The reader that is named, or the first that knows the content, or the one for the columns that
-/// the method declares; none if no plugin reads this kind of measurement at all, which is noted and
-/// leaves the others to be evaluated. Where a plugin was refused, it may be the one that is
-/// required, and the measurement was not read.
+/// Returns the named reader, otherwise the first that recognises the content, otherwise the one for
+/// the columns that the method declares. None if no plugin reads this kind of measurement: this is
+/// noted, and other measurements are evaluated. An error if a refused plugin may be the required
+/// one.
 Expected<const Reader*> choose_reader(const CampaignSource& from, const Measurement& m,
                                       std::string_view bytes, ReadCampaign& out) {
   const auto& readers = from.context.plugins->readers();
@@ -142,7 +143,7 @@ Expected<const Reader*> choose_reader(const CampaignSource& from, const Measurem
   return nullptr;
 }
 
-/// Removes the readings that the manifest excludes, and reports that.
+/// Removes the readings that the manifest excludes, with a note for each.
 Expected<void> exclude(const CampaignSource& from, const ReadCampaign& out, const Measurement& m,
                        Observations& o) {
   if (m.exclude.empty()) return {};
@@ -171,7 +172,7 @@ Expected<void> exclude(const CampaignSource& from, const ReadCampaign& out, cons
   return {};
 }
 
-/// What the manifest states about channels that were recorded.
+/// Adds the manifest's data about recorded channels; an error if a channel does not exist.
 Expected<void> describe_channels(const CampaignSource& from, const ReadCampaign& out,
                                  const Measurement& m, Observations& o) {
   for (const Measurement::Channel& stated : m.channels) {
@@ -200,7 +201,7 @@ std::optional<Settings> settle_reader(const CampaignSource& from, const Info& in
   return std::nullopt;
 }
 
-/// What makes the file itself implausible, and what was changed or is missing in it.
+/// Adds findings that make the file implausible, and notes about missing and changed readings.
 void note_oddities(const Measurement& m, std::string_view bytes, Observations& o,
                    ReadCampaign& out) {
   auto ends = implausible_end(bytes, m.file);
@@ -209,7 +210,7 @@ void note_oddities(const Measurement& m, std::string_view bytes, Observations& o
       doubt.measurement = m.id;
       out.doubts.push_back(std::move(doubt));
     }
-  if (o.missing > 0 && m.kind != "axis")  // of an axis its analyses state it
+  if (o.missing > 0 && m.kind != "axis")  // analyses of an axis state it
     o.notes.push_back(
         {"readings.not-taken", {{"missing", static_cast<double>(o.missing), Quantity::count}}});
   // Of an artefact its features are what readings come back to.
@@ -219,7 +220,8 @@ void note_oddities(const Measurement& m, std::string_view bytes, Observations& o
         {"targets.joined", {{"readings", static_cast<double>(moved), Quantity::count}}});
 }
 
-/// What it notes and doubts goes into `out`; `into` stays empty where no plugin reads this kind.
+/// Reads a measurement into `into`, with notes and doubts in `out`. `into` stays empty if no plugin
+/// reads this kind.
 Expected<void> read_one_measurement(const CampaignSource& from, const Measurement& m,
                                     Observations& into, ReadCampaign& out) {
   const auto path = storage::path_inside(from.folder, m.file);

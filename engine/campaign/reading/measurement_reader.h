@@ -8,22 +8,23 @@
 
 namespace nonio::reading {
 
-/// Where a campaign is read from.
+/// The folder, context and stage with which a campaign is read.
 struct CampaignSource {
   const std::filesystem::path& folder;
   const Context& context;
   const Stage& stage;
 };
 
-/// The measurements of `out.manifest`: observations, and what is noted, doubted and wrong of them.
+/// Reads the measurements of `out.manifest` and adds observations, notes, doubts and errors to
+/// `out`.
 void read_measurements(const CampaignSource& from, ReadCampaign& out);
 
-/// An error of a whole file is reported at its first line.
+/// Adds an error; one without a line gets the first line of its file.
 void report_in(ReadCampaign& out, Error error);
-/// An error that a key of the manifest is to blame for.
+/// Returns an error about a key of the manifest, with its line.
 Error key_error(const CampaignSource& from, const ReadCampaign& out, std::string key,
                 const std::string& message);
-/// Once for each file.
+/// Records the digest of a file in the inputs, once per file.
 void note_input(ReadCampaign& out, const std::string& name, const std::string& digest);
 
 }  // namespace nonio::reading

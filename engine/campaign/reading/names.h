@@ -7,24 +7,25 @@
 
 namespace nonio::reading {
 
-/// The analysis of the host itself, see model_fit.h.
+/// Name of the host's own analysis (model_fit.h).
 inline constexpr const char* model_fit_name = "model-fit";
 
-/// `[options.x]` for an x that no plugin is, which would otherwise be ignored in silence.
+/// Returns an error for each `[options.x]` where x is not a plugin; otherwise it would be ignored
+/// without a message.
 std::vector<Error> ownerless_options(const config::RawOptions& options,
                                      const loader::Plugins& plugins);
 
-/// What is wrong with the names and options of site.toml: it would be wrong in every campaign.
+/// Returns the mistakes in names and options of site.toml, which would be wrong in every campaign.
 std::vector<Error> site_mistakes(const Context& context);
 
-/// Fills in file and line of an error that names the faulty key: an option of `plugin` or a key of
-/// the manifest or, where they do not have it, of site.toml.
+/// Sets file and line of an error that names a key: an option of `plugin`, or a key of the
+/// manifest, or of site.toml if the manifest does not contain it.
 void locate(Error& error, const config::KeyLines& manifest, const config::KeyLines& site,
             const std::string& plugin = {});
 
-/// Gives an error of a file its line: of the manifest that of the nearest key above the one that is
-/// to blame (machine.axes.X for machine.axes.X.slave) or of the first of `others` that exists, else
-/// the first line, from which a file as a whole is wrong.
+/// Sets the line of an error in the manifest: that of the nearest existing key above the faulty one
+/// (machine.axes.X for machine.axes.X.slave), otherwise of the first existing key in `others`,
+/// otherwise line 1.
 void give_line(Error& error, const config::KeyLines& manifest,
                const std::vector<std::string>& others);
 

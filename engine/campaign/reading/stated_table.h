@@ -10,16 +10,16 @@
 
 namespace nonio::reading {
 
-/// A table in a file, of which a person may state what the columns are.
+/// A table in a file whose columns a person can describe.
 struct StatedTable {
-  const Reader* reader = nullptr;  ///< that reads it with option `columns`
+  const Reader* reader = nullptr;  ///< reads the table with option `columns`
   std::vector<std::vector<std::string>> rows;
 };
 
-/// The name of that option, and an entry of it.
+/// Name of the option of a reader that describes the columns.
 inline constexpr const char* columns_option = "columns";
 
-/// The first rows of the table in a file; none if no reader finds one with two columns.
+/// Returns the first rows of the table in a file; none if no reader finds one with two columns.
 std::optional<StatedTable> stated_table(const loader::Plugins& plugins, std::string_view bytes,
                                         std::size_t most);
 

@@ -39,7 +39,8 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   };
   for (const Error& warning : context.site.warnings) note(warning);
   context.plugins = &place->plugins;
-  // After the process for the plugins was forked: it would copy each page of them when it frees them.
+  // After the process for the plugins was forked: each page that it frees would otherwise be
+  // copied.
   NONIO_TRY(const auto folders, config::with_site_templates(template_folders, site));
   std::vector<std::string> below;
   if (what != TemplatesFor::documents) below = config::words_in(context.site.language);

@@ -19,12 +19,12 @@ namespace {
 using Holds = config::Key::Holds;
 using Names = std::vector<std::string>;
 
-/// Inside [ ] of a pattern.
+/// Escapes letters for use inside [ ] of a pattern.
 std::string in_class(std::string_view letters) {
   std::string out;
   for (const char c : letters) {
     if (std::string_view("\\]^").find(c) != std::string_view::npos) out += '\\';
-    if (c >= ' ') out += c;  // the others are never in a text of one line
+    if (c >= ' ') out += c;  // other characters never occur in a text of one line
   }
   return out;
 }
@@ -52,7 +52,7 @@ std::string pattern_of(const config::TextRule& rule) {
   return "^(" + quoted_pattern(rule.begins) + letters + count + ")?$";
 }
 
-/// Names of what is loaded, sorted.
+/// The names of all loaded plugins, sorted.
 class Loaded {
  public:
   explicit Loaded(const loader::Plugins& plugins) {
@@ -75,9 +75,10 @@ class Loaded {
     const auto found = names_.find(kind);
     return found == names_.end() ? none : found->second;
   }
-  /// A plugin's options; two plugins of different kinds may share a name.
+  /// Returns the plugins by name; two plugins of different kinds may have the same name.
   const std::map<std::string, std::vector<const Info*>>& owners() const { return owners_; }
-  /// What [model] effects may state where the campaign has no formulas of its own.
+  /// Returns the pattern of entries of [model] effects, for campaigns without formulas of their
+  /// own.
   const std::string& effects() const { return effects_; }
 
  private:
@@ -131,7 +132,8 @@ class SchemaWriter {
     json_.end_object();
   }
 
-  /// `assumed`: the value of the key by which tables of this kind differ, if none is written.
+  /// Writes the schema of a value. `assumed`: value of the key that distinguishes tables of this
+  /// kind, if the table does not contain it.
   void put_value(const config::Key& key, std::string_view assumed) {
     switch (key.holds) {
       case Holds::text:
@@ -186,7 +188,7 @@ class SchemaWriter {
     if (names.empty()) {
       put_pattern(key.text);
     } else {
-      if (!key.required) names.emplace_back();  // an empty text is as good as none
+      if (!key.required) names.emplace_back();  // an empty text counts as missing
       json_.member("enum", names);
     }
     if (key.required && names.empty()) json_.member("minLength", std::int64_t{1});
@@ -195,7 +197,7 @@ class SchemaWriter {
     if (!otherwise.empty()) json_.member("default", otherwise);
   }
 
-  /// What an editor shows with each value.
+  /// Writes the description that an editor shows for each value.
   void put_meanings(const Names& meanings) {
     json_.key("x-taplo");
     json_.begin_object();
@@ -307,7 +309,8 @@ class SchemaWriter {
     put_conditions(table, assumed);
   }
 
-  /// Below "then" of a condition that is always true: next to an "allOf" taplo offers no keys.
+  /// Writes the conditions in the "then" of a condition that is always true, because taplo offers
+  /// no keys next to an "allOf".
   void put_conditions(const config::Key& table, std::string_view assumed) {
     const auto conditional = [&](const config::Key& key) {
       return !key.only.key.empty() || !key.needed.key.empty() ||
@@ -369,7 +372,7 @@ class SchemaWriter {
     json_.key("else");
     json_.begin_object();
     begin_rule_of(key);
-    // No value is right; the one that is offered states why.
+    // No value is allowed; the one that an editor offers states the reason.
     json_.member("enum", Names{"only where " + std::string(key.only.key) + " is " +
                                std::string(key.only.values.front())});
     end_rule();
@@ -377,7 +380,7 @@ class SchemaWriter {
     json_.end_object();
   }
 
-  /// An effect of another name can only be a formula of the campaign.
+  /// Writes the rule that entries must name effects of plugins, unless the campaign has formulas.
   void put_effects(const config::Key& key) {
     json_.begin_object();
     json_.key("if");
@@ -488,7 +491,7 @@ class SchemaWriter {
     json_.end_object();
   }
 
-  /// Or texts, as such tables were written before.
+  /// Writes the type of tables of numbers; texts are allowed too, because they are the former form.
   void put_number_tables() {
     json_.key("type");
     json_.begin_array();
@@ -551,7 +554,7 @@ class SchemaWriter {
 
   Loaded loaded_;
   JsonWriter json_;
-  std::string_view by_name_;  ///< the key by which tables of the kind that is being written differ
+  std::string_view by_name_;  ///< the key that distinguishes the tables being written
 };
 
 }  // namespace

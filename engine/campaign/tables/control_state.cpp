@@ -35,7 +35,7 @@ std::string_view without_end(std::string_view text) {
   return text;
 }
 
-/// The statements of the campaign, of which a message names the place.
+/// The statements of the campaign about an axis, with their places for messages.
 class Stated {
  public:
   Stated(const reading::ReadCampaign& read, const Axis& axis) : read_(read), axis_(axis) {}
@@ -62,8 +62,8 @@ class Stated {
   const Axis& axis_;
 };
 
-/// A grid that would fit the measurement in inch, and does not in mm: most formats do not state
-/// their unit.
+/// Returns an error if the grid of the table fits the measurement in inches, but not in mm: most
+/// formats do not state their unit.
 Expected<void> check_unit(const std::vector<LoadedTable>& own, const Campaign& campaign,
                           const std::vector<Observations>& readings, const std::string& axis,
                           const std::string& files, const std::string& by_hand) {
@@ -99,7 +99,7 @@ std::vector<LoadedTable> opposite(std::vector<LoadedTable> tables) {
   return tables;
 }
 
-/// Whether the record has this table from a later day on.
+/// Whether the record states this table from a day after the measurement on.
 bool is_loaded_later(const reading::ReadCampaign& read, const Controller& controller,
                      const std::vector<LoadedTable>& backup, const std::string& axis,
                      const Settings& options) {

@@ -7,19 +7,19 @@
 
 #include "campaign/tables/table_check.h"
 
-/// Which table was in the control while a campaign was measured, from the backup, the record of the
-/// machine and the manifest.
+/// Determines which table was in the control while a campaign was measured, from the backup, the
+/// record of the machine and the manifest.
 namespace nonio::tables {
 
-/// The tables of these that correct this axis by its own position.
+/// Returns the tables that correct this axis by its own position.
 std::vector<LoadedTable> own_tables(const std::vector<LoadedTable>&, const std::string& axis);
 
-/// Whether the control adds the same, but for a constant, to half of the last digit that a control
-/// prints: 0.06 um or 0.06 arcsec.
+/// Whether both sets of tables give an axis the same correction, except for a constant, within 0.06
+/// um or 0.06 arcsec (half of the last digit that a control prints).
 bool same_correction(const std::vector<LoadedTable>& a, const std::vector<LoadedTable>& b,
                      const std::string& axis);
 
-/// What Nonio wrote into the comments of a table: the measurement that it was made from.
+/// The measurement from which a table was made, as Nonio wrote it into the comments of the table.
 struct Origin {
   std::string file;
   std::uint64_t line = 0;
@@ -29,7 +29,7 @@ struct Origin {
 };
 std::optional<Origin> origin_of(const std::vector<Artifact>& files, const std::string& axis);
 
-/// What a person answers of the state during the measurement, in place of the manifest.
+/// The answer of a person about the state during the measurement, used in place of the manifest.
 struct StateAnswer {
   std::string table;  ///< list of files; empty: none
   std::vector<Artifact> files{};
@@ -37,17 +37,17 @@ struct StateAnswer {
 };
 void state_by_answer(reading::ReadCampaign&, const std::string& axis, const StateAnswer&);
 
-/// Settles what was active while `axis` was measured. The manifest applies first, then the record of
-/// the machine, then the backup. An error, which names the key or the file that ends it, where they
-/// contradict each other, or where the table of the backup was made from this campaign or from a
-/// later one, so that it was loaded after the measurement.
+/// Returns what was active while `axis` was measured. The manifest has precedence, then the record
+/// of the machine, then the backup. An error that names the key or file to correct if they
+/// contradict each other, or if the table in the backup was made from this campaign or a later one,
+/// and so was loaded after the measurement.
 Expected<MeasuredWith> measured_with(const reading::ReadCampaign&, const Controller&,
                                      const std::vector<Artifact>& backup, const std::string& axis,
                                      const Settings& options, std::vector<Finding>& findings);
 
-/// Fills in the state of the axes that were measured with a table of the backup and of which nothing
-/// else states what was active; axes of which the backup contains no table stay as they are. An error
-/// as of `measured_with`.
+/// Sets the state of axes that were measured with a table of the backup and for which nothing else
+/// states what was active. Axes without a table in the backup stay unchanged. Errors as in
+/// `measured_with`.
 Expected<void> state_by_backup(reading::ReadCampaign&, const Controller&,
                                const std::vector<Artifact>& backup, Settings& options,
                                std::vector<Finding>& findings);

@@ -21,7 +21,7 @@ bool same_axes(const LoadedTable& a, const LoadedTable& b) {
   return a.output == b.output && a.input == b.input;
 }
 
-/// All tables of the same axes in one: what they add together.
+/// Returns the sum of the tables at position `x` when moving in direction `dir`.
 double sum_at(const std::vector<const LoadedTable*>& tables, const std::vector<double>& x,
               int dir) {
   double sum = 0.0;
@@ -42,7 +42,7 @@ void merge(Knots& knots, const std::vector<const LoadedTable*>& tables) {
   }
 }
 
-/// Every point of the grid, the last input fastest.
+/// Returns every point of the grid; the last input varies fastest.
 std::vector<std::vector<double>> points_of(const Knots& knots) {
   std::vector<std::vector<double>> points{{}};
   for (const auto& k : knots) {
@@ -99,8 +99,9 @@ void compare(TableDifference& d, const std::vector<const LoadedTable*>& was,
   if (!will.empty()) d.next = shape_of(will);
 }
 
-/// Range of as many normal values as there are means, with the standard uncertainty of a mean: the
-/// table is made of one draw of them. Factor by simulation: 95 % of ranges of 10 to 200 values.
+/// Returns the 95 % quantile of the range of as many normal values as there are means, with the
+/// standard uncertainty of a mean, because a table is made from one sample of the means. Factor by
+/// simulation: 95 % of ranges of 10 to 200 values.
 double range_of_scatter(const math::AxisTest& test) {
   double squares = 0.0, n = 0.0, means = 0.0;
   for (std::size_t i = 0; i < test.targets.size(); ++i)
@@ -143,14 +144,15 @@ TableForecast forecast_of(const Campaign& campaign, const Measurement& m, const 
   return f;
 }
 
-/// Whether one table of these is of this axis by itself.
+/// Whether one of the tables corrects this axis by its own position.
 bool corrects(const Tables& tables, const std::string& axis) {
   return std::any_of(tables.begin(), tables.end(), [&](const LoadedTable& t) {
     return t.output == axis && t.input.size() == 1 && t.input.front() == axis;
   });
 }
 
-/// The readings as they would be without these tables; the backlash parameter stays.
+/// Returns the readings without the correction of these tables; the effect of the backlash
+/// parameter stays.
 Observations without(const Observations& o, const std::string& axis, const Tables& tables) {
   Observations raw = o;
   if (raw.axes.empty()) return raw;
@@ -162,14 +164,14 @@ Observations without(const Observations& o, const std::string& axis, const Table
   return raw;
 }
 
-/// That of the files themselves, unless another is stated.
+/// Sets the backlash values of the files in the options, unless others are stated.
 void state_backlash_of(Settings& options, const Tables& tables) {
   for (const LoadedTable& t : tables)
     if (t.backlash.value_or(0.0) != 0.0 && present_backlash(options, t.output, t.rotary) == 0.0)
       state_backlash(options, t.output, t.rotary, *t.backlash);
 }
 
-/// In the words of the new table.
+/// Sets the present tables as active compensation, so that the new table states them.
 void state_active_compensation(Campaign& campaign, const Settings& options, const Tables& present) {
   for (Axis& axis : campaign.machine.axes) {
     if (!corrects(present, axis.name)) continue;
@@ -202,7 +204,8 @@ Expected<const Controller*> control_of(const loader::Plugins& plugins, const std
     return fail("no control \"" + name + "\"" + storage::suggestion(name, names) + "; there are " +
                 storage::listed(names));
   if (named.size() == 1) return named.front();
-  std::vector<const Controller*> nearly;  // whose form it has, but for one line
+  // controllers whose format the files have, except for one line
+  std::vector<const Controller*> nearly;
   for (const Controller* o : all) {
     const auto settled = config::options_from(o->info, options);
     if (!settled) continue;
@@ -398,7 +401,8 @@ Expected<RenewedTables> renew(const reading::ReadCampaign& read, const Controlle
   auto whole = write(campaign, raw);
   if (!whole) return tl::unexpected<Error>(whole.error());
   RenewedTables out{std::move(whole->artifacts), {}, {}, std::move(whole->findings)};
-  for (std::size_t i = 0; i < raw.size(); ++i) {  // one at a time: an axis may be there twice
+  // one at a time, because an axis may be measured twice
+  for (std::size_t i = 0; i < raw.size(); ++i) {
     const Measurement& m = campaign.measurements[i];
     if (m.kind != "axis" || raw[i].size() == 0) continue;
     const Campaign one = with_one(campaign, m);
@@ -426,7 +430,7 @@ Expected<SignProbe> sign_probe(const Measurement& m, const Observations& raw,
                 "towards plus, found " +
                 std::to_string(e.size()));
   SignProbe probe{m.id, m.axis, test.rotary, curve.position.front()};
-  for (std::size_t i = 1; i < e.size(); ++i)  // the first target is where the move begins
+  for (std::size_t i = 1; i < e.size(); ++i)  // the first target is the start of the move
     for (std::size_t k = i + 1; k < e.size(); ++k)
       if (std::fabs(e[k] - e[i]) > std::fabs(probe.difference)) {
         probe.difference = e[k] - e[i];

@@ -15,7 +15,7 @@ bool is_own(const TableDifference& d, const std::string& axis) {
   return d.output == axis && d.input == std::vector{axis};
 }
 
-/// One axis by itself.
+/// A campaign reduced to one measurement of an axis.
 struct OneAxis {
   Campaign campaign;
   std::vector<Observations> readings;  ///< without what was active
@@ -47,7 +47,8 @@ Expected<OneAxis> one_axis(const reading::ReadCampaign& read, const std::string&
   return fail("no measurement of axis " + axis + "; there are " + (list.empty() ? "none" : list));
 }
 
-/// Removes what was active from the readings, so that the new table is complete.
+/// Removes the active compensation from the readings, so that the new table contains the whole
+/// correction.
 void take_active(OneAxis& one, const MeasuredWith& with, const std::string& axis,
                  Settings& options) {
   for (Axis& a : one.campaign.machine.axes) {
@@ -59,7 +60,8 @@ void take_active(OneAxis& one, const MeasuredWith& with, const std::string& axis
   one.readings = without_tables(one.campaign, one.measured, with.tables);
 }
 
-/// The control's tables after the merge, compared with its present tables and the new ones.
+/// Checks that the merge changes only the table of this axis, and that the control reads it back
+/// unchanged.
 Expected<void> only_this_axis(const ReadTables& present, const ReadTables& fresh,
                               const ReadTables& next, const std::string& axis) {
   constexpr double nothing = 1e-12;  // m, rad
@@ -87,7 +89,8 @@ Expected<void> only_this_axis(const ReadTables& present, const ReadTables& fresh
   return there ? Expected<void>{} : fail("the merged file holds no table of " + axis);
 }
 
-/// That the backup has the last tables of the other axes: its whole file is loaded.
+/// Checks that the backup contains the last recorded tables of the other axes, because the whole
+/// file will be loaded.
 Expected<void> not_outdated(const reading::ReadCampaign& read, const Controller& controller,
                             const ReadTables& present, const std::string& axis,
                             const Settings& options) {
@@ -160,7 +163,7 @@ Expected<MergedTables> merge_tables(const reading::ReadCampaign& read, const Con
                    .findings = written->findings,
                    .notes = written->notes};
   out.findings.insert(out.findings.begin(), findings.begin(), findings.end());
-  if (written->artifacts.empty()) return out;  // refused; the findings state why
+  if (written->artifacts.empty()) return out;  // refused: the findings state why
   const Campaign& campaign = read.manifest->campaign;
   // Files that contain one axis only are replaced as they are.
   const bool merges = controller.merge != nullptr;

@@ -25,9 +25,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// When a machine is measured again, and by which interval.
+/// Day of a machine's next calibration, and the interval that gives it.
 struct Due {
-  std::string day, why;  ///< `why`: months
+  std::string day, why;  ///< `why`: the interval in months, as text
 };
 
 std::optional<int> months_of_rule(const std::string& machine, const store::StoredLogs& logs) {
@@ -38,7 +38,7 @@ std::optional<int> months_of_rule(const std::string& machine, const store::Store
 
 Due due_of(const AssessedMachine& m, const store::StoredLogs& logs) {
   const auto months = months_of_rule(m.state.machine.name, logs);
-  // It is unknown when a campaign without a machine is measured again.
+  // Without a machine it is unknown when the next calibration is due.
   if (!months || m.stored.campaigns.empty() || m.state.machine.name.empty()) return {};
   return {months_later(m.stored.campaigns.back().day, *months), std::to_string(*months)};
 }
@@ -75,7 +75,7 @@ class Assessment::State {
     return put_together();
   }
 
-  /// What a page shows. Afterwards it is kept.
+  /// Returns a machine with everything that its page shows; the result is kept for later calls.
   Expected<const reports::MachineHistory*> whole(std::size_t i) {
     Assessed& m = machines_[i];
     if (!m.described)
@@ -85,12 +85,13 @@ class Assessment::State {
     return &*m.described;
   }
 
-  /// All that a page is made of.
+  /// Returns a digest of everything that a machine's page is made from.
   std::string page_key(std::size_t i, const std::string& templates) const {
     const Assessed& m = machines_[i];
     const auto lines = lines_.find(m.state.machine.name);
     storage::ValueWriter w;
-    // The page is written again when the date of a forecast has passed.
+    // `until` is included, so that the page is written again when the date of a forecast has
+    // passed.
     w(m.kept.digest, m.kept.standing.until, templates,
       lines == lines_.end() ? std::string() : bytes_of(lines->second),
       bytes_of(site.machines[i].proposal));
@@ -115,7 +116,7 @@ class Assessment::State {
     machines_[i].described.reset();
   }
 
-  /// `what`: all that was found out, or only trends.
+  /// Stores what was computed for the next run. `what`: everything, or only the trends.
   void keep(Keep what) {
     KeptMachines::Changes changes;
     const bool all = what == Keep::all;
@@ -132,7 +133,7 @@ class Assessment::State {
     kept_.keep(changes);
   }
 
-  /// Machines; campaigns that belong to none come behind them.
+  /// Number of machines; campaigns without a machine follow them in `site`.
   std::size_t count() const { return machines_with_name_; }
 
   reports::SiteHistory site;
@@ -140,7 +141,7 @@ class Assessment::State {
  private:
   void take_entered(const config::SiteLogs& now) {
     logs_.acknowledged = now.acknowledged;
-    // Entered after the run: known from now on, not from its day on.
+    // An acknowledgement entered after the run applies at once, even if it is dated later.
     for (config::Acknowledgement& a : logs_.acknowledged) a.date = std::min(a.date, last_run_.date);
     for (const config::Event& e : now.events)
       if (std::none_of(logs_.events.begin(), logs_.events.end(), [&](const config::Event& known) {
@@ -150,19 +151,19 @@ class Assessment::State {
         logs_.events.push_back(e);
   }
 
-  /// One machine on its way through an assessment.
+  /// One machine during the assessment.
   struct Assessed {
     store::MachineState state;
-    std::string alone{};  ///< a campaign that belongs to no machine; `state` has no name then
-    /// By which it is kept: no machine's name has a line break.
+    std::string alone{};  ///< id of a campaign without a machine; `state` has no name then
+    /// Key under which it is stored. The line break cannot occur in the name of a machine.
     std::string key() const { return alone.empty() ? state.machine.name : '\n' + alone; }
     std::vector<config::Event> events;
-    std::vector<std::string> campaigns;  ///< those that count
+    std::vector<std::string> campaigns;  ///< campaigns whose evaluation is not superseded
     KeptMachine kept;
-    bool is_new = false;                    ///< `kept` is other than it was before
-    std::optional<Fits> fits{};             ///< as soon as it is read
-    std::optional<AssessedMachine> read{};  ///< out of the store, if it had to be
-    bool fitted = false;                    ///< `read` has its trends
+    bool is_new = false;                    ///< `kept` differs from what is stored
+    std::optional<Fits> fits{};             ///< loaded when the machine is read
+    std::optional<AssessedMachine> read{};  ///< data from the store, if they had to be read
+    bool fitted = false;                    ///< the series in `read` have their trends
     std::vector<std::vector<Adjusted>> adjusted{};
     std::optional<reports::MachineHistory> described{};
   };
@@ -171,7 +172,8 @@ class Assessment::State {
     return std::int64_t{info.st_mtim.tv_sec} * 1'000'000'000 + info.st_mtim.tv_nsec;
   }
 
-  /// With what was kept of them, as far as nothing is new.
+  /// Lists all machines; results of the previous run are reused for machines whose data are
+  /// unchanged.
   Expected<void> list_machines() {
     NONIO_TRY(auto states, store_.machines());
     NONIO_TRY(auto evaluations, store_.evaluations());
@@ -197,7 +199,7 @@ class Assessment::State {
       }
       if (std::all_of(m.campaigns.begin(), m.campaigns.end(),
                       [&](const std::string& id) { return forgotten.contains(id); }))
-        return;  // all of it was removed on purpose
+        return;  // all its campaigns were removed on purpose
       const std::string rows_key = storage::sha256(rows.take());
       if (const auto kept = before_.find(m.key());
           kept != before_.end() && kept->second.rows == rows_key)
@@ -214,7 +216,7 @@ class Assessment::State {
     for (const store::StoredEvaluation* e : of_machine[""]) of_campaign[e->campaign].push_back(e);
     for (const auto& [id, all] : of_campaign) {
       if (std::none_of(all.begin(), all.end(), [](const auto* e) { return e->counts; }))
-        continue;  // it names its machine by now
+        continue;  // the campaign states a machine in its latest evaluation
       store::MachineState none{};
       for (const store::StoredEvaluation* e : all) none.run = std::max(none.run, e->run);
       add({.state = none, .alone = id, .events = {}, .campaigns = {}, .kept = {}}, all);
@@ -222,7 +224,8 @@ class Assessment::State {
     return {};
   }
 
-  /// Names that no campaign has. Records of machines may be there before their campaigns.
+  /// Collects names of machines in entries of people that no campaign states. Records of machines
+  /// are no mistake, because they may precede the campaigns.
   void note_unknown(const std::vector<store::MachineState>& states, const MachineEvents& events) {
     std::set<std::string> names;
     for (const store::MachineState& state : states) names.insert(state.machine.name);
@@ -251,7 +254,7 @@ class Assessment::State {
     rows(std::uint64_t{m.events.size()});
   }
 
-  /// The tests of a run are counted once.
+  /// Determines the number of tests of each run; counts of unchanged runs are reused.
   Expected<void> count_tests(const std::vector<store::StoredEvaluation>& evaluations) {
     std::map<std::uint64_t, storage::ValueWriter> of_run;
     for (const store::StoredEvaluation& e : evaluations)
@@ -331,7 +334,7 @@ class Assessment::State {
     return {};
   }
 
-  /// What changed, and the lines.
+  /// Decides which changes are significant, and makes the worklist lines of each machine.
   Expected<void> judge_all() {
     std::vector<const SeriesTests*> tests;
     for (const Assessed& m : machines_)
@@ -378,12 +381,12 @@ class Assessment::State {
       w(a->date, a->finding, a->machine, a->axis, a->quantity, a->until, a->value, a->U, a->by,
         a->why);
     for (const std::string& campaign : m.campaigns) w(links_.of(campaign));
-    // What came with this run is reported as new.
+    // Results of the present run are reported as new, so the run is a part of the key.
     if (m.state.run >= last_run_.run) w(last_run_.run);
     return storage::sha256(w.take());
   }
 
-  /// Described, with what its changes came to.
+  /// Completes a machine with its trends, significant changes and description.
   Expected<void> finish(Assessed& m) {
     if (!m.read)
       if (auto well = read(m); !well) return well;
@@ -395,13 +398,13 @@ class Assessment::State {
     ask_others(*m.read, *m.fits);
     const Due due = due_of(*m.read, logs_);
     m.described = describe(*m.read, out_, due.day, due.why, last_run_.date);
-    if (!m.alone.empty()) m.described->file.clear();  // it has no page of its own
+    if (!m.alone.empty()) m.described->file.clear();  // a campaign without a machine has no page
     m.fitted = false;
     return {};
   }
 
   Expected<void> put_together() {
-    // Needed only for what is lost or failed.
+    // Only lost and failed campaigns need this.
     Expected<std::map<std::string, std::string>> machine_of_campaign;
     if (!last_run_.vanished.empty() || !last_run_.failed.empty())
       machine_of_campaign = store_.machine_of_campaigns();
@@ -423,7 +426,7 @@ class Assessment::State {
       site.machines.push_back(s.shown);
       site.months.insert(site.months.end(), s.months.begin(), s.months.end());
     }
-    intervals.resize(site.machines.size());  // those of machines come first
+    intervals.resize(site.machines.size());  // machines come before campaigns without one
     auto proposals = proposals_of(intervals);
     for (std::size_t i = 0; i < proposals.size(); ++i)
       site.machines[i].proposal = std::move(proposals[i]);
@@ -440,7 +443,7 @@ class Assessment::State {
     return add_sparks();
   }
 
-  /// The machines of the first lines are drawn on the first page.
+  /// Adds the small charts of the machines in the first lines, which the first page shows.
   Expected<void> add_sparks() {
     for (const std::string& name : reports::drawn_first(site)) {
       const auto at = std::lower_bound(
@@ -464,14 +467,15 @@ class Assessment::State {
   std::map<std::uint64_t, KeptMachines::RunResult> runs_{};
   bool runs_are_new_ = false;
   Learned learned_{};
-  std::uint64_t learned_from_ = 0;  ///< evaluations
+  std::uint64_t learned_from_ = 0;  ///< number of evaluations that the statistics of the laboratory
+                                    ///< are estimated from
   std::vector<Assessed> machines_{};
   std::size_t machines_with_name_ = 0;
   std::vector<std::string> unknown_{};
   const Links links_{out_};
-  /// What is dated later is not measured yet.
+  /// Campaigns dated later are treated as not measured yet.
   const std::string until_ = last_run_.date.empty() ? "9999-12-31" : last_run_.date;
-  std::map<std::string, std::vector<reports::WorkItem>> lines_{};  ///< by machine
+  std::map<std::string, std::vector<reports::WorkItem>> lines_{};  ///< by name of the machine
 };
 
 Assessment::Assessment(std::unique_ptr<State> state) : state_(std::move(state)) {}

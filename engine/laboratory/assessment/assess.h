@@ -10,28 +10,28 @@
 #include "laboratory/assessment/last_run.h"
 #include "nonio/reports/site.h"
 
-/// What the history of a laboratory's machines requires after the last run. It is computed from the
-/// store of the history and from the summary of the run: the same bytes for the same store and run.
+/// Assesses the history of a laboratory's machines after a run, and lists the actions required. The
+/// result depends only on the store of the history and on the summary of the run.
 namespace nonio::assessment {
 
-/// Kept in OUT/.nonio/machines.sqlite for the next time, by a run, which alone writes to the
-/// folder.
+/// What `assess` stores in OUT/.nonio/machines.sqlite for the next run. Only a run may store,
+/// because it has exclusive use of the folder.
 enum class Keep { nothing, trends, all };
 
-/// The machines with their series, what changed, what they will be at their next calibration, and
-/// the lines of the worklist, in their order. `alive` is called repeatedly, as a sign of life. An
-/// error if there is no store that this program reads.
+/// Returns the machines with their series, changes and forecasts, and the lines of the worklist in
+/// their order. `alive` is called repeatedly as a sign of life. An error if no store of this
+/// version exists.
 Expected<reports::SiteHistory> assess(const std::filesystem::path& out, const LastRun& last_run,
                                       const std::function<void()>& alive,
                                       Keep keep = Keep::nothing);
 
-/// The same for sites with very many campaigns: machines without a change since the previous run
-/// are not read again (OUT/.nonio/machines.sqlite), and come without their series.
+/// Assessment of sites with very many campaigns: machines without a change since the previous run
+/// are taken from OUT/.nonio/machines.sqlite instead of the store, and come without their series.
 class Assessment {
  public:
   enum class Kept { ignored, used };
-  /// `entered`: entries of people since the run that are applied before the next one: its
-  /// acknowledgements replace those of the store, its new events are added.
+  /// `entered`: entries of people since the run. Its acknowledgements replace those of the store,
+  /// and its new events are added.
   static Expected<Assessment> of(const std::filesystem::path& out, const LastRun& last_run,
                                  const std::function<void()>& alive, Kept kept,
                                  const config::SiteLogs* entered = nullptr);
@@ -39,18 +39,20 @@ class Assessment {
   Assessment& operator=(Assessment&&) noexcept;
   ~Assessment();
 
-  /// What worklist_text, lines_json and the lists over all machines need.
+  /// The site without series: sufficient for worklist_text, lines_json and the lists over all
+  /// machines.
   const reports::SiteHistory& site() const;
-  /// A machine of `site`, with all its series.
+  /// Returns machine number `machine` of `site` with all its series.
   Expected<reports::MachineHistory> whole(std::size_t machine);
-  /// Whether a page of it is still what was made of it. `templates`: of what else pages are made.
+  /// Whether the stored page of a machine is up to date. `templates`: digest of the templates and
+  /// language that pages are made from.
   bool has_page(std::size_t machine, const std::string& templates) const;
-  /// It was written just now.
+  /// Notes that the page of a machine was written just now.
   void note_page(std::size_t machine, const std::string& templates);
-  /// For the next run.
+  /// Stores the results of the assessment for the next run.
   void keep();
   reports::SiteHistory take_site() &&;
-  /// With all series of all machines.
+  /// Returns the site with all series of all machines.
   Expected<reports::SiteHistory> take_whole(Keep keep) &&;
 
  private:
@@ -59,12 +61,13 @@ class Assessment {
   std::unique_ptr<State> state_;
 };
 
-/// nonio-history/1: what `nonio machine history OUT --json` prints of these machines. Sentences in English.
+/// Returns the JSON that `nonio machine history OUT --json` prints (nonio-history/1), with
+/// sentences in English.
 std::string history_json(const reports::SiteHistory& site, const LastRun& last_run,
                          const Templates& templates);
 
-/// The lines as a list: of summary.json, and what `nonio status --actions --json` prints. Numbers in the
-/// printed unit, u standard, sentences in English.
+/// Returns the worklist as a JSON list, for summary.json and `nonio status --actions --json`.
+/// Values are in the printed unit, u is a standard uncertainty, sentences are in `language`.
 std::string lines_json(const reports::SiteHistory& site, const Templates& templates,
                        const std::string& language = "en");
 

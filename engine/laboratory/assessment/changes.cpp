@@ -15,14 +15,15 @@ namespace kernel = nonio::statistics;
 using Cause = kernel::Change::Cause;
 
 constexpr double excess_step = 0.05;
-constexpr double spread_step = 0.1;  // of its logarithm
+constexpr double spread_step = 0.1;  // the logarithm of the spread is rounded to multiples of this
 
-/// A step where the instrument changed is called the instrument's, unless its calibration, which is
-/// in the covariance, would have to be wrong by an unusual amount.
+/// A significant step where the instrument changed is attributed to the instrument, unless its p is
+/// below this: then the calibration, whose uncertainty is in the covariance, would be wrong by an
+/// unusual amount.
 constexpr double no_instrument_below = 1e-4;
 
-/// Of very many the last of two digits counts: one more series or campaign moves no trend of the
-/// others.
+/// Step to which large counts are rounded: counts of 10,000 and more keep two digits, so that one
+/// more series or campaign does not change the trends of the others.
 std::uint64_t step_of(std::uint64_t n) {
   constexpr std::uint64_t very_many = 10'000;
   std::uint64_t step = 1;
@@ -38,7 +39,7 @@ void fit_again(FollowedSeries& s, Fits& fits) {
   s.mailed.assign(s.trend.changes.size(), false);
 }
 
-/// Whether the instrument changed in this gap, and this quantity would show it.
+/// Whether the instrument changed in this gap and contributes to the uncertainty of this quantity.
 bool shows_instrument(const FollowedSeries& s, std::size_t gap) {
   const auto& parts = s.series.points[gap + 1].common;
   return std::any_of(parts.begin(), parts.end(),
@@ -49,13 +50,14 @@ bool shows_instrument(const FollowedSeries& s, std::size_t gap) {
                      });
 }
 
-/// One test of a run.
+/// One test of a run, and where its adjusted p is stored.
 struct Asked {
   double p = 1.0;
   Adjusted* adjusted = nullptr;
 };
 
-/// Over the tests of one run; what is no candidate enters with p = 1.
+/// Adjusts the p of one run's tests by the procedure `by`. `asked`: number of tests; those without
+/// a candidate enter with p = 1.
 void adjust(const std::vector<Asked>& tests, std::size_t asked, double Adjusted::*which,
             std::vector<double> by(const std::vector<double>&)) {
   std::vector<double> p(std::max(asked, tests.size()), 1.0);
@@ -64,10 +66,10 @@ void adjust(const std::vector<Asked>& tests, std::size_t asked, double Adjusted:
   for (std::size_t i = 0; i < tests.size(); ++i) tests[i].adjusted->*which = all[i];
 }
 
-/// Between which campaigns of a machine something is known to have changed.
+/// Two campaigns between which an axis changed significantly.
 struct Place {
   std::string axis;
-  std::string after, before;  ///< days
+  std::string after, before;  ///< days of these campaigns
   bool operator<(const Place& o) const {
     return std::tie(axis, after, before) < std::tie(o.axis, o.after, o.before);
   }
@@ -87,7 +89,8 @@ std::set<Place> places_of(const AssessedMachine& m) {
   return out;
 }
 
-/// The gap of a series that contains a place; nothing if none does, or if there is a step.
+/// Returns the gap of a series that contains a place; none if no gap does, or if the series has a
+/// step there.
 std::optional<std::size_t> gap_of(const AssessedMachine& m, const FollowedSeries& s,
                                   const Place& place) {
   for (std::size_t k = 0; k + 1 < s.results.size(); ++k) {
@@ -99,7 +102,8 @@ std::optional<std::size_t> gap_of(const AssessedMachine& m, const FollowedSeries
   return std::nullopt;
 }
 
-/// A step at a place where another quantity of the axis has one: one test, not one for each place.
+/// Tests for a step at a place where another quantity of the axis has one. Only this place is
+/// tested, so p needs no adjustment for the number of places.
 void ask_there(FollowedSeries& s, std::size_t gap, double level, Fits& fits) {
   FollowedSeries tried = s;
   tried.series.declared.push_back({gap, kernel::Declared::Kind::event});
@@ -115,7 +119,7 @@ void ask_there(FollowedSeries& s, std::size_t gap, double level, Fits& fits) {
     c.declared.reset();
     tried.significant[i] = true;
     tried.p_adjusted[i] = c.p;
-    // What the run has reported of the others stays.
+    // Keep what the run reports about the other changes.
     for (std::size_t k = 0; k < s.trend.changes.size(); ++k)
       for (std::size_t j = 0; j < tried.trend.changes.size(); ++j)
         if (tried.trend.changes[j].after == s.trend.changes[k].after) {
@@ -195,15 +199,15 @@ SeriesTests tests_of(const FollowedSeries& s) {
   return out;
 }
 
-/// Families of tests: changes without an event, and changes with one, are separate families. For a
-/// mail they are one.
+/// Changes without an event and changes with one are adjusted as separate families; for
+/// `Adjusted::any`, which decides about a mail, they are one family.
 std::vector<std::vector<Adjusted>> adjusted_by_run(
     const std::vector<const SeriesTests*>& tests,
     const std::map<std::uint64_t, std::uint64_t>& asked) {
   std::vector<std::vector<Adjusted>> out;
   for (const SeriesTests* s : tests) out.emplace_back(s->changes.size());
   std::map<std::uint64_t, std::vector<Asked>> unsaid, said;
-  std::map<std::uint64_t, std::size_t> still;  // of the series whose last run it was
+  std::map<std::uint64_t, std::size_t> still;  // number of series whose last point came in this run
   for (std::size_t k = 0; k < tests.size(); ++k) {
     const SeriesTests& s = *tests[k];
     still[s.run] += s.has_model;

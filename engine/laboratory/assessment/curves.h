@@ -8,8 +8,9 @@
 
 namespace nonio::assessment {
 
-/// Mean deviation at each target, of all campaigns that a machine's series name, by day: out of
-/// their results.json, for whoever draws them. Campaigns whose results cannot be read are left out.
+/// Reads the mean deviations at the targets from results.json of all campaigns in a machine's
+/// series, ordered by day, to draw error curves. Campaigns whose results cannot be read are left
+/// out.
 std::vector<reports::ErrorCurve> curves_of(const std::filesystem::path& out,
                                            const reports::MachineHistory& machine);
 

@@ -7,10 +7,10 @@
 
 namespace nonio::assessment {
 
-/// Days since 1970-01-01 of YYYY-MM-DD; nothing of what is no day.
+/// Returns the days since 1970-01-01; none if `day` is not a date YYYY-MM-DD.
 std::optional<std::int64_t> day_number(const std::string& day);
 std::string day_text(std::int64_t number);
-/// The same day of a later month, the last one where that has none.
+/// Returns the same day `months` months later, or the last day of a shorter month.
 std::string months_later(const std::string& day, int months);
 
 inline constexpr double days_a_year = 365.25;

@@ -130,7 +130,7 @@ class Describing {
     const bool own = limit && limit->quantity == s.quantity;
     if (own) out.limit = si(limit->limit, q);
     if (!s.ended) out.forecast = forecast(s, q, limit);
-    // A limit of B applies to B only: its mean alone has no limit.
+    // The limit is that of B, so B_mean alone has no probability of being out.
     if (out.forecast && !own) out.forecast->p_out = 0.0, out.forecast->leaves.clear();
     return out;
   }
@@ -139,7 +139,8 @@ class Describing {
     const Quantity q = quantity_of_unit(s.unit);
     HistorySeries out{.axis = s.axis, .quantity = s.quantity, .unit = q, .points = {}, .model = ""};
     out.ended = s.ended;
-    // Definitions of A, E and R changed with the editions of the standard.
+    // The definitions of A, E and R differ between editions of the standard, so only equal ones are
+    // joined.
     const StoredResult& last = m_.stored.results[s.results.back()];
     for (const std::size_t i : s.results) {
       out.points.push_back(point(i, q));
@@ -148,10 +149,11 @@ class Describing {
         out.points.back().joined = false, out.points.back().why_not = "edition";
     }
     if (s.judged.empty()) return out;
-    // A campaign that states no limit does not lift the one before.
+    // A campaign that states no limit leaves the previous limit valid.
     out.limit = si(*m_.stored.results[s.judged.back()].tolerance, q);
     if (s.ended) return out;
-    for (const FollowedSeries& f : m_.followed) {  // by which it is followed
+    // Series of the followed quantity on the same axis.
+    for (const FollowedSeries& f : m_.followed) {
       if (f.axis != s.axis || f.unit != s.unit || f.ended || f.quantity == s.quantity) continue;
       const auto limit = limit_of(m_, f);
       if (!limit || limit->quantity != s.quantity) continue;
@@ -175,7 +177,7 @@ class Describing {
     const StoredResult& r = m_.stored.results[result];
     const StoredCampaign& c = m_.stored.campaigns[r.campaign];
     HistoryPoint p{c.id, c.day, links_[r.campaign], state_of(r.state), si(r.value, q)};
-    if (!r.followed) {  // its U contains what campaigns have in common
+    if (!r.followed) {  // the U of an analysis includes the part that campaigns have in common
       if (r.expanded) p.u = si(*r.expanded / r.k.value_or(2.0), q);
       return p;
     }
@@ -185,7 +187,7 @@ class Describing {
     p.u_common = si(std::sqrt(common), q);
     const auto stated = stated_.find({r.campaign, r.measurement, r.quantity, r.unit});
     if (stated == stated_.end()) return p;
-    // The value is one, so its U is: that of the analysis.
+    // The same value has the same U everywhere, so the U of the analysis is used.
     const StoredResult& same = m_.stored.results[stated->second];
     const double whole = si(*same.expanded / same.k.value_or(2.0), q);
     const double more = whole * whole - p.u * p.u;
@@ -217,7 +219,7 @@ class Describing {
                          of ? of->beyond : kernel::Beyond{});
     reports::HistoryForecast out{day_text(*ahead_), si(f.value, q), si(f.u, q), f.p_out, {},
                                  name_of(f.answer)};
-    // Beyond half of what was observed a line is a guess.
+    // Extrapolation by more than half of the observed span is not reliable.
     const double last = s.series.points.back().time, first = s.series.points.front().time;
     if (f.leaves && *f.leaves <= last + (last - first) / 2.0)
       out.leaves = day_text(static_cast<std::int64_t>(std::floor(*f.leaves * days_a_year)));
@@ -225,7 +227,7 @@ class Describing {
     if (!open && out.date < today_ && f.answer != kernel::Answer::cannot_say)
       out.answer = "overdue";
     if (!open) return out;
-    // A value is out of its limit or indeterminate: act, whatever the forecast.
+    // A value that is out of its limit or indeterminate requires action, whatever the forecast is.
     if (f.answer == kernel::Answer::cannot_say)
       out.value = out.u = out.p_out = std::numeric_limits<double>::quiet_NaN();
     out.answer = name_of(kernel::Answer::act);
@@ -233,10 +235,10 @@ class Describing {
   }
 
   const AssessedMachine& m_;
-  std::vector<std::string> links_;  ///< of each campaign
+  std::vector<std::string> links_;  ///< link to the results of each campaign
   std::string today_;
-  std::set<std::string> open_now_;  ///< axes of which a value is beyond its limit or indeterminate
-  /// What analyses state: by campaign, measurement, quantity and unit.
+  std::set<std::string> open_now_;  ///< axes with a value that is out of its limit or indeterminate
+  /// Index of the result that an analysis states, by campaign, measurement, quantity and unit.
   std::map<std::tuple<std::size_t, std::string, std::string, std::string>, std::size_t> stated_;
   std::optional<std::int64_t> ahead_{};
 };
@@ -290,7 +292,7 @@ std::string Links::of(const std::string& campaign) const {
   std::string folder = campaign + "/";
   if (hashed_) folder = storage::own_folder(root_, campaign).native().substr(root_.size()) + "/";
   bool report = ::access((root_ + folder + "report.pdf").c_str(), F_OK) == 0;
-  if (!report)  // a pack may have it
+  if (!report)  // the report may be in a pack
     report =
         storage::is_there(storage::results_folder(root_, campaign) / "report.pdf").value_or(false);
   return folder + (report ? "report.pdf" : evaluation::results_name);
@@ -315,7 +317,7 @@ std::optional<std::int64_t> usual_interval(const std::vector<StoredCampaign>& ca
 
 namespace {
 
-/// By how much B was larger than |B_mean| in the campaigns since the last reported change.
+/// Estimates by how much B exceeded |B_mean| in the campaigns since the last significant change.
 std::optional<kernel::Beyond> beyond_mean(const AssessedMachine& m, const FollowedSeries& mean,
                                           const ShownSeries& B) {
   std::size_t first = 0;
@@ -338,7 +340,8 @@ std::optional<kernel::Beyond> beyond_mean(const AssessedMachine& m, const Follow
   for (const double x : more) out.value += x / n;
   double squares = 0.0;
   for (const double x : more) squares += (x - out.value) * (x - out.value);
-  constexpr std::size_t fewest_for_scatter = 3;  // with fewer the variation is taken from U of B
+  // With fewer campaigns the variation is estimated from U of B.
+  constexpr std::size_t fewest_for_scatter = 3;
   out.u =
       more.size() < fewest_for_scatter ? u_of_B : std::sqrt(squares / (n - 1.0) * (1.0 + 1.0 / n));
   return out;
@@ -379,7 +382,8 @@ reports::MachineHistory describe(const AssessedMachine& machine, const fs::path&
   reports::MachineHistory m;
   m.id = named.name, m.maker = named.stated.maker;
   m.model = named.stated.model, m.serial = named.stated.serial;
-  for (const StoredCampaign& c : machine.stored.campaigns) {  // the last that states them
+  // The last campaign that states them counts.
+  for (const StoredCampaign& c : machine.stored.campaigns) {
     m.customer = c.customer;
     if (!c.place.empty()) m.place = c.place;
     if (!c.control.empty()) m.control = c.control;

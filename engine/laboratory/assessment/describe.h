@@ -13,17 +13,17 @@
 
 namespace nonio::assessment {
 
-/// Of a unit's symbol in results.json.
+/// Returns the quantity that has this unit symbol in results.json.
 Quantity quantity_of_unit(const std::string& symbol);
-/// From the printed unit to SI, so that `printed` gives the number back.
+/// Converts a value from the printed unit to SI, so that `printed` restores the same number.
 double si(double shown, Quantity quantity);
 
-/// The page of a machine in OUT/machines: a name that is a file's everywhere, and one machine's
-/// only.
+/// Returns the name of a machine's page in OUT/machines: valid as a file name everywhere, and
+/// different for each machine.
 std::string page_of_machine(const std::string& machine);
 
-/// Where the results of campaigns are, relative to the output folder: the report, else the folder's
-/// results.json.
+/// Finds where a campaign's results are, relative to the output folder: its report if it has one,
+/// otherwise its results.json.
 class Links {
  public:
   explicit Links(const std::filesystem::path& out);
@@ -33,29 +33,30 @@ class Links {
   std::string root_;
   bool hashed_;
 };
-/// Of one.
+/// Returns the link for one campaign.
 std::string link_of(const std::filesystem::path& out, const std::string& campaign);
 
-/// Days; half of the gaps between campaign days are longer than this; none of one day.
+/// Returns the median gap between campaign days, in days; none if there is only one day.
 std::optional<std::int64_t> usual_interval(const std::vector<store::StoredCampaign>& campaigns);
 
-/// The limit that applies to a followed quantity, in the unit of results.json: its own, or for the
-/// mean reversal that of B, reduced by what B is larger by.
+/// The limit that applies to a followed quantity, in the unit of results.json: its own limit, or
+/// for B_mean that of B, with the amount by which B exceeds |B_mean|.
 struct FollowedLimit {
-  std::string quantity;  ///< that has the limit
+  std::string quantity;  ///< quantity that the limit is stated for
   double limit = 0.0;
   nonio::statistics::Beyond beyond{};
 };
-/// None: no quantity of the axis has one, or no campaign of the series has B in addition to B_mean.
+/// Returns the limit; none if no quantity of the axis has one, or no campaign of the series has
+/// both B and B_mean.
 std::optional<FollowedLimit> limit_of(const AssessedMachine& machine, const FollowedSeries& series);
 
-/// What pages and programs show of a machine. `due`: day of the next calibration by a rule, `why`
-/// in words; empty: there is none, and forecasts look one usual interval ahead. A forecast for a day
-/// before `today` is overdue.
-/// Whether a change of a quantity of this axis is between the same campaigns.
+/// Whether a change of a quantity of this axis is between the same campaigns as the loaded table.
 bool is_at(const reports::TableLoaded& table, const std::string& axis,
            const reports::HistoryChange& change);
 
+/// Describes a machine for pages and programs. `due`: day of the next calibration by a rule; `why`:
+/// the rule in words. If `due` is empty there is no rule, and forecasts look one usual interval
+/// ahead. A forecast for a day before `today` is marked as overdue.
 reports::MachineHistory describe(const AssessedMachine& machine, const std::filesystem::path& out,
                                  const std::string& due, const std::string& why,
                                  const std::string& today = {});

@@ -22,12 +22,12 @@ namespace kernel = nonio::statistics;
 
 namespace {
 
-/// Everything that affects a trend.
+/// Returns a digest of all inputs of a trend.
 std::string key_of(char what, const kernel::Series& s) {
   return storage::sha256(storage::pack(what, s));
 }
 
-/// Whether it can be one of that series.
+/// Whether a stored trend is consistent with the series.
 bool fits_in(const kernel::Trend& t, const kernel::Series& s) {
   const std::size_t n = s.points.size();
   const bool segments =

@@ -16,21 +16,21 @@ NONIO_MEMBERS(statistics::Slope, a, b)
 
 namespace nonio::assessment {
 
-/// Trends and slopes of series, kept by the digest of all their inputs: a run computes those of its
-/// new campaigns. They change no result: a damaged entry is computed again.
+/// Cache of trends and slopes, by the digest of all their inputs, so that a run computes only those
+/// of its new campaigns. The cache changes no result: a damaged entry is computed again.
 class Fits {
  public:
-  /// No fits are known.
+  /// Starts with an empty cache.
   Fits() = default;
-  /// With what `kept` returned.
+  /// Starts with the entries that `kept` returned.
   static Fits of(std::string_view kept);
 
   nonio::statistics::Trend trend(const nonio::statistics::Series& series);
   std::optional<nonio::statistics::Slope> slope(const nonio::statistics::Series& series);
 
-  /// All that was requested, in the order of the keys.
+  /// Returns all entries that were requested, in the order of their keys.
   std::string kept() const;
-  /// Whether a fit was added to those that were known before.
+  /// Whether an entry was computed that the cache did not contain.
   bool is_new() const;
   std::size_t computed() const { return computed_; }
 

@@ -27,7 +27,7 @@ std::string digest_of_basis(const HistoryBasis& b) {
   return storage::sha256(json.dump(-1, ' ', false, storage::Json::error_handler_t::replace));
 }
 
-/// Bases of the campaigns of one machine.
+/// Makes the bases of the campaigns of one machine.
 class BasisMachine {
  public:
   BasisMachine(const std::vector<store::MachineState>& machines, const std::string& name,
@@ -44,7 +44,7 @@ class BasisMachine {
     if (rule != logs.due.end()) basis_.months = rule->second;
   }
 
-  /// `all`: of this machine, by day and id.
+  /// Returns the basis of the campaign `of`. `all`: the campaigns of this machine, by day and id.
   HistoryBasis basis(const store::CountedCampaign& of,
                      const std::vector<const store::CountedCampaign*>& all) const {
     HistoryBasis out = basis_;
@@ -91,7 +91,8 @@ Expected<std::vector<HistoryBasis>> history_bases(const fs::path& out,
 
 namespace {
 
-/// The campaigns of the basis and the campaign itself, as if all had come in one run.
+/// Returns the campaigns of the basis and the campaign itself, treated as if they had come in one
+/// run.
 store::StoredMachine campaigns_up_to(const store::StoredMachine& all, const HistoryBasis& basis) {
   std::set<std::string> wanted{basis.campaign};
   for (const auto& [campaign, digest] : basis.campaigns) wanted.insert(campaign);
@@ -118,7 +119,7 @@ store::StoredMachine campaigns_up_to(const store::StoredMachine& all, const Hist
   return out;
 }
 
-/// Of the campaign's own points in one series.
+/// Adds the differences between the campaign's points and their predecessors in one series.
 Expected<void> add_steps(const AssessedMachine& m, const FollowedSeries& s,
                          const std::string& campaign, std::size_t series, HistorySoFar& to) {
   const Quantity q = quantity_of_unit(s.unit);

@@ -11,30 +11,32 @@
 #include "laboratory/store/identity.h"
 #include "nonio/sdk/history.h"
 
-/// The machine's history that a campaign's report shows: of the campaigns up to its own day, out of
-/// the store. It depends on no other machine, on nothing later and on no run, so that the same
+/// Computes the machine's history that a campaign's report shows, from campaigns up to its own day.
+/// It depends neither on other machines, nor on later campaigns, nor on the run, so that the same
 /// results give the same report in any order.
 namespace nonio::assessment {
 
-/// From what such a history is made.
+/// The data from which the history of one campaign is made.
 struct HistoryBasis {
   std::string campaign, day;
-  store::NamedMachine machine;  ///< without a name: the campaign states none
+  store::NamedMachine machine;  ///< no name: the campaign states no machine
   std::vector<std::string> aliases;
-  /// The machine's other campaigns up to that day, by day and id; with the digest of their results.
+  /// The machine's other campaigns up to that day, ordered by day and id; each with the digest of
+  /// its results.
   std::vector<std::pair<std::string, std::string>> campaigns;
   std::vector<config::Event> events;  ///< up to that day
-  int months = 0;                     ///< interval of the site's rule; 0: there is none
-  /// Of all this, and not of the campaign's own results.
+  int months = 0;                     ///< interval of the site's rule in months; 0: there is no
+                                      ///< rule
+  /// Digest of all these data; the campaign's own results are not included.
   std::string sha256{};
 };
 
-/// Of these campaigns, those that the store knows. An error if there is no store that this program
-/// reads. One look at the list of campaigns, and at no result.
+/// Returns the bases of those campaigns that the store contains. An error if no store of this
+/// version exists. Reads the list of campaigns and no results.
 Expected<std::vector<HistoryBasis>> history_bases(const std::filesystem::path& out,
                                                   const std::vector<std::string>& campaigns);
 
-/// Reads the results of one machine.
+/// Reads the results of one machine and computes the history.
 Expected<HistorySoFar> history_so_far(const std::filesystem::path& out, const HistoryBasis& basis);
 
 }  // namespace nonio::assessment

@@ -12,7 +12,7 @@ NONIO_MEMBERS(Finding, a, b, c, d, e, f)
 NONIO_MEMBERS(reports::OpenValue, a, b, c, d, e, f, g, h, i)
 NONIO_MEMBERS(reports::WorkItem, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v)
 NONIO_MEMBERS(reports::IntervalProposal, a, b, c, d, e)
-/// Without series.
+/// Lists the members that are stored; series are not.
 template <class Archive, class T>
 requires std::same_as<std::remove_const_t<T>, reports::MachineHistory>
 void members(Archive& archive, T& m) {
@@ -44,10 +44,10 @@ using storage::Database;
 
 constexpr const char* kept_folder = ".nonio";
 constexpr const char* machines_name = "machines.sqlite";
-/// Another program may find out something else, and come to another trend of the same series.
+/// Versions of the stored data; another program may compute other results or trends.
 constexpr std::string_view machines_version = "9 " NONIO_VERSION, trends_version = "4";
 constexpr std::size_t digest_size = 64;
-constexpr double patience = 5.0;  // s; without the file a run takes longer
+constexpr double patience = 5.0;  // s to wait for a lock; without the file a run takes longer
 
 constexpr const char* tables =
     "CREATE TABLE version(of TEXT PRIMARY KEY, is_ TEXT NOT NULL);"
@@ -56,7 +56,7 @@ constexpr const char* tables =
 
 std::string signed_bytes(std::string body) { return storage::sha256(body) + body; }
 
-/// The bytes behind their digest; none if they are others.
+/// Returns the bytes that follow their digest; none if the digest does not match.
 std::optional<std::string_view> body_of(std::string_view bytes) {
   if (bytes.size() < digest_size) return std::nullopt;
   const std::string_view body = bytes.substr(digest_size);
@@ -132,11 +132,11 @@ void KeptMachines::make_anew() {
 
 void KeptMachines::keep(const Changes& changes) {
   if (changes.machines.empty() && changes.gone.empty() && !changes.runs) return;
-  if (!file_) make_anew();  // it is missing, or not to be read
+  if (!file_) make_anew();  // it is missing or cannot be read
   if (!file_) return;
   if (put(changes)) return;
   file_.reset();
-  make_anew();  // what can be read and not written would stay as it is for ever
+  make_anew();  // a file that can be read and not written would never be updated
 }
 
 Expected<void> KeptMachines::put(const Changes& changes) {

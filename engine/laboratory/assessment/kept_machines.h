@@ -15,34 +15,34 @@
 
 namespace nonio::assessment {
 
-/// What a run has computed for a machine, so that the next one assesses only machines with other
-/// results. Each part names what it was made from.
+/// Results of a run for one machine, so that the next run assesses only machines with new data.
+/// Each part states what it was made from.
 struct KeptMachine {
-  std::string rows{};  ///< digest of what the store and the site state about it
+  std::string rows{};  ///< digest of the machine's data in the store and the site
   struct Series {
     Lesson lesson;
-    Manner manner;      ///< of the trend
-    SeriesTests tests;  ///< of that trend
+    Manner manner;      ///< parameters of the trend
+    SeriesTests tests;  ///< tests of that trend
   };
   std::vector<Series> series{};
-  std::string digest{};  ///< of all that goes into `standing`, but the date
-  std::string date{};    ///< of the run
+  std::string digest{};  ///< digest of everything that `standing` depends on, except the date
+  std::string date{};    ///< date of the run
   Standing standing{};
   struct Page {
     std::string made_from{};
     std::uint64_t size = 0;
-    std::int64_t changed = 0;  ///< nanoseconds
+    std::int64_t changed = 0;  ///< time of the last change in nanoseconds
   };
   Page page{};
 };
 
-/// All of a site, in OUT/.nonio/machines.sqlite: of each machine what was found out, and its
-/// trends. They change no result: what is missing, is damaged or of another version is found out
-/// again. Trouble with the file is no error.
+/// Cache in OUT/.nonio/machines.sqlite: results and trends of each machine of a site. It changes no
+/// result: entries that are missing, damaged or of another version are computed again. Errors of
+/// the file are ignored.
 class KeptMachines {
  public:
   struct RunResult {
-    std::string made_from{};  ///< digest of its evaluations
+    std::string made_from{};  ///< digest of the run's evaluations
     std::uint64_t asked = 0;
   };
 
@@ -50,19 +50,19 @@ class KeptMachines {
 
   std::map<std::string, KeptMachine> machines();
   std::map<std::uint64_t, RunResult> runs();
-  /// What `Fits::kept` returned for the machine.
+  /// Returns what `Fits::kept` returned for the machine.
   std::string trends_of(const std::string& machine);
 
-  /// What a run adds. All of it comes into the file, or nothing.
+  /// Entries to be written. All of them are written in one transaction, or none.
   struct Changes {
     struct Of {
       std::string machine;
-      const KeptMachine* kept = nullptr;    ///< null: as it was, or nothing
-      std::optional<std::string> trends{};  ///< none: as they were
+      const KeptMachine* kept = nullptr;    ///< null: unchanged, or not stored
+      std::optional<std::string> trends{};  ///< none: unchanged
     };
     std::vector<Of> machines;
-    std::set<std::string> gone;  ///< machines
-    /// All of them, where any is another.
+    std::set<std::string> gone;  ///< machines that no longer exist
+    /// All runs, if any of them changed.
     std::optional<std::map<std::uint64_t, RunResult>> runs{};
   };
   void keep(const Changes& changes);
@@ -75,10 +75,10 @@ class KeptMachines {
 
   std::filesystem::path out_;
   std::optional<storage::Database> file_;
-  bool has_machines_ = false;  ///< of this version
+  bool has_machines_ = false;  ///< the file contains machines of this version
 };
 
-/// The same bytes, the same values.
+/// Returns the value as bytes; equal values give equal bytes.
 std::string bytes_of(const std::vector<reports::WorkItem>& lines);
 std::string bytes_of(const reports::IntervalProposal& proposal);
 

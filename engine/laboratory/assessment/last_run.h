@@ -10,30 +10,32 @@
 
 namespace nonio::assessment {
 
-/// What a run itself knows and the history does not.
+/// Facts about the last run that the history does not contain.
 struct LastRun {
   struct Failed {
     std::string campaign, folder;  ///< folder: relative to the site, as text
     std::string message;           ///< with file and line
-    std::string since;             ///< day of the first run with this failure; empty: this run
+    std::string since;             ///< day of the first run with this failure; empty: it is new in
+                                   ///< this run
   };
   struct Vanished {
     std::string campaign, folder;
     std::uint64_t last_seen_run = 0;
-    std::string why;  ///< what is there instead
+    std::string why;  ///< what is found in its place
   };
   std::uint64_t run = 0;
-  std::string date;  ///< of the run, YYYY-MM-DD: the only clock
+  std::string date;  ///< date of the run, YYYY-MM-DD; used in place of a clock
   std::uint64_t campaigns = 0, done = 0, unchanged = 0;
-  std::vector<Failed> failed{};        ///< by campaign
-  std::vector<Vanished> vanished{};    ///< by campaign; without those that were removed on purpose
-  std::vector<std::string> issued{};   ///< numbers of certificates
-  std::vector<std::string> waiting{};  ///< campaigns whose drafts wait for a release
-  std::string language = "en";         ///< of the site
-  std::string history_error{};         ///< the store does not contain this run
+  std::vector<Failed> failed{};        ///< sorted by campaign
+  std::vector<Vanished> vanished{};    ///< sorted by campaign; without those that were removed on
+                                       ///< purpose
+  std::vector<std::string> issued{};   ///< numbers of issued certificates
+  std::vector<std::string> waiting{};  ///< campaigns whose drafts wait for approval
+  std::string language = "en";         ///< language of the site
+  std::string history_error{};         ///< why the store does not contain this run; empty: it does
 };
 
-/// Of the last complete run, from OUT/summary.json. An error if there is none.
+/// Reads the last complete run from OUT/summary.json. An error if there is none.
 Expected<LastRun> last_run_in(const std::filesystem::path& out);
 
 }  // namespace nonio::assessment

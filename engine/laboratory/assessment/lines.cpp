@@ -16,14 +16,16 @@ using Kind = WorkItem::Kind;
 
 namespace {
 
-constexpr std::size_t most_alike = 3;     // failures with one message, listed one by one
-constexpr std::size_t most_machines = 5;  // that are missing, listed one by one
+// Failures with the same message that are listed one by one.
+constexpr std::size_t most_alike = 3;
+constexpr std::size_t most_machines = 5;  // names of machines in one line
 
 void put_count(WorkItem& line, const char* name, std::size_t n) {
   line.finding.evidence.push_back({name, static_cast<double>(n), Quantity::count});
 }
 
-/// What vanished, by machine; where many did, by the folder that they had in common.
+/// Makes the lines of vanished campaigns, one per machine; if many vanished, one per folder that
+/// they had in common.
 std::vector<WorkItem> lost(const Known& known) {
   std::map<std::string, std::vector<const LastRun::Vanished*>> by_machine, by_folder;
   std::vector<WorkItem> out;
@@ -66,7 +68,8 @@ std::vector<WorkItem> lost(const Known& known) {
   return out;
 }
 
-/// One mistake in site.toml fails every campaign, and is one line.
+/// Makes the lines of failed campaigns. Many failures with the same message, for example from a
+/// mistake in site.toml, are one line.
 std::vector<WorkItem> failed(const Known& known) {
   std::map<std::string, std::vector<const LastRun::Failed*>> by_message;
   for (const LastRun::Failed& f : known.last_run.failed) by_message[f.message].push_back(&f);
@@ -99,7 +102,7 @@ std::vector<WorkItem> failed(const Known& known) {
   return out;
 }
 
-/// Machines without a stated limit: their conformity was not assessed.
+/// Adds a line for machines without a stated limit, whose conformity was not assessed.
 void not_judged(const Known& known, std::vector<WorkItem>& out) {
   std::string names;
   std::size_t count = 0;
@@ -113,7 +116,8 @@ void not_judged(const Known& known, std::vector<WorkItem>& out) {
   put_text(out.back(), "machines", names + (count > most_machines ? ", ..." : ""));
 }
 
-/// Campaigns that state neither an asset nor maker and serial: nothing joins them to others.
+/// Adds a line for campaigns that state neither an asset nor maker and serial, and so cannot be
+/// joined to others.
 void without_machine(const Known& known, std::vector<WorkItem>& out) {
   WorkItem line = line_of(Kind::information, "worklist.no-machine", "site");
   for (const Standing* m : known.machines)
@@ -124,7 +128,7 @@ void without_machine(const Known& known, std::vector<WorkItem>& out) {
   out.push_back(std::move(line));
 }
 
-/// Drafts of certificates, which a person issues.
+/// Adds a line for drafts of certificates that wait for approval.
 void drafts(const Known& known, std::vector<WorkItem>& out) {
   if (known.last_run.waiting.empty()) return;
   out.push_back(line_of(Kind::information, "worklist.draft", "site"));
@@ -133,7 +137,8 @@ void drafts(const Known& known, std::vector<WorkItem>& out) {
   put_count(out.back(), "count", known.last_run.waiting.size());
 }
 
-/// Findings with severity warning in last campaigns of which every judged value conforms.
+/// Adds a line for machines whose last campaign has findings with severity warning, although every
+/// judged value conforms.
 void conforming(const Known& known, std::vector<WorkItem>& out) {
   std::size_t machines = 0, lost_motion = 0;
   for (const Standing* m : known.machines) {
@@ -147,7 +152,8 @@ void conforming(const Known& known, std::vector<WorkItem>& out) {
   put_count(out.back(), "reversal", lost_motion);
 }
 
-/// An entry for a machine without campaigns applies to no machine: a spelling mistake.
+/// Adds a line for entries that name a machine without campaigns, which is probably a spelling
+/// mistake.
 void unknown(const Known& known, std::vector<WorkItem>& out) {
   const std::size_t count = known.unknown.size();
   if (count == 0) return;
@@ -189,7 +195,8 @@ std::vector<WorkItem> of_site(const Known& known) {
   return out;
 }
 
-/// If many days are later than the run, the date of the run is wrong.
+/// Replaces more than `most_alike` new lines with this finding by one line of the site. Example:
+/// many campaigns dated after the run mean that the run's date is wrong.
 void fold(std::vector<WorkItem>& lines, const char* finding, const char* several) {
   const auto is_one = [&](const WorkItem& l) {
     return l.finding.id == finding && l.state == WorkItem::State::fresh;
@@ -211,14 +218,16 @@ void fold(std::vector<WorkItem>& lines, const char* finding, const char* several
   lines.push_back(std::move(all));
 }
 
-/// How much there is of it: of what is as grave, the largest comes first.
+/// Returns |value| / limit, or |value| / u without a limit: within one kind, lines are sorted by
+/// this, largest first.
 double size_of(const WorkItem& l) {
   if (l.value && l.limit && *l.limit > 0.0) return std::fabs(*l.value) / *l.limit;
   if (l.value && l.u && *l.u > 0.0) return std::fabs(*l.value) / *l.u;
   return 0.0;
 }
 
-/// What wears out of its limit has been coming; what was hit is news.
+/// Whether the value went out of its limit gradually. Such lines come after those with a sudden
+/// change.
 bool wears(const WorkItem& l) {
   return l.kind == Kind::out && !l.finding.id.starts_with("worklist.out-changed");
 }

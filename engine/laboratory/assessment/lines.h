@@ -13,26 +13,26 @@
 
 namespace nonio::assessment {
 
-/// All that lines are made from.
+/// The data from which the worklist is made.
 struct Known {
   const LastRun& last_run;
   const std::vector<const Standing*>& machines;
   const std::map<std::string, std::string>& machine_of_campaign;
   const std::vector<store::Spelling>& spellings;
   const std::map<std::string, OfQuantity>& learned;
-  /// Names of machines that people use and no campaign has, each with its file.
+  /// Names of machines in entries of people that no campaign states, each with its file.
   const std::vector<std::string>& unknown;
 };
 
-/// The actions that the last run requires, one line each: in the order of what ignoring them costs,
-/// within that new before known, then the largest first. One cause is reported once.
+/// Returns the lines of the worklist. They are sorted by what ignoring them costs, then new before
+/// known, then by size. One cause is reported once.
 std::vector<reports::WorkItem> lines_of(const Known& known);
 
-/// Of a quantity: reversal, scale, curve, turn, cyclic, scatter, squareness, straightness, centre,
-/// circle, parameter. Its words are `term.what` and `term.look`.
+/// Returns the kind of a quantity: reversal, scale, curve, turn, cyclic, scatter, squareness,
+/// straightness, centre, circle or parameter. Its words are `term.what` and `term.look`.
 std::string kind_of(const std::string& quantity);
 
-/// The axis of a series, out of its quantity (backlash:X.b) where it has none.
+/// Returns the axis of a series; if it has none, the one in its quantity (backlash:X.b).
 std::string axis_of(const std::string& axis, const std::string& quantity);
 
 }  // namespace nonio::assessment

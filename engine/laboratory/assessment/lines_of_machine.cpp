@@ -22,16 +22,16 @@ using Kind = WorkItem::Kind;
 
 namespace {
 
-/// A change of one axis, with all quantities in which it is seen.
+/// A change of one axis between two campaigns, with all quantities that show it.
 struct AxisChange {
-  std::string after, before;  ///< days
+  std::string after, before;  ///< days of these campaigns
   struct Seen {
     const HistorySeries* series = nullptr;
     const HistoryChange* change = nullptr;
     double size() const { return std::fabs(change->size) / change->u; }
   };
-  std::vector<Seen> seen;  ///< the largest first
-  bool listed = false;     ///< in the line of what does not conform
+  std::vector<Seen> seen;  ///< sorted by size / u, largest first
+  bool listed = false;     ///< already part of the line of values that do not conform
 };
 
 bool is_correction(const HistoryChange& c) {
@@ -68,16 +68,16 @@ class OfMachine {
     return l;
   }
 
-  /// Of a campaign that belongs to no machine: its own.
+  /// Returns the name of the machine, or the id of a campaign without a machine.
   const std::string& name() const {
     return d_.id.empty() && !m_.stored.campaigns.empty() ? m_.stored.campaigns.back().id : d_.id;
   }
 
   void add(WorkItem l) { out_.push_back(std::move(l)); }
 
-  // ---- what changed
+  // ---- lines about changes
 
-  /// The changes of each axis that were not repaired since.
+  /// Collects the changes of each axis since its last repair or compensation.
   void causes_by_axis() {
     for (const HistorySeries& s : d_.series) {
       std::string repaired;
@@ -94,15 +94,15 @@ class OfMachine {
                          [](const auto& a, const auto& b) { return a.size() > b.size(); });
   }
 
-  /// A table that was not loaded as it should be: it has a line of its own.
+  /// Whether the change is a table that was loaded wrongly, which has its own line.
   bool is_fault(const std::string& axis, const HistoryChange& c) const {
     return std::any_of(d_.tables_loaded.begin(), d_.tables_loaded.end(), [&](const auto& t) {
       return t.kind != "loaded" && t.kind != "removed" && is_at(t, axis, c);
     });
   }
 
-  /// An event states that this axis was repaired or compensated after that campaign. A plan
-  /// has repaired nothing yet.
+  /// Whether an event states that the axis was repaired or compensated after that day. Events after
+  /// the run do not count.
   bool is_repaired(const std::string& axis, const std::string& after) const {
     return std::any_of(m_.events.begin(), m_.events.end(), [&](const config::Event& e) {
       return (e.kind == "repair" || e.kind == "compensation") && e.date > after &&
@@ -111,7 +111,7 @@ class OfMachine {
   }
 
   void put_change(const std::string& axis, const HistorySeries& s, const HistoryChange& c) {
-    // Not all quantities are in all campaigns: changes that overlap in time have one cause.
+    // Not every campaign has all quantities, so changes that overlap in time are taken as one.
     for (AxisChange& cause : causes_[axis])
       if (c.after < cause.before && c.before > cause.after) {
         cause.after = std::max(cause.after, c.after);
@@ -122,7 +122,7 @@ class OfMachine {
     causes_[axis].push_back({c.after, c.before, {{&s, &c}}});
   }
 
-  /// Size, days, what it is and where to look.
+  /// Puts size, days, kind of the quantity and place to look into the finding.
   void describe(WorkItem& l, const AxisChange& cause) const {
     const AxisChange::Seen& first = cause.seen.front();
     const Quantity q = first.series->unit;
@@ -155,7 +155,8 @@ class OfMachine {
                        [](const AxisChange::Seen& s) { return !s.change->event.empty(); });
   }
 
-  /// Whether a table may be the cause: a campaign does not state what was active.
+  /// Returns the table that may be the cause of a change, because one of the campaigns does not
+  /// state which table was active; null if there is none.
   const reports::TableLoaded* unstated(const std::string& axis, const AxisChange& cause) const {
     for (const reports::TableLoaded& t : d_.tables_unstated)
       if (t.axis == axis && !has_event(cause) && cause.after <= t.before && cause.before >= t.after)
@@ -199,14 +200,16 @@ class OfMachine {
     return l;
   }
 
-  // ---- limits
+  // ---- lines about limits
 
-  /// What was not measured along one axis is one matter for each analysis: a circle, a spindle.
+  /// Returns the axis of a result; for results without an axis (circle, spindle), the analysis, so
+  /// that each analysis has one line.
   const std::string& place_of(const store::StoredResult& r) const {
     return r.axis.empty() ? r.source : r.axis;
   }
 
-  /// Of each axis one line with all that does not conform or is indeterminate.
+  /// Adds one line per axis for all values that do not conform or are indeterminate and for limits
+  /// without a value, and one for values that conform again.
   void judged() {
     std::map<std::string, std::vector<Judged>> out, open, good, anew;
     std::map<std::string, std::vector<reports::OpenValue>> missing;
@@ -245,7 +248,7 @@ class OfMachine {
       if (!out.contains(axis) && !good.contains(axis)) add_fixed("worklist.judged-anew", all);
   }
 
-  /// What is open in addition to the values of the line.
+  /// Adds indeterminate values and limits without a value to the line.
   void also(WorkItem& l, std::vector<Judged> open,
             const std::vector<reports::OpenValue>& missing) const {
     worst_first(open);
@@ -253,7 +256,7 @@ class OfMachine {
     l.also.insert(l.also.end(), missing.begin(), missing.end());
   }
 
-  /// A limit, and nothing to compare with it.
+  /// Returns the line for limits that no value could be compared with.
   WorkItem no_value(const std::string& place, const std::vector<reports::OpenValue>& all) const {
     WorkItem l = line(Kind::undecided, "worklist.no-value", place);
     const reports::OpenValue& first = all.front();
@@ -269,10 +272,11 @@ class OfMachine {
   void add_fixed(const char* finding, std::vector<Judged>& all) {
     add(limit_line(Kind::out, finding, all));
     out_.back().state = WorkItem::State::fixed;
-    out_.back().also.clear();  // nothing is open
+    out_.back().also.clear();  // all values conform
   }
 
-  /// By the same definition, against no wider limit: then it is the machine that is better.
+  /// Whether the last two judgements used the same definition and no wider limit: then the machine
+  /// has improved.
   bool is_judged_alike(const ShownSeries& s) const {
     const auto& last = m_.stored.results[s.judged.back()];
     const auto& before = m_.stored.results[s.judged[s.judged.size() - 2]];
@@ -298,7 +302,7 @@ class OfMachine {
                      [&](const Judged& a, const Judged& b) { return share(a) > share(b); });
   }
 
-  /// The day from which on it was judged as it is.
+  /// Returns the first day of the uninterrupted decision of this result.
   std::string since(const ShownSeries& s, const store::StoredResult& r) const {
     std::size_t first = s.judged.size() - 1;
     while (first > 0 && m_.stored.results[s.judged[first]].campaign > r.campaign) --first;
@@ -323,7 +327,8 @@ class OfMachine {
     return l;
   }
 
-  /// Beyond its limit; with the change that made it so, if there is one.
+  /// Returns the line of values beyond their limit, with the change that explains them, if there is
+  /// one.
   WorkItem beyond(const std::string& axis, std::vector<Judged>& all) {
     WorkItem l = limit_line(Kind::out, "worklist.out", all);
     l.id = "worklist.out:" + name() + ":" + axis;
@@ -331,7 +336,7 @@ class OfMachine {
     std::string first = l.since;
     for (const Judged& j : all)
       first = std::min(first, since(*j.series, m_.stored.results[j.result]));
-    AxisChange* explains = nullptr;  // it came with it, or since
+    AxisChange* explains = nullptr;  // largest change since the values are beyond the limit
     for (AxisChange& cause : causes_[axis]) {
       if (cause.before < first) continue;
       cause.listed = true;
@@ -350,9 +355,10 @@ class OfMachine {
     return l;
   }
 
-  // ---- how a table was loaded
+  // ---- lines about loaded tables
 
-  /// Of each axis the last table, unless it is stated that it was loaded.
+  /// Adds a line for the last table of each axis if it was loaded wrongly, or if no event states
+  /// that it was loaded.
   void loaded() {
     std::map<std::string, const reports::TableLoaded*> last;
     for (const reports::TableLoaded& t : d_.tables_loaded) last[t.axis] = &t;
@@ -373,7 +379,7 @@ class OfMachine {
     }
   }
 
-  /// An event of these days, or readings as found and as left.
+  /// Whether an event of these days states the compensation, or the campaign has readings as left.
   bool is_declared(const reports::TableLoaded& t) const {
     return std::any_of(m_.events.begin(), m_.events.end(),
                        [&](const config::Event& e) {
@@ -392,7 +398,7 @@ class OfMachine {
     });
   }
 
-  // ---- what a table promised
+  // ---- tables that did less than predicted
 
   void tables() {
     for (const reports::TableKept& t : d_.tables) {
@@ -417,17 +423,17 @@ class OfMachine {
     });
   }
 
-  /// Tables, results and certificates that were not made: one line for each axis of a campaign.
+  /// Adds one line per axis of a campaign for tables, results and certificates that were withheld.
   void held_back() {
     std::map<std::string, WorkItem> all;
     for (const Withheld& w : withheld(m_.stored)) {
       const store::StoredCampaign& c = m_.stored.campaigns[w.campaign];
       const bool table = w.finding.starts_with("table.");
       WorkItem l = line(Kind::withheld,
-                        table                            ? "worklist.no-table"
-                        : is_calibration(w.finding)      ? "worklist.calibration"
-                        : is_refusal(w.finding) ? "worklist.no-result"
-                                                         : "worklist.certificate",
+                        table                       ? "worklist.no-table"
+                        : is_calibration(w.finding) ? "worklist.calibration"
+                        : is_refusal(w.finding)     ? "worklist.no-result"
+                                                    : "worklist.certificate",
                         c.id + (w.axis.empty() ? "" : ":" + w.axis));
       l.axis = w.axis, l.campaign = c.id, l.since = c.day;
       put_text(l, "campaign", c.id);
@@ -447,7 +453,7 @@ class OfMachine {
         at->second += (at->second.empty() ? "" : ", ") + one;
   }
 
-  // ---- what comes
+  // ---- forecasts
 
   void soon() {
     for (const HistorySeries& s : d_.series) {
@@ -488,7 +494,7 @@ class OfMachine {
     add(std::move(l));
   }
 
-  /// A campaign that is dated after the run is not measured yet.
+  /// Adds a line for each campaign that is dated after the run.
   void later() {
     for (const store::StoredMachine::Later& c : m_.stored.later) {
       WorkItem l = line(Kind::undecided, "worklist.later", c.campaign);
@@ -500,7 +506,7 @@ class OfMachine {
     }
   }
 
-  /// Changes together with another instrument, in campaigns of this run.
+  /// Adds a line for each change in a campaign of this run that coincides with another instrument.
   void instruments() {
     for (std::size_t i = 0; i < m_.followed.size(); ++i) {
       if (m_.followed[i].run != last_run_.run) continue;
@@ -524,8 +530,9 @@ class OfMachine {
   const reports::MachineHistory& d_;
   const LastRun& last_run_;
   std::map<std::string, std::vector<AxisChange>> causes_;
-  std::map<std::string, bool> told_;  ///< axes with a line that states all of a change
-  std::set<std::pair<std::string, std::string>> open_;  ///< axis and quantity of what has a line
+  std::map<std::string, bool> told_;  ///< axes that have a line with all their changes
+  std::set<std::pair<std::string, std::string>> open_;  ///< axis and quantity of values that have a
+                                                        ///< line
   std::vector<WorkItem> out_;
 };
 

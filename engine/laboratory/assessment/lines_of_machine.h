@@ -10,15 +10,15 @@
 
 namespace nonio::assessment {
 
-/// A line with an id that is the same in every run: the finding and its subject.
+/// Returns a line whose id is the same in every run: finding and subject `of`.
 reports::WorkItem line_of(reports::WorkItem::Kind kind, const char* finding, const std::string& of);
 
-/// The text with that name in its words.
+/// Sets the text `name` of the line's finding.
 void put_text(reports::WorkItem& line, const char* name, std::string text);
 
-/// Lines of one machine: out of tolerance, changed, soon out, overdue, indeterminate, changed with
-/// its instrument, and fixed in this run; acknowledgements are not applied yet. What a change
-/// explains is part of its line.
+/// Returns the lines of one machine: out of tolerance, changed, soon out, overdue, indeterminate,
+/// changed with its instrument, and fixed in this run. Acknowledgements are not applied yet. A
+/// change that explains another line is part of that line.
 std::vector<reports::WorkItem> lines_of_machine(const AssessedMachine& machine,
                                                 const reports::MachineHistory& described,
                                                 const LastRun& last_run);

@@ -8,21 +8,22 @@
 #include "campaign/evaluation/evaluation.h"
 #include "laboratory/statistics/table_change.h"
 
-/// Whether a table did what it should: an axis before and after it was loaded.
+/// Verdict on a loaded table, from measurements of an axis before and after loading.
 namespace nonio::assessment {
 
 struct LoadingVerdict {
   enum class Answer { worked, failed, not_decided };
-  Answer answer = Answer::not_decided;  ///< not_decided: the readings do not decide it
-  std::vector<Finding> findings{};      ///< of analysis before-after: pitch and reversal
-  /// What the change between both campaigns is, as a table; none: not that of this table.
+  Answer answer = Answer::not_decided;  ///< not_decided: the readings allow no decision
+  std::vector<Finding> findings{};      ///< findings of the analysis before-after: pitch and
+                                        ///< reversal
+  /// The change between both campaigns, recognised as a table; none: it is not that of this table.
   std::optional<statistics::TableChange> change{};
-  double E = 0.0;  ///< of the axis after loading, m or rad
+  double E = 0.0;  ///< E of the axis after loading, m or rad
 };
 
-/// `next`: the tables of the axis that were loaded between both campaigns. An error if one of the
-/// campaigns has not exactly one measurement of the axis, if they are not of the same line, or if the
-/// analysis before-after is not loaded.
+/// Judges whether the tables that were loaded between both campaigns work. `next`: these tables, of
+/// the axis. An error if one of the campaigns does not have exactly one measurement of the axis, if
+/// the measurements are not of the same line, or if the analysis before-after is not loaded.
 Expected<LoadingVerdict> judge_loading(const reading::ReadCampaign& before,
                                        const reading::ReadCampaign& after, const std::string& axis,
                                        const std::vector<LoadedTable>& next,

@@ -5,7 +5,8 @@ namespace nonio::assessment {
 
 MachineEvents::MachineEvents(const std::vector<store::MachineState>& all,
                              const store::StoredLogs& logs) {
-  std::map<std::string, const std::string*> named;  // machine by name or serial; none: of several
+  // Name of the machine by name or serial; null: several machines have this serial.
+  std::map<std::string, const std::string*> named;
   for (const store::MachineState& m : all)
     for (const std::string& serial : m.serials) {
       const auto [at, is_new] = named.try_emplace(serial, &m.machine.name);

@@ -19,11 +19,12 @@ namespace {
 
 bool is_open(const StoredResult& r) { return !r.decision.empty() && r.decision != conforms; }
 
-/// Of each axis the newest campaign that has a result of it.
+/// Returns, by axis, the newest campaign that has a result of the axis.
 std::map<std::string, std::size_t> newest_of_axes(const StoredMachine& m) {
   std::map<std::string, std::size_t> out;
   for (const StoredResult& r : m.results)
-    if (!r.axis.empty()) out[r.axis] = r.campaign;  // by day: the last one remains
+    // Results are sorted by day, so the last one remains.
+    if (!r.axis.empty()) out[r.axis] = r.campaign;
   return out;
 }
 
@@ -35,7 +36,7 @@ bool has_value(const StoredMachine& m, const LimitWithoutValue& limit) {
   });
 }
 
-/// The axis of a measurement of a campaign; empty where it has none.
+/// Returns the axis of a measurement of a campaign; empty if it has none.
 std::string axis_of_measurement(const StoredMachine& m, std::size_t campaign,
                                 const std::string& measurement) {
   for (const StoredResult& r : m.results)
@@ -43,7 +44,7 @@ std::string axis_of_measurement(const StoredMachine& m, std::size_t campaign,
   return {};
 }
 
-/// Whether later campaigns have measured this axis; without an axis: all axes of the campaign.
+/// Whether a later campaign has measured this axis; with an empty `axis`, all axes of the campaign.
 bool is_measured_later(const StoredMachine& m, const std::map<std::string, std::size_t>& newest,
                        std::size_t campaign, const std::string& axis) {
   if (!axis.empty()) {
@@ -61,7 +62,7 @@ bool is_measured_later(const StoredMachine& m, const std::map<std::string, std::
 }  // namespace
 
 std::vector<Judged> open_results(const StoredMachine& m, const ShownSeries& s) {
-  // A campaign without the limit has judged nothing: what was judged before remains.
+  // A campaign without a limit has judged nothing, so the previous decisions remain.
   std::map<std::string, std::vector<std::size_t>> groups;
   for (const std::size_t i : s.results)
     if (const StoredResult& r = m.results[i]; !r.decision.empty())

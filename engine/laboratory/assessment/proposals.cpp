@@ -35,18 +35,20 @@ IntervalProposal because(const char* method, const std::string& why) {
   return out;
 }
 
-/// Whole months, at least one; down, so that nothing is promised that was not shown.
+/// Sets the interval in whole months, at least one. It is rounded down, so that it does not exceed
+/// what the data support.
 void propose(IntervalProposal& p, double months) {
   constexpr double rounding = 1e-9;
   p.months = std::max(1, static_cast<int>(std::floor(months + rounding)));
 }
 
-/// Of its interval a machine was left alone for less than this: what was found shows nothing of it.
+/// A calibration before this fraction of the interval has passed does not test the interval.
 constexpr double early_below = 0.75;
 
 bool is_early(const IntervalFacts& m) { return m.tested < early_below * m.months; }
 
-/// What each axis was when it was last found: the worst of all that has a limit, and its campaign.
+/// Returns the worst decision among the last results as found of all quantities with a limit, and
+/// the campaign of that result.
 std::optional<std::pair<Found, std::size_t>> last_found(const AssessedMachine& m) {
   std::optional<std::pair<Found, std::size_t>> worst;
   for (const ShownSeries& s : m.shown) {
@@ -76,7 +78,8 @@ std::optional<Fleet> fleet_of(const IntervalFacts& m) {
   return Fleet(m.maker, m.model, m.months);
 }
 
-/// Months between a campaign and the last day before it on which the machine was measured.
+/// Returns the months between a campaign and the previous day on which the machine was measured; 0
+/// if there is none.
 double tested_until(const AssessedMachine& m, std::size_t campaign) {
   const auto day = day_number(m.stored.campaigns[campaign].day);
   std::optional<std::int64_t> before;
@@ -103,7 +106,8 @@ IntervalProposal staircase(const IntervalFacts& m) {
   return out;
 }
 
-/// None where they are too few, or show nothing beyond chance.
+/// Returns the proposal from the machines of one model; none if they are too few, or if no change
+/// is significant.
 std::optional<IntervalProposal> fleet(const IntervalFacts& m, const Counted& counted) {
   if (static_cast<std::size_t>(counted.machines) < fewest_of_a_fleet) return std::nullopt;
   const kernel::Proposal p =
@@ -118,15 +122,16 @@ std::optional<IntervalProposal> fleet(const IntervalFacts& m, const Counted& cou
   return out;
 }
 
-/// The point before the last significant change. Changes that no test confirmed are ignored; their
-/// effect on the uncertainty of the level is in the forecast.
+/// Returns the point before the last significant change. Changes that are not significant are
+/// ignored here; they affect the uncertainty of the level in the forecast.
 std::optional<std::size_t> last_significant(const FollowedSeries& s) {
   for (std::size_t i = s.trend.changes.size(); i-- > 0;)
     if (s.significant[i]) return s.trend.changes[i].after;
   return std::nullopt;
 }
 
-/// The shortest of what has a limit and is followed; `refusal`: why one of them gives none.
+/// Returns the shortest interval over all followed quantities with a limit. `refusal`: why one of
+/// them gives none.
 std::optional<IntervalProposal> chart(const AssessedMachine& m,
                                       std::optional<IntervalProposal>& refusal) {
   std::optional<IntervalProposal> shortest;
@@ -142,12 +147,12 @@ std::optional<IntervalProposal> chart(const AssessedMachine& m,
     one.axis = s.axis, one.quantity = limit->quantity;
     one.why.texts = {{"what", own ? kind_of(s.quantity) : limit->quantity}, {"axis", s.axis}};
     if (!p.months && p.why == "change-not-explained") refusal = one;
-    const bool soon = p.why == "out-already";  // the bound of today is beyond it
+    const bool soon = p.why == "out-already";  // the bound of today is beyond the limit
     if (!soon && (!p.months || p.why != "meets-limit")) continue;
     const double months = soon ? 0.0 : *p.months;
     if (shortest && months >= least) continue;
     least = months;
-    if (least < 1.0) {  // sooner than any interval: measure or repair now
+    if (least < 1.0) {  // shorter than any interval: measure or repair now
       one.why.id = "interval.out-already";
       one.months.reset();
     } else {
@@ -159,7 +164,7 @@ std::optional<IntervalProposal> chart(const AssessedMachine& m,
   return shortest;
 }
 
-/// A value that is beyond its limit today, the worst of them.
+/// Returns the worst of the values that are beyond their limit today; none if there is none.
 std::optional<IntervalProposal> out_now(const AssessedMachine& m) {
   std::optional<IntervalProposal> out;
   double worst = 0.0;
@@ -181,7 +186,7 @@ std::optional<IntervalProposal> out_now(const AssessedMachine& m) {
 
 IntervalProposal proposal_of(const IntervalFacts& m, const Counted& counted) {
   constexpr std::uint64_t fewest_campaigns = 2;
-  if (m.out_now) return *m.out_now;  // no date helps what is out today
+  if (m.out_now) return *m.out_now;  // a machine that is out today needs repair, not an interval
   if (m.days < fewest_campaigns) {
     IntervalProposal out = because(staircase_name, "few-campaigns");
     put(out, "campaigns", static_cast<double>(m.days));
@@ -193,8 +198,8 @@ IntervalProposal proposal_of(const IntervalFacts& m, const Counted& counted) {
   const auto by_fleet = fleet(m, counted);
   if (by_fleet && (*m.found == Found::conforms || *by_fleet->months < *out.months)) out = *by_fleet;
   if (m.chart && (!m.chart->months || *m.chart->months < *out.months)) out = *m.chart;
-  // How long an unexplained change lasts is not known; half the interval after a failure is not
-  // longer.
+  // It is unknown how long an unexplained change lasts, so the proposal is refused. After a
+  // failure, the staircase halves the interval anyway.
   if (m.refusal && *m.found != Found::fails) out = *m.refusal;
   return out;
 }

@@ -17,7 +17,7 @@ namespace {
 
 using storage::Json;
 
-constexpr double same_place = 0.01;  // of the span
+constexpr double same_place = 0.01;  // fraction of the span
 bool near(double a, double b, double span) { return std::fabs(a - b) <= same_place * span; }
 
 double number_at(const Json& o, const char* key) {
@@ -25,8 +25,9 @@ double number_at(const Json& o, const char* key) {
   return it != o.end() && it->is_number() ? it->get<double>() : 0.0;
 }
 
-/// Why two numbers cannot be points of one series; empty: they can. A table that is switched on or
-/// off is a step that is known, and no other quantity. common_stretch: other ends do not matter.
+/// Why two results cannot be points of one series; empty: they can. Switching a table on or off is
+/// a known step and does not separate them. `common_stretch`: results with different ends can be
+/// compared over the stretch that they have in common.
 std::string difference(const Json& a, const Json& b, bool common_stretch) {
   const double span = number_at(a, "to") - number_at(a, "from");
   if (!common_stretch && (a.contains("from") != b.contains("from") ||
@@ -45,13 +46,13 @@ std::string difference(const Json& a, const Json& b, bool common_stretch) {
   return {};
 }
 
-/// No object: an empty one.
+/// Parses the conditions; text that is not an object gives an empty object.
 Json parsed(const std::string& conditions) {
   Json json = storage::parse_or_discard(conditions);
   return json.is_object() ? json : Json::object();
 }
 
-/// on, off, or empty where it is not stated.
+/// Returns the state of the compensation: on, off, or empty if it is not stated.
 std::string compensation(const Json& conditions) {
   const auto it = conditions.find("compensation");
   return it != conditions.end() && it->is_string() ? it->get<std::string>() : "";
@@ -65,17 +66,20 @@ using store::StoredMachine;
 using store::StoredResult;
 namespace kernel = nonio::statistics;
 
-/// Campaigns that have at least this share of the longer span in common are compared over it.
+/// Campaigns are compared over their common stretch if it is at least this fraction of the longer
+/// span.
 constexpr double least_in_common = 0.5;
 
-/// Sources of a point that are an instrument under one certificate.
+/// Returns the source of uncertainty that is an instrument under one certificate; empty if there is
+/// none.
 std::string instrument_in(const StoredResult& r) {
   for (const store::CommonPart& c : r.common)
     if (c.source.starts_with("instrument")) return c.source;
   return {};
 }
 
-/// FNV-1a, up to each of the results.
+/// Returns the FNV-1a hash of campaigns and quantities up to each result, as the seed of the series
+/// up to that point.
 std::vector<std::uint64_t> seeds_of(const StoredMachine& m,
                                     const std::vector<std::size_t>& results) {
   std::uint64_t hash = 0xcbf29ce484222325U;
@@ -88,8 +92,8 @@ std::vector<std::uint64_t> seeds_of(const StoredMachine& m,
   return out;
 }
 
-/// A campaign's u is itself an estimate, of few runs: one that is small by chance would make a
-/// step of its noise. So half of each variance is the median of those of the series.
+/// Replaces each variance by the mean of itself and the median of the series. A campaign's u is
+/// estimated from few runs; one that is small by chance would turn noise into a step.
 void pool(std::vector<kernel::Point>& points) {
   std::vector<double> variances;
   for (const kernel::Point& p : points) variances.push_back(p.u * p.u);
@@ -98,7 +102,8 @@ void pool(std::vector<kernel::Point>& points) {
   for (kernel::Point& p : points) p.u = std::sqrt((p.u * p.u + *middle) / 2.0);
 }
 
-/// As found before as left, on one day; within a campaign in the order of its manifest.
+/// Order of results: by day, as found before as left, then by campaign and the order of its
+/// manifest.
 bool before(const StoredMachine& m, std::size_t a, std::size_t b) {
   const auto key = [&](std::size_t i) {
     const StoredResult& r = m.results[i];
@@ -111,13 +116,13 @@ bool before(const StoredMachine& m, std::size_t a, std::size_t b) {
 
 bool concerns(const config::Event& e, const FollowedSeries& s) {
   if (e.axis.empty() || s.axis.empty() || e.axis == s.axis) return true;
-  const auto colon = s.quantity.find(':');  // squareness:XY concerns X and Y
+  const auto colon = s.quantity.find(':');  // squareness:XY refers to X and Y
   return colon != std::string::npos &&
          s.quantity.substr(colon + 1).substr(0, s.quantity.find('.', colon)).find(e.axis) !=
              std::string::npos;
 }
 
-/// What is known to have happened between the points of a series.
+/// Declares the events that happened between the points of a series.
 class Happenings {
  public:
   Happenings(const StoredMachine& m, const std::vector<config::Event>& events, FollowedSeries& s)
@@ -145,8 +150,8 @@ class Happenings {
   const StoredResult& result(std::size_t k) const { return m_.results[s_.results[k]]; }
   const std::string& day(std::size_t k) const { return m_.campaigns[result(k).campaign].day; }
 
-  /// An adjustment is between a reading as found and one as left, or a table was activated or
-  /// removed. What changed between two measurements of one campaign was changed on purpose.
+  /// Returns why a known step is between points k and k + 1: an adjustment (as found, as left), a
+  /// change within one campaign, or a table that was switched on or off. Empty if there is none.
   std::string table_between(std::size_t k) const {
     const StoredResult &a = result(k), &b = result(k + 1);
     if (b.state == "as-left") return "as-left";
@@ -161,7 +166,7 @@ class Happenings {
     return concerns(e, s_) && day(k) <= e.date && e.date <= day(k + 1);
   }
 
-  /// An event on the day of an adjustment is that adjustment.
+  /// Whether an event is on the day of an adjustment: then it is that adjustment.
   bool on_day_of_table(const config::Event& e, const std::vector<bool>& table) const {
     for (std::size_t k = 0; k < table.size(); ++k)
       if (table[k] && (day(k) == e.date || day(k + 1) == e.date)) return true;
@@ -187,7 +192,7 @@ class Happenings {
   FollowedSeries& s_;
 };
 
-/// Points of one quantity, group by group of what can be joined.
+/// Groups the points of one quantity by what can be joined into one series.
 class Joining {
  public:
   Joining(const StoredMachine& m, const std::vector<std::optional<StoredTargets>>& targets,
@@ -223,7 +228,8 @@ class Joining {
   struct Group {
     Json conditions;
     std::vector<std::size_t> results;
-    /// What all have in common, and the longest span; none: targets of some are not known.
+    /// Stretch that all results have in common, and the longest span; none: targets of a result are
+    /// unknown.
     std::optional<kernel::Stretch> common{};
     double longest = 0.0;
   };
@@ -260,7 +266,7 @@ class Joining {
     if (!(r.u_repeat.value_or(0.0) > 0.0) || !std::isfinite(r.value) ||
         !day_number(m_.campaigns[r.campaign].day))
       return;
-    // Most campaigns state the same, to the letter.
+    // Compare the text first, because most campaigns state the same conditions.
     for (Group& g : groups_) {
       const StoredResult& first = m_.results[g.results.front()];
       if (first.unit == r.unit && first.conditions == r.conditions) {
@@ -319,7 +325,8 @@ class Joining {
   std::vector<Group> groups_;
 };
 
-/// What is followed is no second series under the same name.
+/// Whether a result is shown as a series of its own. Followed quantities without a limit are not,
+/// since they have a series already.
 bool is_shown(const StoredResult& r) {
   return r.tolerance || !(r.quantity == "B_mean" || r.quantity.starts_with("centre_") ||
                           r.quantity.starts_with("direction_"));
@@ -348,7 +355,7 @@ std::vector<FollowedSeries> followed_series(const StoredMachine& machine,
 
 namespace {
 
-/// 0 conforms or is not judged, 1 indeterminate, 2 does not conform.
+/// Severity of a decision: 0 conforms or not judged, 1 indeterminate, 2 does not conform.
 int gravity(const StoredResult& r) {
   if (r.decision.empty() || r.decision == "conforms") return 0;
   return r.decision == "does not conform" ? 2 : 1;
@@ -358,7 +365,7 @@ double share_of_limit(const StoredResult& r) {
   return r.tolerance && *r.tolerance > 0.0 ? std::fabs(r.value) / *r.tolerance : 0.0;
 }
 
-/// `results`: by campaign, as found before as left.
+/// Returns the deciding result of each campaign. `results`: by campaign, as found before as left.
 std::vector<std::size_t> deciding(const StoredMachine& m, const std::vector<std::size_t>& results) {
   const auto decides = [&](const StoredResult& a, const StoredResult& b) {
     const auto key = [](const StoredResult& r) {
@@ -402,7 +409,8 @@ std::vector<ShownSeries> shown_series(const StoredMachine& machine) {
   for (auto& [key, results] : by_quantity(machine, false)) {
     std::sort(results.begin(), results.end(),
               [&](std::size_t a, std::size_t b) { return before(machine, a, b); });
-    // An axis that turned and is linear now: um and arcsec are no values of one series.
+    // Values in um and in arcsec are not points of one series: the axis was changed from rotary to
+    // linear or back.
     std::map<std::string, std::vector<std::size_t>> of_unit;
     for (const std::size_t i : results) of_unit[machine.results[i].unit].push_back(i);
     const std::string& last = machine.results[results.back()].unit;

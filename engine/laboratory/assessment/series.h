@@ -12,62 +12,67 @@
 #include "laboratory/statistics/trend.h"
 #include "laboratory/store/reader.h"
 
-/// Which numbers of a machine's campaigns are points of one series, and what is known to have
-/// happened between them.
+/// Joins the results of a machine's campaigns to series, and declares the known events between
+/// their points.
 namespace nonio::assessment {
 
-/// One quantity of one axis, as far as its campaigns can be compared.
+/// One quantity of one axis over the campaigns that can be compared.
 struct FollowedSeries {
   std::string axis, quantity, unit;
-  std::vector<std::size_t> results;          ///< of the points: indices into StoredMachine::results
-  std::vector<std::uint64_t> evaluations{};  ///< of the points
-  std::vector<nonio::statistics::Point> stated{};  ///< the points as their campaigns have them
-  std::vector<PointTargets> targets{};             ///< of the points, where all are known
-  /// The stretch of the axis over which the points are compared; none: as they are.
+  std::vector<std::size_t> results;          ///< index of each point into StoredMachine::results
+  std::vector<std::uint64_t> evaluations{};  ///< number of each point's evaluation
+  std::vector<nonio::statistics::Point> stated{};  ///< the points as their campaigns state them
+  std::vector<PointTargets> targets{};             ///< targets of each point; empty unless known
+                                                   ///< for all
+  /// Stretch of the axis over which the points are compared; none: the points are used as stated.
   std::optional<nonio::statistics::Stretch> over{};
-  std::vector<std::uint64_t> seeds{};  ///< of the series up to each of its points
-  /// Numbers of the same quantity before this series began, which cannot be joined.
+  std::vector<std::uint64_t> seeds{};  ///< seed of the series up to each point
+  /// A result of the same quantity before this series began that cannot be joined to it.
   struct Apart {
     std::size_t result = 0;
-    std::string why;  ///< id of the word: span, place, across, model, period, radius,
-                      ///< feed, other
+    std::string why;  ///< why it cannot be joined, as id of a word: span, place, across, model,
+                      ///< period, radius, feed, other
   };
   std::vector<Apart> apart{};
   nonio::statistics::Series series;
   std::vector<std::string> said{};   ///< text of each declared event, as entered
-  std::vector<std::string> kinds{};  ///< and its kind: crash, repair, ..., table, instrument
-  bool ended = false;                ///< later campaigns measure it otherwise
-  std::uint64_t run = 0;             ///< in which its last point came
+  std::vector<std::string> kinds{};  ///< kind of each declared event: crash, repair, ..., table,
+                                     ///< instrument
+  bool ended = false;                ///< later campaigns measure the quantity in a way that cannot
+                                     ///< be joined
+  std::uint64_t run = 0;             ///< run of the last point
   nonio::statistics::Trend trend{};
-  /// Of each change of the trend: p, adjusted for all tests of its run.
+  /// p of each change of the trend, adjusted for all tests of its run.
   std::vector<double> p_adjusted{};
-  /// Whether it is reported, and whether a mail reports it.
+  /// Whether each change is reported, and whether a mail reports it.
   std::vector<bool> significant{}, mailed{};
 };
 
-/// Largest deviations and the like of one axis: shown, and compared with limits.
+/// A quantity of one axis that is shown and compared with limits, such as A, E or R.
 struct ShownSeries {
   std::string axis, quantity, unit;
   std::vector<std::size_t> results;
-  /// Of each campaign that compares the quantity with a limit, the result that decides: as left
-  /// before as found; the worst of several lines of the axis. Empty if none does.
+  /// Deciding result of each campaign that compares the quantity with a limit: as left before as
+  /// found, and the worst of several measurements of the axis.
   std::vector<std::size_t> judged{};
-  bool ended = false;  ///< later campaigns have it in another unit: the axis is another
+  bool ended = false;  ///< later campaigns use another unit, since the axis was changed between
+                       ///< linear and rotary
 };
 
-/// All that is followed of a machine, by axis and quantity. `events`: those of this machine.
+/// Returns all followed series of a machine, by axis and quantity. `events`: those of this machine.
 std::vector<FollowedSeries> followed_series(const store::StoredMachine& machine,
                                             const std::vector<config::Event>& events);
 
-/// The series as it was when it had only its first `count` points: no later one moves it.
+/// Returns the series as it was when it had only its first `count` points; later points have no
+/// effect on it.
 nonio::statistics::Series first_points(const FollowedSeries& series, std::size_t count);
 
-/// The points as they are compared, each with its own u.
+/// Returns the points as compared over the common stretch, each with its own u.
 std::vector<nonio::statistics::Point> compared_points(const FollowedSeries& series);
 
 std::vector<ShownSeries> shown_series(const store::StoredMachine& machine);
 
-/// A machine with all that its history is made of.
+/// A machine with all data of its history.
 struct AssessedMachine {
   store::MachineState state;
   store::StoredMachine stored;
@@ -76,13 +81,13 @@ struct AssessedMachine {
   std::vector<ShownSeries> shown;
 };
 
-/// Events by machine, each list by day: stated under its name, an alias, or a serial number that no
-/// other machine has and that is not the name of another machine. Looked up once for all machines.
+/// Finds the events of each machine, sorted by day. An event may name the machine, an alias, or a
+/// serial number that belongs to no other machine and is not the name of another machine.
 class MachineEvents {
  public:
   MachineEvents(const std::vector<store::MachineState>& all, const store::StoredLogs& logs);
   const std::vector<config::Event>& of(const std::string& machine) const;
-  /// Those that name no machine of which there is a campaign.
+  /// Returns events that name no machine with a campaign.
   const std::vector<config::Event>& of_none() const { return of_none_; }
 
  private:

@@ -11,24 +11,24 @@
 
 namespace nonio::assessment {
 
-/// A cell for each month in which a machine was measured or something happened to it.
+/// Returns one entry for each month in which the machine was measured or an event happened.
 std::vector<reports::MonthOfMachine> months_of(const AssessedMachine& machine,
                                                const reports::MachineHistory& described);
 
-/// The results of one machine that depend on each instrument and certificate.
+/// Returns the results of one machine by the instrument and certificate that they depend on.
 std::vector<reports::InstrumentUse> instruments_of(const AssessedMachine& machine,
                                                    const std::filesystem::path& out);
-/// Of all machines together.
+/// Joins the lists of all machines.
 std::vector<reports::InstrumentUse> joined(
     const std::vector<const std::vector<reports::InstrumentUse>*>& of_machines);
 
-/// A quantity of a machine as it is compared with that of others: the last value that was found.
+/// Last value of a quantity, for the comparison with other machines of the model.
 struct ComparedValue {
   std::string axis, quantity;
   Quantity unit = Quantity::deviation;
   double value = 0.0, u = 0.0;
-  std::string conditions{};        ///< JSON: what must be equal, but the travel
-  std::optional<double> travel{};  ///< from the first target to the last, SI
+  std::string conditions{};        ///< JSON: conditions that must be equal, without the travel
+  std::optional<double> travel{};  ///< from the first target to the last, m or rad
   bool rotary = false;
 };
 std::vector<ComparedValue> compared_of(const AssessedMachine& machine,
@@ -38,9 +38,9 @@ struct ComparedMachine {
   const reports::MachineHistory* machine;
   const std::vector<ComparedValue>* values;
 };
-/// Models of three machines or more, quantity by quantity, and travels that differ by 10 % at most:
-/// distance from the median in robust standard deviations (1.4826 times the median of the
-/// distances). Of more than 60 machines the 60 that are furthest from it.
+/// Compares models with at least three machines, by quantity and for travels that differ by at most
+/// 10 %: distance from the median in robust standard deviations (1.4826 times the median of the
+/// distances). Of more than 60 machines, the 60 farthest from the median are returned.
 std::vector<reports::ModelComparison> comparisons_of(const std::vector<ComparedMachine>& machines);
 
 }  // namespace nonio::assessment

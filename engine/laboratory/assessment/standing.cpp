@@ -19,13 +19,14 @@ using reports::WorkItem;
 
 namespace {
 
-/// A finding is named by the line's id, by the finding's, or by that without what follows a dash.
+/// Whether the acknowledgement names this line: by the line's id, the finding's id, or the
+/// finding's id up to its dash.
 bool is_of(const config::Acknowledgement& a, const WorkItem& l) {
   const std::string& id = l.finding.id;
   return a.finding == l.id || a.finding == id || a.finding == id.substr(0, id.find('-', 8));
 }
 
-/// What was known on a day, and its U.
+/// A value as it was known on a day, and its U.
 struct Knew {
   double value = 0.0, U = 0.0;
 };
@@ -43,7 +44,8 @@ std::optional<Knew> known_on(const AssessedMachine& m, const WorkItem& l, const 
   return out;
 }
 
-/// What is expected has been acknowledged until its day, whatever is measured before.
+/// Whether the value has moved by more than U since the acknowledgement. Forecasts never count as
+/// moved: they are acknowledged until the stated day.
 bool has_moved(const config::Acknowledgement& a, const AssessedMachine& m, const WorkItem& l) {
   if (!l.value || l.kind == WorkItem::Kind::soon) return false;
   const double now = *l.value * unit_of(l.unit).per_si;
@@ -58,7 +60,7 @@ bool is_of_quantity(const config::Acknowledgement& a, const std::string& quantit
   return a.quantity.empty() || a.quantity == quantity;
 }
 
-/// Whether this value was open on the day of the acknowledgement, and has not moved since.
+/// Whether this value was open on the day of the acknowledgement and has not moved since.
 bool was_known(const config::Acknowledgement& a, const AssessedMachine& m, const WorkItem& l,
                const reports::OpenValue& v) {
   if (a.finding != l.id && !is_of_quantity(a, v.quantity)) return false;
@@ -81,7 +83,7 @@ bool was_known(const config::Acknowledgement& a, const AssessedMachine& m, const
   return open && v.value && std::fabs(*v.value * unit_of(v.unit).per_si - knew.value) <= knew.U;
 }
 
-/// A separate line for what is not acknowledged.
+/// Returns a separate line for the values of a line that are not acknowledged.
 WorkItem line_of_rest(const WorkItem& known, std::vector<reports::OpenValue> rest) {
   const auto first = std::find_if(rest.begin(), rest.end(),
                                   [](const reports::OpenValue& v) { return !v.undecided; });
@@ -101,17 +103,18 @@ WorkItem line_of_rest(const WorkItem& known, std::vector<reports::OpenValue> res
   return l;
 }
 
-/// Changes that a later campaign has shown.
+/// Whether the line reports a change that a campaign after the acknowledgement showed.
 bool is_later(const config::Acknowledgement& a, const WorkItem& l) {
   const auto before = std::find_if(l.finding.texts.begin(), l.finding.texts.end(),
                                    [](const auto& t) { return t.first == "before"; });
   return before != l.finding.texts.end() && before->second > a.date;
 }
 
-/// A line that a person has acknowledged, until then, is known. It is new again when what it states
-/// happened after that day, or when its value has moved by more than U since: from the value that
-/// the acknowledgement names, else from the last one before its day. What else the line lists is
-/// known if it was open on that day too and has not moved; a new line is returned with the rest.
+/// Marks a line as known if a person has acknowledged it until this date or later. It stays new if
+/// its change happened after the acknowledgement, or if its value has moved by more than U since:
+/// from the value that the acknowledgement states, otherwise from the last one before its day.
+/// Other values in the line are known if they were open on that day and have not moved; the rest is
+/// returned as a new line.
 std::optional<WorkItem> acknowledge(WorkItem& l, const AssessedMachine& m,
                                     const store::StoredLogs& logs, const std::string& date) {
   if (l.state == WorkItem::State::fixed) return std::nullopt;
@@ -146,8 +149,9 @@ reports::MachineHistory without_series(const reports::MachineHistory& whole) {
   return out;
 }
 
-/// The last day on which the lines of a machine are the same: "overdue" begins after the due date,
-/// an event has its effect on its day, and forecasts are worded otherwise after theirs.
+/// Returns the last day on which the lines of a machine remain the same: "overdue" begins after the
+/// due date, an event takes effect on its day, and the wording of a forecast changes after its
+/// date.
 std::string same_until(const AssessedMachine& m, const reports::MachineHistory& described,
                        const std::vector<WorkItem>& lines, const std::string& date) {
   std::string until = for_ever;
@@ -192,7 +196,7 @@ Standing standing_of(const AssessedMachine& m, const reports::MachineHistory& de
   s.until = acknowledgements_of(described.id, logs).empty()
                 ? same_until(m, described, s.lines, last_run.date)
                 : last_run.date;
-  for (std::size_t i = 0; i < s.lines.size(); ++i)  // what is not acknowledged comes last
+  for (std::size_t i = 0; i < s.lines.size(); ++i)  // unacknowledged rests are appended
     if (auto rest = acknowledge(s.lines[i], m, logs, last_run.date)) s.lines.push_back(*rest);
   s.months = months_of(m, described);
   s.instruments = instruments_of(m, out);

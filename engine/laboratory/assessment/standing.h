@@ -14,30 +14,31 @@
 
 namespace nonio::assessment {
 
-/// What one machine has to do with the others: all that lists over the machines of a site need.
+/// Result of the assessment of one machine: everything that the lists over all machines need.
 struct Standing {
-  std::string name;               ///< of the machine; of a campaign that belongs to none, its id
-  bool alone = false;             ///< a campaign that belongs to no machine
-  reports::MachineHistory shown;  ///< without series
+  std::string name;               ///< name of the machine, or id of a campaign without a machine
+  bool alone = false;             ///< a campaign without a machine
+  reports::MachineHistory shown;  ///< description without series
   std::vector<ComparedValue> compared{};
   std::vector<reports::WorkItem> lines{};
   std::vector<reports::MonthOfMachine> months{};
   std::vector<reports::InstrumentUse> instruments{};
   bool has_results = false;
-  bool judged = false;     ///< some result has a limit
-  bool conforms = false;   ///< nothing that was judged last does not
-  bool attention = false;  ///< the last campaign has a finding that requires action
-  bool reversal = false;   ///< and it is one of the reversal
+  bool judged = false;     ///< some result was compared with a limit
+  bool conforms = false;   ///< all values that were judged last conform
+  bool attention = false;  ///< the last campaign has a finding with severity warning
+  bool reversal = false;   ///< and at least one such finding is about reversal
   IntervalFacts interval{};
-  std::string until{};  ///< date of the last run with the same lines
+  std::string until{};  ///< last date of a run for which the lines are the same
 };
 
-/// `described`: of the same machine, see `describe`.
+/// Makes the lines of a machine and applies the acknowledgements. `described`: result of `describe`
+/// for the same machine.
 Standing standing_of(const AssessedMachine& machine, const reports::MachineHistory& described,
                      const store::StoredLogs& logs, const LastRun& last_run,
                      const std::filesystem::path& out);
 
-/// Acknowledgements that may concern a machine.
+/// Returns acknowledgements that name this machine or no machine.
 std::vector<const config::Acknowledgement*> acknowledgements_of(const std::string& machine,
                                                                 const store::StoredLogs& logs);
 

@@ -19,7 +19,7 @@ using store::StoredTables;
 
 namespace {
 
-/// The last tables of an axis; older ones are not loaded again.
+/// Number of an axis' last tables that are considered; older ones are not loaded again.
 constexpr std::size_t most_known = 8;
 
 std::vector<double> numbers(const Json& of, const char* name, bool rotary, bool position) {
@@ -45,7 +45,7 @@ struct Known {
   kernel::TableCurve table;
 };
 
-/// One measurement of an axis with what its campaign states.
+/// One measurement of an axis and the tables that its campaign states.
 struct Taken {
   std::size_t campaign = 0;
   std::string state, measurement;
@@ -133,7 +133,8 @@ class LoadedOnAxis {
   }
 
  private:
-  /// The table that explains most of a change, if that is more than half of it: what remains is stated with it.
+  /// Puts the table that explains most of the change into `out`, with the remaining rms, if it
+  /// leaves less than half of the change.
   static void put_nearest(const Taken& before, const Taken& after, const std::vector<Known>& those,
                           reports::TableLoaded& out) {
     constexpr double most_left = 0.5;
@@ -160,7 +161,8 @@ class LoadedOnAxis {
     known.push_back({day, *table});
   }
 
-  /// Written before the later campaign, then recorded up to its day.
+  /// Returns the last `most_known` tables that were known before the later campaign: those that
+  /// earlier campaigns wrote, those recorded up to its day, and those that were active.
   std::vector<Known> known(std::size_t last, const Taken& after) const {
     std::vector<Known> out;
     for (std::size_t k = 0; k <= last; ++k) add(out, day(all_[k]), all_[k].written);
@@ -198,8 +200,8 @@ class LoadedOnAxis {
     return out;
   }
 
-  /// Both campaigns state what was active, and it differs: the change has this cause at least, and
-  /// its other causes cannot be separated by its shape.
+  /// Returns the change of the stated tables, if both campaigns state which table was active and
+  /// they differ. Other causes cannot be separated from it by the shape of the change.
   std::optional<reports::TableLoaded> stated(const Taken& before, const Taken& after,
                                              const std::vector<Known>& all_known) const {
     if (!before.active || !after.active || is_same(*before.active, *after.active))

@@ -9,19 +9,19 @@
 
 namespace nonio::assessment {
 
-/// Machines change their scale between campaigns by this much without any cause that is worth a
-/// name: standard uncertainty, um/mm or arcsec/deg.
+/// Returns the standard uncertainty of scale changes between campaigns that need no cause, in um/mm
+/// or arcsec/deg.
 double usual_scale_change(bool rotary);
-/// As in the ids of findings: wrong-sign, in-addition.
+/// Returns the name used in ids of findings, for example wrong-sign or in-addition.
 const char* loading_name(statistics::Loading loading);
-/// What two campaigns of an instrument repeat, um or arcsec.
+/// Smallest standard uncertainty of a difference between two campaigns, um or arcsec.
 inline constexpr double change_resolution = 0.1;
 
-/// The changes between two campaigns of an axis that are tables: of each pair of neighbours whose
-/// results.json has `control_tables`. Known tables are those that the campaigns before the later one
-/// wrote, and those of the record of the machine.
+/// Returns the changes between two neighbouring campaigns of an axis that are tables, for campaigns
+/// whose results.json has `control_tables`. Known tables are those that earlier campaigns wrote and
+/// those in the record of the machine.
 std::vector<reports::TableLoaded> tables_loaded(const AssessedMachine& machine);
-/// The pairs of which a campaign does not state what was active, though there is a table.
+/// Returns pairs of neighbouring campaigns of which one does not state the active table.
 std::vector<reports::TableLoaded> tables_unstated(const AssessedMachine& machine);
 
 }  // namespace nonio::assessment

@@ -15,8 +15,8 @@ using store::StoredResult;
 
 namespace {
 
-constexpr double scatter_allowed = 2.0;  // times s
-constexpr double not_good_below = 0.01;  // p, over all results of a table
+constexpr double scatter_allowed = 2.0;  // times s, added to the uncertainty of the prediction
+constexpr double not_good_below = 0.01;  // significance level over all results of a table
 
 class OfAxis {
  public:
@@ -35,7 +35,7 @@ class OfAxis {
  private:
   const std::string& day(std::size_t campaign) const { return m_.stored.campaigns[campaign].day; }
 
-  /// Campaigns are in the order of their days.
+  /// Returns the last campaign with results as left of the axis; campaigns are sorted by day.
   std::optional<std::size_t> last_left() const {
     std::optional<std::size_t> out;
     for (const StoredResult& r : m_.stored.results)
@@ -52,7 +52,8 @@ class OfAxis {
     return left.size() == 1;
   }
 
-  /// Campaign of the last table before these readings, or with them.
+  /// Returns the campaign of the last table that was predicted before these readings or with them;
+  /// none if it is ambiguous or too old.
   std::optional<std::size_t> last_promised(std::size_t left) const {
     std::optional<std::size_t> out;
     std::set<std::string> measurements;
@@ -67,7 +68,7 @@ class OfAxis {
     return out;
   }
 
-  /// Of a single pass at a target, pooled.
+  /// Returns the pooled standard deviation of a single pass at a target; none if it is not known.
   std::optional<double> scatter(std::size_t campaign) const {
     for (const StoredResult& r : m_.stored.results)
       if (r.followed && r.axis == axis_ && r.campaign == campaign && r.state == "as-left" &&
@@ -96,7 +97,7 @@ class OfAxis {
     std::optional<reports::TableKept> out;
     double most = 0.0, p = 1.0;
     std::size_t asked = 0;
-    std::set<std::string> seen;  // two controllers promise alike: the first counts
+    std::set<std::string> seen;  // two controllers predict the same: only the first counts
     for (const StoredResult& promised : m_.stored.predicted) {
       if (promised.axis != axis_ || promised.campaign != found_in ||
           !seen.insert(promised.quantity).second)
@@ -109,7 +110,7 @@ class OfAxis {
           point(*found), point(*left), promised.value - found->value, scatter_allowed * s);
       if (!check) continue;
       ++asked;
-      const double zeta = check->beside.zeta();  // below 0: better than promised
+      const double zeta = check->beside.zeta();  // below 0: better than predicted
       if (zeta > 0.0) p = std::min(p, check->beside.p);
       if (out && zeta <= most) continue;
       most = zeta;

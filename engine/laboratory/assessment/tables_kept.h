@@ -8,14 +8,15 @@
 
 namespace nonio::assessment {
 
-/// Days between the readings that a table was made from and those that were left.
+/// Largest number of days between the readings that a table was made from and the readings as left.
 inline constexpr int longest_until_left = 31;
 
-/// Of each axis, whether its last table did what results.json had predicted (E, B and M): the last
-/// as-left measurement against the last prediction before it. The promise holds for means: what the
-/// runs scatter around them is allowed for by 2 s of the readings as left (the range of 80 means
-/// of two runs each comes to 3.5 s). Not good: worse than promised with p < 1 % over the three.
-/// Nothing of an axis where several lines were measured, or no repeatability is known.
+/// Checks for each axis whether its last table achieved the E, B and M that results.json had
+/// predicted, by comparing the last as-left measurement with the last prediction before it. A
+/// prediction refers to means, so 2 s of the readings as left is added for the scatter of runs (the
+/// range of 80 means of two runs each is 3.5 s). A table is not good if a result is worse than
+/// predicted with p < 1 % over the three. Axes with several measured lines or unknown repeatability
+/// are left out.
 std::vector<reports::TableKept> tables_kept(const AssessedMachine& machine);
 
 }  // namespace nonio::assessment

@@ -24,7 +24,8 @@ std::vector<double> numbers(const dom::object& o, const char* name) {
   return out;
 }
 
-/// Both halves of a symmetric matrix from the upper one; empty if it is none of n rows.
+/// Returns the full symmetric matrix of n rows from its upper triangle; empty if the size does not
+/// match.
 std::vector<double> whole(const std::vector<double>& upper, std::size_t n) {
   if (upper.size() != n * (n + 1) / 2) return {};
   std::vector<double> out(n * n);
@@ -60,13 +61,14 @@ StoredTargets targets_in(const dom::object& o) {
   return out;
 }
 
-/// A straightness is named by its direction: "straightness:Y.curve_2".
+/// Returns the part of the name after the last dot: "straightness:Y.curve_2" gives "curve_2".
 std::string name_in(const std::string& quantity) {
   const auto dot = quantity.rfind('.');
   return dot == std::string::npos ? quantity : quantity.substr(dot + 1);
 }
 
-/// Polynomial that a quantity is the coefficient of; none: it does not refer to the ends.
+/// Degree of the polynomial whose coefficient this quantity is; none for quantities that are not
+/// polynomial coefficients.
 std::optional<std::size_t> degree_of(const std::string& kind) {
   if (kind == "B_mean") return 0;
   if (kind == "scale") return 1;
@@ -75,7 +77,8 @@ std::optional<std::size_t> degree_of(const std::string& kind) {
   return std::nullopt;
 }
 
-/// Which of the sinusoids in addition to the curve: a turn comes first, then what a drive makes.
+/// Index of a quantity's sinusoid in the fit; none if it is not a sinusoid. The first two are those
+/// of one turn, the last two the cyclic error of the drive.
 std::optional<std::size_t> sinusoid_of(const std::string& kind, std::size_t count) {
   if (count < 2) return std::nullopt;
   for (const auto& [name, at] :
@@ -85,18 +88,19 @@ std::optional<std::size_t> sinusoid_of(const std::string& kind, std::size_t coun
   return std::nullopt;
 }
 
-/// Of P1 over a stretch, in um and mm, to um/m.
+/// Factor from the coefficient of P1 (um over a stretch in mm) to the scale in um/m; 1 for other
+/// quantities.
 double factor_of(const std::string& kind, const kernel::Stretch& over) {
   constexpr double mm_per_m = 1000.0;
   return kind == "scale" ? 2.0 * mm_per_m / over.length() : 1.0;
 }
 
-/// Fits with as many targets and columns: their residuals are compared target by target.
+/// Number of targets and degrees of freedom of a fit. Fits of equal kind are compared target by
+/// target.
 using Kind = std::pair<std::size_t, double>;
 Kind kind_of(const StoredFit& f) { return {f.residuals.size(), f.dof}; }
 
-/// Variance that a machine has between its targets: of all points together, since it is the
-/// machine's. Not below 0.
+/// Returns the variance of the machine between its targets, pooled over all points; not below 0.
 double beyond_of(const std::vector<PointTargets>& targets) {
   double sum = 0.0, dof = 0.0;
   for (const PointTargets& t : targets) sum += t.fit.dof * t.fit.beyond, dof += t.fit.dof;
@@ -107,9 +111,9 @@ double of_squares(const std::vector<double>& v) {
   return std::inner_product(v.begin(), v.end(), v.begin(), 0.0);
 }
 
-/// Half the variance of what differs between the residuals of two fits of one kind, less what the
-/// readings make. divisor: of the sum of squares; the median of chi-square over its mean where a
-/// median is required, else 1.
+/// Returns half the variance of the difference between the residuals of two fits of equal kind,
+/// minus the part of the readings. `divisor`: of the sum of squares; the median of chi-square over
+/// its mean if a median is taken over many, otherwise 1.
 double half_difference(const StoredFit& a, const StoredFit& b, double divisor) {
   std::vector<double> d(a.residuals.size());
   std::transform(a.residuals.begin(), a.residuals.end(), b.residuals.begin(), d.begin(),
@@ -119,17 +123,17 @@ double half_difference(const StoredFit& a, const StoredFit& b, double divisor) {
   return (of_squares(d) / divisor - noise) / (2.0 * a.dof);
 }
 
-/// A variance of few degrees of freedom, as large as makes a normal test of 1 in 2,000 what that of
-/// Student's distribution is. Source: D. L. Wallace 1959, t^2 = dof (exp(z^2/dof) - 1).
+/// Enlarges a variance with few degrees of freedom, so that a normal test at 1 in 2,000 equals that
+/// of Student's distribution. Source: D. L. Wallace 1959, t^2 = dof (exp(z^2/dof) - 1).
 double of_few(double variance, double dof) {
   constexpr double z2 = 12.1;
   return variance * dof / z2 * std::expm1(z2 / dof);
 }
 
-/// The part of it that another choice of targets draws anew, of each point: half the variance of
-/// the differences from one point to the next of its kind. Half of it is the median of all, since a
-/// change of the machine itself is in one of them, and half that to its two neighbours. `beyond` of
-/// kinds that are too few.
+/// Variance at each point that comes from the choice of targets, at most `beyond`: half the
+/// variance of the differences between successive points of equal kind. The estimate is the mean of
+/// the median over all pairs, which a change of the machine does not affect, and of the values of
+/// the two neighbours. `beyond` is returned for groups of fewer than four points.
 std::vector<double> drawn_anew(const std::vector<PointTargets>& targets, double beyond) {
   constexpr std::size_t fewest = 4;
   std::map<Kind, std::vector<std::size_t>> kinds;

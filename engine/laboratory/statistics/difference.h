@@ -7,35 +7,35 @@
 
 #include "laboratory/statistics/series.h"
 
-/// What changed between two campaigns, and whether a table did what it promised. What both have in
-/// common (one source) cancels. Source: JCGM 100:2008, 5.2; ISO 13528 zeta score (difference over
-/// its standard uncertainty; E_n with k = 2 is half of it).
+/// Difference between two campaigns, and whether a table achieved its prediction. Parts with a
+/// common source cancel. Source: JCGM 100:2008, 5.2; ISO 13528 zeta score (difference over its
+/// standard uncertainty; E_n with k = 2 is half of it).
 namespace nonio::statistics {
 
 struct Difference {
   double value = 0.0, u = 0.0;
-  double p = 1.0;  ///< two-sided, normal: of one as large by chance
+  double p = 1.0;  ///< two-sided, normal: probability of a difference at least this large by chance
 
   double zeta() const { return u > 0.0 ? value / u : 0.0; }
 };
 
-/// after - before - expected. An error as `check` gives it, of point 1 (before) or 2, or where
+/// Returns after - before - expected. An error as of `check` for point 1 (before) or 2, or if
 /// `expected` is not a number.
 Expected<Difference> difference(const Point& before, const Point& after, double expected = 0.0,
                                 double u_expected = 0.0);
 
-/// Whether a table did what it promised: as-left less as-found against the step that it was to
-/// make.
+/// Whether a table achieved its prediction: as-left minus as-found compared with the predicted
+/// step.
 struct TableCheck {
-  Difference beside;  ///< of the promised step
-  /// Share of the error as found that the table took away: 1 all, 0 none, below 0: made worse.
-  /// None where the error as found is within twice its uncertainty.
+  Difference beside;  ///< difference from the predicted step
+  /// Fraction of the error as found that the table compensated: 1 all, 0 none, below 0: made worse.
+  /// None if the error as found is within twice its uncertainty.
   std::optional<double> taken{};
-  bool as_promised = true;  ///< not beyond chance at 1 %
+  bool as_promised = true;  ///< the difference is not significant at 1 %
 };
 
-/// promised: as-left less as-found by the table alone; u_promised: of its rounding, and of the
-/// interpolation between its points.
+/// `promised`: predicted as-left minus as-found; `u_promised`: standard uncertainty from rounding
+/// and from interpolation between the points of the table.
 Expected<TableCheck> check_table(const Point& as_found, const Point& as_left, double promised,
                                  double u_promised = 0.0);
 

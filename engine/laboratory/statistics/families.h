@@ -3,14 +3,14 @@
 
 #include <vector>
 
-/// Many tests of one run: adjusted p, in the order of `p`. A test whose adjusted p is below the
-/// level is news.
+/// Adjusted p of the tests of one run, in the order of `p`. A test is significant if its adjusted p
+/// is below the level.
 namespace nonio::statistics {
 
-/// Benjamini and Hochberg 1995: of the news at most this share is false in the mean; tests that are
-/// independent or positively correlated.
+/// Benjamini and Hochberg 1995: limits the mean share of false ones among the significant tests,
+/// for tests that are independent or positively correlated.
 std::vector<double> benjamini_hochberg(const std::vector<double>& p);
-/// Holm 1979: at most this chance of any false news.
+/// Holm 1979: limits the probability of any false significant test.
 std::vector<double> holm(const std::vector<double>& p);
 
 }  // namespace nonio::statistics

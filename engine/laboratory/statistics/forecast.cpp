@@ -10,8 +10,8 @@ namespace nonio::statistics {
 namespace {
 
 constexpr double act_beyond = 0.5;
-constexpr double one_sided = 1.6448536269514722;  // of 95 %
-constexpr double farthest = 0.5;                  // of the observed span
+constexpr double one_sided = 1.6448536269514722;  // quantile of the one-sided 95 % bound
+constexpr double farthest = 0.5;                  // fraction of the observed span
 constexpr double years_ahead = 20.0;
 
 struct State {
@@ -32,7 +32,7 @@ State state_at(const Series& s, const Trend& t, double time) {
   return out;
 }
 
-/// P(|state| + more > limit).
+/// Returns P(|state| + more > limit), with a normal state and `more`.
 double p_beyond(double value, double u_value, double limit, const Beyond& more) {
   const double u = std::hypot(u_value, more.u), left = limit - more.value;
   if (!(u > 0.0)) return std::fabs(value) > left ? 1.0 : 0.0;

@@ -14,13 +14,13 @@ using Eigen::VectorXd;
 
 MatrixXd covariance_of(const Series&);
 
-/// Points whitened by the Cholesky factor of their covariance; behind them one row more where the
-/// spread of slopes is known: slope / spread = 0 +- 1.
+/// Points whitened by the Cholesky factor of their covariance. If the spread of slopes is known,
+/// one more row follows: slope / spread = 0 +- 1.
 struct Whitened {
   explicit Whitened(const Series&);
-  /// A column of the model, whitened.
+  /// Returns a column of the model, whitened.
   VectorXd column(const VectorXd&) const;
-  /// That of the slope.
+  /// Returns the whitened column of the slope, with its additional row.
   VectorXd slope(const VectorXd& times) const;
   double spread = 0.0;
   Eigen::LLT<MatrixXd> factor;
@@ -30,11 +30,11 @@ struct Whitened {
 struct Gls {
   VectorXd b;
   MatrixXd C;
-  MatrixXd basis;  ///< orthonormal, of the whitened columns
+  MatrixXd basis;  ///< orthonormal basis of the whitened columns
   double chi2 = 0.0, dof = 0.0;
 };
 
-/// None if the points cannot separate the columns.
+/// Generalised least squares; none if the points cannot separate the columns.
 std::optional<Gls> gls(const Whitened&, const MatrixXd& whitened_columns);
 
 double normal_two_sided(double z);  ///< P(|N| > |z|)

@@ -9,11 +9,13 @@
 namespace nonio::statistics {
 namespace {
 
-constexpr double median_of_chi2 = 0.45493642311957;  // with 1 degree of freedom
+// Median of chi-square with 1 degree of freedom.
+constexpr double median_of_chi2 = 0.45493642311957;
 constexpr std::size_t fewest_ratios = 20;
 
-/// How far a point is from the line through its neighbours, in variances of that: a level, a slope
-/// and what the three have in common cancel. None over a declared event, or on one day.
+/// Returns the squared distance of a point from the line through its neighbours, divided by its
+/// variance; level, slope and common parts cancel. None if an event is declared at the point, or if
+/// the neighbours are on one day.
 std::optional<double> off_line(const Series& s, std::size_t i) {
   for (const Declared& d : s.declared)
     if (d.kind != Declared::Kind::instrument && (d.after == i || d.after + 1 == i))

@@ -6,7 +6,8 @@
 namespace nonio::statistics {
 namespace {
 
-/// w times a sum of P_j(w): w P_j = ((j + 1) P_j+1 + j P_j-1)/(2 j + 1).
+/// Multiplies a sum of Legendre polynomials P_j(w) by w: w P_j = ((j + 1) P_j+1 + j P_j-1)/(2 j +
+/// 1).
 std::vector<double> times_w(const std::vector<double>& p) {
   std::vector<double> out(p.size() + 1, 0.0);
   for (std::size_t j = 0; j < p.size(); ++j) {
@@ -17,8 +18,8 @@ std::vector<double> times_w(const std::vector<double>& p) {
   return out;
 }
 
-/// Of P_0(z) .. P_last(z) with z = middle + half w, the part along P_degree(w). By the recurrence
-/// (k + 1) P_k+1(z) = (2 k + 1) z P_k(z) - k P_k-1(z).
+/// Returns the coefficient of P_degree(w) in each of P_0(z) .. P_last(z), with z = middle + half w,
+/// by the recurrence (k + 1) P_k+1(z) = (2 k + 1) z P_k(z) - k P_k-1(z).
 std::vector<double> parts_along(std::size_t degree, double middle, double half, std::size_t last) {
   std::vector<double> out, before, now{1.0};
   for (std::size_t k = 0; k <= last; ++k) {

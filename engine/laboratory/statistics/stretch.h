@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-/// Curves of campaigns whose targets cover different stretches of an axis, compared over the stretch
-/// that they have in common. No error: who calls them has checked the sizes.
+/// Compares curves of campaigns whose targets cover different stretches of an axis over the stretch
+/// that they have in common. The caller must have checked the sizes; no function returns an error.
 namespace nonio::statistics {
 
 struct Stretch {
@@ -14,25 +14,27 @@ struct Stretch {
   double length() const { return to - from; }
 };
 
-/// What both cover; of no length if they do not overlap.
+/// Returns the stretch that both cover; its length is 0 if they do not overlap.
 Stretch common_stretch(const Stretch&, const Stretch&);
 
-/// Coefficients of Legendre polynomials P0 .. Pd, -1 at the beginning of a stretch and 1 at its end.
+/// A fitted curve: coefficients of Legendre polynomials P0 .. Pd, with argument -1 at the beginning
+/// of the stretch and 1 at its end.
 struct FittedCurve {
   Stretch over;
   std::vector<double> coefficients;
-  /// Between them, row by row: what the readings make, and what independent values of variance 1 at
-  /// the targets make.
+  /// Matrices of the coefficients, row by row: covariance from the readings, and covariance that
+  /// independent values of variance 1 at the targets would give.
   std::vector<double> covariance, share;
 };
 
-/// A coefficient of the same curve over another stretch, and the two variances of it.
+/// A coefficient of the same curve over another stretch, with its variance from the readings and
+/// from independent values of variance 1 at the targets.
 struct CoefficientOver {
   double value = 0.0, variance = 0.0, share = 0.0;
 };
 
-/// Exact for the polynomial: its part along P_degree over the other stretch, which is what a fit
-/// with the lower and higher polynomials there gives. degree: not above that of the curve.
+/// Returns the coefficient of P_degree over the other stretch, which equals that of a fit there
+/// with the lower and higher polynomials. It is exact. `degree`: not above that of the curve.
 CoefficientOver coefficient_over(const FittedCurve&, const Stretch& other, std::size_t degree);
 
 }  // namespace nonio::statistics

@@ -10,16 +10,19 @@
 namespace nonio::statistics {
 namespace {
 
-constexpr double least_p = 1e-3;          // of a rest that is noise
-constexpr double most_noise = 0.4;        // of the change, of a rest that is noise
-constexpr double most_left = 0.1;         // of h, where the shape of the table is significant
-constexpr double clear = 25.0;            // of chi2, against a change without a table
-constexpr double distinct = 9.0;          // of chi2, against another name
-constexpr double slope_seen = 8.0;        // least slope of h in u_slope, where h is a line
-constexpr int most_points = 5;            // of an offset
-constexpr std::size_t fewest_places = 4;  // that both campaigns have
+constexpr double least_p = 1e-3;  // smallest p of a rest that counts as noise
+// Largest rms of a rest that counts as noise, as fraction of the change.
+constexpr double most_noise = 0.4;
+// Largest rms of a rest, as fraction of h, if the shape of the table is significant.
+constexpr double most_left = 0.1;
+// Required difference of chi2 from a change without a table.
+constexpr double clear = 25.0;
+constexpr double distinct = 9.0;          // required difference of chi2 from another candidate
+constexpr double slope_seen = 8.0;        // smallest slope of h in units of u_slope, if h is a line
+constexpr int most_points = 5;            // largest offset
+constexpr std::size_t fewest_places = 4;  // smallest number of positions that both campaigns have
 
-/// The value between the points of a curve, and the variance of its interpolation.
+/// Interpolated value of a curve, and the variance of the interpolation.
 struct Between {
   double value = 0.0, variance = 0.0;
 };
@@ -32,7 +35,7 @@ Between between(const std::vector<double>& position, const std::vector<double>& 
   if (i > 0 && x - position[i - 1] <= near) return {value[i - 1], 0.0};
   i = std::clamp<std::size_t>(i, 1, position.size() - 1);
   const double part = (x - position[i - 1]) / (position[i] - position[i - 1]);
-  double bend = 0.0;  // of the curve at both ends of the interval
+  double bend = 0.0;  // bend of the curve at both ends of the interval
   for (const std::size_t k : {i - 1, i})
     if (k > 0 && k + 1 < position.size()) {
       const double left = (value[k] - value[k - 1]) / (position[k] - position[k - 1]),
@@ -43,8 +46,9 @@ Between between(const std::vector<double>& position, const std::vector<double>& 
   return {value[i - 1] + part * (value[i] - value[i - 1]), wrong * wrong};
 }
 
-/// Standard uncertainty of a mean; of a single run by how the reversal scatters along the axis, or
-/// by the second differences of the one direction. Both are too large rather than too small.
+/// Returns the standard uncertainty of a mean. For a single run it is estimated from the scatter of
+/// the reversal along the axis, or from the second differences of one direction; both estimates are
+/// rather too large.
 double u_of(const MeasuredCurve& c) {
   if (c.u > 0.0) return c.u;
   const auto& one = c.plus.empty() ? c.minus : c.plus;
@@ -65,12 +69,12 @@ double u_of(const MeasuredCurve& c) {
   return n > 0.0 ? std::sqrt(squares / n) : 0.0;
 }
 
-/// The change at the targets of the later campaign.
+/// Difference between two curves at the targets of the later campaign.
 struct CurveChange {
   std::vector<double> x, value, variance;
   std::vector<int> direction;
   double middle = 0.0, length = 0.0;
-  double dof_of_noise = 0.0;  ///< 0: the noise is known from repeats
+  double dof_of_noise = 0.0;  ///< degrees of freedom of the noise; 0: it is known from repeats
 };
 
 CurveChange change_of(const MeasuredCurve& before, const MeasuredCurve& after, double resolution) {
@@ -98,12 +102,12 @@ CurveChange change_of(const MeasuredCurve& before, const MeasuredCurve& after, d
   return d;
 }
 
-/// Constants of both directions and a slope, by weighted least squares.
+/// Rest after the weighted least-squares fit of a constant for each direction and a slope.
 struct Rest {
   double chi2 = 0.0;
-  double rms = 0.0;    ///< without constants and slope
-  double slope = 0.0;  ///< of a fit in which it is free
-  double whole = 0.0;  ///< rms without the constants alone
+  double rms = 0.0;    ///< after removal of constants and slope
+  double slope = 0.0;  ///< from a fit with a free slope
+  double whole = 0.0;  ///< rms after removal of the constants only
 };
 
 using Three = std::array<double, 3>;
@@ -125,7 +129,8 @@ Three solved(std::array<Three, 3> a, Three b) {
   return x;
 }
 
-/// `u_slope`: 0: the slope is held at 0; infinite: it is free.
+/// Fits both constants and the slope. `u_slope` is the prior of the slope: 0: fixed at 0; infinite:
+/// free.
 Three fitted(const CurveChange& d, const std::vector<double>& r, double u_slope) {
   std::array<Three, 3> a{};
   Three b{};
@@ -166,7 +171,7 @@ double rms_of(const CurveChange& d, const std::vector<double>& r, double u_slope
   return std::sqrt(sum);
 }
 
-/// One h at the places of the change.
+/// One hypothesis about the loaded table, with its change h at the positions of the comparison.
 struct Candidate {
   Loading loading;
   std::size_t table;
@@ -208,13 +213,14 @@ class Recognizing {
     const Candidate* best = &all_.front();
     for (const Candidate& c : all_)
       if (c.chi2 < best->chi2) best = &c;
-    // What cannot be distinguished from the table as it is does no harm.
+    // An offset that the readings cannot distinguish from none is reported as loaded.
     for (const Candidate& c : all_)
       if (c.loading == Loading::loaded && best->loading == Loading::offset &&
           c.table == best->table && c.chi2 - best->chi2 < distinct)
         best = &c;
     const auto dof = static_cast<double>(d_.x.size() - constants());
-    // The noise of single runs is itself an estimate, of as many values as there are targets.
+    // The noise of single runs is itself an estimate with as many values as there are targets, so F
+    // is used.
     const double p = d_.dof_of_noise > 0.0 ? math::f_upper(best->chi2 / dof, dof, d_.dof_of_noise)
                                            : math::chi2_upper(best->chi2, dof);
     const double scale = std::max(1.0, best->chi2 / dof);
@@ -230,7 +236,7 @@ class Recognizing {
     const bool is_noise =
         p > least_p && rms_of(d_, left, 0.0) < most_noise * rms_of(d_, d_.value, 0.0);
     if (!is_noise && !small) return std::nullopt;
-    // A change of scale explains a table without a shape of its own, unless it has its very size.
+    // A change of scale explains a table that is a line, unless the slope equals that of the table.
     const bool by_shape = chi2_of(d_, d_.value, inf) - best->chi2 > clear * scale;
     const bool by_size = is_noise && chi2_of(d_, d_.value, u_slope_) - best->chi2 > clear &&
                          std::fabs(fitted(d_, best->h, inf)[2]) > slope_seen * u_slope_;
@@ -271,13 +277,14 @@ class Recognizing {
       c.h.push_back(of_t * t[i] + of_s * s[i]);
       r[i] -= c.h[i];
     }
-    if (rms_of(d_, c.h, 0.0) < 2.0 * std::sqrt(mean_variance())) return;  // it changes nothing
+    // The candidate changes nothing.
+    if (rms_of(d_, c.h, 0.0) < 2.0 * std::sqrt(mean_variance())) return;
     c.chi2 = chi2_of(d_, r, u_slope_);
     all_.push_back(std::move(c));
   }
 
-  /// Two offsets by neighbouring numbers of points, or a table and its offset, where the readings do
-  /// not distinguish them: the better one is named.
+  /// Whether two candidates need not be distinguished: offsets by neighbouring numbers of points,
+  /// or a table and its offset. The better one is named.
   static bool is_alike(const Candidate& a, const Candidate& b) {
     const auto is_offset = [](const Candidate& c) {
       return c.loading == Loading::offset || c.loading == Loading::loaded;
@@ -330,7 +337,7 @@ TableCurve TableCurve::shifted(int points) const {
 
 namespace {
 
-/// The change at enough places over enough of the axis.
+/// Returns the change if it is known at enough positions over more than half of the axis.
 std::optional<CurveChange> comparable(const MeasuredCurve& before, const MeasuredCurve& after,
                                       double resolution) {
   if (before.position.size() < 2 || after.position.size() < 2) return std::nullopt;
@@ -340,7 +347,7 @@ std::optional<CurveChange> comparable(const MeasuredCurve& before, const Measure
   return d;
 }
 
-/// All that these tables can have done to what was active.
+/// Makes all candidates: every known table on every table that may have been active.
 Recognizing with_bases(const CurveChange& d, const std::optional<TableCurve>& active,
                        const std::vector<TableCurve>& known, double u_slope) {
   Recognizing all(d, known, u_slope);

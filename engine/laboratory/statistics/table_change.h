@@ -5,59 +5,66 @@
 #include <string>
 #include <vector>
 
-/// Whether what changed between two campaigns of an axis is a table that was loaded. Values in,
-/// values out: positions and deviations have any units, the same everywhere.
+/// Recognises whether the change between two campaigns of an axis is a table that was loaded.
+/// Positions and deviations may have any units, the same in all arguments.
 namespace nonio::statistics {
 
 /// Mean deviations at targets in ascending order; a direction that was not measured is empty.
 struct MeasuredCurve {
   std::vector<double> position{}, plus{}, minus{};
-  double u = 0.0;  ///< standard, of one mean, of what is new in each campaign; 0: not known
+  double u = 0.0;  ///< standard uncertainty of one mean, without parts that campaigns have in
+                   ///< common; 0: unknown
 };
 
-/// What a table adds, linear between its points, the end values outside; no points: nothing.
+/// The correction of a table: linear between its points, constant outside; no points: no
+/// correction.
 struct TableCurve {
   std::vector<double> position{}, plus{}, minus{};
   bool empty() const { return position.empty(); }
   double at(double x, int direction) const;
-  /// The same entries, each `points` points further up.
+  /// Returns the table with its entries moved up by `points` points.
   TableCurve shifted(int points) const;
 };
 
 enum class Loading { loaded, removed, wrong_sign, twice, in_addition, offset };
 
-/// A change that equals what a table does.
+/// A change that was recognised as a table.
 struct TableChange {
   Loading loading = Loading::loaded;
-  std::size_t table = 0;  ///< index into the known tables; of `removed`: not used
-  int points = 0;         ///< of `offset`: towards larger positions
-  double rms = 0.0;       ///< of the change without the constants of both directions
-  double left = 0.0;      ///< the same of what the table does not explain
-  double p = 0.0;         ///< of a rest as large by chance
+  std::size_t table = 0;  ///< index into the known tables; not used if `removed`
+  int points = 0;         ///< if `offset`: number of points, positive towards larger positions
+  double rms = 0.0;       ///< rms of the change after removal of a constant for each direction
+  double left = 0.0;      ///< the same for the rest that the table does not explain
+  double p = 0.0;         ///< probability of a rest at least this large by chance
 };
 
-/// after - before = h + a constant of each direction + b (x - mean of x), with b known to be
-/// 0 with standard uncertainty `u_slope`. With S what was active before and T a known table, h is
+/// Recognises a change as a table. The model is
 ///
-///     T - S     loaded                   -S       removed
-///     -T - S    loaded with the wrong sign, also of the difference: S - T
-///     2 T - S   loaded twice, also of the difference: 2 (T - S)
-///     T         loaded in addition to S
-///     T(x - k spacings) - S   loaded with an offset of k points, |k| <= 5
+///   after - before = h + a constant of each direction + b (x - mean of x),
 ///
-/// The best h by chi2 is named if the rest is noise (p > 1e-3, and less than 0.4 of the change) or a tenth of h, if no
-/// change, a change of scale or of reversal does not explain it (chi2 larger by 25), and if no h of
-/// another name is as good (chi2 larger by 9); an offset that cannot be distinguished from none is
-/// `loaded`. `resolution`: smallest standard uncertainty of a difference that is believed.
-/// `active`: none: not known; then S is nothing or any of the known tables. Source: least squares;
-/// limits by simulation (tests/property/loaded_table_test.py).
+/// where b is 0 with standard uncertainty `u_slope`. With S the table active before and T a known
+/// table, h is
+///
+///   T - S     loaded                   -S         removed
+///   -T - S    loaded with the wrong sign, also of the difference: S - T
+///   2 T - S   loaded twice, also of the difference: 2 (T - S)
+///   T         loaded in addition to S
+///   T(x - k spacings) - S   loaded with an offset of k points, |k| <= 5
+///
+/// The best h by chi2 is returned if the rest is noise (p > 1e-3, and less than 0.4 of the change)
+/// or a tenth of h, if no change, a change of scale or of reversal does not explain it (chi2 larger
+/// by 25), and if no other hypothesis is as good (chi2 larger by 9). An offset that cannot be
+/// distinguished from none is `loaded`. `resolution`: smallest standard uncertainty of a
+/// difference. `active`: none: unknown; then S is nothing or any of the known tables. Source: least
+/// squares; limits by simulation (tests/property/loaded_table_test.py).
 std::optional<TableChange> recognize(const MeasuredCurve& before, const MeasuredCurve& after,
                                      const std::optional<TableCurve>& active,
                                      const std::vector<TableCurve>& known, double u_slope,
                                      double resolution);
 
-/// The known table that leaves least of the change if it was loaded, with what remains, whatever the rest is: for a
-/// change without a name. None if no table changes the axis at these places. `p` is NaN.
+/// Returns the known table that leaves the smallest rest if it was loaded, however large the rest
+/// is, for changes that `recognize` does not recognise. None if no table changes the axis at these
+/// positions. `p` is NaN.
 std::optional<TableChange> nearest(const MeasuredCurve& before, const MeasuredCurve& after,
                                    const std::optional<TableCurve>& active,
                                    const std::vector<TableCurve>& known, double resolution);

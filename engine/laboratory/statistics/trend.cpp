@@ -16,18 +16,19 @@ namespace {
 
 constexpr int most_steps = 3;
 constexpr int draws = 10000, batch = 100;
-constexpr double sharp = 1e-3;     // below it Bonferroni's bound is nearly exact
-constexpr double inseparable = 4;  // of chi2, between a line and a step
+constexpr double sharp = 1e-3;  // below this, Bonferroni's bound is nearly exact
+// Difference of chi2 below which a line and a step cannot be separated.
+constexpr double inseparable = 4;
 constexpr std::size_t fewest_for_walk = 8;
 
-/// What the model contains in addition to the level.
+/// Terms of the model in addition to the level.
 struct Shape {
   std::vector<Change> changes;
   bool drifts = false;
-  bool free = false;  ///< of what is known of slopes before
+  bool free = false;  ///< the slope is fitted without its prior
 };
 
-/// The columns of a model, as they are at each point.
+/// Computes the columns of the model, with one row per point.
 class Columns {
  public:
   explicit Columns(const Series& s) : s_(s), n_(static_cast<Index>(s.points.size())) {}
@@ -38,7 +39,7 @@ class Columns {
     out.tail(n_ - static_cast<Index>(after) - 1).setOnes();
     return out;
   }
-  /// From the first point, so that the level is that of the beginning.
+  /// Time since the first point, so that the level is that of the beginning.
   VectorXd time() const {
     VectorXd out(n_);
     for (Index i = 0; i < n_; ++i)
@@ -64,7 +65,7 @@ class Trending {
   explicit Trending(const Series& s) : s_(s), columns_(s), w_(s) {}
 
   Trend run() {
-    // A slope of which something is known before needs no test to come in.
+    // A slope with a prior is part of the model without a test.
     shape_.drifts = s_.spread > 0.0 && s_.points.size() >= 3;
     if (shape_.drifts && !fit(shape_)) shape_.drifts = false;
     declare();
@@ -92,8 +93,8 @@ class Trending {
     return out;
   }
 
-  /// A column for each place at which something is known to have happened and the values may have
-  /// stepped. An instrument is in the covariance: its places only assign a step to it.
+  /// Adds a step for each declared event. A change of the instrument gets none, because its
+  /// uncertainty is in the covariance; its place only determines the cause of a step.
   void declare() {
     for (std::size_t d = 0; d < s_.declared.size(); ++d) {
       const Declared& known = s_.declared[d];
@@ -122,11 +123,11 @@ class Trending {
                        [&](const Change& c) { return c.after == after; });
   }
 
-  /// Directions in which a step at each free place is seen, in addition to the model.
+  /// Whitened steps at all places without one, orthogonal to the present model.
   struct Places {
     std::vector<std::size_t> after;
-    MatrixXd direction;  // a column of unit length for each
-    VectorXd length;     // 1/u of the step
+    MatrixXd direction;  // one column of unit length per place
+    VectorXd length;     // 1/u of the step's size
   };
 
   Places places(const Gls& base) const {
@@ -152,7 +153,7 @@ class Trending {
     return out;
   }
 
-  /// P(largest of G over these places > G) where nothing stepped.
+  /// Returns P(largest G over these places > G) for a series without a step.
   double p_of_largest(const Places& places, double G) const {
     const auto many = static_cast<double>(places.after.size());
     const double of_one = normal_two_sided(std::sqrt(G));
@@ -171,19 +172,21 @@ class Trending {
           math::transposed_times(places.direction, noise.head(w_.y.size())).cwiseAbs2().maxCoeff() >
           G;
       if ((draw % batch == 0 && is_surely_more(beyond, draw)) ||
-          (draw < batch && is_surely_more(beyond, batch)))  // as it will be then
+          // The first full batch will exceed the limit in any case.
+          (draw < batch && is_surely_more(beyond, batch)))
         return std::min(bound, (beyond + 1.0) / (draw + 1.0));
     }
     return std::min(bound, (beyond + 1.0) / (draws + 1.0));
   }
 
-  /// Five standard deviations beyond what is named: more draws would not change that.
+  /// Whether the exceedances are more than 5 standard deviations above the significance level, so
+  /// that more draws would not change the decision.
   static bool is_surely_more(int beyond, int of) {
     const double expected = named_below * of;
     return beyond > expected + 5.0 * std::sqrt(expected);
   }
 
-  /// The most significant step or drift is added; false if none does.
+  /// Adds the most significant step or drift; false if none is significant.
   bool improve() {
     const auto base = fit(shape_);
     if (!base || !(base->dof > 0.0)) return false;
@@ -220,7 +223,8 @@ class Trending {
     return true;
   }
 
-  /// Whose a step is where the instrument changed: the points share an uncertainty with others.
+  /// Returns the cause of a step: the instrument, if it changed there and its uncertainty is common
+  /// to the points; otherwise undeclared.
   Change::Cause cause_at(std::size_t after) const {
     for (const Declared& d : s_.declared)
       if (d.kind == Declared::Kind::instrument && d.after == after &&
@@ -229,8 +233,8 @@ class Trending {
     return Change::Cause::undeclared;
   }
 
-  /// What is known of slopes helps to see a step. What is stated about this machine's own slope
-  /// comes from its own points alone: its interval holds whatever the slopes of the others are.
+  /// Removes the prior of the slope. The prior helps to detect steps, but the stated slope has to
+  /// come from this machine's own points, so that its interval does not depend on other machines.
   void free_slope(Shape& shape) const {
     Shape own = shape;
     own.drifts = own.free = true;
@@ -270,7 +274,8 @@ class Trending {
     return out;
   }
 
-  /// A slope that came in without a test is a drift only if it passes one.
+  /// Whether the slope is a drift. A slope that is in the model without a test has to be
+  /// significant.
   bool is_drift(const Gls& last) const {
     const Index i = last.b.size() - 1;
     return shape_.drifts &&
@@ -312,11 +317,12 @@ class Trending {
     out.smallest_change = (critical + math::normal_quantile(0.8)) / at.length(at.length.size() - 1);
   }
 
-  /// For a level that does not fit, and for two or more undeclared steps: local level, its variance
-  /// by maximum likelihood (independent u), if it is likelier than the steps at their price. At the
-  /// border q = 0 the likelihood ratio is half a chi-square with 1 degree of freedom.
+  /// Replaces the model by a random walk (local level, variance by maximum likelihood, independent
+  /// u), if a level does not fit or there are two or more undeclared steps, and if the walk is
+  /// likelier than the steps at their penalty. At the border q = 0 the likelihood ratio is half a
+  /// chi-square with 1 degree of freedom.
   void walk(Trend& out) const {
-    constexpr double at_border = 5.412;  // its quantile of 1 %
+    constexpr double at_border = 5.412;  // 99 % quantile of this distribution
     const bool restless = math::chi2_upper(out.chi2, out.dof) < named_below;
     if (s_.steps && !s_.steps->empty()) return;
     if (s_.points.size() < fewest_for_walk || static_cast<int>(shape_.changes.size()) > steps_ ||
@@ -333,8 +339,8 @@ class Trending {
     for (Segment& s : out.segments) s.last = walk.state, s.u_last = std::sqrt(walk.variance);
   }
 
-  /// By the steps: fall of chi2 less the price of each, 3 ln n (as of segmentations), and of a
-  /// line.
+  /// Fall of chi2 from a constant level to `out`, minus the penalties: 3 ln n per step and 2 for a
+  /// slope.
   double gained(const Trend& out) const {
     const auto level = fit(Shape{});
     const double price = 3.0 * std::log(static_cast<double>(s_.points.size()));
@@ -380,7 +386,8 @@ std::optional<Slope> slope_with_steps(const Series& given) {
 }
 
 double spread_of_slopes(const std::vector<Slope>& slopes) {
-  constexpr double most = 9.0, expected = 0.99501, variance = 1.855;  // of min(z^2, 9)
+  // Bound, mean and variance of min(z^2, 9).
+  constexpr double most = 9.0, expected = 0.99501, variance = 1.855;
   if (slopes.size() < 3) return 0.0;
   const auto n = static_cast<double>(slopes.size());
   const auto mean = [&](double sigma) {

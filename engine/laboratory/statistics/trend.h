@@ -6,44 +6,44 @@
 
 #include "laboratory/statistics/series.h"
 
-/// What a series did: a level, a drift, steps. With V the covariance of the points,
+/// Fits the trend of a series: a level, a drift, steps. With V the covariance of the points,
 ///
-///     V_ij = delta_ij (excess u_i)^2 + sum over sources of u_c,i u_c,j,
-///     b = (X' V^-1 X)^-1 X' V^-1 y,  C = (X' V^-1 X)^-1,  chi2 = r' V^-1 r,
+///   V_ij = delta_ij (excess u_i)^2 + sum over sources of u_c,i u_c,j,
+///   b = (X' V^-1 X)^-1 X' V^-1 y,  C = (X' V^-1 X)^-1,  chi2 = r' V^-1 r,
 ///
-/// by whitening with the Cholesky factor of V and a QR decomposition. Columns of X: 1; a step at
-/// each declared event (its size is estimated, not tested away); undeclared steps; time.
+/// computed by whitening with the Cholesky factor of V and a QR decomposition. Columns of X: 1; a
+/// step at each declared event (its size is always estimated); undeclared steps; time.
 ///
-/// An undeclared step: G_k, the decrease of chi2 by a step after point k, largest over the places
-/// without a declared one; its p is that of the largest, by Bonferroni's bound where that is below
-/// 0.001 (where it is sharp), else from 10,000 simulated series of the same V and X. A drift: the
-/// decrease of chi2 by a column of time, normal. Either is added if significant at 1 %; of both the
-/// drift, if its chi2 is at most 4 larger. Up to three steps. Of eight points or more: a level that
-/// wanders (random walk) in place of a level that does not hold, or of two steps or three if it is
-/// likelier than they are at a price of 3 ln n each.
+/// An undeclared step: G_k is the decrease of chi2 by a step after point k. The largest G over the
+/// places without a declared step is tested; its p is Bonferroni's bound if that is below 0.001
+/// (where it is sharp), otherwise it comes from 10,000 simulated series of the same V and X. A
+/// drift: the decrease of chi2 by a column of time, normal. Either is added if significant at 1 %;
+/// if both are, the drift is preferred unless its chi2 is more than 4 larger. At most three steps
+/// are added. For eight points or more, a random walk replaces a level that does not fit, or two or
+/// three steps if the walk is likelier than they are with a penalty of 3 ln n each.
 ///
-/// Where the laboratory's slopes are known to spread (Series::spread), a slope is held near 0 by a
-/// row slope/spread = 0 while steps are searched, and for their sizes. Slopes, segments and
-/// forecasts are of a fit with a free slope (Series::own_slope: of a level too): an interval that
-/// leans on the slopes of other machines covers 95 % of all slopes together, but too few of those
-/// that wear.
+/// If the spread of slopes in the laboratory is known (Series::spread), a row slope/spread = 0
+/// holds the slope near 0 while steps are searched and their sizes are estimated. Slopes, segments
+/// and forecasts come from a fit with a free slope (Series::own_slope: for a level too), because an
+/// interval that depends on the slopes of other machines covers 95 % of all slopes together, but
+/// too few of those of machines that wear.
 ///
-/// Sources: JCGM 100:2008; generalised likelihood ratio (general knowledge; the null of the largest
-/// is simulated here, reference values in tests/unit/history).
+/// Sources: JCGM 100:2008; generalised likelihood ratio (general knowledge; the null distribution
+/// of the largest is simulated here, reference values in tests/unit/history).
 namespace nonio::statistics {
 
 enum class Model { none, level, drift, step, walk };
 
 struct Segment {
-  std::size_t from = 0, to = 0;        ///< points, both included
-  double first = 0.0, last = 0.0;      ///< what the model predicts there
-  double u_first = 0.0, u_last = 0.0;  ///< with the part that all points have in common
+  std::size_t from = 0, to = 0;        ///< first and last point, both included
+  double first = 0.0, last = 0.0;      ///< values of the model at these points
+  double u_first = 0.0, u_last = 0.0;  ///< including the common parts
   double slope = 0.0, u_slope = 0.0;   ///< per year
 };
 
 struct Change {
   enum class Cause { undeclared, event, instrument, table };
-  std::size_t after = 0;  ///< last point before it
+  std::size_t after = 0;  ///< index of the last point before the change
   double size = 0.0, u = 0.0;
   double p = 1.0;
   Cause cause = Cause::undeclared;
@@ -53,22 +53,23 @@ struct Change {
 struct Trend {
   Model model = Model::none;
   std::vector<Segment> segments;
-  std::vector<Change> changes;   ///< by time
-  double chi2 = 0.0, dof = 0.0;  ///< with the slope held
-  /// A step at the last place that is named 8 times in 10.
+  std::vector<Change> changes;   ///< sorted by time
+  double chi2 = 0.0, dof = 0.0;  ///< of the fit with the prior of the slope
+  /// Size of a step at the last possible place that would be detected with a probability of 80 %.
   std::optional<double> smallest_change{};
-  bool line_or_step = false;  ///< these points cannot separate a drift from a step
+  bool line_or_step = false;  ///< these points cannot distinguish a drift from a step
 
-  // To go on from here (forecast.h): what the model predicts at a time after the last point is
-  // coefficients . (1, 1 of each change, time).
+  // For extrapolation (forecast.h): the model at a time after the last point is coefficients . (1,
+  // 1 for each change, time).
   std::vector<double> coefficients, covariance;  ///< covariance row by row
   bool drifts = false;
-  double walk = 0.0;  ///< variance of a random walk, per year
+  double walk = 0.0;  ///< variance per year of a random walk
 };
 
 inline constexpr double named_below = 0.01;
 
-/// An error as `check` gives it. Of one point there is no model; of two only their difference.
+/// Fits the trend. An error as of `check`. One point gives no model, two points only their
+/// difference.
 Expected<Trend> trend_of(const Series&);
 
 }  // namespace nonio::statistics

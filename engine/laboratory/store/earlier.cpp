@@ -36,7 +36,7 @@ bool may_pass(const Record& record) {
   return record.status == evaluation::Status::failed && record.retry;
 }
 
-/// The record of the results that count, and the folder in which they are.
+/// The record of the results that are in force, and their folder.
 struct Kept {
   fs::path folder;
   Record record;
@@ -57,7 +57,8 @@ std::string if_restored(const fs::path& folder) {
          (folder / evaluation::record_name).string() + " to go on without what was known before";
 }
 
-/// What the record states about it; empty: that there was none, or nothing that can be relied on.
+/// Returns the digest of earlier.json that the record states; empty if it states none, or if the
+/// record is incomplete.
 std::string recorded_digest(const fs::path& folder) {
   const auto last = evaluation::last_record(folder);
   if (!last || !*last || !(*last)->whole) return {};
@@ -66,7 +67,8 @@ std::string recorded_digest(const fs::path& folder) {
   return {};
 }
 
-/// It is the only copy: what is missing or changed is an error, never "nothing was known".
+/// Returns the bytes of earlier.json. It is the only copy, so a missing or changed file is an error
+/// and never taken as empty.
 Expected<std::string> earlier_bytes(const fs::path& campaign) {
   for (const fs::path& folder : {campaign, campaign / evaluation::last_good_name}) {
     const fs::path path = folder / earlier_name;
@@ -101,7 +103,7 @@ Known known_in(dom::object json) {
           read_entry(json["results"], inputs)};
 }
 
-/// What earlier.json states. Damage is an error here too.
+/// Parses earlier.json. A damaged file is an error.
 Expected<FolderHistory> earlier_in(const std::string& bytes, const fs::path& folder) {
   FolderHistory history;
   if (bytes.empty()) return history;
@@ -138,7 +140,7 @@ std::string text_of(const std::vector<CertificateRow>& certificates) {
   return all.dump(-1, ' ', false, storage::Json::error_handler_t::replace);
 }
 
-/// It contains the results as they were.
+/// Returns one evaluation as JSON, with its results unchanged.
 std::string text_of(const IndexedSince& since, const reading::Inputs& inputs,
                     std::string_view results) {
   storage::Json json = {{"night", since.run.number},
@@ -154,7 +156,8 @@ std::string text_of(const IndexedSince& since, const reading::Inputs& inputs,
   return out + '}';
 }
 
-/// earlier.json with another list of certificates and, unless it is empty, one more evaluation.
+/// Returns earlier.json with another list of certificates and, unless `more` is empty, one more
+/// evaluation.
 std::string extended(const std::string& before, const std::vector<CertificateRow>& certificates,
                      const std::string& more) {
   std::string list;
@@ -174,8 +177,8 @@ void add_number(const std::optional<CertificateRow>& more, std::vector<Certifica
   if (!known) numbers.push_back(*more);
 }
 
-/// The earlier results of a record, if they are still stored there. If newer ones were replacing
-/// them, earlier.json contains the earlier ones already.
+/// Returns the results of a record if they are still stored. If newer results were being stored,
+/// earlier.json contains them already.
 std::optional<std::string> still_there(const Kept& kept) {
   auto bytes = storage::read_file(kept.folder / evaluation::results_name);
   if (!bytes) return std::nullopt;
@@ -187,8 +190,8 @@ std::optional<std::string> still_there(const Kept& kept) {
   return std::move(*bytes);
 }
 
-/// Puts what is kept into earlier.json, where `carried` comes to something else. Its number too,
-/// unless it is `number`.
+/// Appends the results in `kept` to earlier.json if they differ from those in `carried`, and adds
+/// their certificate number unless it is `number`.
 Expected<void> put_aside(const Kept& kept, const fs::path& folder, const std::string& id,
                          const std::string& number, Carried& carried) {
   const auto before = still_there(kept);
@@ -251,7 +254,8 @@ Expected<Carried> carry_over(const fs::path& folder, const Record& fresh, std::s
   Carried carried{{}, std::move(bytes)};
   NONIO_TRY(const auto kept, kept_in(folder));
   if (may_pass(fresh)) {
-    // The store keeps good results in last-good; a failure that stays would be lost.
+    // Good results are kept in last-good. Those of a permanent failure would be lost, so they are
+    // appended.
     if (kept && kept->record.status == evaluation::Status::failed)
       if (auto put = put_aside(*kept, folder, id, {}, carried); !put) return fail(put.error());
     return carried;

@@ -21,7 +21,7 @@ namespace dom = simdjson::dom;
 
 namespace {
 
-/// "" where there is none.
+/// Returns the text of a member; empty if there is none.
 std::string text_at(dom::object of, std::string_view key) {
   std::string_view text;
   return of[key].get(text) == simdjson::SUCCESS ? std::string(text) : std::string();
@@ -101,7 +101,7 @@ class EntryReader {
                            text_at(i, "certificate"), text_at(i, "valid_until")};
   }
 
-  /// A check is a series of its own, whatever it was before or after.
+  /// Returns the state of a result. A check is always a separate series.
   std::string state(std::string said) const {
     if (entry_.purpose == "check") return "check";
     return said.empty() ? "as-found" : said;
@@ -169,7 +169,7 @@ class EntryReader {
     entry_.results.push_back(std::move(row));
   }
 
-  /// What a table predicts of a result, next to that result.
+  /// Adds a result that a table predicts.
   void read_prediction(dom::object p, const std::string& plugin) {
     const std::string measurement = text_at(p, "measurement");
     entry_.results.push_back({.measurement = measurement,
@@ -181,8 +181,8 @@ class EntryReader {
                               .value = p["predicted"]});
   }
 
-  /// The instrument's part and that of the expansion come back in other campaigns; the rest of the
-  /// budget is new in each.
+  /// Reads the parts of the uncertainty budget. The parts of the instrument and of the expansion
+  /// are common to several campaigns; the rest is new in each campaign.
   void read_parts(dom::object budget, std::string_view name, ResultRow& row) {
     dom::object results, one, parts;
     if (budget["results"].get(results) != simdjson::SUCCESS ||
@@ -214,7 +214,7 @@ class EntryReader {
   void read_certificate(dom::object c) {
     CertificateRow row{text_at(c, "number"), text_at(c, "date"), text_at(c, "replaces"),
                        entry_.campaign_sha256};
-    if (!row.number.empty()) entry_.certificate = std::move(row);  // a draft has none
+    if (!row.number.empty()) entry_.certificate = std::move(row);  // a draft has no number
   }
 
   std::string axis_of(const std::string& measurement) const {
@@ -228,11 +228,10 @@ class EntryReader {
 
   dom::object json_;
   Entry entry_;
-  std::map<std::string, std::string> axes_, states_;  ///< by measurement
+  std::map<std::string, std::string> axes_, states_;  ///< by id of the measurement
 };
 
-/// Fields one after the other, each with its length: two entries have one text only if they are
-/// the same.
+/// Writes fields with their lengths, so that two different entries never give the same text.
 class Canonical {
  public:
   Canonical& operator()(std::string_view text) {
@@ -309,7 +308,7 @@ Expected<Entry> entry_of(std::string_view results, const reading::Inputs& inputs
   try {
     dom::parser parser;
     Entry entry = read_entry(parser.parse(results), inputs);
-    // No manifest has one; a server keeps no text with it.
+    // No manifest contains a character 0, and a server cannot store it.
     if (canonical_of(entry).find('\0') != std::string::npos)
       return fail(std::string(evaluation::results_name) + ": a text with a character 0 in it");
     if (entry.campaign == id) return entry;

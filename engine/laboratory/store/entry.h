@@ -10,40 +10,41 @@
 #include "campaign/evaluation/record.h"
 #include "nonio/sdk/error.h"
 
-/// The laboratory's memory: what results.json of all campaigns show, as rows of a database that can
-/// be made again from them.
+/// The history of a laboratory: results.json of all campaigns as rows of a database, which can be
+/// rebuilt from these files.
 namespace nonio::store {
 
-/// State of a result that is none yet: what a table promises (its controller is the source).
+/// State of a result that is only predicted by a table; the source is the controller.
 inline constexpr const char* predicted_state = "predicted";
 
-/// Standard uncertainty that other results with the same source share.
+/// Standard uncertainty that all results with the same source have in common.
 struct CommonPart {
   std::string source;
   double u = 0.0;
 };
 
-/// One number of a campaign, in the unit in which results.json has it.
+/// One result of a campaign, in the unit of results.json.
 struct ResultRow {
   std::string measurement, axis, quantity;
-  std::string source;  ///< "followed", or the analysis
+  std::string source;  ///< "followed", or the name of the analysis
   std::string unit;
-  std::string state;  ///< as-found, as-left, check; predicted
+  std::string state;  ///< as-found, as-left, check, predicted
   double value = 0.0;
-  std::optional<double> u_repeat{};       ///< standard, of what is new in each campaign
-  std::optional<double> expanded{}, k{};  ///< U
+  std::optional<double> u_repeat{};       ///< standard uncertainty without the common parts
+  std::optional<double> expanded{}, k{};  ///< expanded uncertainty U and its k
   std::vector<CommonPart> common{};
   std::optional<double> tolerance{};
   std::string decision{};
-  std::string conditions{};  ///< JSON: what must be alike to be joined
-  std::string not_stated{};  ///< keys, with commas: `u_repeat` lacks what they would give
+  std::string conditions{};  ///< JSON: conditions that must agree for results to be joined
+  std::string not_stated{};  ///< manifest keys, separated by commas, that are missing: `u_repeat`
+                             ///< lacks their contributions
 };
 
-/// Of results `first` .. `first + count - 1`: the upper triangle, row by row.
+/// Covariance of results `first` .. `first + count - 1`: the upper triangle, row by row.
 struct CovarianceRow {
   std::uint64_t first = 0, count = 0;
   std::vector<double> upper;
-  /// JSON, as results.json has it: what a comparison with campaigns that have other targets needs.
+  /// Member of results.json as JSON: the data to compare with campaigns that have other targets.
   std::string other_targets{};
 };
 
@@ -51,16 +52,16 @@ struct FindingRow {
   std::string measurement, source, id, severity;
 };
 
-/// A limit with which no value could be compared.
+/// A limit that no value could be compared with.
 struct LimitRow {
   std::string measurement, axis, quantity, unit;
   double tolerance = 0.0;
 };
 
-/// What a measurement of an axis states of the control's tables.
+/// The control's tables as a measurement of an axis states them.
 struct ControlTableRow {
   std::string measurement, axis;
-  std::string state;  ///< JSON: the member of `control_tables` of results.json
+  std::string state;  ///< JSON: the member `control_tables` of results.json
 };
 
 struct MachineAsStated {
@@ -75,28 +76,30 @@ struct CertificateRow {
   std::string number, day, replaces, campaign_sha256;
 };
 
-/// What the history keeps of one evaluation of one campaign.
+/// One evaluation of one campaign, as stored in the history.
 struct Entry {
   std::string campaign, campaign_sha256, day, customer, purpose, status, message;
-  std::string place, control;  ///< of the machine, as this evaluation knew them
+  std::string place, control;  ///< of the machine, as in this evaluation
   MachineAsStated machine;
   InstrumentAsStated instrument;
-  std::vector<ResultRow> results;  ///< those with a covariance first
+  std::vector<ResultRow> results;  ///< results with a covariance first
   std::vector<CovarianceRow> covariance;
   std::vector<FindingRow> findings;
   std::vector<LimitRow> without_value;
   std::vector<ControlTableRow> control_tables;
-  std::optional<CertificateRow> certificate;  ///< issued, no draft; not part of the digest
+  std::optional<CertificateRow> certificate;  ///< of an issued certificate, not a draft; not part
+                                              ///< of the digest
 };
 
-/// From the bytes of results.json and the digests of what it was made from. An error if it is no
-/// such file, is cut short, holds what is not a number, or is of another campaign than `id`.
+/// Makes the entry from the bytes of results.json and the digests of the inputs. An error if the
+/// bytes are not a complete results.json, contain a value that is not a number, or belong to
+/// another campaign than `id`.
 Expected<Entry> entry_of(std::string_view results, const reading::Inputs& inputs,
                          const std::string& id);
 
-/// SHA-256 over the digests of the campaign's own files: manifest and readings.
+/// Returns the SHA-256 over the digests of the campaign's own files: manifest and readings.
 std::string campaign_sha256(const reading::Inputs& inputs);
-/// SHA-256 over everything in an entry but its certificate.
+/// Returns the SHA-256 over everything in an entry except its certificate.
 std::string digest_of(const Entry& entry);
 
 }  // namespace nonio::store

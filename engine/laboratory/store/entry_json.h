@@ -7,7 +7,7 @@
 
 namespace nonio::store {
 
-/// As `entry_of`, of results.json that is part of another document. Throws simdjson_error and
+/// Does the work of `entry_of` for results.json inside another document. Throws simdjson_error and
 /// std::runtime_error.
 Entry read_entry(simdjson::dom::object results, const reading::Inputs& inputs);
 

@@ -8,14 +8,14 @@
 
 namespace nonio::store {
 
-/// How a machine is called in the history: by its asset, else by maker and serial; empty where a
-/// campaign states neither, and then it belongs to no machine.
+/// Returns the name of a machine in the history: its asset, otherwise maker and serial. Empty if a
+/// campaign states neither; then it belongs to no machine.
 std::string machine_of(const MachineAsStated& machine);
 
-/// Two names that may be one machine. Nothing is joined until site.toml states that.
+/// Two names that may denote one machine. They are joined only if site.toml states an alias.
 struct Spelling {
-  std::string one, other;  ///< the name that more campaigns have comes first
-  std::string why;         ///< in words: what they have in common
+  std::string one, other;  ///< `one` is the name that more campaigns state
+  std::string why;         ///< reason in words
 };
 
 struct NamedMachine {
@@ -24,8 +24,8 @@ struct NamedMachine {
   std::size_t campaigns = 0;
 };
 
-/// Names that differ in case, spaces, punctuation, O and 0, I, l and 1 only, and assets whose maker
-/// and serial other campaigns state without an asset.
+/// Finds names that differ only in case, spaces, punctuation, O and 0, or I, l and 1, and assets
+/// whose maker and serial other campaigns state without an asset.
 std::vector<Spelling> spellings(const std::vector<NamedMachine>& machines);
 
 }  // namespace nonio::store

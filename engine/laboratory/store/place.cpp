@@ -46,7 +46,7 @@ bool is_of_somebody_else(const fs::path& path) {
   return ::stat(path.c_str(), &info) != 0 || (info.st_uid != ::geteuid() && info.st_uid != 0);
 }
 
-/// Where only a person can continue.
+/// End of an error message that only a person can resolve.
 constexpr const char* another_owner =
     " holds the history of another output folder: give each site a schema of its own ([database] "
     "schema in site.toml). If the output folder of this site was lost, restore OUT/.nonio/database "
@@ -121,7 +121,7 @@ Expected<Database> open_store(const fs::path& out) {
   if (!database) return database;
   const auto version = version_of(*database);
   if (place.server && version) {
-    // The lock waits for a store that is being made again, and the state is that of its end.
+    // The lock waits until a store that is being rebuilt is complete.
     database->script("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY");
     database->script("LOCK TABLE store IN ACCESS SHARE MODE");
   }
@@ -136,7 +136,8 @@ Expected<Database> open_store(const fs::path& out) {
 
 namespace {
 
-/// Noted here before it is on the server: whichever of the two a crash leaves, the server's is known.
+/// Adds a new random turn to `place`. It is stored here before it is written to the server, so that
+/// after a crash the server's turn is always known here.
 Expected<void> take_turn(Database& database, const fs::path& out, StorePlace& place,
                          const std::string& last) {
   constexpr std::size_t most = 500;

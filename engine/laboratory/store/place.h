@@ -15,31 +15,35 @@ namespace nonio::store {
 /// output folder does not need site.toml.
 struct StorePlace {
   std::optional<storage::Server> server{};  ///< none: OUT/history.sqlite
-  std::string owner{};                      ///< random; the schema on the server bears it too
-  std::int64_t evaluations = 0;  ///< that the server's store had when it was last written
-  /// Random, one each time that the store is written; the server has the one of the last time. A
-  /// copy of this folder does not know those that come after it.
+  std::string owner{};                      ///< random id, which the schema on the server contains
+                                            ///< too
+  std::int64_t evaluations = 0;  ///< number of evaluations in the server's store when it was last
+                                 ///< written
+  /// Random ids, one for each time that the store is written; the server contains the last one. A
+  /// copy of this folder does not contain the later ones, so two copies that write to one schema
+  /// are detected.
   std::vector<std::string> turns{};
 };
 
-/// An error if the file is damaged. In a file of another user a password file is ignored: that user
-/// could otherwise make this process send its password to any server.
+/// Reads the location. An error if the file is damaged. In a file that belongs to another user, the
+/// password file is ignored, since that user could otherwise send this user's password to any
+/// server.
 Expected<StorePlace> place_of(const std::filesystem::path& out);
 
-/// As site.toml has it. True: the store lay elsewhere before.
+/// Stores the location of site.toml. Returns true if the store was in another place before.
 Expected<bool> note_place(const std::filesystem::path& out,
                           const std::optional<storage::Server>& server);
 Expected<void> note_evaluations(const std::filesystem::path& out, std::int64_t count);
 
-/// For messages: the file or the schema.
+/// Returns the file or the schema, for messages.
 std::string name_of(const StorePlace& place, const std::filesystem::path& out);
 std::string store_in(const std::filesystem::path& out);
 
-/// The store, opened to be read: on a server all that is read from it belongs to one run.
+/// Opens the store for reading. On a server, everything read from it belongs to one run.
 Expected<storage::Database> open_store(const std::filesystem::path& out);
 
-/// Makes the server's schema if it is missing. An error if it is another output folder's, or if a
-/// copy of this one has written into it.
+/// Makes the server's schema if it is missing. An error if it belongs to another output folder, or
+/// if a copy of this folder has written to it.
 Expected<void> take_schema(storage::Database& database, const std::filesystem::path& out);
 
 }  // namespace nonio::store

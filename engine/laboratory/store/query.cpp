@@ -25,7 +25,7 @@ Expected<std::vector<NamedMachine>> machines_of(Database& database, const char* 
   return machines;
 }
 
-/// The name under which the campaigns of this machine are stored.
+/// Returns the name under which the campaigns of a machine are stored; resolves an alias.
 Expected<std::string> known_machine(Database& database, const std::string& name) {
   const std::string alias =
       database.first("SELECT machine FROM machine_alias WHERE alias = ?", {name});
@@ -41,7 +41,8 @@ Expected<std::string> known_machine(Database& database, const std::string& name)
               storage::suggestion(name, names));
 }
 
-/// An axis or a quantity that nothing has is a slip, and no empty answer.
+/// Returns an error if no result has this axis or quantity, because it is probably a spelling
+/// mistake.
 Expected<void> check_name(Database& database, const char* what, const char* sql,
                           const std::string& name) {
   if (name.empty()) return {};
@@ -70,7 +71,8 @@ WHERE (? = '' OR COALESCE(a.machine, c.machine) = ?) AND (? = '' OR r.axis = ?) 
 ORDER BY name, r.axis, r.quantity, r.source, c.day, r.state, c.campaign, e.evaluation, r.item
 )sql";
 
-/// Of what is followed U is that of the analysis which states it, else that of all its parts, k = 2.
+/// Completes U of a followed quantity: that of the analysis that states it, otherwise from all
+/// parts with k = 2.
 void complete(Point& p) {
   if (p.source != "followed") return;
   if (p.expanded.empty() && !p.u_repeat.empty())

@@ -10,34 +10,35 @@
 
 namespace nonio::store {
 
-/// What is required; empty: any.
+/// Filter of a query; empty members match anything.
 struct Query {
   std::string machine{}, axis{}, quantity{}, source{};
   std::string from{}, to{};  ///< days of the campaigns, both included
-  bool superseded = false;   ///< also what was replaced since
+  bool superseded = false;   ///< include evaluations that were superseded
 };
 
-/// One number of a machine's history.
+/// One result in the history of a machine.
 struct Point {
   std::string machine, axis, quantity, source, unit, day, state, purpose;
-  std::string value;  ///< in the fewest digits that give the double back, as all numbers here
+  std::string value;  ///< in the fewest digits that restore the double, as all numbers here
   std::string u_repeat, u_common, expanded, k, tolerance, decision;
   std::string campaign, measurement, instrument, instrument_certificate, conditions;
-  std::string evaluation, superseded_by;  ///< sequence numbers; empty: it is the last
+  std::string evaluation, superseded_by;  ///< sequence numbers; superseded_by empty: it is the last
 };
 
-/// By machine, axis, quantity, source and day, as found before as left. An error if there is no
-/// store, or nothing of that machine, axis or quantity in it: with the nearest name.
+/// Returns the matching results by machine, axis, quantity, source and day, as found before as
+/// left. An error if there is no store, or no result of that machine, axis or quantity; the error
+/// suggests the nearest name.
 Expected<std::vector<Point>> query(const std::filesystem::path& out, const Query& wanted);
 
-/// The name under which the campaigns of a machine are stored, from that name or an alias. An error
-/// names the nearest.
+/// Returns the name under which the campaigns of a machine are stored, given that name or an alias.
+/// An error suggests the nearest name.
 Expected<std::string> machine_named(const std::filesystem::path& out, const std::string& name);
 
-/// The machines of a store, with aliases joined, by name.
+/// Returns the machines of a store, with aliases joined, by name.
 Expected<std::vector<NamedMachine>> machines_in(const std::filesystem::path& out);
 
-/// Names in a store that may be one machine and that no alias joins.
+/// Returns names in a store that may denote one machine and that no alias joins.
 Expected<std::vector<Spelling>> spellings_in(const std::filesystem::path& out);
 
 }  // namespace nonio::store

@@ -256,7 +256,7 @@ Expected<StoredLogs> StoreReader::logs() {
     out.aliases[r[0]] = r[1];
   for (Database::Row& r : database_.rows("SELECT machine, months FROM due_rule"))
     out.due[r[0]] = whole_of<int>(r[1]);
-  for (const auto& [alias, machine] : out.aliases)  // a rule may name a machine as campaigns do
+  for (const auto& [alias, machine] : out.aliases)  // a rule may name a machine by an alias
     if (const auto rule = out.due.find(alias); rule != out.due.end()) {
       out.due.try_emplace(machine, rule->second);
       out.due.erase(rule);

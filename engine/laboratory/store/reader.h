@@ -18,120 +18,120 @@
 
 namespace nonio::store {
 
-/// A campaign as its last evaluation knows it.
+/// A campaign according to its last evaluation.
 struct StoredCampaign {
   std::string id, day, customer, purpose, status;
   InstrumentAsStated instrument;
   std::int64_t evaluation = 0;
-  std::uint64_t run = 0;  ///< in which that evaluation came
-  std::string number{};   ///< of its last certificate
+  std::uint64_t run = 0;  ///< run of that evaluation
+  std::string number{};   ///< number of its last certificate
   std::string place{}, control{};
 };
 
-/// A number of a campaign: of what is followed, or a result with a tolerance or U.
+/// A result of a campaign: a followed quantity, or one with a limit or U.
 struct StoredResult {
   std::size_t campaign = 0;  ///< index into StoredMachine::campaigns
   std::string measurement, axis, quantity;
-  std::string source{};  ///< "followed", or the analysis
+  std::string source{};  ///< "followed", or the name of the analysis
   std::string unit, state, decision, conditions;
   bool followed = false;
   double value = 0.0;
   std::optional<double> u_repeat{}, expanded{}, k{}, tolerance{};
   std::vector<CommonPart> common{};
-  /// Index into StoredMachine::other_targets, and the place of the number in it; none if the number
-  /// does not depend on targets.
+  /// Index into StoredMachine::other_targets, and the index of the quantity there; none if the
+  /// result does not depend on the choice of targets.
   std::optional<std::size_t> targets{};
   std::size_t place = 0;
 };
 
-/// A limit with which no value of the campaign could be compared.
+/// A limit that no value of the campaign could be compared with.
 struct LimitWithoutValue {
   std::size_t campaign = 0;  ///< index into StoredMachine::campaigns
   std::string measurement, axis, quantity, unit;
   double tolerance = 0.0;
 };
 
-/// What a measurement of an axis states of the control's tables.
+/// The control's tables as a measurement of an axis states them.
 struct StoredTables {
   std::size_t campaign = 0;  ///< index into StoredMachine::campaigns
   std::string measurement, axis;
   std::string json{};  ///< the member of `control_tables` of results.json
 };
 
-
-/// All that the store has of one machine, without failed campaigns, which measured nothing.
+/// Everything that the store contains about one machine, without failed campaigns.
 struct StoredMachine {
   std::vector<StoredCampaign> campaigns;  ///< by day, then by id
-  std::vector<StoredResult> results;      ///< in the order of their campaigns
-  std::vector<StoredResult> predicted{};  ///< by tables: the same order
-  /// JSON, member `other_targets` of results.json.
+  std::vector<StoredResult> results;      ///< sorted by campaign
+  std::vector<StoredResult> predicted{};  ///< predicted by tables; sorted by campaign
+  /// JSON: member `other_targets` of results.json.
   std::vector<std::string> other_targets{};
-  /// Severity by finding of the last evaluation of each campaign.
+  /// Severity by finding id, for the last evaluation of each campaign.
   std::vector<std::map<std::string, std::string>> findings;
-  /// Of the last evaluation of each campaign: findings of tables and certificates with severity
-  /// warning, and refusals of analyses.
+  /// Findings about tables and certificates with severity warning, and refusals of analyses, for
+  /// the last evaluation of each campaign.
   std::vector<std::vector<FindingRow>> asked{};
   std::vector<LimitWithoutValue> without_value{};
-  std::vector<StoredTables> tables{};  ///< in the order of their campaigns
+  std::vector<StoredTables> tables{};  ///< sorted by campaign
   struct Later {
     std::string campaign, day;
   };
-  std::vector<Later> later{};  ///< campaigns dated after the day that was requested: not here
+  std::vector<Later> later{};  ///< campaigns after the requested day; they are not in `campaigns`
 };
 
-/// A machine, with aliases joined.
+/// A machine, with its aliases joined.
 struct MachineState {
   NamedMachine machine;
-  std::uint64_t run = 0;            ///< of the last evaluation that counts
-  std::set<std::string> serials{};  ///< that its campaigns state
+  std::uint64_t run = 0;            ///< run of its last evaluation in force
+  std::set<std::string> serials{};  ///< serial numbers that its campaigns state
 };
 
-/// An evaluation, whether another supersedes it or not.
+/// An evaluation, superseded or not.
 struct StoredEvaluation {
-  std::string machine;  ///< aliases joined; empty: of none
+  std::string machine;  ///< aliases joined; empty: no machine
   std::string campaign, sha256, day;
   std::uint64_t run = 0;
-  bool counts = true;  ///< no other supersedes it
+  bool counts = true;  ///< not superseded
 };
 
-/// A campaign's last evaluation.
+/// The last evaluation of a campaign.
 struct CountedCampaign {
-  std::string machine;  ///< aliases joined; empty: of none
+  std::string machine;  ///< aliases joined; empty: no machine
   std::string campaign, day, sha256;
 };
 
-/// Entries of people, as the store has them.
+/// Entries of people, as stored.
 struct StoredLogs {
   std::vector<config::Event> events;
   std::vector<config::Acknowledgement> acknowledged;
   std::vector<config::Forgotten> forgotten;
-  std::map<std::string, std::string> aliases;  ///< machine by alias
-  std::map<std::string, int> due;              ///< months by machine; "": of all others
+  std::map<std::string, std::string> aliases;  ///< name of the machine by alias
+  std::map<std::string, int> due;              ///< interval in months by machine; "": all others
   std::set<std::string> recorded{};            ///< machines that have records with events
 };
 
-/// Reads a store; evaluations that another supersedes are never seen.
+/// Reads a store. Superseded evaluations are skipped unless stated otherwise.
 class StoreReader {
  public:
-  /// An error if there is no store, or one of another version.
+  /// Opens the store. An error if it does not exist, or is of another version.
   static Expected<StoreReader> open(const std::filesystem::path& out);
 
-  /// With aliases joined, by name; machines without a name are left out.
+  /// Returns the machines by name, with aliases joined; campaigns without a machine are left out.
   Expected<std::vector<MachineState>> machines();
-  /// `until`: what is dated after this day is not measured yet.
+  /// Reads one machine. `until`: campaigns after this day are listed in `later` only.
   Expected<StoredMachine> machine(const std::string& name, const std::string& until = "9999-12-31");
-  /// A single campaign: which campaigns without a stated machine belong together is not known.
+  /// Reads a single campaign without a machine. Which of these campaigns belong together is not
+  /// known.
   Expected<StoredMachine> campaign(const std::string& id, const std::string& until = "9999-12-31");
   Expected<StoredLogs> logs();
-  /// The machine of each campaign, aliases joined.
+  /// Returns the machine of each campaign, with aliases joined.
   Expected<std::map<std::string, std::string>> machine_of_campaigns();
-  /// In their order: the same list, the same results.
+  /// Returns all evaluations, including superseded ones, in the order of the store.
   Expected<std::vector<StoredEvaluation>> evaluations();
-  /// Of each campaign the one that counts, without those that failed; by machine, day and id.
+  /// Returns the evaluation in force of each campaign, without failed ones; by machine, day and id.
   Expected<std::vector<CountedCampaign>> counted_campaigns();
-  /// Numbers of each campaign and what they replace, as one text.
+  /// Returns, by campaign, its certificate numbers and what they replace as one text.
   Expected<std::map<std::string, std::string>> certificates();
-  /// How many different quantities of axes each run from this one on has evaluated.
+  /// Returns, by run from this one on, how many different quantities of axes it has evaluated.
   Expected<std::map<std::uint64_t, std::uint64_t>> followed_since(std::uint64_t run);
 
  private:

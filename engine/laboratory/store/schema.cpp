@@ -10,7 +10,8 @@ using storage::Database;
 
 namespace {
 
-/// Types and words that SQLite and PostgreSQL both have. Sequence numbers and doubles need 8 bytes.
+/// Tables with types and words that both SQLite and PostgreSQL have. Sequence numbers and doubles
+/// need 8 bytes.
 constexpr const char* tables = R"sql(
 CREATE TABLE store (name TEXT PRIMARY KEY, value BIGINT NOT NULL);
 CREATE TABLE machine (
@@ -75,7 +76,7 @@ CREATE VIEW point AS
   LEFT JOIN machine_alias a ON a.alias = c.machine;
 )sql";
 
-/// Of types that they call differently.
+/// The table with types that differ between the two.
 constexpr const char* covariance_table = R"sql(
 CREATE TABLE covariance (
   evaluation BIGINT NOT NULL, first_item BIGINT NOT NULL, items BIGINT NOT NULL, upper_triangle BLOB NOT NULL,
@@ -83,18 +84,18 @@ CREATE TABLE covariance (
   PRIMARY KEY (evaluation, first_item));
 )sql";
 
-/// What campaigns show; the others are copies of the site's files as they are now.
+/// Tables in which rows are only added; the others are copies of the site's present files.
 constexpr const char* append_only[] = {
     "machine",    "campaign", "evaluation",          "result",        "common_part",
     "covariance", "finding",  "limit_without_value", "control_table", "certificate"};
-/// Children first.
+/// Child tables come before their parents.
 constexpr const char* all_tables[] = {
     "common_part",   "covariance",    "finding",     "limit_without_value",
     "control_table", "result",        "certificate", "evaluation",
     "campaign",      "machine",       "event",       "acknowledgement",
     "forgotten",     "machine_alias", "store",       "due_rule"};
 
-/// For a statement, so that TRUNCATE is refused too.
+/// Returns triggers per statement, so that TRUNCATE is refused as well.
 std::string server_triggers() {
   std::string sql =
       "CREATE FUNCTION append_only() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN "
@@ -130,7 +131,8 @@ std::optional<std::int64_t> version_of(Database& database) {
   std::int64_t version = 0;
   std::from_chars(text.data(), text.data() + text.size(), version);
   if (database.kind() != Database::Kind::sqlite) return version;
-  // A newer program may have another table for it; what marks the file is read by all.
+  // A newer program may store its version in another table, so the mark in the file is read as
+  // well.
   const std::string mark = database.first("PRAGMA user_version");
   std::int64_t marked = 0;
   std::from_chars(mark.data(), mark.data() + mark.size(), marked);
@@ -138,7 +140,7 @@ std::optional<std::int64_t> version_of(Database& database) {
 }
 
 void make_tables(Database& database) {
-  // The same table first as those who read lock it: none waits for the other in a circle.
+  // Lock the table that readers lock first, so that no deadlock can occur.
   if (database.kind() == Database::Kind::postgresql && has_table(database, "store"))
     database.script("LOCK TABLE store IN ACCESS EXCLUSIVE MODE");
   std::string sql = "DROP VIEW IF EXISTS point;\nDROP VIEW IF EXISTS latest;\n";

@@ -27,7 +27,7 @@ using storage::Database;
 
 namespace {
 
-/// The evaluation of a campaign that the next one supersedes.
+/// The evaluation of a campaign that a new one supersedes.
 struct Before {
   std::int64_t evaluation = 0;  ///< 0: there is none
   std::string campaign_sha256, version;
@@ -39,7 +39,7 @@ Database::Value value_of(const std::optional<double>& x) {
 
 std::int64_t number(std::size_t n) { return static_cast<std::int64_t>(n); }
 
-/// Doubles of 8 bytes, the least significant byte first.
+/// Returns doubles as 8 bytes each, the least significant byte first.
 std::string bytes_of(const std::vector<double>& numbers) {
   std::string out;
   for (const double x : numbers) {
@@ -85,7 +85,7 @@ const char* why(const Known& known, const Before& before) {
   return before.version != known.since.version ? "version" : "settings";
 }
 
-/// Appends one evaluation with all that belongs to it under this sequence number.
+/// Inserts one evaluation with all its rows under this sequence number.
 void insert(Database& database, std::int64_t evaluation, const Known& known, const Before& before) {
   const Entry& e = known.entry;
   insert_campaign(database, e);
@@ -128,7 +128,7 @@ void insert(Database& database, const std::string& campaign,
                  {c.number, campaign, c.campaign_sha256, c.day, c.replaces});
 }
 
-/// Replaces the entries of people by those that the site's files have now.
+/// Replaces the entries of people by those in the site's present files.
 void replace_logs(Database& database, const config::SiteLogs& logs,
                   const std::vector<config::Alias>& aliases,
                   const std::vector<config::Event>& of_records,
@@ -165,11 +165,11 @@ void replace_logs(Database& database, const config::SiteLogs& logs,
 constexpr const char* known_folder = ".nonio";
 constexpr const char* known_name = "history";
 
-/// Position of an evaluation in the order of the store.
+/// Position of an evaluation in the store: by run, campaign and index in the campaign.
 struct Place {
   std::uint64_t run = 0;
   std::string campaign;
-  std::size_t in_chain = 0;  ///< of its campaign
+  std::size_t in_chain = 0;  ///< index among the evaluations of its campaign
   auto key() const { return std::tie(run, campaign, in_chain); }
 };
 bool operator<(const Place& a, const Place& b) { return a.key() < b.key(); }
@@ -189,11 +189,11 @@ class Filling {
           Updated& updated)
       : out_(out), database_(database), alive_(alive), updated_(updated) {}
 
-  /// Everything, into empty tables.
+  /// Fills empty tables with all evaluations.
   Expected<void> all() {
     NONIO_TRY(auto places, all_places());
     std::int64_t number = 0;
-    std::map<std::string, Before> last;  // of campaigns with more than one evaluation
+    std::map<std::string, Before> last;  // only for campaigns with more than one evaluation
     for (const Place& place : places) {
       alive_();
       const auto history =
@@ -214,7 +214,8 @@ class Filling {
     return {};
   }
 
-  /// What is new of these campaigns. False: the store does not fit what is there.
+  /// Adds the new evaluations of these campaigns. False if the rows of the store contradict the
+  /// files.
   Expected<bool> some(const std::vector<std::string>& campaigns) {
     const Place last = last_place();
     std::map<Place, std::pair<Known, Before>> added;
@@ -279,7 +280,7 @@ class Filling {
 
   Expected<std::vector<Place>> all_places() {
     std::vector<Place> places;
-    // A chain keeps its order, even if the count of the runs was set back.
+    // The evaluations of a campaign keep their order, even if the number of runs was reset.
     const auto listed = storage::each_results_folder(out_, [&](const fs::path& folder) {
       alive_();
       const std::string campaign = folder.filename().string();
@@ -319,8 +320,8 @@ Expected<Database> open(const fs::path& out) {
   return database;
 }
 
-/// An index is worth nothing where it cannot be read: it is made anew. Another process that has it
-/// open is none of that.
+/// Opens the store. A file that cannot be read is replaced, because it can be rebuilt; one that
+/// another process has locked is not.
 Expected<Database> open_or_replace(const fs::path& out, const StorePlace& place) {
   if (place.server) return Database::open(*place.server);
   auto database = open(out);
@@ -347,7 +348,7 @@ Expected<void> check_version(std::optional<std::int64_t> version, const std::str
               ": use the newer program, or remove it; it is made again");
 }
 
-/// An earlier file would become outdated without notice.
+/// Removes history.sqlite, which would become outdated now that the store is on a server.
 Expected<void> leave_to_server(const fs::path& out, std::int64_t evaluations) {
   std::error_code error;
   const fs::path path = out / store_name;
@@ -356,7 +357,7 @@ Expected<void> leave_to_server(const fs::path& out, std::int64_t evaluations) {
   return note_evaluations(out, evaluations);
 }
 
-/// In one transaction: all of it or nothing.
+/// Updates or rebuilds the store in one transaction.
 Expected<Updated> write(const fs::path& out, bool all, const std::vector<std::string>& campaigns,
                         const SiteRecords& records, const std::function<void()>& alive) {
   const auto place = place_of(out);
@@ -371,7 +372,7 @@ Expected<Updated> write(const fs::path& out, bool all, const std::vector<std::st
   if (place->server)
     if (auto ours = take_schema(database, out); !ours) return fail(ours.error());
   bool again = all || version != schema_version;
-  // A server whose backup was restored, or whose standby took over, has lost the last runs.
+  // A server that was restored from a backup, or replaced by its standby, has lost the last runs.
   if (!again && place->server) again = last_number(database) != place->evaluations;
   Filling filling(out, database, alive, updated);
   if (!again) {
@@ -418,7 +419,7 @@ Expected<std::optional<std::uint64_t>> known_run(const fs::path& out) {
 }
 
 Expected<void> forget_known_run(const fs::path& out) {
-  // Written over and not removed: there are shares on which nothing can be removed.
+  // Overwritten and not removed, because on some shares files cannot be removed.
   return storage::publish(out / known_folder, {{known_name, "none\n"}});
 }
 

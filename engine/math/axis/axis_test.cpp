@@ -18,7 +18,8 @@ void keep_distinct(std::vector<double>& x) {
   x.erase(std::unique(x.begin(), x.end()), x.end());
 }
 
-// Memory follows the number of targets, not of rows: the list is thinned whenever it has doubled.
+// Returns the distinct targets. Duplicates are removed whenever the list has doubled, so that
+// memory grows with the number of targets, not of rows.
 std::vector<double> distinct_targets(const Observations& o) {
   std::vector<double> targets;
   std::size_t limit = 1U << 16U;
@@ -38,7 +39,7 @@ std::vector<double> distinct_targets(const Observations& o) {
 
 }  // namespace
 
-// A counting sort: 16 bytes a row and 24 bytes a target.
+// Arranges by a counting sort: 16 bytes per row and 24 bytes per target.
 AxisTest AxisTest::arrange(const Observations& o) {
   AxisTest test;
   test.starts_.assign(1, 0);
@@ -48,7 +49,7 @@ AxisTest AxisTest::arrange(const Observations& o) {
   if (axis.position.size() != o.size() || axis.approach.size() != o.size()) return test;
   test.targets = distinct_targets(o);
 
-  std::size_t last = 0;  // neighbouring rows often share or step to the next target
+  std::size_t last = 0;  // adjacent rows often share a target or step to the next one
   const auto part_of = [&](std::size_t row) {
     const double position = axis.position[row];
     if (last >= test.targets.size() || test.targets[last] != position)
@@ -66,7 +67,7 @@ AxisTest AxisTest::arrange(const Observations& o) {
     starts[k + 1] += starts[k];
   }
   test.readings_.resize(starts.back());
-  // Filling moves each start to its end, which is the next start: shifted back afterwards.
+  // Filling advances each start to its end, which is the next start; shift them back afterwards.
   for (std::size_t row = 0; row < o.size(); ++row)
     if (counts(o, row))
       test.readings_[starts[part_of(row)]++] = {

@@ -13,7 +13,7 @@
 namespace nonio::math {
 namespace {
 
-struct Runs {  // by run; of passes: one entry each
+struct Runs {  // values by run; those of passes have one entry per pass
   std::vector<double> number, y;
   std::vector<double> pass_number[2], pass_y[2];
 };
@@ -24,7 +24,7 @@ struct Line {
 
 using Groups = std::vector<std::pair<const std::vector<double>*, const std::vector<double>*>>;
 
-// One slope, an intercept for each group.
+// Fits one slope with a separate intercept for each group.
 Line common_line(const Groups& groups) {
   double xy = 0.0, yy = 0.0, n = 0.0, used = 1.0;
   Line line;
@@ -74,7 +74,8 @@ bool goes_one_way(const std::vector<double>& y) {
   return up || down;
 }
 
-// per_pass: variance of an offset or slope by the scatter of single readings.
+// Computes the drift of an offset or slope; per_pass: its variance from the scatter of single
+// readings.
 Drift::Part part_of(const Runs& runs, double per_pass, double dof) {
   Drift::Part part;
   const Line passes = common_line(
@@ -99,8 +100,8 @@ Drift::Part part_of(const Runs& runs, double per_pass, double dof) {
   return part;
 }
 
-// Which direction of a run came first: by the rows, where they hold the passes one after the other;
-// else the usual +.
+// Whether - came before + in a run: by the order of rows, if they contain the passes one after the
+// other; otherwise false.
 bool minus_first(const AxisTest& test) {
   std::uint32_t low[2] = {UINT32_MAX, UINT32_MAX}, high[2] = {0, 0};
   const std::uint32_t run = test.readings().empty() ? 0 : test.readings().front().run;
@@ -125,7 +126,7 @@ std::vector<double> lags(const AxisTest& test) {
 
 double square_of(double x) { return x * x; }
 
-// The drift within the passes makes B_i = const + share b_i.
+// Fits B_i = const + share b_i, because drift within the passes adds b_i to the reversal.
 void compare_with_reversal(const AxisTest& test, double variance, double dof, Drift& drift) {
   std::vector<double> B, b;
   double per = 0.0;
@@ -147,7 +148,8 @@ void compare_with_reversal(const AxisTest& test, double variance, double dof, Dr
   drift.p_reversal = t_two_sided(test_ratio(drift.seen_in_reversal, std::sqrt(of_B / bb)), dof);
 }
 
-// Of the largest of so many values, which none of them exceeds with 95.45 %; 2 at least.
+// Returns the factor that the largest of `values` normal values does not exceed with 95.45 %; at
+// least 2.
 double factor_of_largest(std::size_t values) {
   const double tail = 0.0455 / static_cast<double>(values);
   double low = 2.0, high = 10.0;
@@ -189,9 +191,9 @@ Drift estimate_drift(const AxisTest& test) {
 
 namespace {
 
-// In the largest standard deviation of a direction, of which R is made: s^2 is that of the axis and the
-// mean square that the drift may have.
-// Of equal ones the larger share: rounding must not choose between them.
+// Returns the contribution of drift to the largest standard deviation of a direction, from which R
+// is computed: s minus the square root of s^2 minus the mean square that drift may contribute.
+// Among equal values of s the larger contribution is used, so that rounding does not decide.
 double in_scatter(const AxisTest& test, const Drift& drift, bool minus) {
   constexpr double equal = 1e-9;
   double largest = 0.0, share = 0.0;

@@ -16,11 +16,13 @@ namespace {
 
 constexpr double periods_asked = 2.0;
 constexpr double steps_of_period = 20.0;
-// docs/dev/constants.md, A20: what may be noise alone has the distribution of Rayleigh.
+// docs/dev/constants.md, A20: an amplitude that may be noise alone is distributed according to
+// Rayleigh.
 constexpr double noise_alone = 3.0, of_noise = 1.25;
-constexpr double as_written = 1e-6;  // of a period: targets are printed to a digit
+// tolerance for the rounding of printed targets, as a fraction of a period
+constexpr double as_written = 1e-6;
 
-/// Length of the shortest pass and the widest step of all.
+/// Returns the length of the shortest pass and the widest step of all passes.
 std::pair<double, double> extent(std::span<const Pass> passes) {
   double length = INFINITY, step = 0.0;
   for (const Pass& p : passes) {
@@ -35,8 +37,8 @@ std::pair<double, double> extent(std::span<const Pass> passes) {
 struct Design {
   Eigen::MatrixXd X;
   Eigen::VectorXd y;
-  std::vector<int> place;     ///< ascending along each pass, passes far apart
-  std::vector<double> phase;  ///< 0..1
+  std::vector<int> place;     ///< order index, ascending along each pass; passes are far apart
+  std::vector<double> phase;  ///< phase within the period, 0..1
 };
 
 constexpr Eigen::Index waves = 4;
@@ -74,11 +76,11 @@ Design design_of(std::span<const Pass> passes, double period, double step) {
   return out;
 }
 
-/// Means over readings of one phase, without the lines; their scatter about them.
+/// Computes the means over readings of one phase, without the lines, and the scatter about them.
 void fold(const Design& d, const Eigen::VectorXd& left, std::size_t passes, std::size_t n,
           PeriodicError& out) {
   std::vector<double> sum(n, 0.0), count(n, 0.0);
-  // A phase that is rounded up to the whole period is the first one again.
+  // A phase that rounds up to the whole period belongs to the first bin.
   const auto bin_of = [&](std::size_t i) {
     const auto bin = static_cast<std::size_t>(std::lround(d.phase[i] * static_cast<double>(n)));
     return bin < n ? bin : 0;
@@ -150,7 +152,7 @@ PeriodicError periodic_error(std::span<const Pass> passes, double period) {
     if (wave.amplitude < noise_alone * wave.u) wave.u *= of_noise;
   }
   const Eigen::VectorXd left = residual(d.y, left_columns(d.X, k - waves), beta.head(k - waves));
-  // At least twenty, as the step allows.
+  // At least twenty bins, more if the step allows.
   const auto bins =
       static_cast<std::size_t>(std::max(steps_of_period, std::floor(period / step + 1e-3)));
   fold(d, left, passes.size(), bins, out);
@@ -159,10 +161,13 @@ PeriodicError periodic_error(std::span<const Pass> passes, double period) {
 
 namespace {
 
-constexpr double same_size = 1e-3;     // of a step: targets are printed to a digit
-constexpr double followed_from = 0.5;  // of the commanded step; docs/dev/constants.md, A21
+// tolerance for the rounding of printed targets, as a fraction of a step
+constexpr double same_size = 1e-3;
+// smallest fraction of the commanded step; docs/dev/constants.md, A21
+constexpr double followed_from = 0.5;
 
-/// Which way over which place: the scatter of one step is that about the mean of its place.
+/// Computes the scatter of one step about the mean of its place (position, direction, first or
+/// not).
 using Place = std::tuple<long long, int, bool>;
 
 void scatter_of(SmallSteps& out) {
@@ -182,14 +187,14 @@ void scatter_of(SmallSteps& out) {
 
 /// The targets of one run from one direction, in the order of motion.
 struct OnePass {
-  std::vector<std::pair<double, double>> at;  ///< position, deviation
+  std::vector<std::pair<double, double>> at;  ///< position and deviation
 };
 
 std::map<std::uint32_t, std::map<int, OnePass>> passes_of(
     std::span<const SteppedReading> readings) {
   std::map<std::tuple<std::uint32_t, int, double>, std::pair<double, double>> sums;
   for (const SteppedReading& r : readings) {
-    // In the direction of motion: backwards for the negative one.
+    // sort in the direction of motion
     auto& [sum, n] = sums[{r.run, r.direction, r.direction * r.position}];
     sum += r.deviation, n += 1.0;
   }
@@ -201,7 +206,7 @@ std::map<std::uint32_t, std::map<int, OnePass>> passes_of(
   return out;
 }
 
-/// Adds the step between two readings; false if it is of another size.
+/// Adds the step between two readings; false if its size differs from the other steps.
 bool add_step(const std::pair<double, double>& a, const std::pair<double, double>& b,
               std::uint32_t run, int direction, bool first, SmallSteps& out) {
   const double commanded = std::fabs(b.first - a.first);
@@ -212,13 +217,13 @@ bool add_step(const std::pair<double, double>& a, const std::pair<double, double
   return true;
 }
 
-/// Steps of a run; false if they are not of one size.
+/// Adds the steps of a run; false if they differ in size.
 bool add_run(std::uint32_t run, const std::map<int, OnePass>& passes, SmallSteps& out) {
   for (const auto& [direction, pass] : passes)
     for (std::size_t i = 1; i < pass.at.size(); ++i)
       if (!add_step(pass.at[i - 1], pass.at[i], run, direction, false, out)) return false;
   if (passes.size() < 2 || out.steps.empty()) return true;
-  // Where a direction ends one step beyond the beginning of the other, that is where it turns.
+  // If a direction ends one step beyond the start of the other, the axis reverses there.
   for (const auto& [direction, pass] : passes) {
     const auto& end = pass.at.back();
     const auto& begin = passes.at(-direction).at.front();

@@ -12,7 +12,7 @@
 namespace nonio::math {
 namespace {
 
-struct Sums {  // of one pass, for the line through its residuals
+struct Sums {  // sums of one pass, for the line through its residuals
   double n = 0, z = 0, zz = 0, r = 0, zr = 0;
 };
 
@@ -21,12 +21,12 @@ void keep_distinct(std::vector<std::uint32_t>& x) {
   x.erase(std::unique(x.begin(), x.end()), x.end());
 }
 
-/// Finds numbers in a sorted list. The readings of a target come by run, so that the number after
-/// the last one is looked at first.
+/// Finds run numbers in a sorted list. The readings of a target are sorted by run, so the next
+/// number is tried first.
 class PlaceOfRun {
  public:
   explicit PlaceOfRun(const std::vector<std::uint32_t>& runs) : runs_(runs) {}
-  /// runs.size() if it is not one of them.
+  /// Returns the index of a run; runs.size() if the list does not contain it.
   std::size_t of(std::uint32_t run) {
     if (next_ >= runs_.size() || runs_[next_] != run)
       next_ = static_cast<std::size_t>(std::lower_bound(runs_.begin(), runs_.end(), run) -
@@ -42,7 +42,7 @@ class PlaceOfRun {
   std::size_t next_ = 0;
 };
 
-// Memory follows the number of runs, not of readings.
+// Returns the distinct runs; memory grows with the number of runs, not of readings.
 std::vector<std::uint32_t> runs_of(const AxisTest& test) {
   std::vector<std::uint32_t> runs, fresh;
   const auto take_fresh = [&] {
@@ -80,14 +80,15 @@ void index_readings(const AxisTest& test, PassModel& m) {
     }
 }
 
-// e less its mean over each target and direction; gives the largest mean.
+// Subtracts from e its mean over each target and direction; returns the largest mean.
 double take_target_means(const AxisTest& test, PassModel& m) {
   double largest = 0.0;
   for (std::size_t i = 0; i < test.targets.size(); ++i)
     for (const bool minus : {false, true}) {
       const std::size_t first = first_reading(test, i, minus);
       const std::size_t count = (minus ? test.minus(i) : test.plus(i)).size();
-      for (int twice = 0; twice < 2; ++twice) {  // the second pass takes the rounding of the first
+      // the second round removes the rounding error of the first
+      for (int twice = 0; twice < 2; ++twice) {
         double sum = 0.0, n = 0.0;
         for (std::size_t k = first; k < first + count; ++k)
           if (!std::isnan(m.e[k])) sum += m.e[k], n += 1.0;
@@ -99,7 +100,7 @@ double take_target_means(const AxisTest& test, PassModel& m) {
   return largest;
 }
 
-// e less the offset (and slope) of each pass; gives the largest change.
+// Subtracts from e the offset (and slope) of each pass; returns the largest change.
 double take_passes(const AxisTest& test, PassModel& m, bool slopes) {
   std::vector<Sums> sums(m.passes.size());
   for (std::size_t k = 0; k < m.e.size(); ++k) {
@@ -181,7 +182,8 @@ PassModel fitted(const AxisTest& test, bool slopes, std::span<const std::size_t>
   double size = 0.0;
   for (const double e : m.e)
     if (!std::isnan(e)) size = std::max(size, std::fabs(e));
-  // Equal runs need one round, unequal ones converge geometrically; millions of readings get fewer.
+  // Equal runs need one round, others converge geometrically; with millions of readings the number
+  // of rounds is limited.
   const double readings = static_cast<double>(m.e.size());
   const int most_rounds = static_cast<int>(std::clamp(2e8 / std::max(readings, 1.0), 4.0, 60.0));
   for (int round = 0; round < most_rounds; ++round) {
@@ -192,7 +194,7 @@ PassModel fitted(const AxisTest& test, bool slopes, std::span<const std::size_t>
   return m;
 }
 
-/// Whether all that a fit depends on is the same, bit for bit.
+/// Whether all inputs of a fit are equal, bit for bit.
 bool same_bits(const AxisTest& a, const AxisTest& b) {
   const auto same = [](const auto& x, const auto& y) {
     return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0;
@@ -215,12 +217,12 @@ struct Fitted {
 
 }  // namespace
 
-// Findings, reversal and each table need the fits of the same few tests: 24 times for a campaign with two analyses and
-// four controls. So the last ones are kept, and are given again for the same bits only. The limit of their readings
-// bounds the memory (32 bytes a reading) that a worker keeps.
+// Caches the last fits, because findings, reversal and each table need those of the same few tests:
+// 24 times for a campaign with two analyses and four controls. A cached fit is returned only for
+// identical bits. The limit on readings bounds the memory (32 bytes per reading) of a worker.
 PassModel fit_passes(const AxisTest& test, bool slopes, std::span<const std::size_t> left_out) {
   constexpr std::size_t most_kept = 8, most_readings = 24'000'000;
-  thread_local std::deque<Fitted> kept;  // the oldest one first
+  thread_local std::deque<Fitted> kept;  // oldest first
   for (const Fitted& known : kept)
     if (known.slopes == slopes && std::ranges::equal(known.left_out, left_out) &&
         same_bits(known.test, test))

@@ -33,7 +33,7 @@ namespace {
 using Form = RuleForm;
 using Sure = Confidence;
 
-/// Ranges of mean +- k s; E and M came with k = 2.
+/// Declares a rule of ranges of mean +- k s; E and M exist since the editions with k = 2.
 constexpr PositioningRule ranges(double k, std::string_view name, std::string_view title,
                                  std::size_t approaches, Confidence confidence) {
   return {name, title, Form::iso, k, k < 3.0, false, approaches, confidence};
@@ -70,7 +70,7 @@ const std::array rules = {
     ranges(2.0, "gb-17421.2-2016", "GB/T 17421.2-2016", 5, Sure::known),
 };
 
-// Of a difference of two readings the environment can make as much as its whole range.
+// In a difference of two readings, the environment can contribute its whole range.
 constexpr RuleShare share_of_reversal{false, 2.0, 0.0, 0.0, 1.0};
 
 std::vector<RuleValue> iso(const PositioningRule& rule, const AxisStatistics& axis) {
@@ -121,8 +121,8 @@ std::vector<RuleValue> nmtba(const PositioningRule& rule, const AxisStatistics& 
       accuracy[minus ? 1 : 0].put(std::fabs(side.mean - o) + rule.k * side.s);
       repeatability[minus ? 1 : 0].put(rule.k * side.s);
     }
-  // The commanded position is the display's own zero, set by one reading; a constant that is taken
-  // off is a mean.
+  // The commanded position refers to the zero of the display, set by one reading; a subtracted
+  // offset is a mean.
   RuleShare of_accuracy{true, 1.0, rule.k / 2.0, 0.0};
   if (rule.without_offset)
     of_accuracy.means = 2.0;
@@ -140,7 +140,7 @@ std::vector<RuleValue> nmtba(const PositioningRule& rule, const AxisStatistics& 
           {"+-repeatability-", repeatability[1].largest(), scatter}};
 }
 
-double spread(const AxisStatistics::Side& one) {  // a single reading has none
+double spread(const AxisStatistics::Side& one) {  // a single reading has no spread
   return one.n < 2 ? not_given : one.high - one.low;
 }
 
@@ -165,7 +165,7 @@ std::vector<RuleValue> raw(const AxisStatistics& axis) {
           {"B", B.largest(), share_of_reversal}};
 }
 
-// The target nearest to the middle of the travel; of two the lower one.
+// Returns the index of the target nearest to the middle of the travel; of two the lower one.
 std::size_t middle_of(const AxisStatistics& axis) {
   const double middle = (axis.targets.front().target + axis.targets.back().target) / 2.0;
   std::size_t best = 0;
@@ -176,7 +176,8 @@ std::size_t middle_of(const AxisStatistics& axis) {
   return best;
 }
 
-// Every target once, in one run and direction: + if it was measured.
+// Returns the range of the first pass: every target once, in one run and direction (+ if it was
+// measured). NaN if no run contains all targets.
 double first_pass(const AxisStatistics& axis) {
   const auto whole = [&](auto side) {
     return std::all_of(axis.targets.begin(), axis.targets.end(), [&](const auto& t) {

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the reversal error of an axis is like.
-//   B_i = xm_i+ - xm_i-             reversal at target i, m or rad (ISO 230-2:2014 clause 2)
+// Classification of the reversal error of an axis.
+//   B_i = xm_i+ - xm_i-    reversal at target i, m or rad (ISO 230-2:2014 clause 2)
 //   does it vary?   F = [sum (B_i - B_mean)^2/(m - 1)] / [s+^2/n+ + s-^2/n-], level 1 %,
 //                   s of single readings about the means of their target and their pass
 //   does it exist?  t = B_mean/u(B_mean), level 1 %; u from the scatter of the run-wise differences
-//                   b_j (what a pass shares does not average out over targets), pooled with the
-//                   scatter of single readings where the runs show no more than that (when to pool:
+//                   b_j (an error shared by a pass does not average out over targets), pooled with
+//                   the scatter of single readings unless the runs scatter more (when to pool:
 //                   T. A. Bancroft 1964, Biometrics 20, p. 427)
-// With one run there is no scatter; then the spread of B_i over the targets bounds it from above.
+// With one run there is no scatter; then the spread of B_i over the targets is an upper bound for
+// it.
 #include "nonio/math/reversal.h"
 
 #include <algorithm>
@@ -24,13 +25,14 @@
 namespace nonio::math {
 namespace {
 
-// Runs are pooled with single readings unless they differ at this level; a pair of runs alone shows
-// nearly nothing (one degree of freedom), so that no difference is assumed.
+// Runs are pooled with single readings unless they differ at this level; a pair of runs has only
+// one degree of freedom, so a stricter level is required.
 // docs/dev/constants.md, A3.
 constexpr double pooling_level = 0.5, pooling_level_of_pair = 0.05;
 // docs/dev/constants.md, A4.
-constexpr double tolerated_share = 0.5;  // of the largest |B_i| that one value may leave behind
-constexpr double negligible = 1e-12;     // m or rad: rounding, not a machine
+// of the largest |B_i|: largest remainder after compensation by a single value
+constexpr double tolerated_share = 0.5;
+constexpr double negligible = 1e-12;  // m or rad: rounding errors
 
 struct Estimate {
   double variance = 0.0, dof = 0.0;
@@ -48,7 +50,7 @@ std::vector<double> means(const AxisTest& test, bool minus) {
   return out;
 }
 
-// Mean over the targets of s+^2/n_i+ + s-^2/n_i-.
+// Returns the mean over the targets of s+^2/n_i+ + s-^2/n_i-.
 Estimate scatter_of_B_i(const AxisTest& test, const PassModel& model) {
   double per[2] = {0.0, 0.0};
   for (std::size_t i = 0; i < test.targets.size(); ++i) {
@@ -60,7 +62,8 @@ Estimate scatter_of_B_i(const AxisTest& test, const PassModel& model) {
   return {a + b, joined_dof(a, model.side[0].dof, b, model.side[1].dof)};
 }
 
-// Variance of B_mean as the passes show it: from runs with both directions, else from each side.
+// Returns the variance of B_mean from the scatter of passes: from runs with both directions, else
+// from each side.
 Estimate scatter_of_passes(const PassModel& model) {
   std::vector<double> pairs, alone[2];
   for (std::size_t p = 0; p + 1 < model.passes.size(); p += 2) {
@@ -92,8 +95,7 @@ Estimate scatter_of_mean(const AxisTest& test, const PassModel& model) {
 Reversal::Kind decide(const Reversal& r, bool scatter_known) {
   using Kind = Reversal::Kind;
   if (r.largest < negligible) return scatter_known ? Kind::none : Kind::unknown;
-  if (std::isnan(r.p_mean))
-    return Kind::unknown;  // one target, one run: no scatter to compare it with
+  if (std::isnan(r.p_mean)) return Kind::unknown;  // one target in one run: there is no scatter
   const bool one_value_helps = r.largest_left <= tolerated_share * r.largest;
   const bool exists = significant(r.p_mean, significance) && r.mean != 0.0;
   const bool varies = scatter_known && significant(r.p_varies, significance);
@@ -111,7 +113,7 @@ void fit_turn(const AxisTest& test, const std::vector<double>& plus,
     middle.push_back((plus[i] + minus[i]) / 2.0);
   }
   // docs/dev/constants.md, A5.
-  constexpr double most = 0.5;  // a sinusoid that explains less than half is not the story
+  constexpr double most = 0.5;  // a sinusoid must explain at least half
   const Harmonic opposed = fit_harmonic(test.targets, half_B);
   const Harmonic concordant = fit_harmonic(test.targets, middle);
   if (!opposed.known || !concordant.known) return;

@@ -18,7 +18,7 @@ namespace {
 
 using Numbers = std::span<const double>;
 
-/// Indices of the hull on one side: 1 above, -1 below.
+/// Returns the indices of the convex hull on one side: 1 above, -1 below.
 std::vector<std::size_t> convex_side(Numbers x, Numbers e, double side) {
   std::vector<std::size_t> h;
   for (std::size_t i = 0; i < x.size(); ++i) {

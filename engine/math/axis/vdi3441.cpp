@@ -44,7 +44,7 @@ double largest(const std::vector<double>& x) {
   return out;
 }
 
-// max(x + h) - min(x - h)
+// Returns max(x + h) - min(x - h).
 double extent(const std::vector<double>& x, const std::vector<double>& h) {
   std::vector<double> high, low;
   for (std::size_t j = 0; j < x.size(); ++j) {
@@ -54,7 +54,7 @@ double extent(const std::vector<double>& x, const std::vector<double>& h) {
   return largest(high) + largest(low);
 }
 
-struct Sided {  // one direction: of the targets that were reached in it
+struct Sided {  // values of one direction, over the targets that were approached in it
   std::vector<double> mean, band, flat;
   void put(double x, double S) {
     mean.push_back(x);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The causes behind a circular path. Both directions are read at the same angles: of their mean
-// s = (ccw + cw)/2 and half difference h = (ccw - cw)/2 the causes that do not turn with the
-// direction are in s, those that do in h. Noise of s and h is estimated apart: a form that the model
-// does not have is in s, twice the same, and no noise of h.
-// What the analysis concludes from it has judgements too: docs/dev/constants.md, A12, of shares;
+// The causes of a circular path. Both directions are compared at the same angles: of their mean s =
+// (ccw + cw)/2 and half difference h = (ccw - cw)/2, s contains the causes that do not depend on
+// the direction of travel, h those that do. The noise of s and h is estimated separately, because a
+// shape that the model does not contain is in s, equally in both directions, and is not noise of h.
+// Decisions of the analysis based on the fit: docs/dev/constants.md, A12, of shares;
 // docs/dev/constants.md, A13, of spikes; docs/dev/constants.md, A14, of what is not separable.
 #include <algorithm>
 #include <cmath>
@@ -20,21 +20,22 @@ namespace {
 
 constexpr double bin_width = full_turn / 360.0;
 constexpr int bins_of_turn = 360;
-constexpr std::size_t at_least = 24;  // bins, and twice the causes
-constexpr double singular = 1e-10;    // least part of a column that is its own, squared
+constexpr std::size_t at_least = 24;  // fewest bins; also twice the number of causes
+// smallest squared part of a column that is independent of the others
+constexpr double singular = 1e-10;
 
 std::size_t index_of(Cause c) { return static_cast<std::size_t>(c); }
 double sign_of(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
 
 double within_turn(double t) { return t - full_turn * std::floor(t / full_turn); }
 
-/// Means of one degree, of both directions.
+/// Means of one degree, by direction.
 struct Bins {
   struct Bin {
     double n = 0.0, deviation = 0.0, angle = 0.0;
     std::array<double, cause_count> column{};
   };
-  std::map<int, std::array<Bin, 2>> of;  ///< 0: counter-clockwise
+  std::map<int, std::array<Bin, 2>> of;  ///< index 0: counter-clockwise
 
   Bins(std::span<const CircleReading> readings, const CircleModel& model) {
     for (const CircleReading& r : readings) {
@@ -57,7 +58,8 @@ struct Bins {
   }
 };
 
-/// Rows of one kind of noise: the mean of both directions, half their difference, or one direction.
+/// Rows with one kind of noise: the mean of both directions, half their difference, or one
+/// direction.
 struct Block {
   std::vector<int> place;
   Eigen::MatrixXd X;
@@ -74,7 +76,7 @@ class Fit {
       : readings_(readings), model_(model), bins_(readings, model) {
     for (std::size_t c = 0; c < cause_count; ++c)
       if (model.wanted[c]) columns_.push_back(c);
-    std::array<std::size_t, 3> count{};  // only ccw, only cw, both
+    std::array<std::size_t, 3> count{};  // number of bins: only ccw, only cw, both
     for (const auto& [place, bin] : bins_.of) {
       const bool plus = bin[0].n > 0.0, minus = bin[1].n > 0.0;
       ++count[plus && minus ? 2 : plus ? 0 : 1];
@@ -126,7 +128,8 @@ class Fit {
     for (Eigen::Index k = 0; k < block.X.cols(); ++k) {
       double largest = 0.0;
       for (const Block& other : blocks_) largest = std::max(largest, other.X.col(k).norm());
-      // What two directions at slightly different angles leave of a column is not its own.
+      // A remainder caused by slightly different angles of the two directions does not count as a
+      // column.
       if (block.X.col(k).norm() > 0.1 * largest) here.push_back(k);
     }
     Eigen::MatrixXd X(block.X.rows(), at(here.size()));
@@ -153,7 +156,7 @@ class Fit {
     const Eigen::Index k = at(columns_.size());
     Eigen::MatrixXd plain(rows, k), white(rows, k);
     Eigen::VectorXd y(rows);
-    // The inverse of the whitening, applied to unit vectors, gives the derivative by each mean.
+    // The inverse of the whitening, applied to unit vectors, gives the derivatives by each mean.
     std::vector<Eigen::MatrixXd> filters;
     Eigen::Index row = 0;
     for (const Block& b : blocks_) {
@@ -198,8 +201,8 @@ class Fit {
     }
   }
 
-  /// From derivatives by the rows of the blocks to those by the means of each direction: ccw in the
-  /// order of the travel, then cw.
+  /// Converts derivatives by the rows of the blocks to derivatives by the means of each direction:
+  /// ccw in the order of travel, then cw.
   void by_bins(CauseFit::Value& v, const Eigen::RowVectorXd& G,
                const std::vector<Eigen::MatrixXd>& filters) const {
     const Eigen::Index n = at(places_.size());
@@ -242,7 +245,7 @@ class Fit {
     out_.s_reading = scatter_of_readings();
   }
 
-  /// Of the readings that are in the fit.
+  /// Returns the standard deviation of the residuals of readings in the fit.
   double scatter_of_readings() const {
     double squares = 0.0, n = 0.0;
     for (const CircleReading& r : readings_) {

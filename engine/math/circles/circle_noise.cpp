@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What noise adds to the largest value of a path. The residuals of the fit are the noise, with its
-// own correlation: the path of the fit gets them back turned by parts of the turn.
+// Bias of the largest value of a path by noise. The residuals of the fit serve as noise with the
+// right correlation: they are added to the fitted path, rotated by fractions of the turn.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +13,7 @@ namespace nonio::math {
 CircleNoise::CircleNoise(std::span<const CircleReading> readings, const CircleModel& model,
                          const CauseFit& fit)
     : truth_(readings.begin(), readings.end()), from_(readings.size()) {
-  // Readings of one direction and run, in the order of their angles.
+  // Sort the readings of each direction and run by angle.
   std::vector<std::size_t> order(readings.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   const auto group = [&](std::size_t i) {
@@ -25,7 +25,7 @@ CircleNoise::CircleNoise(std::span<const CircleReading> readings, const CircleMo
   for (std::size_t first = 0; first < order.size();) {
     std::size_t end = first;
     std::vector<double> residuals;
-    std::vector<std::size_t> place;  // of each reading, among the residuals
+    std::vector<std::size_t> place;  // index of each reading among the residuals
     for (; end < order.size() && group(order[end]) == group(order[first]); ++end) {
       const std::size_t i = order[end];
       place.push_back(residuals.size());
@@ -33,7 +33,7 @@ CircleNoise::CircleNoise(std::span<const CircleReading> readings, const CircleMo
       const double says = fit.radius_at(model, readings[i].angle, readings[i].direction),
                    off = left - says;
       if (model.leaves_out(readings[i].angle)) {
-        // A spike is no noise, and stays: what it is beyond the noise.
+        // A spike is not noise; it is kept, reduced by the contribution of the noise.
         const double ratio = off / fit.s_reading;
         left = says + (std::fabs(ratio) > 1.0 ? off * (1.0 - 1.0 / (ratio * ratio)) : 0.0);
         continue;

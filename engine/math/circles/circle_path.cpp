@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The path as a whole: least-squares circle, minimum zone, hysteresis.
+// Circles of a whole path: least-squares circle, minimum zone, hysteresis.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -16,7 +16,7 @@ namespace {
 using PathReadings = std::span<const CircleReading>;
 using Centre = std::array<double, 2>;
 
-/// Distance from a centre less R, without the cancellation of hypot(...) - R.
+/// Returns the distance from a centre minus R, without the cancellation of hypot(...) - R.
 double radial(const CircleReading& r, double R, const Centre& c) {
   const double s = std::sin(r.angle), k = std::cos(r.angle), rho = R + r.deviation;
   // |P - c|^2 - R^2 = (rho - R)(rho + R) - 2 rho (c . n) + |c|^2
@@ -25,8 +25,8 @@ double radial(const CircleReading& r, double R, const Centre& c) {
   return square / (std::sqrt(R * R + square) + R);
 }
 
-/// The zone about the best centre for a few readings only: nested golden sections of a function that
-/// is convex but for terms of second order.
+/// Finds the best centre of the zone for a few readings only: nested golden sections of a function
+/// that is convex except for terms of second order.
 class Few {
  public:
   Few(PathReadings all, const std::vector<std::size_t>& which, double R)
@@ -109,7 +109,7 @@ PathCircle least_squares_circle(PathReadings readings, double R) {
 PathCircle minimum_zone(PathReadings readings, double R) {
   PathCircle best = least_squares_circle(readings, R);
   if (readings.size() < 4 || !(best.width() > 0.0)) return best;
-  // Four readings define the zone; more are added until none is outside of it.
+  // Four readings define the zone; add readings until none is outside of it.
   std::vector<std::size_t> few{best.innermost, best.outermost};
   for (int q = 0; q < 8; ++q) {
     double low = INFINITY, high = -INFINITY;
@@ -133,7 +133,7 @@ PathCircle minimum_zone(PathReadings readings, double R) {
     const Centre centre = problem.best(from, reach);
     const PathCircle all = about(readings, R, centre);
     if (all.width() < best.width()) best = all;
-    // The zone of the few is the least that the whole can have.
+    // The zone of these readings is a lower bound for that of the whole path.
     if (all.width() - problem.width(centre) <= 1e-6 * reach) break;
     few.push_back(all.innermost), few.push_back(all.outermost);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Reversal spikes (docs/dev/constants.md, A13), and how far from a reversal they last.
+// Reversal spikes (docs/dev/constants.md, A13), and how far after a reversal they extend.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -12,14 +12,17 @@ namespace nonio::math {
 
 namespace {
 
-// What the spikes leave behind the zone, in its u: beyond the first the zone becomes wider, and once
-// it has, as long as it is beyond the second: an exponential ends late. docs/dev/constants.md, A23.
+// Remainder of the spikes after the omitted zone, in its u: above `begins` the zone is widened, and
+// then further while it is above `goes_on`, because an exponential decays slowly.
+// docs/dev/constants.md, A23.
 constexpr double normal_quartile = 0.6745;  // median of |x|, in standard deviations
 constexpr double begins = 2.24, goes_on = 1.0, wide = 2.0 * full_turn / 360.0;
 
-using Residuals = std::map<double, std::pair<double, double>>;  // sum, count by the way since
+// sum and count by angle since the reversal
+using Residuals = std::map<double, std::pair<double, double>>;
 
-/// Residuals `from` .. `to` behind a reversal; several runs are averaged.
+/// Returns the residuals between the angles `from` and `to` after a reversal; several runs are
+/// averaged.
 Residuals behind(std::span<const CircleReading> readings, const CircleModel& model,
                  const CauseFit& fit, int direction, double reversal, double from, double to) {
   Residuals out;
@@ -65,15 +68,16 @@ std::vector<Spike> reversal_spikes(std::span<const CircleReading> readings,
 
 namespace {
 
-/// Mean of what is there; NaN where nothing is.
+/// Returns the mean over the angles; NaN if there are none.
 double mean_of(const Residuals& residuals) {
   double sum = 0.0, n = 0.0;
   for (const auto& [way, of] : residuals) sum += of.first / of.second, n += 1.0;
   return sum / n;
 }
 
-/// How much the residuals of windows differ that are one window apart: the standard deviation for
-/// normal ones, from the median, because what long spikes do to the fit is in some windows only.
+/// Returns the scatter of differences of residuals between windows that are one window apart: the
+/// standard deviation for normal noise, computed from the median, because long spikes affect only
+/// some windows.
 double scatter_of_windows(const CauseFit& fit) {
   std::map<std::pair<int, int>, std::pair<double, double>> windows;
   for (const auto& bin : fit.bins) {
@@ -91,9 +95,9 @@ double scatter_of_windows(const CauseFit& fit) {
   return *middle / normal_quartile;
 }
 
-/// What the spikes of an axis leave behind the zone that is left out, both directions and both
-/// reversals together: how much the residuals in the next window differ from those in the one after
-/// the one behind it, in u of such differences. The larger of both axes.
+/// Returns the remainder of the spikes of an axis after the omitted zone, for both directions and
+/// both reversals together: the difference of the mean residual in the next window and in the one
+/// two windows later, in u of such differences. The larger value of both axes.
 double left_over(std::span<const CircleReading> readings, const CircleModel& model,
                  const CauseFit& fit) {
   const double edge = model.leave_out, scatter = scatter_of_windows(fit);
@@ -126,7 +130,7 @@ Expected<CauseFit> fit_causes_without_spikes(std::span<const CircleReading> read
     CircleModel wider = model;
     wider.leave_out += step;
     auto next = fit_causes(readings, wider);
-    if (!next) break;  // too few readings are left
+    if (!next) break;  // too few readings remain
     model = wider, fit = std::move(next);
   }
   return fit;

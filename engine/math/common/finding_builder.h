@@ -9,7 +9,7 @@
 
 namespace nonio::math {
 
-/// A finding about an axis, in the units of its kind.
+/// Builds a finding about an axis, with quantities by its kind (linear or rotary).
 class FindingBuilder {
  public:
   FindingBuilder(std::string id, bool attention, bool rotary) : rotary_(rotary) {

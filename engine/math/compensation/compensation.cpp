@@ -37,7 +37,7 @@ std::int64_t floor_div(std::int64_t a, std::int64_t b) {
 }
 std::int64_t ceil_div(std::int64_t a, std::int64_t b) { return -floor_div(-a, b); }
 
-// Two significant digits, for a step that a person types.
+// Rounds up to two significant digits, for a step that a person enters.
 std::int64_t rounded_up(std::int64_t units) {
   std::int64_t scale = 1;
   while (units / scale >= 100) scale *= 10;
@@ -55,11 +55,11 @@ std::int64_t power_up(std::int64_t units) {
   return p;
 }
 
-// Everything in whole units of the grid.
+// The curve's range, in integer units of the grid.
 struct Plan {
   const GridRule& rule;
   std::int64_t from, to, origin;
-  std::int64_t full = 0;  // a turn
+  std::int64_t full = 0;  // one turn
 
   std::int64_t low(std::int64_t step) const {
     return rule.anchor ? std::min<std::int64_t>(0, floor_div(from - origin, step)) : 0;
@@ -73,7 +73,7 @@ struct Plan {
     return points(step) <= static_cast<std::int64_t>(rule.most) &&
            (!rule.turn || full % step == 0) && (!rule.power_of_two || (step & (step - 1)) == 0);
   }
-  // The next step that the control can have, from this one upwards.
+  // Returns the smallest step not below this one that the control allows.
   std::int64_t allowed(std::int64_t step) const {
     if (rule.power_of_two) return power_up(step);
     if (!rule.turn) return step;
@@ -120,7 +120,7 @@ Expected<std::int64_t> wished_step(const Plan& plan) {
   return step;
 }
 
-// Where no coarse grid meets the measured positions.
+// Returns a step for interpolation, if no coarse grid contains the measured positions.
 Expected<std::int64_t> interpolating_step(const Plan& plan, std::int64_t smallest_gap,
                                           std::int64_t mean_gap) {
   const GridRule& rule = plan.rule;
@@ -132,8 +132,8 @@ Expected<std::int64_t> interpolating_step(const Plan& plan, std::int64_t smalles
   return fail(plan.too_many(std::min(step, plan.allowed(std::max<std::int64_t>(1, mean_gap)))));
 }
 
-// Targets that a person rounded: within a micrometre or so of even spacing. The step is rounded up
-// so that there are as many points as targets.
+// Returns the even step of targets that were rounded, within about a micrometre; 0 if they are not
+// evenly spaced. The step is rounded up so that there are as many points as targets.
 std::int64_t even_step(const Plan& plan, const std::vector<std::int64_t>& knots) {
   const auto gaps = static_cast<std::int64_t>(knots.size() - 1);
   const std::int64_t span = knots.back() - knots.front();
@@ -204,7 +204,7 @@ ErrorCurve error_curve(const AxisTest& test) {
 
 std::optional<ErrorCurve> closed_turn(const ErrorCurve& curve) {
   const std::size_t n = curve.position.size();
-  constexpr double same = 1e-9;  // rad, positions that are one
+  constexpr double same = 1e-9;  // rad; closer positions are the same
   if (n < 3) return std::nullopt;
   const double span = curve.position.back() - curve.position.front();
   double largest_gap = 0.0;
@@ -220,7 +220,7 @@ std::optional<ErrorCurve> closed_turn(const ErrorCurve& curve) {
     order.emplace_back(x, i);
   }
   std::sort(order.begin(), order.end());
-  // If 0 was not measured, its value is interpolated across the end of the turn.
+  // If 0 was not measured, interpolate its value across the end of the turn.
   const auto folded = [&](const std::vector<double>& value, std::vector<double>& position) {
     std::vector<double> x, y;
     for (std::size_t k = 0; k < n;) {

@@ -7,7 +7,8 @@
 namespace nonio::math {
 namespace {
 
-/// The interval of points that contains a position; `part`: share of the way from the lower one.
+/// The interval of points that contains a position; `part`: fraction of the interval from the lower
+/// point.
 struct Place {
   std::size_t below = 0;
   double part = 0.0;
@@ -28,7 +29,7 @@ Place place_of(const std::vector<double>& points, double x, LoadedTable::Outside
   return {i, (x - points[i]) / (points[i + 1] - points[i]), beyond};
 }
 
-/// Linear in each input; the values of the last one lie side by side.
+/// Interpolates linearly in each input; the values of the last input are adjacent in memory.
 double interpolated(const std::vector<double>& values, std::span<const Place> places,
                     std::span<const std::size_t> sizes, std::size_t from) {
   if (places.empty()) return values[from];

@@ -9,12 +9,14 @@
 
 namespace nonio::math {
 
-/// A combination of unknowns that changes no reading: their numbers and sizes, the first one 1.
+/// A combination of unknowns that changes no reading: indices and coefficients of the unknowns, the
+/// first coefficient 1.
 using OpenCombination = std::vector<std::pair<std::size_t, double>>;
 
-/// By elimination from the left: a column that is no pivot is a sum of pivots before it. told: unit
-/// vectors of what the readings determine, as columns. Sizes up to `least` are 0. Unknowns on which
-/// no reading depends are combinations of themselves alone.
+/// Returns the combinations that the readings do not determine, by elimination from the left: a
+/// column without a pivot is a sum of earlier pivots. `told`: unit vectors of the determined
+/// directions, as columns. Coefficients up to `least` count as 0. An unknown on which no reading
+/// depends is a combination by itself.
 inline std::vector<OpenCombination> open_combinations(const Eigen::MatrixXd& told, double least) {
   Eigen::MatrixXd R = told.transpose();
   std::vector<Eigen::Index> pivots;

@@ -3,8 +3,8 @@
 
 #include <Eigen/Dense>
 
-/// Eigen with its dense solvers compiled once, in statistics/dense.cpp: each costs a source that
-/// compiles it itself 7 to 17 s. Not installed.
+/// Declares that the dense solvers of Eigen are compiled once, in statistics/dense.cpp, because
+/// each source that compiles them itself takes 7 to 17 s longer. Not installed.
 namespace Eigen {
 
 extern template class ColPivHouseholderQR<MatrixXd>;
@@ -20,43 +20,45 @@ extern template LLT<MatrixXd>& LLT<MatrixXd>::compute(const EigenBase<MatrixXd>&
 
 namespace nonio::math {
 
-/// Eigenvalues, ascending, and in their order the unit eigenvectors as columns.
+/// Eigenvalues in ascending order, and the unit eigenvectors as columns in the same order.
 struct Spectrum {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;
 };
 
-/// Eigenvalues of a symmetric matrix. A function, so that its loops are compiled only here: -O3
-/// makes them 1.7 times as fast.
+/// Returns the eigenvalues and eigenvectors of a symmetric matrix. Not inline, so that its loops
+/// are compiled only in one file: -O3 makes them 1.7 times as fast.
 Spectrum spectrum(const Eigen::MatrixXd& symmetric);
 
-/// Products and solutions of dense matrices, compiled once in statistics/dense.cpp. A product written
-/// with operators is compiled again for each combination of blocks and transposes, and in each source.
-/// Functions of a vector have names of their own, so that they take its expressions too.
+/// Products and solutions of dense matrices, compiled once in statistics/dense.cpp. A product
+/// written with operators is compiled again for each combination of blocks and transposes, and in
+/// each source. Functions of a vector have different names, so that they also accept vector
+/// expressions.
 Eigen::MatrixXd product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 Eigen::VectorXd times(const Eigen::MatrixXd& A, const Eigen::VectorXd& x);
-/// A' B
+/// Return A' B; A' x.
 Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 Eigen::VectorXd transposed_times(const Eigen::MatrixXd& A, const Eigen::VectorXd& x);
-/// A B'
+/// Returns A B'.
 Eigen::MatrixXd product_transposed(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
-/// B' S B
+/// Returns B' S B.
 Eigen::MatrixXd quadratic_form(const Eigen::MatrixXd& S, const Eigen::MatrixXd& B);
-/// y - A x
+/// Returns y - A x.
 Eigen::VectorXd residual(const Eigen::VectorXd& y, const Eigen::MatrixXd& A,
                          const Eigen::VectorXd& x);
-/// |y - A x|^2
+/// Returns |y - A x|^2.
 double squared_residual(const Eigen::VectorXd& y, const Eigen::MatrixXd& A,
                         const Eigen::VectorXd& x);
-/// y - Q Q' y: the part of each column of y that is orthogonal to the orthonormal columns of Q.
+/// Returns y - Q Q' y: the part of each column of y that is orthogonal to the orthonormal columns
+/// of Q.
 Eigen::MatrixXd orthogonal_part(const Eigen::MatrixXd& Q, const Eigen::MatrixXd& y);
 Eigen::VectorXd orthogonal_part(const Eigen::MatrixXd& Q, const Eigen::VectorXd& y);
-/// The same in place.
+/// Replaces y by its orthogonal part y - Q Q' y.
 void take_out(const Eigen::MatrixXd& Q, Eigen::MatrixXd& y);
 void take_out(const Eigen::MatrixXd& Q, Eigen::VectorXd& y);
-/// U diag(d)
+/// Returns U diag(d).
 Eigen::MatrixXd scaled_columns(const Eigen::MatrixXd& U, const Eigen::VectorXd& d);
-/// diag(d) U
+/// Returns diag(d) U.
 Eigen::MatrixXd scaled_rows(const Eigen::VectorXd& d, const Eigen::MatrixXd& U);
 
 Eigen::VectorXd solution(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr,
@@ -64,40 +66,40 @@ Eigen::VectorXd solution(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr,
 Eigen::VectorXd solution(const Eigen::LLT<Eigen::MatrixXd>& llt, const Eigen::VectorXd& y);
 Eigen::MatrixXd solutions(const Eigen::LLT<Eigen::MatrixXd>& llt, const Eigen::MatrixXd& Y);
 Eigen::VectorXd solution(const Eigen::LDLT<Eigen::MatrixXd>& ldlt, const Eigen::VectorXd& y);
-/// x of the least |y - A x|, by a decomposition with pivots.
+/// Returns the x with the smallest |y - A x|, by a decomposition with pivoting.
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& y);
-/// L^-1 Y of N = L L'
+/// Returns L^-1 y, with N = L L'.
 Eigen::VectorXd whitened(const Eigen::LLT<Eigen::MatrixXd>& N, const Eigen::VectorXd& y);
 Eigen::MatrixXd whitened(const Eigen::LLT<Eigen::MatrixXd>& N, const Eigen::MatrixXd& Y);
-/// The inverse by each decomposition: the solution for the unit matrix.
+/// Return the inverse of the decomposed matrix.
 Eigen::MatrixXd inverse(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr);
 Eigen::MatrixXd inverse(const Eigen::LDLT<Eigen::MatrixXd>& ldlt);
-/// Moore-Penrose, with the rank of the decomposition.
+/// Returns the Moore-Penrose pseudo-inverse, with the rank of the decomposition.
 Eigen::MatrixXd pseudo_inverse(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr);
-/// Of a square matrix, by elimination.
+/// Returns the inverse of a square matrix, by elimination.
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& A);
-/// The inverse of an upper triangular matrix.
+/// Returns the inverse of an upper triangular matrix.
 Eigen::MatrixXd inverse_of_upper(const Eigen::MatrixXd& R);
-/// R^-1 y, R upper triangular
+/// Returns R^-1 y for an upper triangular R.
 Eigen::VectorXd solution_of_upper(const Eigen::MatrixXd& R, const Eigen::VectorXd& y);
 Eigen::MatrixXd solutions_of_upper(const Eigen::MatrixXd& R, const Eigen::MatrixXd& Y);
 
-/// The first columns of the orthogonal factor of a decomposition.
+/// Returns the first columns of the orthogonal factor of a decomposition.
 Eigen::MatrixXd orthonormal(const Eigen::HouseholderQR<Eigen::MatrixXd>& qr, Eigen::Index columns);
 Eigen::MatrixXd orthonormal(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr,
                             Eigen::Index columns);
-/// Q' y of a decomposition.
+/// Returns Q' y of a decomposition.
 Eigen::VectorXd rotated(const Eigen::HouseholderQR<Eigen::MatrixXd>& qr, const Eigen::VectorXd& y);
-/// The upper triangle of the first `rows` rows of a decomposition.
+/// Returns the upper triangle of the first `rows` rows of a decomposition.
 Eigen::MatrixXd upper(const Eigen::HouseholderQR<Eigen::MatrixXd>& qr, Eigen::Index rows);
 
-/// Copies of columns, from the first one on or from `first` on.
+/// Return copies of columns: the first `count`, or `count` from `first` on.
 Eigen::MatrixXd left_columns(const Eigen::MatrixXd& A, Eigen::Index count);
 Eigen::MatrixXd columns(const Eigen::MatrixXd& A, Eigen::Index first, Eigen::Index count);
-/// A with y as a further column.
+/// Returns A with y appended as a column.
 Eigen::MatrixXd with_column(const Eigen::MatrixXd& A, const Eigen::VectorXd& y);
 
-/// A count or position as Eigen requires it.
+/// Converts a count or index to the type of Eigen.
 inline Eigen::Index at(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
 }  // namespace nonio::math

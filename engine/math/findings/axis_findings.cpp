@@ -27,8 +27,9 @@ bool is_reversal_known(double mean, double U) {
 
 namespace {
 
-// Going too far has no cause of its own: clearances and friction make it, or a backlash value that is
-// active and too large. Only where such a value is stated is it named.
+// Returns the finding for a positive reversal. It has no specific cause: clearances and friction,
+// or an active backlash value that is too large. The latter is named only if the active value is
+// stated.
 const char* positive_reversal(std::optional<double> active) {
   return !active         ? "reversal.positive"
          : *active > 0.0 ? "reversal.over-compensated"
@@ -42,7 +43,7 @@ void reversal_findings(const AxisTest& test, std::vector<Finding>& findings,
   using Kind = Reversal::Kind;
   const Reversal r = assess_reversal(test);
   const bool attention = !std::isnan(r.largest) && matters(test, r.largest);
-  // One value for the whole axis that leaves more somewhere than there is now is no advice to give.
+  // A single value is not recommended if it leaves a larger reversal somewhere than exists now.
   const bool constant = r.kind == Kind::lost_motion || r.kind == Kind::over_compensated;
   const double U = std::max(drift_share(test).B_mean, U_mean);
   const char* id = constant && !(r.largest_left < r.largest) ? "reversal.one-value-worse"
@@ -53,7 +54,7 @@ void reversal_findings(const AxisTest& test, std::vector<Finding>& findings,
                    : r.kind == Kind::not_constant     ? "reversal.not-constant"
                                                       : nullptr;
   if (id != nullptr) {
-    // A value corrects nothing better than it is known.
+    // A correction is not better than the uncertainty of its value.
     const double left = std::max(r.largest_left, U);
     FindingBuilder finding(id, attention, test.rotary);
     finding.deviation("mean", r.mean)
@@ -81,7 +82,8 @@ void reversal_findings(const AxisTest& test, std::vector<Finding>& findings,
 }
 
 namespace {
-/// What all targets have in common drops out of E, A and M, which are ranges.
+/// Reports an offset common to all targets, which does not affect E, A and M, because these are
+/// ranges.
 void common_offset(const AxisTest& test, std::vector<Finding>& findings) {
   double low = INFINITY, high = -INFINITY, sum = 0.0, n = 0.0;
   for (std::size_t i = 0; i < test.targets.size(); ++i)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Limits that a manifest states against what the readings have: the larger one counts.
+// Compares limits that a manifest states with the readings, and uses the larger ones.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +12,7 @@ namespace nonio::math {
 
 namespace {
 
-/// Largest drift from run to run that its readings show, m or rad.
+/// Returns the largest drift from run to run found in the readings, m or rad.
 double drift_of(const Observations& o) {
   if (o.axes.empty() || o.axes.front().approach.empty()) return 0.0;
   std::vector<Finding> found;
@@ -38,10 +38,11 @@ double duration_of(const Observations& o) {
   return last > first ? last - first : 0.0;
 }
 
-/// Takes what the readings have where that is more than what is stated.
+/// Replaces a stated limit by the value found in the readings if that is larger, and adds a
+/// finding.
 void hold(std::optional<double>& stated, double found, const char* key, Quantity quantity,
           std::vector<Finding>& findings) {
-  constexpr double slack = 1e-9;  // of the number: what rounding in a file makes
+  constexpr double slack = 1e-9;  // relative, for rounding in files
   if (!stated || !(found > *stated * (1.0 + slack) + 1e-15)) return;
   findings.push_back({.id = "uncertainty.limit-exceeded",
                       .attention = true,
@@ -62,7 +63,7 @@ HeldLimits limits_held(const Campaign& c, std::span<const Observations* const> a
     of = std::max(of, drift_of(*o));
   }
   Environment& e = out.environment;
-  // A drift grows with the time; of a test that took longer than the drift test it is larger.
+  // A drift grows with time, so it is scaled up for a test that took longer than the drift test.
   if (e.drift_time && duration > *e.drift_time) {
     const double longer = duration / *e.drift_time;
     hold(e.drift_time, duration, "environment.drift_minutes", Quantity::time, out.findings);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the test plan of ISO 230-2:2014 (clauses on tests for linear and rotary axes) requires and a
-// campaign did not do:
-//   linear to 2 m   5 targets a metre, never fewer than 5; 5 approaches from each direction
+// Differences between a campaign and the test plan of ISO 230-2:2014 (clauses on tests for linear
+// and rotary axes):
+//   linear to 2 m   5 targets per metre, at least 5; 5 approaches from each direction
 //   linear above    the whole travel once, targets every 250 mm; 2 m of it by the full test
 //   rotary          3, 5, 8 targets for travels up to 90, 180, 360 deg; 0, 90, 180, 270 among them
-//   all             targets not evenly spaced, so that what repeats with the screw is met at
-//                   different phases
+//   all             targets not evenly spaced, so that errors periodic with the screw are measured
+//                   at different phases
 #include <algorithm>
 #include <cmath>
 
@@ -20,7 +20,7 @@ namespace {
 
 // docs/dev/constants.md, A11.
 constexpr double long_axis = 2.0;  // m
-constexpr double close = 1e-6;     // m or rad, where nominal positions are compared
+constexpr double close = 1e-6;     // m or rad, tolerance for nominal positions
 
 bool is_long(const AxisTest& test) {
   return test.length() > (test.rotary ? full_turn : long_axis) + close;
@@ -29,7 +29,7 @@ bool is_long(const AxisTest& test) {
 std::size_t wanted_targets(const AxisTest& test) {
   const double L = test.length();
   const auto whole = [](double x) {
-    constexpr double most = 1e9;  // of an absurd length too
+    constexpr double most = 1e9;  // bound for very large lengths
     return static_cast<std::size_t>(std::min(most, std::ceil(x - 1e-9)));
   };
   if (test.rotary) return static_cast<std::size_t>(rotary_points(L));
@@ -37,7 +37,7 @@ std::size_t wanted_targets(const AxisTest& test) {
   return std::max<std::size_t>(5, whole(5.0 * L));
 }
 
-// A stretch of 2 m (a full turn) with the targets and approaches of the full test.
+// Whether a range of 2 m (a full turn) has the targets and approaches of the full test.
 bool has_full_test(const AxisTest& test) {
   constexpr std::size_t runs = 5;
   const double stretch = test.rotary ? full_turn : long_axis;
@@ -53,9 +53,9 @@ bool has_full_test(const AxisTest& test) {
   return false;
 }
 
-// But for the rounding of the targets: a plan that varies by 1 % is uneven, if hardly.
+// Whether the targets are evenly spaced within rounding; a plan that varies by 1 % is uneven.
 bool even(const AxisTest& test) {
-  constexpr double rounding = 5e-4;  // of an interval
+  constexpr double rounding = 5e-4;  // tolerance, as a fraction of an interval
   const std::size_t m = test.targets.size();
   if (m < 4) return false;
   const double p = test.length() / static_cast<double>(m - 1);
@@ -81,7 +81,7 @@ bool multiples(const AxisTest& test, double period) {
 
 bool has_angle(const AxisTest& test, double angle) {
   return std::any_of(test.targets.begin(), test.targets.end(), [&](double target) {
-    return std::fabs(std::remainder(target - angle, full_turn)) < 2e-4;  // 0.01 deg
+    return std::fabs(std::remainder(target - angle, full_turn)) < 2e-4;  // tolerance of 0.01 deg
   });
 }
 
@@ -126,7 +126,7 @@ void counts(const AxisTest& test, const Observations& o, std::vector<Finding>& f
                            .done());
 }
 
-// A target beyond the stated travel: one of the two is wrong.
+// Reports targets outside of the stated travel, which means that either is wrong.
 void outside_travel(const AxisTest& test, const Axis* axis, std::vector<Finding>& findings) {
   if (axis == nullptr || !axis->travel) return;
   const auto [from, to] = *axis->travel;

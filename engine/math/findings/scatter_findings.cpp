@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Scatter of the two directions, suspected readings, and a single outlying target.
+// Scatter of the two directions, suspect readings, and a single outlying target.
 //
 // repeatability.asymmetric: F tests between the directions, two-sided, of the scatter of single
-//   readings (about the means of their target and pass) and of the scatter of the passes (what
-//   their readings share; P - 1 degrees of freedom, whatever the number of targets). 0.5 % each,
+//   readings (about the means of their target and pass) and of the scatter of the passes (shared by
+//   their readings; P - 1 degrees of freedom, whatever the number of targets). 0.5 % each,
 //   1 % in all; the ratio of the whole standard deviations >= 1.5; both also without the largest
 //   residual of each direction.
 // reading.suspect: externally studentized residual t = e/(s sqrt(1 - h)), s without that reading,
-//   of the model of pass_model.h; R. D. Cook, S. Weisberg 1982, Residuals and Influence in Regression,
-//   section 2.1. 1 % over all readings (Bonferroni). At least three readings at the target.
+//   of the model of pass_model.h; R. D. Cook, S. Weisberg 1982, Residuals and Influence in
+//   Regression, section 2.1. 1 % over all readings (Bonferroni). At least three readings at the
+//   target.
 // target.worst: q_i = distance of the mean at i from the line between its neighbours, scaled to the
-//   variance of one mean. A single outlying target gives the pattern (-w, 1, -w) in q; its
-//   height is compared with the q_j that it does not touch: t, 1 % over all targets.
+//   variance of one mean. A single outlying target gives the pattern (-w, 1, -w) in q; its height
+//   is compared with the q_j that it does not affect: t, 1 % over all targets.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -29,7 +30,7 @@ namespace nonio::math {
 namespace {
 
 struct SideScatter {
-  double variance = 0.0;  // of readings about the means of their targets
+  double variance = 0.0;  // variance of readings about the means of their targets
   double single = 0.0, single_dof = 0.0;
   double pass = 0.0, pass_dof = 0.0;
   double s() const { return std::sqrt(variance); }
@@ -116,7 +117,7 @@ struct Suspect {
   double t = 0.0, p = 1.0, expected = 0.0;
 };
 
-struct Spread {  // of the targets of a pass about the middle
+struct Spread {  // spread of the targets of a pass about their middle
   double n = 0, zz = 0;
 };
 
@@ -206,8 +207,8 @@ Worst worst_of(const Curve& c) {
       rest += q[i] * q[i], others += 1.0;
   }
   const double t_value = test_ratio(worst.height * std::sqrt(vv), std::sqrt(rest / others));
-  // Neighbouring q_i share readings: correlated by -2/3 and 1/6, so that their squares are worth
-  // 1/(1 + 2 (4/9 + 1/36)) = 18/35 of as many free ones.
+  // Adjacent q_i share readings: their correlations of -2/3 and 1/6 reduce the number of
+  // independent squares to the fraction 1/(1 + 2 (4/9 + 1/36)) = 18/35.
   const double dof = others * 18.0 / 35.0;
   worst.p = std::min(1.0, static_cast<double>(m) * t_two_sided(t_value, dof));
   return worst;
@@ -218,7 +219,7 @@ void worst_target_finding(const AxisTest& test, std::vector<Finding>& findings) 
   const Worst worst = worst_of(curve);
   if (!significant(worst.p, significance) || std::fabs(worst.height) < 10.0 * rounding) return;
   const PassModel m = fit_passes(test, false);
-  double variance = 0.0;  // of the mean of a target, as the readings show it
+  double variance = 0.0;  // variance of the mean of a target, estimated from the readings
   for (const auto& side : m.side)
     if (side.dof > 0.0 && side.passes > 0)
       variance +=
@@ -239,7 +240,7 @@ void worst_target_finding(const AxisTest& test, std::vector<Finding>& findings) 
 bool scatter_is_asymmetric(const AxisTest& test) { return assess_asymmetry(test).clear(); }
 
 void suspect_findings(const AxisTest& test, std::vector<Finding>& findings) {
-  constexpr std::size_t most = 3;  // more is not a misreading but a different distribution
+  constexpr std::size_t most = 3;  // more are a different distribution, not single outliers
   const bool slopes = test.targets.size() >= 4;
   std::vector<std::size_t> left_out;
   while (left_out.size() < most && test.most_approaches() >= 3) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Does a rotary axis come back to the deviation that it had a turn before?
+// Tests whether the deviation of a rotary axis repeats after one turn.
 //   g_p   mean over the pairs of targets one turn apart of x(later) - x(earlier), both readings of
-//         pass p (what a pass shares drops out), rad
-//   t     mean of the two directions' mean g against the scatter of g_p about them; level 1 %,
-//         degrees of freedom: passes less directions. A drift within the passes has opposite signs
-//         in the two directions and drops out as well.
-// With one pass in each direction no scatter is known and nothing is reported.
+//         pass p (errors shared by a pass cancel), rad
+//   t     mean of the two directions' mean g relative to the scatter of g_p about them; level 1 %,
+//         degrees of freedom: passes minus directions. A drift within the passes has opposite signs
+//         in the two directions and cancels as well.
+// With one pass in each direction the scatter is not known, and nothing is reported.
 #include <cmath>
 #include <map>
 #include <vector>
@@ -20,7 +20,7 @@
 namespace nonio::math {
 namespace {
 
-constexpr double same_place = 1e-6;  // rad, of nominal positions
+constexpr double same_place = 1e-6;  // rad, tolerance for nominal positions
 
 struct Pair {
   std::size_t earlier, later;
@@ -37,7 +37,7 @@ std::vector<Pair> pairs_a_turn_apart(const AxisTest& test) {
   return pairs;
 }
 
-// g_p of the passes of one direction.
+// Returns g_p of the passes of one direction.
 std::vector<double> gaps(const AxisTest& test, const std::vector<Pair>& pairs, bool minus) {
   struct Sum {
     double sum = 0.0, n = 0.0;

@@ -12,18 +12,18 @@
 namespace nonio::math {
 namespace {
 
-constexpr double largest_gap = full_turn / 3.0;  // of targets that cover a turn
-/// Largest factor by which a sinusoid may be determined worse than by evenly spread phases.
+constexpr double largest_gap = full_turn / 3.0;  // between targets that cover a turn
+/// Largest ratio of the variance of a sinusoid to that with evenly spread phases.
 constexpr double most_inflated = 2.0;
 constexpr std::size_t fewest_for_curve = 5, fewest_for_sinusoid = 10;
 
-/// What is being made for one test.
+/// Intermediate results for one test.
 struct Following {
   const AxisTest& test;
   RunComponents components;
   FollowedAxis out{};
-  std::vector<TargetWeights> weights{};  ///< of each quantity; none of ln_s
-  /// Periods of the sinusoids that are followed, in addition to a line or polynomial.
+  std::vector<TargetWeights> weights{};  ///< weights of each quantity except ln_s
+  /// Periods of the sinusoids that are fitted in addition to a line or polynomial.
   std::vector<double> periods{};
 };
 
@@ -51,7 +51,8 @@ void add_curve(Following& work) {
   add_followed(work, "curve_3", deviation_along(test), of_means(test, curve.row(3)));
 }
 
-/// others: columns that are fitted together with the sinusoid.
+/// Adds the sinusoid of this period, if the targets determine it. others: columns that are fitted
+/// together with it.
 void add_sinusoid(Following& work, const std::string& name, double period,
                   const Eigen::MatrixXd& others) {
   const AxisTest& test = work.test;
@@ -86,7 +87,8 @@ void add_shapes(Following& work, const Axis* axis, Across across) {
   const bool turn = test.rotary && covers_a_turn(test);
   const Eigen::MatrixXd others = turn ? legendre_columns(test, 1) : legendre_columns(test, 4);
   if (turn) add_sinusoid(work, "turn", full_turn, others);
-  if (!test.rotary && across == Across::no) add_scale(work);  // the slope across it is set-up
+  // across the axis, the slope is set-up
+  if (!test.rotary && across == Across::no) add_scale(work);
   if (!test.rotary) add_curve(work);
   const auto period = drive_period(axis, test.rotary);
   if (period && *period > 0.0) add_sinusoid(work, "cyclic", *period, others);
@@ -98,8 +100,8 @@ void put_uncertainties(Following& work) {
   for (std::size_t i = 0; i < n; ++i) work.out.quantities[i].u = std::sqrt(C[i * n + i]);
 }
 
-/// For a comparison with campaigns that have other targets. Of a rotary axis, whose angles are its
-/// own, the values are compared as they are.
+/// Computes the data for comparisons with campaigns that have other targets. For a rotary axis,
+/// whose angles do not refer to its ends, only the sinusoids are fitted.
 void put_other_targets(Following& work) {
   OtherTargets to;
   for (const Followed& f : work.out.quantities) to.of_readings.push_back(f.u * f.u);
@@ -111,7 +113,7 @@ void put_other_targets(Following& work) {
   work.out.other_targets = std::move(to);
 }
 
-/// The scale also depends on what the manifest states.
+/// Adds the contributions to the uncertainty of the scale that the manifest states.
 void of_the_scale(Following& work, const Campaign& c, const std::string& name,
                   std::optional<double> material) {
   auto& all = work.out.quantities;

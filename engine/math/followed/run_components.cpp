@@ -15,7 +15,7 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd;
 using RunPart = RunComponents::Part;
 
-/// Of one pass: readings, and sum of squared distances from their own middle.
+/// Number of readings of one pass, and the moments of their positions.
 struct PassExtent {
   double n = 0.0, z = 0.0, zz = 0.0;
   double spread() const { return n > 0.0 ? zz - z * z / n : 0.0; }
@@ -33,7 +33,8 @@ std::vector<PassExtent> pass_extents(const AxisTest& test, const PassModel& pass
 
 double squared(double x) { return x * x; }
 
-/// Of values of the runs that have the mean 0 but for what is missing.
+/// Computes the variance component from values of the runs; noise: contribution of single readings
+/// to their variance.
 RunPart run_part(const std::vector<double>& values, double noise) {
   const double s = standard_deviation(values);
   return {std::max(0.0, s * s - noise), noise, s * s};
@@ -58,7 +59,7 @@ RunValues run_values(const RunComponents& c, const std::vector<PassExtent>& exte
       of_offset += c.reading[d] / extent[p + d].n;
       if (extent[p + d].spread() > 0.0) of_slope += c.reading[d] / extent[p + d].spread();
     }
-    const double part = both ? 0.5 : 1.0;  // of one direction only the sum is there
+    const double part = both ? 0.5 : 1.0;  // with one direction only the sum exists
     out.shared_offset.push_back(part * (offset[0] + offset[1]));
     out.shared_slope.push_back(part * (slope[0] + slope[1]));
     out.own_offset.push_back(0.5 * (offset[0] - offset[1]));
@@ -71,12 +72,15 @@ RunValues run_values(const RunComponents& c, const std::vector<PassExtent>& exte
   return out;
 }
 
-/// What neighbours that are alike make of a pass of m readings, from which a line is taken out.
+/// Effects of correlated adjacent readings on a pass of m readings from which a line is subtracted.
 struct Alike {
-  double lag1 = 0.0;                 ///< expected of the residuals
-  double residual = 1.0;             ///< their variance by degree of freedom, of 1 of a reading
-  double offset = 1.0, slope = 1.0;  ///< variances of mean and slope, of those of independent ones
-  double dof = 1.0;                  ///< of the residuals, of those of independent ones
+  double lag1 = 0.0;  ///< expected lag-1 correlation of the residuals
+  /// residual variance per degree of freedom, relative to that of a reading
+  double residual = 1.0;
+  /// variances of mean and slope, relative to those with independent readings
+  double offset = 1.0, slope = 1.0;
+  /// degrees of freedom of the residuals, relative to those with independent readings
+  double dof = 1.0;
 };
 
 Alike alike(Index m, double r) {
@@ -96,11 +100,11 @@ Alike alike(Index m, double r) {
           squared(e.trace()) / e.squaredNorm() / (n - 2.0)};
 }
 
-/// Lag-1 correlation of the residuals, if it is beyond chance (one-sided 5 %).
+/// Returns the lag-1 correlation of the residuals if it is significant (one-sided 5 %).
 std::optional<double> lag_of_residuals(const PassModel& m, const Alike& white) {
   std::vector<double> before(m.passes.size(), std::numeric_limits<double>::quiet_NaN());
   double products = 0.0, squares = 0.0, pairs = 0.0, readings = 0.0;
-  for (std::size_t k = 0; k < m.e.size(); ++k) {  // by targets, so in the order of each pass
+  for (std::size_t k = 0; k < m.e.size(); ++k) {  // sorted by target, so in the order of each pass
     if (std::isnan(m.e[k])) continue;
     double& last = before[m.pass[k]];
     if (!std::isnan(last)) products += last * m.e[k], pairs += 1.0;
@@ -114,10 +118,11 @@ std::optional<double> lag_of_residuals(const PassModel& m, const Alike& white) {
   return lag;
 }
 
-/// The correlation of neighbours that makes such residuals; what it makes else.
+/// Finds the correlation of adjacent readings that explains the lag-1 correlation of the residuals,
+/// stores it in `c`, and returns its effects.
 Alike find_neighbours(RunComponents& c, std::size_t targets) {
   constexpr double most = 0.95;
-  constexpr std::size_t longest = 80;  // of more targets the ends do not matter
+  constexpr std::size_t longest = 80;  // with more targets the effect of the ends is negligible
   const auto m = static_cast<Index>(std::min(targets, longest));
   if (m < 4) return {};
   const auto lag = lag_of_residuals(c.passes, alike(m, 0.0));
@@ -129,7 +134,7 @@ Alike find_neighbours(RunComponents& c, std::size_t targets) {
   return alike(m, c.neighbours);
 }
 
-/// Sums of weights over each pass: as they are, and times the distance from the middle.
+/// Sums over each pass of the weights, and of the weights times the distance from the middle.
 struct PassSums {
   std::vector<double> offset, slope;
 };
@@ -149,7 +154,7 @@ PassSums pass_sums(const AxisTest& test, const PassModel& m, const TargetWeights
   return out;
 }
 
-/// Of single readings, where neighbours are independent.
+/// Covariance by single readings, if adjacent ones are independent.
 double covariance_of_singles(const AxisTest& test, const RunComponents& c, const TargetWeights& a,
                              const TargetWeights& b) {
   double sum = 0.0;
@@ -159,12 +164,12 @@ double covariance_of_singles(const AxisTest& test, const RunComponents& c, const
   return sum;
 }
 
-/// r^|k - l| between the readings of a pass.
+/// Covariance by single readings with correlation r^|k - l| within a pass.
 double covariance_of_neighbours(const RunComponents& c, const TargetWeights& a,
                                 const TargetWeights& b) {
   const PassModel& m = c.passes;
   double sum = 0.0;
-  std::vector<double> tail_a(m.passes.size(), 0.0), tail_b = tail_a;  // of a pass so far
+  std::vector<double> tail_a(m.passes.size(), 0.0), tail_b = tail_a;  // running sums of each pass
   for (std::size_t k = 0; k < m.pass.size(); ++k) {
     const double wa = a[place_of(m, k)], wb = b[place_of(m, k)];
     double &ta = tail_a[m.pass[k]], &tb = tail_b[m.pass[k]];
@@ -254,8 +259,8 @@ PooledScatter pooled_scatter(const AxisTest& test, const RunComponents& c) {
     variance += 2.0 * squared(side.squares / all_dof) / (side.dof * c.independent);
     dof += side.dof;
   }
-  // Of a part over the runs the estimate V has the variance 2 V^2/(runs - 1). It is itself known
-  // so badly that its square is too large in the mean: by this factor, where V is the share a of
+  // The estimate V of a component over the runs has the variance 2 V^2/(runs - 1). V itself is so
+  // uncertain that its square is too large on average: by this factor, if V is the fraction a of
   // the mean square (second order in 1/V).
   const double of_runs = c.runs - 1.0;
   const auto put = [&](const RunPart& p, double factor) {

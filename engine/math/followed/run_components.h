@@ -9,39 +9,42 @@
 
 namespace nonio::math {
 
-/// What the scatter of a test is made of (followed.h).
+/// Variance components of the scatter of a test (followed.h).
 struct RunComponents {
-  /// Variance over the runs, what of its estimate single readings make, and the estimate with it.
+  /// Variance over the runs: corrected for single readings, contribution of single readings, and as
+  /// estimated.
   struct Part {
     double variance = 0.0, noise = 0.0, whole = 0.0;
   };
   PassModel passes;
-  double runs = 0.0;       ///< complete ones: with a pass in each direction that occurs
-  double reading[2] = {};  ///< variance of a single reading, + and -
-  /// Correlation of neighbouring targets of a pass; at distance k its k-th power. 0 where the
-  /// readings do not show one.
+  double runs = 0.0;       ///< number of complete runs: with a pass in each direction that occurs
+  double reading[2] = {};  ///< variance of a single reading in directions + and -
+  /// Correlation of adjacent targets of a pass; at distance k its k-th power. 0 if not significant.
   double neighbours = 0.0;
-  /// Share of a pass' residual degrees of freedom that neighbours which are alike leave.
+  /// Ratio of the residual degrees of freedom of a pass with the correlation `neighbours` to those
+  /// without.
   double independent = 1.0;
-  Part shared_offset, own_offset;  ///< m^2
-  Part shared_slope, own_slope;    ///< slopes about the middle of the targets
+  /// offset that both passes of a run share, and half difference; m^2
+  Part shared_offset, own_offset;
+  /// shared and own slopes of a run, about the middle of the targets
+  Part shared_slope, own_slope;
 };
 
 RunComponents run_components(const AxisTest&);
 
-/// A linear function of the readings: weight of each reading at target i in direction +, at 2 i, and
-/// in direction -, at 2 i + 1. All of a target and direction count alike.
+/// Weights of a linear function of the readings: of each reading at target i in direction + at
+/// index 2 i, in direction - at 2 i + 1. All readings of a target and direction have equal weights.
 using TargetWeights = std::vector<double>;
 
 double value_of(const AxisTest&, const TargetWeights&);
 
-/// Covariances of linear functions of the readings, row by row.
+/// Returns the covariance matrix of linear functions of the readings, row by row.
 std::vector<double> covariance_of(const AxisTest&, const RunComponents&,
                                   const std::vector<TargetWeights>&);
 
-/// Root mean square of the scatter at a target, and the standard uncertainty of its logarithm: the
-/// mean square is the sum of those of the residuals, of the runs' offsets and of their slopes, which
-/// are independent, each with its degrees of freedom.
+/// Root mean square scatter at a target, and the standard uncertainty of its logarithm. The mean
+/// square is the sum of those of residuals, run offsets and run slopes, which are independent, each
+/// with its degrees of freedom.
 struct PooledScatter {
   double s = 0.0, u_ln = 0.0;
 };

@@ -11,8 +11,8 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-/// Half of the targets at most, so that the rest shows what is between them. Of a higher degree the
-/// ends would be seen by few targets.
+/// At most half of the targets, so that the residuals show the variation between targets. With a
+/// higher degree, few targets would determine the ends.
 constexpr std::size_t most_degree = 7, fewest_for_cubic = 5, fewest_for_cubic_reversal = 11;
 constexpr std::size_t least_rest = 3;
 
@@ -22,7 +22,7 @@ bool has_both(const AxisTest& test, std::size_t i) {
 
 double share(const AxisTest& test, std::size_t i) { return has_both(test, i) ? 0.5 : 1.0; }
 
-/// A sum over targets of t_i m_i, or of t_i B_i.
+/// Returns the weights of sum t_i m_i, or of sum t_i B_i, over targets.
 TargetWeights spread_over(const AxisTest& test, const VectorXd& t, bool reversal) {
   TargetWeights out(2 * test.targets.size(), 0.0);
   for (std::size_t i = 0; i < test.targets.size(); ++i)
@@ -35,7 +35,7 @@ TargetWeights spread_over(const AxisTest& test, const VectorXd& t, bool reversal
   return out;
 }
 
-/// Variance of m_i or B_i that single readings make.
+/// Returns the variance of m_i or B_i caused by single readings.
 double variance_at(const AxisTest& test, const RunComponents& c, std::size_t i, bool reversal) {
   double sum = 0.0;
   for (const bool minus : {false, true})
@@ -44,14 +44,15 @@ double variance_at(const AxisTest& test, const RunComponents& c, std::size_t i, 
   return reversal ? sum : sum * share(test, i) * share(test, i);
 }
 
-/// Of a fit by targets: its columns are `polynomial` ones, then sinusoids. Of B_i, targets that were reached from one direction have no part in it.
+/// Fits the values at the targets; the columns are `polynomial` ones, then sinusoids. For B_i,
+/// targets approached from one direction are omitted.
 TargetFit fit_columns(const AxisTest& test, const RunComponents& c, const MatrixXd& X,
                       Index polynomial, bool reversal) {
   std::vector<std::size_t> seen;
   for (std::size_t i = 0; i < test.targets.size(); ++i)
     if (!reversal || has_both(test, i)) seen.push_back(i);
   const auto n = at(seen.size());
-  const Index kept = test.rotary ? 0 : polynomial;  // its angles are its own
+  const Index kept = test.rotary ? 0 : polynomial;  // a rotary axis has no coefficients
   if (n < X.cols()) return {};
   MatrixXd own(n, X.cols());
   VectorXd y(n);
@@ -67,7 +68,7 @@ TargetFit fit_columns(const AxisTest& test, const RunComponents& c, const Matrix
   }
   const Eigen::ColPivHouseholderQR<MatrixXd> qr(own);
   if (qr.rank() < own.cols()) return {};
-  const MatrixXd rows = fit_rows(own);  // p x n
+  const MatrixXd rows = fit_rows(own);  // coefficients x targets
   TargetFit out;
   out.dof = static_cast<double>(n - own.cols());
   const VectorXd rest = residual(y, own, times(rows, y));

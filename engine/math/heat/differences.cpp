@@ -9,7 +9,7 @@ namespace nonio::math {
 
 namespace {
 
-/// Two readings for each value, one behind the other.
+/// Returns the model of the readings: two consecutive readings for each value.
 ReadingModel model_of(const Campaign& campaign, const std::vector<Difference>& all) {
   std::vector<BudgetLine> lines;
   double largest = 0.0;
@@ -39,7 +39,7 @@ ReadingModel model_of(const Campaign& campaign, const std::vector<Difference>& a
   return model;
 }
 
-/// The form of the ball, where it is stated and in a value.
+/// Adds the form error of the ball as an input, if it is stated and contained in a value.
 void put_ball(const Campaign& campaign, const std::vector<Difference>& all, ReadingModel& model) {
   const bool any =
       std::any_of(all.begin(), all.end(), [](const Difference& d) { return d.with_ball; });
@@ -67,7 +67,7 @@ void put_differences(const Campaign& campaign, const std::vector<Difference>& al
   if (all.empty()) return;
   ReadingModel model = model_of(campaign, all);
   put_ball(campaign, all, model);
-  ReadingModel without = model;  // for values that include a ball of unknown form
+  ReadingModel without = model;  // for values that contain a ball with unknown form error
   bool ball_missing = false;
   double most = 0.0;
   for (const Difference& d : all) {

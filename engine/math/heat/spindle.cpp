@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formulas: nonio/math/spindle.h.
-// What the analysis names has judgements too: docs/dev/constants.md, A18, of few turns;
+// Formulas: nonio/math/spindle.h. Decisions of the analysis: docs/dev/constants.md, A18, of few
+// turns;
 // docs/dev/constants.md, A19, of waves.
 #include "nonio/math/spindle.h"
 
@@ -16,9 +16,10 @@ namespace {
 constexpr std::size_t fewest_in_turn = 16, fewest_turns = 2;
 // docs/dev/constants.md, A17.
 constexpr double widest_gap = full_turn / 8.0;
-constexpr double as_read = 1e-4;  // rad: angles this near to even steps are the steps
+constexpr double as_read = 1e-4;  // rad: tolerance for angles at even steps
 
-/// Whether the readings already lie on even steps, whole steps in a turn; then how many.
+/// Returns the number of steps per turn if the readings are at even steps that divide the turn;
+/// else 0.
 std::size_t even_steps(const SpindleTrack& k) {
   const double step = (k.angle.back() - k.angle.front()) / static_cast<double>(k.angle.size() - 1);
   const double n = std::round(full_turn / step);
@@ -28,7 +29,8 @@ std::size_t even_steps(const SpindleTrack& k) {
   return static_cast<std::size_t>(n);
 }
 
-/// Cubic through four readings about x (Lagrange); at the ends through the first or last four.
+/// Interpolates by the cubic through four readings about x (Lagrange); at the ends through the
+/// first or last four.
 double cubic(const SpindleTrack& k, std::size_t behind, double x) {
   const std::size_t first = std::min(behind < 2 ? 0 : behind - 2, k.angle.size() - 4);
   double sum = 0.0;
@@ -62,7 +64,7 @@ std::optional<Turns> turns_of(const SpindleTrack& k) {
   if (const std::size_t n = even_steps(k);
       n >= fewest_in_turn &&
       std::fabs(std::remainder(k.angle.front(), full_turn / static_cast<double>(n))) < as_read) {
-    // From the first reading on; the curve begins at angle 0 of the spindle.
+    // Turns begin at the first reading; the curve begins at angle 0 of the spindle.
     const double turn = std::fmod(std::fmod(k.angle.front(), full_turn) + full_turn, full_turn);
     const auto shift =
         static_cast<std::size_t>(std::lround(turn / full_turn * static_cast<double>(n)));
@@ -121,7 +123,7 @@ double ErrorMotion::eccentricity() const { return std::hypot(a, b); }
 
 namespace {
 
-/// Of each turn alone: m, a, b.
+/// Coefficients m, a, b of a single turn.
 struct OfTurn {
   double m = 0.0, a = 0.0, b = 0.0;
 };
@@ -137,8 +139,8 @@ std::vector<OfTurn> turn_by_turn(const Turns& k) {
   return out;
 }
 
-/// Correlation of the asynchronous motion with that of the turn before, over all angles: the mean
-/// of N turns are as good as N (1 - rho)/(1 + rho) independent ones.
+/// Returns the effective number of turns in a mean, N (1 - rho)/(1 + rho), with rho the correlation
+/// of the asynchronous motion with that of the previous turn, over all angles.
 double turns_that_count(const Turns& k, const std::vector<double>& left) {
   double with = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < left.size(); ++i) {
@@ -147,7 +149,7 @@ double turns_that_count(const Turns& k, const std::vector<double>& left) {
   }
   const auto N = static_cast<double>(k.N);
   if (!(squares > 0.0)) return N;
-  // Taking the mean of N turns off makes it about 1/N smaller than it is.
+  // Subtracting the mean of N turns reduces the correlation by about 1/N.
   const double rho = std::clamp(with / squares * N / (N - 1.0) + 1.0 / N, 0.0, 0.95);
   return std::max(1.5, N * (1.0 - rho) / (1.0 + rho));
 }
@@ -213,7 +215,8 @@ Separated multi_step(std::span<const std::vector<double>> T) {
   out.spindle.assign(n, 0.0), out.ball.assign(n, 0.0);
   for (const auto& one : T)
     for (std::size_t i = 0; i < n; ++i) out.spindle[i] += one[i] / static_cast<double>(K);
-  // T_k(t) - S(t) = P(-t - 360 k/K): of the first set-up as measured, the others turned back.
+  // T_k(t) - S(t) = P(-t - 360 k/K): average the curves of all set-ups, turned back to the first
+  // one.
   for (std::size_t k = 0; k < K; ++k)
     for (std::size_t i = 0; i < n; ++i) {
       const double from =

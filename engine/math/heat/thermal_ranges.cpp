@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ranges in windows, by two queues of candidates: O(n). Formulas: nonio/math/thermal.h.
-// What the analysis names has a judgement: docs/dev/constants.md, A16.
+// Ranges in windows, by two queues of candidates: O(n). Formulas: nonio/math/thermal.h. A decision
+// of the analysis: docs/dev/constants.md, A16.
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -13,7 +13,8 @@ namespace nonio::math {
 
 namespace {
 
-/// Times are given to a millisecond or so: a window of an hour ends at the reading after an hour.
+/// Tolerance for times that are rounded to about a millisecond: a window of an hour includes the
+/// reading after exactly one hour.
 constexpr double time_slack = 1e-6;
 
 RangeOf range_between(const Track& k, std::size_t first, std::size_t last) {
@@ -44,7 +45,7 @@ std::optional<RangeOf> first_range(const Track& k, double w) {
 
 std::optional<RangeOf> largest_range(const Track& k, double w) {
   if (k.size() < 2 || k.time.back() - k.time.front() < w - time_slack) return {};
-  std::deque<std::size_t> low, high;  // candidates: values ascend, descend
+  std::deque<std::size_t> low, high;  // candidates: ascending, descending values
   std::optional<RangeOf> best;
   std::size_t first = 0;
   for (std::size_t i = 0; i < k.size(); ++i) {
@@ -65,7 +66,7 @@ ReadingNoise reading_noise(const Track& k) {
   if (k.size() < 4) return {};
   double squares = 0.0;
   for (std::size_t i = 1; i + 1 < k.size(); ++i) {
-    // Weights of a straight line through the neighbours: 1/2, 1/2 where the steps are even.
+    // Weights of a straight line through the two adjacent readings: 1/2, 1/2 for even steps.
     const double a = (k.time[i + 1] - k.time[i]) / (k.time[i + 1] - k.time[i - 1]), b = 1.0 - a;
     const double off = k.d[i] - a * k.d[i - 1] - b * k.d[i + 1];
     squares += off * off / (1.0 + a * a + b * b);
@@ -86,7 +87,7 @@ double range_excess(std::span<const double> d, double s) {
   for (int r = 0; r < repeats; ++r) {
     double least = INFINITY, largest = -INFINITY;
     for (std::size_t i = 0; i < d.size(); i += step) {
-      // Twelve uniform numbers: normal enough for a guess, and the same on every processor.
+      // The sum of twelve uniform numbers is sufficiently normal, and equal on every processor.
       double z = -6.0;
       for (int q = 0; q < 12; ++q) z += random.uniform();
       least = std::min(least, d[i] + s * z), largest = std::max(largest, d[i] + s * z);
@@ -100,14 +101,14 @@ namespace {
 
 using ByPlace = std::map<std::pair<double, int>, const Visits*>;
 
-/// Cycles that every target has from every side that it has at all.
+/// Returns the number of cycles in which every target was read from all of its sides.
 std::size_t whole_cycles(const std::vector<Visits>& all) {
   std::size_t n = all.empty() ? 0 : all.front().track.size();
   for (const Visits& v : all) n = std::min(n, v.track.size());
   return n;
 }
 
-/// Mean of the visits: the slope of what all of them show belongs to that time.
+/// Returns the mean time of the visits of a cycle, to which the slope over all targets refers.
 double time_of_cycle(const std::vector<Visits>& all, std::size_t j) {
   double sum = 0.0;
   for (const Visits& v : all) sum += v.track.time[j] / static_cast<double>(all.size());

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// d(t) = d0 + sum_k c_k (1 - exp(-t/tau_k)) + noise. Readings become means of at most 120 equal
-// intervals. tau_k: a search over ln tau, then Gauss-Newton in (d0, c_k, ln tau_k); the noise is
+// d(t) = d0 + sum_k c_k (1 - exp(-t/tau_k)) + noise. Readings are averaged in at most 120 equal
+// intervals. tau_k: search over ln tau, then Gauss-Newton in (d0, c_k, ln tau_k); the noise is
 // white plus a slow part (statistics/path_noise.h), estimated with the columns of the last step.
-// cov = s^2 (J' V^-1 J)^-1. Effective degrees of freedom: n/g less the parameters/g, g the variance
-// of a slow column against that of white noise, at least 1. Second constant: only if it makes the
-// rest significantly smaller (F, level 1 %).
+// cov = s^2 (J' V^-1 J)^-1. Effective degrees of freedom: n/g minus the parameters/g, with g the
+// variance of a slow column relative to that of white noise, at least 1. A second constant is
+// fitted only if it makes the residuals significantly smaller (F, level 1 %).
 #include <algorithm>
 #include <cmath>
 
@@ -22,12 +22,12 @@ using Matrix = Eigen::MatrixXd;
 
 constexpr std::size_t most_means = 120, fewest = 12;
 // docs/dev/constants.md, A15.
-constexpr double longest_share = 0.5;   // of the test
-constexpr double largest_u_tau = 0.25;  // of the time constant
+constexpr double longest_share = 0.5;   // largest time constant, as a fraction of the test
+constexpr double largest_u_tau = 0.25;  // largest relative uncertainty of a time constant
 constexpr double second_level = 0.01;
-constexpr double apart = 2.0;  // ratio of two time constants
+constexpr double apart = 2.0;  // smallest ratio of two time constants
 
-/// Means over equal intervals, the variance of the times in each, and the number of the interval.
+/// Means over equal intervals, the variance of the times in each, and the index of the interval.
 struct Means {
   Vector t, d, v;
   std::vector<int> place;
@@ -47,7 +47,7 @@ Means means_of(const Track& k) {
       out.place.push_back(at);
       t.push_back(0.0), d.push_back(0.0), n.push_back(0.0), squares.push_back(0.0);
     }
-    // From the middle of the interval: no digits are lost.
+    // Sum relative to the middle of the interval, to preserve digits.
     const double off = k.time[i] - start - at * out.step;
     t.back() += off, d.back() += k.d[i], n.back() += 1.0, squares.back() += off * off;
   }
@@ -62,9 +62,9 @@ Means means_of(const Track& k) {
 
 struct Curve {
   std::vector<double> log_tau;
-  Vector beta;  ///< d0, c_k
+  Vector beta;  ///< linear coefficients: d0, c_k
   Matrix jacobian;
-  double rss = INFINITY;  ///< whitened
+  double rss = INFINITY;  ///< whitened residual sum of squares
 };
 
 Matrix columns_for(const Means& m, const std::vector<double>& log_tau) {
@@ -72,7 +72,8 @@ Matrix columns_for(const Means& m, const std::vector<double>& log_tau) {
   X.col(0).setOnes();
   for (std::size_t k = 0; k < log_tau.size(); ++k) {
     const double tau = std::exp(log_tau[k]);
-    // The mean of exp(-t/tau) over times of variance v is that at their mean, times 1 + v/(2 tau^2).
+    // The mean of exp(-t/tau) over times of variance v is the value at their mean, times 1 + v/(2
+    // tau^2).
     X.col(at(k + 1)) = m.t.binaryExpr(m.v, [tau](double t, double v) {
       return -std::expm1(-t / tau) - std::exp(-t / tau) * v / (2.0 * tau * tau);
     });
@@ -80,7 +81,7 @@ Matrix columns_for(const Means& m, const std::vector<double>& log_tau) {
   return X;
 }
 
-/// Linear part at given time constants.
+/// Fits the linear coefficients for given time constants.
 Curve linear(const Means& m, const std::vector<double>& log_tau, const PathNoise& noise) {
   Matrix both = with_column(columns_for(m, log_tau), m.d);
   whiten(both, m.place, noise);
@@ -132,8 +133,9 @@ Curve searched(const Means& m, std::size_t parts, const PathNoise& noise) {
   return best;
 }
 
-/// Steps of Gauss-Newton in ln tau, halved while they make it worse. Near the minimum the sum of
-/// squares is flat, and its rounding must not decide where the search ends.
+/// Gauss-Newton steps in ln tau, halved while they increase the residuals. Near the minimum the sum
+/// of squares is flat; small steps are accepted there, so that rounding does not decide where the
+/// search ends.
 void refine(const Means& m, const PathNoise& noise, Curve& c) {
   constexpr int most = 60;
   constexpr double near = 1e-4, reached = 1e-11;
@@ -188,7 +190,8 @@ double rss_with(const Means& m, const Curve& c, const PathNoise& noise) {
   return rest.squaredNorm();
 }
 
-/// Whether a second time constant explains something: both curves under the noise of the larger one.
+/// Whether a second time constant reduces the residuals significantly; both curves are compared
+/// under the noise estimated with two.
 bool two_parts(const Means& m, const Fitted& two) {
   Curve one = searched(m, 1, two.noise);
   refine(m, two.noise, one);
@@ -250,7 +253,7 @@ TimeConstants::Time TimeConstants::settled(double limit) const {
   double most = 0.0;
   for (const Part& p : parts) most += std::fabs(p.c);
   if (most <= limit) return {};
-  // Behind this time it is below the limit for good; from there back to the last crossing.
+  // After this time it remains below the limit; search backwards from there for the last crossing.
   double high = slowest * std::log(most / limit), low = 0.0;
   constexpr int steps = 4000;
   int crossing = -1;
@@ -268,7 +271,7 @@ TimeConstants::Time TimeConstants::settled(double limit) const {
   for (const Part& p : parts) {
     const double e = std::exp(-out.t / p.tau);
     slope -= p.c / p.tau * e;
-    by.push_back(e), by.push_back(p.c * out.t / p.tau * e);  // by c, by ln tau
+    by.push_back(e), by.push_back(p.c * out.t / p.tau * e);  // derivatives by c and by ln tau
   }
   double variance = 0.0;
   for (std::size_t a = 0; a < by.size(); ++a)
@@ -284,7 +287,7 @@ TimeConstants time_constants(const Track& k) {
   if (m.place.size() < fewest) return out;
   out.largest = longest_share * m.duration;
   const double level = m.d.mean(), spread = (m.d.array() - level).matrix().norm();
-  // What is left of equal readings by the processor's rounding has no curve.
+  // If all readings are equal up to rounding, there is no curve.
   if (!(spread > 1e-9 * std::fabs(level) * std::sqrt(static_cast<double>(m.t.size())))) {
     out.answer = TimeConstants::Answer::none;
     return out;

@@ -10,12 +10,13 @@ namespace nonio::math {
 
 namespace {
 
-constexpr double nearly_one = 1.0 + 1e-9;  // against rounding before a number is cut off
+constexpr double nearly_one = 1.0 + 1e-9;  // tolerance against rounding before truncation
 
-/// Uniform in [0, 1): the distributions of the standard library differ between libraries.
+/// Returns a uniform number in [0, 1); distributions of the standard library differ between
+/// implementations.
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
-/// The nearest multiple of the resolution between first and last.
+/// Rounds to the nearest multiple of the resolution between first and last.
 double rounded(double value, const AxisTargets& wish) {
   const double nearest = std::round(value / wish.resolution) * wish.resolution;
   const double slack = 1e-6 * wish.resolution;
@@ -23,8 +24,8 @@ double rounded(double value, const AxisTargets& wish) {
   return nearest > wish.last + slack ? nearest - wish.resolution : nearest;
 }
 
-/// There and back over the stops, as often as requested; `before` and `after` are the points of
-/// turning.
+/// Returns the moves forward and back over the stops, in the requested number of runs; `before` and
+/// `after` are the points of reversal.
 std::vector<MeasuringMove> to_and_fro(const std::vector<std::vector<double>>& stops,
                                       const std::vector<double>& before,
                                       const std::vector<double>& after,
@@ -41,7 +42,7 @@ std::vector<MeasuringMove> to_and_fro(const std::vector<std::vector<double>>& st
   return moves;
 }
 
-/// Along a straight line of evenly spaced stops.
+/// Returns the path along a straight line of evenly spaced stops.
 MeasuringPath line_path(std::string name, const Rectangle& r, double y0, double step_x,
                         double step_y, int steps, const MeasuringRequest& wish) {
   MeasuringPath path{std::move(name), {r.x, r.y}, {false, false}, {}};
@@ -49,7 +50,7 @@ MeasuringPath line_path(std::string name, const Rectangle& r, double y0, double 
   const auto at = [&](double i) { return std::vector{r.from_x + i * step_x, y0 + i * step_y}; };
   std::vector<std::vector<double>> stops;
   for (int i = 0; i <= steps; ++i) stops.push_back(at(i));
-  // Beyond a stop by whole multiples of the resolution, never by more than requested.
+  // Point beyond a stop, at integer multiples of the resolution, not further than requested.
   const auto beyond = [&](int stop, double direction) {
     std::vector<double> place = at(stop);
     const double multiple = direction * wish.over_travel / further / wish.resolution;
@@ -88,7 +89,7 @@ MeasuringPath step_path(const std::string& name, const Volume& v, const Measurin
 
 namespace {
 
-// Bounds an absurd length too; more points are never measured.
+// Rounds up; the bound applies to very large lengths, for which no measurement exists.
 int whole_points(double count) {
   constexpr double most = 1e9;
   return static_cast<int>(std::min(most, std::ceil(count - 1e-9)));

@@ -14,9 +14,9 @@ namespace nonio::math {
 
 namespace {
 
-constexpr double per_metre = 1e9;         // the search counts in whole nanometres
-constexpr std::int64_t fewest_steps = 4;  // five points
-constexpr double longest_travel = 1e3;    // m; keeps every product far from the end of 64 bits
+constexpr double per_metre = 1e9;         // the search uses integer nanometres
+constexpr std::int64_t fewest_steps = 4;  // five points per axis
+constexpr double longest_travel = 1e3;    // m; keeps every product far below the limit of 64 bits
 constexpr std::int64_t largest_hypotenuse = 1'000'000;
 constexpr std::int64_t most_points = 1'000'000;
 // docs/dev/constants.md, A10.
@@ -33,18 +33,18 @@ std::string mm(double m) {
   return std::string(text.data(), end) + " mm";
 }
 
-/// The limits in whole numbers.
+/// The request as integers.
 struct Search {
   std::int64_t ux = 0, uy = 0, unit = 0;
-  std::int64_t of_x = 1, of_y = 1, of_d = 1;  // units of which the steps are whole multiples
-  std::int64_t step_x = 0, step_y = 0;        // largest allowed
+  std::int64_t of_x = 1, of_y = 1, of_d = 1;  // units of which the steps must be integer multiples
+  std::int64_t step_x = 0, step_y = 0;        // largest allowed steps
   std::int64_t least_n = fewest_steps, most_n = 0;
   std::vector<std::int64_t> pitch_x, pitch_y;
   bool even = false;
   std::vector<Triple> triples;
 };
 
-/// Fewest steps and largest step that ISO 230-2 requires for an axis of this length.
+/// Smallest number of steps and largest step that ISO 230-2 requires for an axis of this length.
 struct Sampling {
   std::int64_t steps = fewest_steps;
   double largest_step = 1e9;
@@ -101,7 +101,8 @@ std::int64_t work(const Search& s) {
   return sum;
 }
 
-/// Of what q is a whole multiple, so that each step is one of its own resolution: q leg = 0 mod k.
+/// Returns the number of which q must be a multiple, so that each step is a multiple of its own
+/// resolution: q leg = 0 mod k.
 std::int64_t multiple_of(const Search& s, const Triple& t) {
   const auto of = [](std::int64_t k, std::int64_t leg) { return k / std::gcd(k, leg); };
   return std::lcm(std::lcm(of(s.of_x, t.a), of(s.of_y, t.b)), of(s.of_d, t.c));
@@ -112,9 +113,11 @@ bool is_multiple(std::int64_t step, const std::vector<std::int64_t>& pitches) {
                      [&](std::int64_t pitch) { return step % pitch == 0; });
 }
 
-/// The largest multiple of `m` up to `q` whose steps meet no multiple of a pitch; 0 if none does.
+/// Returns the largest multiple of `m` up to `q` with which no step is a multiple of a pitch; 0 if
+/// there is none.
 std::int64_t with_pitch(const Search& s, const Triple& t, std::int64_t q, std::int64_t m) {
-  // A pitch forbids every q or every m-th, m >= 2: among few neighbours one is free, if any is.
+  // A pitch excludes every q, or every m-th with m >= 2, so that one of a few consecutive multiples
+  // is free, if any is.
   const std::int64_t tries = 2 * static_cast<std::int64_t>(s.pitch_x.size() + s.pitch_y.size() + 1);
   q -= q % m;
   for (std::int64_t i = 0; q >= 1 && i <= tries * tries; ++i, q -= m)
@@ -128,8 +131,8 @@ struct Found {
   std::int64_t q, n;
 };
 
-/// Every triple and number of steps that keeps the limits, with its largest step, until `take`
-/// states that it is enough.
+/// Calls `take` for every triple and number of steps within the limits, with the largest step,
+/// until `take` returns true.
 template <class Take>
 void for_each_plan(const Search& s, const Take& take) {
   for (const Triple& t : s.triples) {
@@ -175,7 +178,7 @@ bool same_plan(const TriplePlan& p, const TriplePlan& o) {
   return same_triple(p, o) && p.a == o.a && p.q == o.q && p.n == o.n;
 }
 
-/// The best of its kind.
+/// Keeps the best plan of one kind.
 class Best {
  public:
   using Before = std::function<bool(const TriplePlan&, const TriplePlan&)>;
@@ -195,7 +198,7 @@ class Best {
   std::optional<TriplePlan> plan_;
 };
 
-/// The first plans in the order, one of each triple.
+/// Keeps the first plans in the order of preference, one for each triple.
 class Leaders {
  public:
   Leaders(std::size_t most, EvenSteps even) : most_(most), even_(even) {}
@@ -282,7 +285,7 @@ std::vector<TriplePlan> chosen(const Search& s, const TripleRequest& w) {
   return plans;
 }
 
-/// The wish without one of its limits; nothing if the wish does not have it.
+/// Returns the request without one of its limits; nothing if it does not have this limit.
 std::optional<TripleRequest> without(TripleRequest w, TripleLimit limit) {
   bool had = true;
   switch (limit) {
@@ -336,7 +339,7 @@ void explain_nothing(const TripleRequest& wish, TriplePlans& out) {
 }
 
 std::string wrong_length(const char* what, double m, double least, double most) {
-  // Written so that NaN is wrong; 0.000001 mm is a nanometre, whatever its binary value.
+  // The comparison is false for NaN; the tolerance accepts 0.000001 mm, whatever its binary value.
   if (m >= least * (1.0 - 1e-9) && m <= most) return {};
   return std::string(what) + ": expected " + mm(least) + " to " + mm(most) + ", found " +
          (std::isfinite(m) ? mm(m) : "no number");
@@ -395,7 +398,7 @@ double TriplePlan::gain_EYX_even() const { return even_part_gain * length_d / le
 double TriplePlan::gain_EXY_even() const { return even_part_gain * length_d / length_x; }
 
 bool comes_before(const TriplePlan& one, const TriplePlan& other, EvenSteps even) {
-  // Coverage to 1e-12: plans that cover the same must not be ordered by rounding.
+  // Compare coverage to 1e-12, so that rounding does not order equal plans.
   const auto whole = [](double share) { return std::llround(share * 1e12); };
   const auto worst = [&](const TriplePlan& p) {
     const bool penalty = even == EvenSteps::prefer && !p.even();
@@ -416,7 +419,7 @@ double measuring_time(const TriplePlan& p, const MeasuringCost& cost) {
 
 namespace {
 
-/// The search, if its wish is sound and it is not too long.
+/// Returns the search; error if the request is invalid or the search would be too long.
 Expected<Search> sound_search(const TripleRequest& wish) {
   if (std::string complaint = wrong(wish); !complaint.empty()) return fail(std::move(complaint));
   Search search = search_of(wish);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Starts of the fit of a chain: with the directions of its axes the rest is linear,
+// Starting values of the fit of a chain: with given directions of its axes, the problem is linear,
 //
 //     M = k + sum_j A_j v_j + A dq - sum_j B_j w_j - B dt
 //
-// A_j: product of the first j turns of the tables, v_j: from one of their points to the next, at last
-// to the ball; B_j, w_j: the same of the heads, at last to the tip; k: first point of the tables (the
-// ball without them) less that of the heads; dq, dt: other balls and tips from the first.
+// A_j: product of the first j rotations of the tables, v_j: vector from one of their points to the
+// next, finally to the ball; B_j, w_j: likewise for the heads, finally to the tip; k: first point
+// of the tables (the ball, if there are none) minus that of the heads; dq, dt: positions of other
+// balls and tips relative to the first.
 #include "chain_start.h"
 
 #include <algorithm>
@@ -24,15 +25,16 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr std::size_t kept = 4;        // starts that go on
-constexpr double least_share = 1e-12;  // of an eigenvalue: below it a combination is open
+constexpr std::size_t kept = 4;  // number of starts that are refined
+// relative eigenvalue below which a combination is undetermined
+constexpr double least_share = 1e-12;
 constexpr double good_enough =
-    0.05;  // rms of a start against that of the ways from the first reading
+    0.05;  // rms residual of a start relative to the rms distance from the first reading
 constexpr double same_angle = 1e-9;  // rad
 
 using Directions = std::vector<Vector3>;
 
-/// Along the machine's axes, and halfway between two of them.
+/// Returns directions along the machine's axes, and if `between` also halfway between two of them.
 Directions directions(bool between) {
   Directions out;
   for (std::size_t k = 0; k < 3; ++k)
@@ -51,7 +53,7 @@ Directions directions(bool between) {
   return out;
 }
 
-/// With given directions: three rows for a reading.
+/// Linear least-squares problem for given directions; three rows per reading.
 class Linear {
  public:
   Linear(const std::vector<ChainReading>& all, const ChainOrder& order, Directions n)
@@ -125,7 +127,8 @@ class Linear {
   double sum_ = 0.0;
 };
 
-/// The best of all directions of each axis; of an axis at rest the only one.
+/// Returns the best solutions over all directions of each axis; for an axis at rest, one direction
+/// is sufficient.
 std::vector<Linear> best_of(const std::vector<ChainReading>& all, const ChainOrder& order,
                             bool between) {
   std::vector<Directions> tried(1);

@@ -4,15 +4,15 @@
 #include "dense.h"
 #include "nonio/math/rotary_chain.h"
 
-/// Where the fit of rotary_chain.h begins.
+/// Starting values of the fit in rotary_chain.h.
 namespace nonio::math::chain {
 
 inline Eigen::Vector3d as_vector(const Vector3& v) { return {v[0], v[1], v[2]}; }
 inline Vector3 as_array(const Eigen::Vector3d& v) { return {v[0], v[1], v[2]}; }
-/// Right-handed, for n of length 1.
+/// Returns the matrix of a right-handed rotation about the unit vector n.
 Eigen::Matrix3d turn(const Vector3& n, double angle);
 
-/// The states that fit best of all directions that are tried, the best first.
+/// Returns the best-fitting states among all tried directions, the best first.
 std::vector<ChainState> chain_starts(const std::vector<ChainReading>&, const ChainOrder&);
 
 }  // namespace nonio::math::chain

@@ -19,10 +19,10 @@ using Eigen::Vector3d;
 using Points = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-constexpr double thinnest = 1e-6;    // second to first singular value: still a plane
+constexpr double thinnest = 1e-6;    // smallest ratio of second to first singular value of a plane
 constexpr double same_angle = 1e-6;  // rad
 // docs/dev/constants.md, A9.
-constexpr double worst_follow = 0.1;  // rms of encoder against circle, rad
+constexpr double worst_follow = 0.1;  // rms difference between encoder and circle, rad
 
 double wrapped(double angle) { return std::remainder(angle, full_turn); }
 
@@ -45,11 +45,11 @@ std::optional<RotaryRefusal> bad_input(std::span<const BallCentre> centres) {
   return {};
 }
 
-/// The points in the frame of their plane: e1, e2, n are the columns of `axes`.
+/// The points in the coordinate system of their plane: e1, e2, n are the columns of `axes`.
 struct Plane {
   Vector3d origin;
   Matrix3d axes;
-  Points flat;  ///< u, v, h
+  Points flat;  ///< coordinates u, v, h of the points
   Eigen::VectorXd weight;
 };
 
@@ -63,13 +63,15 @@ std::optional<Plane> plane_of(std::span<const BallCentre> centres) {
     points.row(i) << c.at[0], c.at[1], c.at[2];
     plane.weight[i] = c.weight;
   }
-  const Vector3d first = points.row(0).transpose();  // so that a large offset costs no digits
+  // subtracted first, so that a large offset does not cost digits
+  const Vector3d first = points.row(0).transpose();
   points.rowwise() -= first.transpose();
   const Vector3d mean = points.transpose() * plane.weight / plane.weight.sum();
   points.rowwise() -= mean.transpose();
   plane.origin = first + mean;
   const Points weighted = plane.weight.cwiseSqrt().asDiagonal() * points;
-  // R of the QR decomposition has the singular values and right vectors of the whole.
+  // R of the QR decomposition has the singular values and right singular vectors of the whole
+  // matrix.
   const MatrixXd small = upper(Eigen::HouseholderQR<MatrixXd>(weighted), 3);
   const Eigen::JacobiSVD<MatrixXd> svd(small, Eigen::ComputeFullV);
   const auto& size = svd.singularValues();
@@ -81,7 +83,7 @@ std::optional<Plane> plane_of(std::span<const BallCentre> centres) {
   return plane;
 }
 
-/// In the plane: centre, radius, covariance for a standard uncertainty of 1, residuals.
+/// Circle in the plane: centre, radius, covariance for a standard uncertainty of 1, residuals.
 struct Circle {
   Vector2d centre = Vector2d::Zero();
   double radius = 0.0;
@@ -90,7 +92,7 @@ struct Circle {
   double shear_shift = 0.0;
 };
 
-/// Linear start: exact for points on a circle, drawn inwards on short arcs with noise.
+/// Linear start (Kasa): exact for points on a circle, biased inwards on short arcs with noise.
 std::optional<Circle> kasa(const Plane& p) {
   Points a(p.flat.rows(), 3);
   a << 2.0 * p.flat.col(0), 2.0 * p.flat.col(1), Eigen::VectorXd::Ones(p.flat.rows());
@@ -128,7 +130,7 @@ std::optional<Circle> geometric(const Plane& p) {
       const Vector3d g(-d[0] / rho, -d[1] / rho, -1.0);
       normal += p.weight[i] * g * g.transpose();
       right -= p.weight[i] * g * (rho - c->radius);
-      // Radial displacement by a unit of shear: R/2 cos 2t and R/2 sin 2t.
+      // Radial displacement per unit of shear: R/2 cos 2t and R/2 sin 2t.
       const double cos2 = g[0] * g[0] - g[1] * g[1], sin2 = 2.0 * g[0] * g[1];
       spread.col(0) -= p.weight[i] * g * (0.5 * c->radius * cos2);
       spread.col(1) -= p.weight[i] * g * (0.5 * c->radius * sin2);
@@ -150,8 +152,8 @@ std::optional<Circle> geometric(const Plane& p) {
   return {};
 }
 
-/// +1 if the points go round the normal as the encoder states, -1 if the other way; with the angle
-/// of the point at encoder zero. The way that follows better, or nothing if neither does.
+/// Sense of the points about the normal relative to the encoder, +1 or -1, and the angle of the
+/// point at encoder zero: the sense that agrees better, or nothing if neither agrees.
 struct Sense {
   double sign = 1.0, zero = 0.0;
 };
@@ -180,7 +182,7 @@ std::optional<Sense> sense_of(std::span<const BallCentre> centres, const Plane& 
   return best;
 }
 
-/// (u, v)_i = (a, b) + R(phi_i)(c, d) with the encoder's angles.
+/// Fits (u, v)_i = (a, b) + R(phi_i)(c, d) with the encoder's angles.
 Circle with_angles(std::span<const BallCentre> centres, const Plane& p, double sign) {
   using Matrix4d = Eigen::Matrix4d;
   using TwoRows = Eigen::Matrix<double, 2, 4>;
@@ -206,7 +208,7 @@ Circle with_angles(std::span<const BallCentre> centres, const Plane& p, double s
   c.radius = arm.norm();
   c.cofactor = inverse.topLeftCorner<2, 2>();
   c.cofactor_radius = inverse(2, 2);
-  // Displacement by a unit of shear: half of (u, -v) and of (v, u) about the centre.
+  // Displacement per unit of shear: half of (u, -v) and of (v, u) about the centre.
   Eigen::Matrix<double, 4, 2> spread = Eigen::Matrix<double, 4, 2>::Zero();
   for (std::size_t i = 0; i < centres.size(); ++i) {
     const TwoRows g = row(i);
@@ -250,7 +252,7 @@ void put_covariance(RotaryFit& fit, const Plane& p, const Circle& c) {
   Points G = p.flat;
   G.col(2).setOnes();
   const Matrix3d cp = (G.transpose() * p.weight.asDiagonal() * G).inverse();
-  // Of (a, b, height at the centre, slope along e1, slope along e2).
+  // Covariance of (a, b, height at the centre, slope along e1, slope along e2).
   const Vector3d g(c.centre[0], c.centre[1], 1.0);
   Eigen::Matrix<double, 5, 5> inner = Eigen::Matrix<double, 5, 5>::Zero();
   inner.topLeftCorner<2, 2>() = c.cofactor;

@@ -16,12 +16,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double derivative_step = 1e-6;  // m and rad, of derivatives
-constexpr double ended = 1e-12;           // m: a step that moves nothing
+constexpr double derivative_step = 1e-6;  // m and rad, step of numerical derivatives
+constexpr double ended = 1e-12;           // m: a smaller step ends the iteration
 constexpr int most_steps = 60;
-constexpr double largest_tilt = 0.5;  // rad, of one step
-constexpr double fits_alike = 4.0;    // sums of squares of two chains that fit alike
-constexpr double other_way = 0.1;     // rad, between directions of two chains
+constexpr double largest_tilt = 0.5;  // rad, in one step
+// ratio of the sums of squares of two chains that fit equally well
+constexpr double fits_alike = 4.0;
+constexpr double other_way = 0.1;  // rad, between directions of two different chains
 constexpr double open_changes_nothing = 1e-5, rounding_size = 1e-9;
 constexpr std::size_t most_residual_rows = 200;
 
@@ -35,7 +36,7 @@ bool sound(const std::vector<ChainReading>& all, const ChainOrder& order) {
   });
 }
 
-/// How large the readings are: the lever that makes a tilt as large as a length.
+/// Returns the extent of the readings: the lever that converts a tilt to a length.
 double extent_of(const std::vector<ChainReading>& all) {
   double size = 1e-3;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -80,7 +81,7 @@ ChainState moved(ChainState s, const VectorXd& by) {
   return s;
 }
 
-/// The fit from one start.
+/// Gauss-Newton fit from one start.
 class Descent {
  public:
   Descent(const std::vector<ChainReading>& all, const ChainOrder& order, ChainState start)
@@ -110,7 +111,7 @@ class Descent {
         const ChainState next = moved(state_, by);
         const VectorXd there = residual(next);
         if (there.squaredNorm() <= before || half == 12) {
-          if (there.squaredNorm() > before) by.setZero();  // no way down is left
+          if (there.squaredNorm() > before) by.setZero();  // no further decrease is possible
           if (!by.isZero(0.0)) state_ = next, left = there;
           break;
         }
@@ -182,7 +183,7 @@ class Descent {
   MatrixXd V_, U_, open_;
 };
 
-/// Row 3 i + k of a fit as place k n + i of a budget.
+/// Converts row 3 i + k of a fit to index k n + i of a budget.
 std::vector<double> by_coordinate(const VectorXd& row) {
   const Index n = row.size() / 3;
   std::vector<double> out(static_cast<std::size_t>(row.size()));
@@ -265,7 +266,8 @@ bool other_chain(const Descent& best, const ChainState& other) {
   return false;
 }
 
-/// Lines hold where they are nearest to what they carry: the first ball, or the tip.
+/// Moves the points of the lines to the positions nearest to what they carry: the first ball, or
+/// the tip.
 void settle(ChainState& s, const ChainOrder& order) {
   for (std::size_t l = 0; l < s.lines.size(); ++l)
     s.lines[l].point = nearest_on(s.lines[l], l < order.tables ? s.ball.front() : Vector3{});
@@ -291,7 +293,7 @@ tl::expected<ChainFit, ChainRefusal> fit_chain(const std::vector<ChainReading>& 
     if (other.sum() <= fits_alike * best->sum() + none && other_chain(*best, other.state()))
       return tl::unexpected(ChainRefusal::ambiguous);
   ChainState state = best->state();
-  settle(state, order);  // and once more from there, so that derivatives are of these points
+  settle(state, order);  // once more with the moved points, so that the derivatives refer to them
   Descent last(all, order, std::move(state));
   if (!last.ended_well()) return tl::unexpected(ChainRefusal::not_converging);
   ChainFit fit = last.fit();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What follows from a fitted rotary axis: waves in its residuals, and its place against another.
+// Conclusions from a fitted rotary axis: waves in its residuals, and its position relative to
+// another axis.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -72,7 +73,7 @@ long long place_in_turn(double angle) {
 }
 
 std::string other_turning_axis(const Observations& o) {
-  constexpr double least = 1e-6;  // rad
+  constexpr double least = 1e-6;  // rad, smallest motion that counts
   for (std::size_t k = 1; k < o.axes.size(); ++k) {
     const auto& column = o.axes[k];
     if (!column.rotary || column.position.empty()) continue;
@@ -85,8 +86,9 @@ std::string other_turning_axis(const Observations& o) {
 double expansion_factor(int dof) {
   if (dof < 0) return 2.0;
   if (dof == 0) return std::numeric_limits<double>::quiet_NaN();
-  const double outside = std::erfc(2.0 / std::numbers::sqrt2);  // of a normal distribution, k = 2
-  double low = 2.0, high = 20.0;                                // t(1 dof) is 13.97
+  // probability outside k = 2 of a normal distribution
+  const double outside = std::erfc(2.0 / std::numbers::sqrt2);
+  double low = 2.0, high = 20.0;  // t(1 dof) is 13.97
   while (high - low > 1e-12 * high) {
     const double middle = 0.5 * (low + high);
     (t_two_sided(middle, dof) > outside ? low : high) = middle;
@@ -108,7 +110,8 @@ LineRelation relation_of(const RotaryFit& a, double sigma_a, const RotaryFit& b,
     const double signed_distance = gap.dot(normal);
     const double sign = signed_distance < 0.0 ? -1.0 : 1.0;
     out.distance = sign * signed_distance;
-    // d(gap . m x n / |m x n|): the part of the gap across the normal turns with the directions.
+    // d(gap . m x n / |m x n|): the component of the gap perpendicular to the normal turns with the
+    // directions.
     const Vector3d across = (gap - signed_distance * normal) / sine;
     da.head<3>() = -sign * normal;
     db.head<3>() = sign * normal;
@@ -123,7 +126,8 @@ LineRelation relation_of(const RotaryFit& a, double sigma_a, const RotaryFit& b,
     da.head<3>() = -unit;
     db.head<3>() = unit;
     da.tail<3>() = -gap.dot(m) * unit;
-    ta.tail<3>() = m.unitOrthogonal();  // the angle is about 0: its size cannot be negative
+    // the angle is about 0, and its magnitude cannot be negative
+    ta.tail<3>() = m.unitOrthogonal();
     tb.tail<3>() = -ta.tail<3>();
   }
   const auto ca = covariance(a, sigma_a), cb = covariance(b, sigma_b);

@@ -14,7 +14,7 @@ namespace nonio::math {
 
 namespace {
 
-/// Two independent standard normal numbers at a time (Box and Muller 1958).
+/// Generates independent standard normal numbers, two at a time (Box and Muller 1958).
 class NormalNumbers {
  public:
   explicit NormalNumbers(std::uint64_t seed) : random_(seed) {}
@@ -46,7 +46,7 @@ Expected<void> sound(const RotaryPlan& p) {
   return {};
 }
 
-/// The places of the plan about Z through the origin.
+/// Returns the ball positions of the plan about Z through the origin.
 std::vector<BallCentre> places_of(const RotaryPlan& p) {
   const bool full = p.arc > full_turn * (1.0 - 1e-9);
   const double n = static_cast<double>(p.balls), step = full ? p.arc / n : p.arc / (n - 1.0);
@@ -58,7 +58,7 @@ std::vector<BallCentre> places_of(const RotaryPlan& p) {
   return out;
 }
 
-/// Larger eigenvalue of [a b; b c].
+/// Returns the larger eigenvalue of [a b; b c].
 double larger(double a, double b, double c) { return (a + c) / 2.0 + std::hypot((a - c) / 2.0, b); }
 
 }  // namespace
@@ -82,7 +82,7 @@ Expected<RotaryPlanU> simulated(const RotaryPlan& plan, std::size_t trials, std:
   if (trials < 10) return fail("expected 10 trials or more, found " + std::to_string(trials));
   const auto exact = places_of(plan);
   NormalNumbers normal(seed);
-  std::array<double, 6> squares{};  // xx, xy, yy of the centre; the same of the tilt
+  std::array<double, 6> squares{};  // xx, xy, yy of the centre, then of the tilt
   double along = 0.0, distance = 0.0, angle = 0.0;
   for (std::size_t t = 0; t < trials; ++t) {
     auto read = exact;

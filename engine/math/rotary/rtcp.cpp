@@ -16,10 +16,10 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double least_radius = 1e-3;  // m; a smaller circle shows no axis
-constexpr double same_ball = 1e-3;     // m, between places of one ball in two lines
-// Columns differ by what the display of the commanded places rounds, 1e-5; a singular value (of
-// columns of norm 1 at most) or a distance from the row space above these is none of that.
+constexpr double least_radius = 1e-3;  // m; a smaller circle does not determine an axis
+constexpr double same_ball = 1e-3;     // m; tolerance for positions of one ball in two lines
+// Thresholds for singular values (of columns with norm at most 1) and for distances from the row
+// space; the rounding of displayed commanded positions changes columns by about 1e-5 only.
 constexpr double least_share = 1e-3, in_row_space = 1e-2;
 
 Vector3d eigen(const Vector3& v) { return {v[0], v[1], v[2]}; }
@@ -31,7 +31,7 @@ Matrix3d turn(const Vector3d& n, double angle) {
   return Matrix3d::Identity() + std::sin(angle) * cross + (1.0 - std::cos(angle)) * cross * cross;
 }
 
-/// The circle of the commanded places of one line; none if they do not go round.
+/// Fits a circle to the commanded positions of one line; none if they do not follow one.
 std::optional<RotaryFit> circle_of(const std::vector<RtcpReading>& all, std::size_t line) {
   std::map<long long, BallCentre> places;
   for (const RtcpReading& r : all) {
@@ -53,7 +53,7 @@ std::optional<RotaryFit> circle_of(const std::vector<RtcpReading>& all, std::siz
   return std::move(*fit);
 }
 
-/// The readings with what they have in common.
+/// The readings, with the geometry that they share.
 class Readings {
  public:
   Readings(const std::vector<RtcpReading>& all, const RtcpWish& wish) : all_(all), wish_(wish) {}
@@ -90,7 +90,7 @@ class Readings {
   const Vector3d& direction() const { return n0_; }
   const std::array<std::size_t, 2>& across() const { return across_; }
 
-  /// What the readings would be.
+  /// Returns the readings predicted for the unknowns x.
   VectorXd predicted(const VectorXd& x) const {
     Vector3d c = c0_, n = n0_;
     const auto e1 = static_cast<Eigen::Index>(across_[0]),
@@ -124,7 +124,7 @@ class Readings {
     return out;
   }
 
-  /// Change of the readings by the place of the ball.
+  /// Returns the derivative of a reading by the position of the ball.
   Vector3d by_ball(const RtcpReading& r) const {
     return (wish_.head ? 1.0 : -1.0) * (turn(n0_, r.angle).transpose() * eigen(r.sense));
   }
@@ -136,8 +136,9 @@ class Readings {
   }
 
  private:
-  /// Place of a line's ball with the axis at 0, as the control has it. A table takes the linear
-  /// axes round with the ball, a head back by the way from its pivot (at c0) to the ball.
+  /// Returns the position of a line's ball in the control, with the axis at 0. With a table, the
+  /// linear axes follow the ball; with a head, they move back by the vector from its pivot (at c0)
+  /// to the ball.
   Vector3d place_of(std::size_t line, const Vector3d& middle, double& off) const {
     Vector3d mean = Vector3d::Zero();
     double n = 0.0;
@@ -163,7 +164,8 @@ class Readings {
     across_ = {along == 0 ? 1U : 0U, along == 2 ? 1U : 2U};
   }
 
-  /// The centre holds at the mean height of the balls that are sensed across the axis.
+  /// Chooses the point to which a and b refer: at the mean height of the balls that are sensed
+  /// across the axis.
   void choose_point() {
     double height[2] = {0.0, 0.0}, n[2] = {0.0, 0.0};
     for (const RtcpReading& r : all_) {
@@ -201,15 +203,15 @@ class Readings {
   const RtcpWish& wish_;
   Vector3d n0_, c0_;
   std::array<std::size_t, 2> across_{0, 1};
-  std::vector<Vector3d> ball_;         // of each line
-  std::vector<Vector3d> known_;        // the balls
-  std::vector<std::size_t> which_;     // of each line, its ball
-  std::vector<Eigen::Index> ball_at_;  // where its unknown place begins; -1: known
-  std::vector<Eigen::Index> zero_at_;  // the same of its zero
+  std::vector<Vector3d> ball_;         // ball position of each line
+  std::vector<Vector3d> known_;        // positions of the distinct balls
+  std::vector<std::size_t> which_;     // index of the ball of each line
+  std::vector<Eigen::Index> ball_at_;  // first index of its unknown position; -1: known
+  std::vector<Eigen::Index> zero_at_;  // index of its unknown zero; -1: known
   Eigen::Index unknowns_ = 4;
 };
 
-/// Least squares by singular values: combinations that the columns do not determine are 0.
+/// Least squares by singular values: combinations that the columns do not determine are set to 0.
 struct Solved {
   MatrixXd inverse;  ///< pseudoinverse
   Eigen::Index rank = 0;
@@ -217,8 +219,8 @@ struct Solved {
 };
 
 Solved solved(const MatrixXd& j) {
-  // One scale for all lengths and one for both tilts: a column that is nearly nothing has to stay
-  // so, because its form is that of the rounded places.
+  // Use one scale for all lengths and one for both tilts: a column that is nearly zero must remain
+  // so, because it contains only rounding errors of positions.
   const VectorXd norm = j.colwise().norm();
   const double tilt = std::max(norm[2], norm[3]);
   double length = 0.0;
@@ -257,8 +259,8 @@ tl::expected<RtcpFit, RtcpRefusal> fit_rtcp(const std::vector<RtcpReading>& all,
   if (const auto refused = readings.prepare()) return tl::unexpected(*refused);
   const VectorXd y = readings.deviations();
   VectorXd x = VectorXd::Zero(readings.unknowns());
-  // What is identifiable depends on the set-up: on the Jacobian at the axis of the control. Errors
-  // of 1e-3 rad leave 1e-3 of the remainder in each iteration.
+  // Which parameters are identifiable depends on the set-up only: on the Jacobian at the axis of
+  // the control. With errors of 1e-3 rad, each iteration reduces the remainder to 1e-3.
   const MatrixXd j = readings.jacobian(x);
   const Solved solution = solved(j);
   for (int round = 0; round < 6; ++round) x += times(solution.inverse, y - readings.predicted(x));

@@ -16,7 +16,8 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-/// A coordinate of the centre that is so many times less sure than a touch is not fixed by them.
+/// A coordinate of the centre whose uncertainty exceeds that of a touched point by more than this
+/// factor is not determined.
 constexpr double largest_growth = 20.0;
 
 struct Sphere {
@@ -24,7 +25,7 @@ struct Sphere {
   double radius;
 };
 
-/// Of points about their mean.
+/// Returns starting values; the points are relative to their mean.
 std::optional<Sphere> start(const MatrixXd& points) {
   MatrixXd columns(points.rows(), 4);
   columns << 2.0 * points, VectorXd::Ones(points.rows());
@@ -38,7 +39,7 @@ std::optional<Sphere> start(const MatrixXd& points) {
   return Sphere{centre, std::sqrt(square)};
 }
 
-/// Residuals and their derivatives; false if a point is in the centre.
+/// Computes the residuals and their derivatives; false if a point coincides with the centre.
 bool linearise(const MatrixXd& points, const Sphere& s, MatrixXd& J, VectorXd& e) {
   for (Index i = 0; i < points.rows(); ++i) {
     const Vector3d out = points.row(i).transpose() - s.centre;

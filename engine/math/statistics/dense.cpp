@@ -89,7 +89,7 @@ MatrixXd upper(const Eigen::HouseholderQR<MatrixXd>& qr, Index rows) {
   return qr.matrixQR().topRows(rows).triangularView<Eigen::Upper>();
 }
 MatrixXd pseudo_inverse(const Eigen::ColPivHouseholderQR<MatrixXd>& qr) {
-  // A P = Q R, and the rows of R that count are R = T' Z' with Z' Z = 1.
+  // A P = Q R; the rows of R up to the rank are R = T' Z' with Z' Z = 1.
   const Index rank = qr.rank();
   const MatrixXd R = qr.matrixR().topRows(rank).triangularView<Eigen::Upper>();
   const Eigen::HouseholderQR<MatrixXd> rows(R.transpose());

@@ -14,7 +14,7 @@
 namespace nonio::math {
 namespace {
 namespace bp = boost::math::policies;
-// Nothing throws: a value that does not exist is NaN, and tested below.
+// No function throws: a value that does not exist is NaN, and is tested below.
 using Quiet = bp::policy<bp::domain_error<bp::ignore_error>, bp::pole_error<bp::ignore_error>,
                          bp::overflow_error<bp::ignore_error>,
                          bp::evaluation_error<bp::ignore_error>, bp::promote_double<false>>;
@@ -67,11 +67,12 @@ namespace {
 
 constexpr double within = 0.95449973610364158;  // erf(2/sqrt 2)
 
-/// P(|X| <= x), X of variance 1: rectangular of the variance share^2, and the rest normal.
+/// Returns P(|X| <= x) for X of variance 1: the sum of a rectangular part of variance share^2 and a
+/// normal part.
 double share_within(double x, double share) {
   const double half = share * std::sqrt(3.0), sigma = std::sqrt(std::max(0.0, 1.0 - share * share));
   if (sigma < 1e-6) return std::min(1.0, x / half);
-  const auto integral = [](double z) {  // of the normal distribution function
+  const auto integral = [](double z) {  // integral of the normal distribution function
     return z * std::erfc(-z / std::numbers::sqrt2) / 2.0 +
            std::exp(-z * z / 2.0) / std::sqrt(2.0 * std::numbers::pi);
   };
@@ -83,7 +84,7 @@ double share_within(double x, double share) {
 double shape_factor(double excess) {
   constexpr double of_rectangle = -1.2, hardly_any = -1e-4;
   if (!(excess < hardly_any)) return 1.0;
-  // The excess of the sum is that of the rectangle times the fourth power of its share.
+  // The excess of the sum is that of the rectangle times the fourth power of `share`.
   const double share = std::pow(std::min(1.0, excess / of_rectangle), 0.25);
   double low = 1.6, high = 2.1;
   for (int i = 0; i < 40; ++i) {

@@ -17,7 +17,7 @@ bool covers_the_turn(std::span<const double> angle) {
   std::vector<double> a;
   for (const double x : angle) a.push_back(x - full_turn * std::floor(x / full_turn));
   std::sort(a.begin(), a.end());
-  constexpr double same = 1e-9;  // rad; 0 and 360 deg are one place
+  constexpr double same = 1e-9;  // rad; 0 and 360 deg are the same angle
   std::size_t different = 0;
   double gap = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) {

@@ -5,15 +5,16 @@
 
 namespace nonio::math {
 
-/// One sinusoid a turn, fitted by least squares: y = c + a cos(angle) + b sin(angle).
+/// One sinusoid per turn, fitted by least squares: y = c + a cos(angle) + b sin(angle).
 struct Harmonic {
   bool known = false;      ///< false: the angles do not cover the turn
   double amplitude = 0.0;  ///< sqrt(a^2 + b^2)
-  double share = 0.0;      ///< of the variance of y that it explains, 0..1
-  double p = 1.0;          ///< F test against what is left
+  double share = 0.0;      ///< fraction of the variance of y that it explains, 0..1
+  double p = 1.0;          ///< p of the F test against the residuals
 };
 
-/// The angles (rad) cover the turn if there are 5 different ones and no gap is above 120 deg.
+/// Fits the sinusoid. The angles (rad) cover the turn if there are 5 different ones and no gap is
+/// above 120 deg.
 Harmonic fit_harmonic(std::span<const double> angle, std::span<const double> y);
 
 }  // namespace nonio::math

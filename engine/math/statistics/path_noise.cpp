@@ -27,7 +27,7 @@ double whiten(Eigen::MatrixXd& columns, const std::vector<int>& place, const Pat
 
 namespace {
 
-/// -2 ln of the restricted likelihood, but for a constant.
+/// Returns -2 ln of the restricted likelihood, up to a constant.
 double criterion(const Eigen::MatrixXd& both, const std::vector<int>& place,
                  const PathNoise& noise) {
   Eigen::MatrixXd white = both;
@@ -62,7 +62,7 @@ PathNoise path_noise(const Eigen::MatrixXd& X, const Eigen::VectorXd& y,
   for (const double rho : {0.3, 0.6, 0.85, 0.95})
     for (const double w : {0.3, 1.0}) attempt(rho, w);
   if (best.w == 0.0) return best;
-  // From there on in steps of the correlation length and of the odds, until none is better.
+  // Improve by steps of the correlation length and of the odds, until none is better.
   for (double step = 0.8; step > 0.09; step /= 2.0)
     for (bool moved = true; moved;) {
       moved = false;

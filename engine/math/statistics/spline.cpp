@@ -17,8 +17,9 @@ struct Knots {
   int intervals;
 };
 
-/// The four cubic B-splines on equally spaced knots that are not zero at x, and the interval of x:
-/// with s = 0..1 the place in it, (1-s)^3/6, (3s^3-6s^2+4)/6, (-3s^3+3s^2+3s+1)/6, s^3/6.
+/// Returns the interval of x and the four cubic B-splines on equally spaced knots that are not zero
+/// at x: with s = 0..1 the position in the interval, (1-s)^3/6, (3s^3-6s^2+4)/6,
+/// (-3s^3+3s^2+3s+1)/6, s^3/6.
 std::pair<int, std::array<double, 4>> b_splines(const Knots& knots, double x) {
   const double at = (x - knots.first) / knots.step;
   const double last = knots.intervals - 1;
@@ -40,8 +41,9 @@ Eigen::MatrixXd b_spline_matrix(const Knots& knots, const std::vector<double>& x
   return b;
 }
 
-/// Coefficients of the basis: B-splines times N span what is orthogonal to constant and slope over
-/// the targets; R, of the QR of that, makes it orthonormal.
+/// Returns the coefficients of the basis: B-splines times N span the functions orthogonal to
+/// constant and slope over the targets; R, from the QR decomposition of these, makes them
+/// orthonormal.
 Expected<Eigen::MatrixXd> coefficients(const Eigen::MatrixXd& b,
                                        const std::vector<double>& targets) {
   Eigen::MatrixXd line(b.rows(), 2);

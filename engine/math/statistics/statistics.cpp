@@ -10,7 +10,8 @@
 namespace nonio::math {
 namespace {}
 
-// The second pass removes the rounding error of the first: sum(x - m)/n is 0 only in exact sums.
+// Returns the mean. The second pass removes the rounding error of the first: sum(x - m)/n is 0 only
+// in exact arithmetic.
 double mean(std::span<const double> x) {
   if (x.empty()) return not_given;
   const double n = static_cast<double>(x.size());
@@ -22,7 +23,8 @@ double mean(std::span<const double> x) {
   return first + rest / n;
 }
 
-// s^2 = (sum d^2 - (sum d)^2/n)/(n - 1), d = x - mean; the second term is 0 but for rounding.
+// Returns the standard deviation: s^2 = (sum d^2 - (sum d)^2/n)/(n - 1), d = x - mean; the second
+// term is 0 except for rounding.
 double standard_deviation(std::span<const double> x) {
   if (x.size() < 2) return not_given;
   const double n = static_cast<double>(x.size());

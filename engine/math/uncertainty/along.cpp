@@ -7,7 +7,7 @@
 namespace nonio::math {
 
 std::vector<std::string> moving_axes(const Measurement& m) {
-  constexpr double same_end = 1e-4;  // m
+  constexpr double same_end = 1e-4;  // m, tolerance for equal ends
   std::vector<std::string> axes;
   for (const auto& [axis, from] : m.from)
     if (const auto to = m.to.find(axis);

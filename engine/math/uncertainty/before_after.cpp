@@ -13,7 +13,7 @@ namespace {
 
 constexpr double table_level = 0.01;
 
-/// Covariance of contrasts of the readings: rows of J.
+/// Returns the covariance matrix of linear functions of the readings (rows of J).
 Eigen::MatrixXd covariance_of(const std::vector<std::vector<double>>& J,
                               const ReadingModel& model) {
   const auto variance = [&](const std::vector<double>& row) {
@@ -38,7 +38,8 @@ Eigen::MatrixXd covariance_of(const std::vector<std::vector<double>>& J,
   return V;
 }
 
-/// Contrasts to the first stop of the sum of both lines with these weights.
+/// Returns the rows that give, for each stop, the weighted sum of both lines minus the same at the
+/// first stop.
 std::vector<std::vector<double>> contrasts(std::size_t n, double before, double after) {
   std::vector<std::vector<double>> J;
   for (std::size_t i = 1; i < n; ++i) {
@@ -49,7 +50,8 @@ std::vector<std::vector<double>> contrasts(std::size_t n, double before, double 
   return J;
 }
 
-/// W: what a table of these means leaves of them, as it has points and entries of its own.
+/// Returns W: the covariance of the errors that remain because a table has points and entries of
+/// its own.
 Eigen::MatrixXd covariance_of_table(std::span<const double> means, const std::vector<double>& place,
                                     double entry_step) {
   const std::size_t n = means.size(), m = n - 1;

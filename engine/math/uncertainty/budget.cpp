@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A quantity within a full range r, all places equally likely, has the standard uncertainty r/(2
-// sqrt 3). A limit that a quantity of one sign reaches at most (the short path of a misaligned
-// beam) and that is not corrected has the root mean square r/sqrt 3.
-//   device-fixed      U_fixed/2                    each reading (coordinates: one for a line)
-//   device-length     U_per_length/2 d             one for the instrument (coordinates: for a line)
-//   misalignment      R_mis^2/(2 L^2)/sqrt 3 d     one for a line of length L; its mean, half of
-//   the
-//                     limit, is in all lines: 3/4 of the variance
-//   temperature       alpha R(theta)/(2 sqrt 3) d  one for a line if the sensor is placed anew, one for
-//                     all if it stays: the larger
-//   expansion         dT R(alpha)/(2 sqrt 3) d     one for a line if each has a temperature of its
-//                     own, one for all if the shop keeps one: the larger
-//   device-temperature, device-expansion           the same of a device with a length of its own,
-//                                                  one for the instrument
-//   drift             E_VE/sqrt 3 at a line's end  a random walk along each line; not less for more runs
-//   sphere            r/(2 sqrt 3)                 each reading: the ball turns under the probe
-//   probe             r/(2 sqrt 3)                 one for a coordinate
+// A quantity within a full range r, with all values equally likely, has the standard uncertainty
+// r/(2 sqrt 3). A limit that bounds a quantity of one sign (the short path of a misaligned beam),
+// and that is not corrected, has the root mean square r/sqrt 3.
+//   device-fixed   U_fixed/2                   independent per reading (coordinates: per line)
+//   device-length  U_per_length/2 d            common to the instrument (coordinates: to a line)
+//   misalignment   R_mis^2/(2 L^2)/sqrt 3 d    per line of length L; its mean, half of the limit,
+//                                              is in all lines: 3/4 of the variance
+//   temperature    alpha R(theta)/(2 sqrt 3) d per line if the sensor is placed anew, common to all
+//                                              if it stays: the larger
+//   expansion      dT R(alpha)/(2 sqrt 3) d    per line if each has a temperature of its own,
+//                                              common to all if the shop keeps one: the larger
+//   device-temperature, device-expansion       as above for a device with a length of its own,
+//                                              common to the instrument
+//   drift          E_VE/sqrt 3 at a line's end a random walk along each line; not reduced by runs
+//   sphere         r/(2 sqrt 3)                independent per reading: the ball turns under the
+//                                              probe
+//   probe          r/(2 sqrt 3)                common to a coordinate
 #include "nonio/math/budget.h"
 
 #include <algorithm>
@@ -34,14 +34,14 @@ namespace {
 using LineKind = BudgetLine::Kind;
 
 // docs/dev/constants.md, A8.
-constexpr double as_if_known = 500.0;  // degrees of freedom from which on k is 2.00
+constexpr double as_if_known = 500.0;  // degrees of freedom above which k is 2.00
 
 double k_of(double dof) { return dof < as_if_known ? coverage_factor(dof) : 2.0; }
 
-/// excess: of the whole distribution (kurtosis less 3), 0 or less.
+/// Returns k; excess: kurtosis minus 3 of the whole distribution, at most 0.
 double k_of(double dof, double excess) { return k_of(dof) * shape_factor(excess); }
 
-constexpr double of_rectangle = -1.2;  // excess
+constexpr double of_rectangle = -1.2;  // excess of a rectangular distribution
 
 bool along(const BudgetLine& line) {
   return line.kind == LineKind::length || line.kind == LineKind::coordinate;
@@ -53,7 +53,7 @@ double extent(const BudgetLine& line) {
   return most;
 }
 
-/// Builds the inputs one after the other.
+/// Adds the inputs to the model.
 class Builder {
  public:
   Builder(const Campaign& c, const Environment& e, ReadingModel& out) : c_(c), e_(e), out_(out) {
@@ -88,10 +88,11 @@ class Builder {
     if (std::find(all.begin(), all.end(), key) == all.end()) all.push_back(key);
   }
 
-  /// The last input: whether what is one for a line is one for all of them.
+  /// Sets, for the last input, the fraction of variance that lines have in common.
   void together(std::optional<double> share) { out_.inputs.back().together = share; }
 
-  /// of: standard uncertainty by line, for each m where it grows with the length.
+  /// Adds an input. of: returns the standard uncertainty by line, per m if it grows with the
+  /// length.
   template <class Of>
   void add(const char* id, Distribution d, Correlation c, bool with_length, std::string source,
            const Of& of, bool angles = false) {
@@ -215,7 +216,7 @@ std::vector<double> reading_times(const Observations& o) {
   const bool timed =
       o.time.size() == o.size() &&
       std::all_of(o.time.begin(), o.time.end(), [](double t) { return std::isfinite(t); });
-  // The order of rows has no meaning: run by run, up and then down.
+  // The order of rows is ignored: run by run, up and then down.
   const auto when = [&](std::size_t i) {
     if (timed) return std::tuple(o.time[i], 0, 0.0);
     const bool down =
@@ -263,7 +264,7 @@ void put_expansion(BudgetLine& line, const Campaign& c, std::span<const std::str
 
 namespace {
 
-/// Variance of a reading by the inputs that each reading has for itself.
+/// Returns the variance of a reading by the inputs that are independent per reading.
 double variance_of_each(const ReadingModel& model) {
   double squares = 0.0;
   for (const auto& input : model.inputs)
@@ -312,7 +313,7 @@ std::vector<double> BudgetOf::counted(double u_repetition, const Shares& shares)
   const auto in = [&](std::size_t i) {
     return i < shares.in_residuals.size() ? shares.in_residuals[i] * shares.in_residuals[i] : 0.0;
   };
-  // The scatter that was found is the most that anything can have added to it.
+  // No contribution to the scatter can exceed the scatter that was found.
   const double found = unexplained_ * u_repetition * u_repetition;
   double expected = 0.0;
   for (std::size_t i = 0; i < shares.u.size(); ++i)
@@ -370,7 +371,7 @@ void BudgetOf::put(Series& s, std::span<const double> u_repetition,
   for (std::size_t i = 0; i < u_repetition.size(); ++i) {
     const Expanded e = expand(u_repetition[i], shares[i]);
     u.push_back(whole ? e.u : u_repetition[i]);
-    if (u.back() > 0.0) k = std::max(k, e.k);  // a point that is 0 by definition has no effect
+    if (u.back() > 0.0) k = std::max(k, e.k);  // a point that is 0 by definition has no effect on k
   }
   s.k = k > 0.0 ? k : 2.0;
   for (const double one : u) (whole ? s.U : s.repeatability).push_back(s.k * one);

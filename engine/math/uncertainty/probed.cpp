@@ -6,7 +6,7 @@
 namespace nonio::math {
 namespace {
 
-/// The name of the machine's axis along a coordinate: "X", or "X1" where there is no X.
+/// Returns the name of the machine's axis along a coordinate: "X", or "X1" if there is no X.
 std::string axis_along(const Campaign& c, std::size_t coordinate) {
   const std::string letter(1, "XYZ"[coordinate]);
   if (c.machine.axis(letter) != nullptr) return letter;
@@ -15,7 +15,8 @@ std::string axis_along(const Campaign& c, std::size_t coordinate) {
   return letter;
 }
 
-/// Coordinate `by`, less that of the middle, as the error of coordinate `of`.
+/// Returns an error of coordinate `of` that is proportional to coordinate `by`, relative to the
+/// middle.
 std::vector<double> pattern(const ProbedPlaces& places, std::size_t of, std::size_t by, double u) {
   const std::size_t n = places.at.size();
   std::vector<double> out(3 * n, 0.0);
@@ -23,7 +24,8 @@ std::vector<double> pattern(const ProbedPlaces& places, std::size_t of, std::siz
   return out;
 }
 
-/// Squareness and scale differences of the axes that read the coordinates: within +-bound each.
+/// Returns the input for squareness and scale differences of the axes that measure the coordinates:
+/// each within +-bound.
 ReadingModel::Input linear_axes_input(const ProbedPlaces& places, double bound) {
   const double u = bound / std::numbers::sqrt3;
   ReadingModel::Input input;

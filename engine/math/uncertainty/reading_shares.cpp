@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the inputs of a budget make in a result: J V J', input by input (budget.h).
+// Contribution of each input of a budget to a result: J V J', input by input (budget.h).
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,7 +10,7 @@
 namespace nonio::math {
 namespace {
 
-/// Variance in a result of one input, and the sum of the fourth powers of its independent parts.
+/// Variance of one input in a result, and the sum of the fourth powers of its independent parts.
 struct Parts {
   double variance = 0.0, fourth = 0.0;
   void add(double part) { variance += part * part, fourth += std::pow(part, 4); }
@@ -21,8 +21,9 @@ class Variance {
   Variance(const ReadingModel& model, const ReadingModel::Input& input, std::span<const double> J)
       : model_(model), input_(input), J_(J) {}
 
-  /// in_residuals: of the lines only that are in the residuals of the fit.
-  /// Of the variance of the repetition.
+  /// Returns the variance of this input in a result that the repetition already contains: by its
+  /// part in the residuals of the fit, and by its random walk. (`all(in_residuals)` is restricted
+  /// to lines whose readings are in the residuals.)
   double seen_elsewhere() const {
     double variance = 0.0;
     std::size_t first = 0;
@@ -39,7 +40,8 @@ class Variance {
 
   Parts all(bool in_residuals = false) const {
     if (!input_.patterns.empty()) return in_residuals ? Parts{} : of_patterns();
-    std::map<std::size_t, double> sums;  // by group; one for all of a device
+    // sums by group; a single one for inputs common to the device
+    std::map<std::size_t, double> sums;
     Parts out;
     std::size_t first = 0;
     for (std::size_t l = 0; l < model_.lines.size(); ++l) {

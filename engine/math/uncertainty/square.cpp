@@ -12,9 +12,9 @@ namespace nonio::math {
 namespace {
 
 constexpr std::size_t fewest_stops = 3;
-constexpr double as_good_as_normal = 1e6;  ///< degrees of freedom: as good as normal
+constexpr double as_good_as_normal = 1e6;  ///< degrees of freedom that are practically infinite
 
-/// Squareness of a plane by the letters of its axes in alphabetical order, and its sign in t.
+/// Name of the squareness of a plane by its axes in alphabetical order, and its sign relative to t.
 struct SquarePlane {
   char first, second;
   const char* name;
@@ -32,12 +32,12 @@ const SquarePlane* square_plane_of(const Measurement& m) {
   return nullptr;
 }
 
-/// One line against a face.
+/// One line measured against a face.
 struct SquareFace {
   MeasuredLine line;
   int direction = 0;
   double slope = 0.0;
-  std::vector<double> by;  ///< of the slope by the means
+  std::vector<double> by;  ///< derivatives of the slope by the means
 };
 
 tl::expected<SquareFace, NoSquareness> square_face_of(const Observations& o, const Measurement& m) {
@@ -70,7 +70,8 @@ BudgetLine line_of_face(const SquareFace& f, std::size_t group) {
   return line;
 }
 
-/// The square's own angle as an error of the readings on the second face, which leans by it.
+/// Returns the square's angle error as an input: an error of the readings on the second face, which
+/// is tilted by it.
 ReadingModel::Input error_of_square(const ReadingModel& model, double U) {
   ReadingModel::Input input;
   input.is = {.id = "square",
@@ -185,7 +186,7 @@ OneQuantity one_quantity(double a, const Expanded& of_a, double b, const Expande
   OneQuantity out;
   out.difference = a - b;
   out.u_difference = std::sqrt(sum);
-  // Welch-Satterthwaite of the difference, and of the mean with weights vb/sum and va/sum.
+  // Welch-Satterthwaite for the difference, and for the mean with weights vb/sum and va/sum.
   const double dof =
       std::min(as_good_as_normal, sum * sum / (va * va / of_a.dof + vb * vb / of_b.dof));
   out.p = f_upper(out.difference * out.difference / sum, 1.0, dof);

@@ -3,17 +3,17 @@
 // Uncertainty of a positioning test, according to ISO/TR 230-9:2005 Annex C and ISO 230-2:2006
 // Annex A.
 //
-// A quantity within a full range r, all places equally likely, has the standard uncertainty r/(2
-// sqrt 3) and the expanded one (k = 2) r/sqrt 3 = 0.577 r, rounded up to 0.6 r.
-//   U_DEV = U_fixed + U_per_length L              m      certificate of the instrument
-//   U_MIS = 0.6 R_mis^2/(2 L)                     m      R_mis: beam against axis over L, m
-//   U_M   = 0.6 alpha L R(theta)                  m      alpha: 1/K, R(theta): K
-//   U_E   = 0.6 dT L R(alpha)                     m      dT: largest distance from 20 degC, K
-//   U_EVE = 0.6 E_VE                              m      E_VE: range of the drift test
-// and U_MD, U_ED as U_M, U_E of a device that has a length of its own, where that is stated.
+// A quantity within a full range r, with all values equally likely, has the standard uncertainty
+// r/(2 sqrt 3) and the expanded one (k = 2) r/sqrt 3 = 0.577 r, rounded up to 0.6 r.
+//   U_DEV = U_fixed + U_per_length L        m   certificate of the instrument
+//   U_MIS = 0.6 R_mis^2/(2 L)               m   R_mis: beam relative to axis over L, m
+//   U_M   = 0.6 alpha L R(theta)            m   alpha: 1/K, R(theta): K
+//   U_E   = 0.6 dT L R(alpha)               m   dT: largest distance from 20 degC, K
+//   U_EVE = 0.6 E_VE                        m   E_VE: range of the drift test
+// and U_MD, U_ED like U_M, U_E for a device that has a length of its own, if it is stated.
 // With S2 = U_DEV^2 + U_MIS^2 + U_M^2 + U_E^2 (+ U_MD^2 + U_ED^2), n approaches, and R+ = 2 k s, A
 // with k s:
-//   U(B)^2 = 2 U_EVE^2/n + D^2           systematic parts cancel; D: drift and repetition (drift.h)
+//   U(B)^2 = 2 U_EVE^2/n + D^2      systematic parts cancel; D: drift and repetition (drift.h)
 //   U(M)^2 = S2 + U_EVE^2/n;   U(E)^2 = S2 + 2 U_EVE^2/n
 //   U(R+)^2 = (k U_EVE)^2 + (2 k D_s)^2; U(R)^2 = U(R+)^2 + U(B)^2
 //   U(A)^2 = U(E)^2 + (k U_EVE)^2
@@ -31,7 +31,7 @@ namespace nonio::math {
 namespace {
 
 // docs/dev/constants.md, A7.
-constexpr double of_range = 0.6;  // see above: 2/(2 sqrt 3), rounded up
+constexpr double of_range = 0.6;  // 2/(2 sqrt 3), rounded up, see above
 
 double get(const std::optional<double>& given, const std::string& key,
            std::vector<std::string>& missing) {
@@ -121,7 +121,8 @@ Iso230Uncertainty iso230_2_uncertainty(const Budget& b, std::size_t n, double k)
   return U;
 }
 
-// Pa is M and U_j is |B_i|; Ps = 6 S and P with 3 S are the forms of k = 3.
+// Computes VDI from ISO with k = 3: Pa is M and U_j is |B_i|; Ps = 6 S and P with 3 S correspond to
+// k = 3.
 VdiUncertainty vdi3441_uncertainty(const Budget& b, std::size_t n) {
   const Iso230Uncertainty iso = iso230_2_uncertainty(b, n, 3.0);
   return {iso.A, iso.M, iso.R_plus, iso.R_plus, iso.B, iso.B};

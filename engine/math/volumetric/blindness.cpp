@@ -10,14 +10,16 @@ namespace nonio::math {
 
 namespace {
 
-constexpr std::size_t steps_of_line = 12;  // the shapes are polynomials of second degree
+// sufficient, because the shapes are polynomials of second degree
+constexpr std::size_t steps_of_line = 12;
 constexpr double unseen_below = 1e-9;
 
 struct OneError {
   const char* name;
-  std::size_t axis;  ///< that moves; of a squareness the second
+  std::size_t axis;  ///< axis that moves; for a squareness the second axis
   char kind;         ///< 'p' positioning, 's' straightness, 'a' angle, 'q' squareness
-  /// Error components: of the shape (p, s), or as a lever: component, arm, sign.
+  /// Components of the error: of the shape (p, s), or for angles as levers with component, arm,
+  /// sign.
   std::size_t component;
   struct Lever {
     std::size_t component, arm;
@@ -67,7 +69,7 @@ Corner error_shape(const OneError& e, const Corner& at, const Corner& low, const
   return out;
 }
 
-/// Largest over the volume of a size of 1, m; 0: nothing moves.
+/// Returns the largest error in the volume for a coefficient of 1, m; 0 if nothing moves.
 double largest_in_volume(const OneError& e, const Corner& low, const Corner& high) {
   double most = 0.0;
   for (std::size_t corner = 0; corner < 27; ++corner) {
@@ -86,7 +88,8 @@ Corner unit_shape(const OneError& e, const Corner& at, const Corner& low, const 
   return out;
 }
 
-/// Row echelon by columns from the left: a column that is not a pivot is a sum of pivots before it.
+/// Reduced row echelon form, by columns from the left: a column without a pivot is a combination of
+/// earlier pivots.
 struct Echelon {
   std::vector<std::size_t> pivots;
   Eigen::MatrixXd reduced;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // One least-squares problem for all readings. Every reading is a source of noise; a row is a
-// reading less positioning, so rows share sources, and their covariance is N diag(sigma^2) N'.
+// reading minus positioning, so rows share sources, and their covariance is N diag(sigma^2) N'.
 #include "nonio/math/diagonals.h"
 
 #include <algorithm>
@@ -20,9 +20,9 @@ using Vector = Eigen::VectorXd;
 using Row = Eigen::RowVectorXd;
 
 constexpr std::size_t most_stops = 1000;
-constexpr double rank_threshold = 1e-10;  ///< of the largest column; columns are lengths
+constexpr double rank_threshold = 1e-10;  ///< relative to the largest column; columns are lengths
 // docs/dev/constants.md, A6.
-constexpr double closure_limit = 4.0;  ///< closure, in standard uncertainties
+constexpr double closure_limit = 4.0;  ///< limit of the closure error, in standard uncertainties
 
 Expected<void> check_curve(const MeanCurve& curve, std::size_t length, const std::string& what) {
   if (curve.mean.size() != length)
@@ -44,7 +44,7 @@ Expected<void> check_line(const GridLine& line, std::size_t n, const std::string
   return {};
 }
 
-/// The curves of one direction of approach, by their places.
+/// Returns the indices of the curves with this direction of approach.
 template <class T>
 std::vector<std::size_t> of_direction(const std::vector<T>& curves, int direction) {
   std::vector<std::size_t> out;
@@ -53,7 +53,7 @@ std::vector<std::size_t> of_direction(const std::vector<T>& curves, int directio
   return out;
 }
 
-/// What belongs to a line: positioning, and yaw, in the directions in which it was read.
+/// Checks that positioning, and yaw, exist for the directions in which a line was read.
 Expected<void> check_positioning(const DiagonalReadings& r, const GridLine& line,
                                  const std::string& what) {
   const auto X = of_direction(r.X, line.x_direction);
@@ -96,8 +96,8 @@ Expected<void> check(const DiagonalReadings& r) {
   return {};
 }
 
-/// Rows A theta = y + N e, with theta = (f_1..f_{n-1}, g_1..g_{n-1}, k Ly, slopes of straightness
-/// measured directly).
+/// Rows A theta = y + N e, with theta = (f_1..f_{n-1}, g_1..g_{n-1}, k Ly, slopes of directly
+/// measured straightness).
 class System {
  public:
   explicit System(const DiagonalReadings& r) : r_(r), n_(r.n) {
@@ -128,14 +128,14 @@ class System {
   }
 
   const Matrix& A() const { return A_; }
-  /// Of the rows by the readings: y = N readings.
+  /// Derivatives of the rows by the readings: y = N readings.
   const Matrix& N() const { return N_; }
   std::size_t first_of_X() const { return r_.Y.size() * (n_ + 1); }
   std::size_t first_of_yaw() const { return first_of_X() + r_.X.size() * (n_ + 1); }
   const Vector& y() const { return y_; }
-  /// Of the readings, by repetition; 1 of lines alike where it is not known.
+  /// Standard uncertainties of the readings by repetition; 1 for all lines if it is not known.
   const std::vector<double>& sigma() const { return sigma_; }
-  /// First reading of a direct straightness: EYX, or (second) EXY.
+  /// Returns the index of the first reading of a direct straightness: EYX, or (second) EXY.
   std::size_t first_of_direct(bool second) const {
     const std::size_t last = r_.EXY ? r_.EXY->readings() : 0;
     return sigma_.size() - last - (!second && r_.EYX ? r_.EYX->readings() : 0);
@@ -146,7 +146,8 @@ class System {
     const Matrix root = scaled(sigma_);
     return product_transposed(root, root);
   }
-  /// Rows' noise if every reading of a line, or of a direct straightness, scatters by 1.
+  /// Returns the covariance of the rows if every reading of a line, or of a direct straightness,
+  /// has a scatter of 1.
   Matrix unit_noise() const { return scaled(unit_); }
 
   Row f(std::size_t i) const { return place(i, 0); }
@@ -167,8 +168,8 @@ class System {
     return scaled_columns(N_, Eigen::Map<const Vector>(sigma.data(), at(sigma.size())));
   }
 
-  /// Y, X, yaw, then lines and direct straightness. False if some noise is not known: all lengths
-  /// count alike.
+  /// Adds the sources of noise: Y, X, yaw, then lines and direct straightness. False if some noise
+  /// is not known; then all lengths have equal weights.
   bool add_sources() {
     bool known = true;
     const auto add = [&](const MeanCurve& c, double unit) {
@@ -204,8 +205,9 @@ class System {
     return known;
   }
 
-  /// Takes `factor` times a reading of a curve of positioning, from its first stop on, out of the
-  /// row. Each curve has a zero of its own: one between two lines of X would be squareness.
+  /// Subtracts `factor` times a reading of a positioning curve, relative to its first stop, from
+  /// the row. Each curve has a zero of its own, because a common zero of two lines of X would
+  /// contain squareness.
   void subtract(Eigen::Index row, const MeanCurve& c, std::size_t source, std::size_t i,
                 double factor) {
     y_[row] -= factor * (c.mean[i] - c.mean[0]);
@@ -213,7 +215,7 @@ class System {
     N_(row, at(source)) += factor;
   }
 
-  /// sign * what the stop reads, but for the reading itself.
+  /// Adds sign times the model of the reading at a stop, without the reading itself.
   void add_stop(Eigen::Index row, const GridLine& line, std::size_t j, double sign) {
     const std::size_t a = line.ix[j], b = line.iy[j];
     const double y = r_.Ly * static_cast<double>(b) / static_cast<double>(n_);
@@ -245,7 +247,7 @@ class System {
     }
   }
 
-  /// factor times point i of a straightness, in the next row.
+  /// Adds factor times point i of a straightness to the next row.
   void put_direct(const DirectStraightness& c, std::size_t source, std::size_t i, double factor) {
     y_[next_] += factor * c.mean_of(i);
     const std::size_t curves = c.reversed ? 2 : 1;
@@ -255,8 +257,8 @@ class System {
 
   double way(std::size_t i) const { return static_cast<double>(i) / static_cast<double>(n_); }
 
-  /// Its even part is left alone: the diagonals may know that better than a straightness whose
-  /// line and instrument are others.
+  /// Adds rows for the odd part only; the even part may be known better from the diagonals than
+  /// from a straightness on another line by another instrument.
   void add_odd(const DirectStraightness& c, std::size_t source, std::size_t first,
                std::size_t slope) {
     for (std::size_t i = 0; 2 * i < n_; ++i, ++next_) {
@@ -285,8 +287,8 @@ class System {
   Eigen::Index next_ = 0;
 };
 
-/// Generalised least squares with the rank found numerically. A functional that the rows do not
-/// determine has no value.
+/// Generalised least squares with the rank determined numerically. A functional that the rows do
+/// not determine has no value.
 class Solution {
  public:
   Solution(const System& system, const ReadingModel* model) : model_(model) {
@@ -322,9 +324,9 @@ class Solution {
   Shares shares(const Row& h) const {
     return model_ == nullptr ? Shares{} : shares_of_readings(by(h, jacobian_));
   }
-  /// Derivative of a functional by the readings; there is a model.
+  /// Returns the derivatives of a functional by the readings; requires a model.
   Row by_readings(const Row& h) const { return by(h, jacobian_); }
-  /// Uncertainty shares of a result with these derivatives by the readings.
+  /// Returns the uncertainty shares of a result with these derivatives by the readings.
   Shares shares_of_readings(const Row& J) const {
     if (model_ == nullptr) return {};
     return model_->shares({J.data(), static_cast<std::size_t>(J.size())});
@@ -342,7 +344,7 @@ class Solution {
   double scale_ = 0.0, factor_ = 1.0;
 };
 
-using Functional = std::vector<Row>;  ///< n + 1 points
+using Functional = std::vector<Row>;  ///< one row per point, n + 1 points
 
 KnownCurve known(const Solution& s, const Functional& h) {
   KnownCurve out;
@@ -364,7 +366,7 @@ Functional part(const Functional& h, double sign) {
   return out;
 }
 
-/// Slope of the least-squares line through n + 1 equidistant points over this length.
+/// Returns the slope of the least-squares line through n + 1 equidistant points over this length.
 Row slope(const Functional& h, double length) {
   const double n = static_cast<double>(h.size() - 1);
   Row sum = Row::Zero(h.front().size());
@@ -377,7 +379,7 @@ Row slope(const Functional& h, double length) {
   return sum / squares;
 }
 
-/// Less the least-squares line.
+/// Subtracts the least-squares line.
 Functional less_line(const Functional& h) {
   const double n = static_cast<double>(h.size() - 1);
   const Row tilt = slope(h, 1.0);
@@ -389,8 +391,8 @@ Functional less_line(const Functional& h) {
   return out;
 }
 
-/// S = d1 + d2, of which only the even part can be an error of the machine.
-/// Its limits are those of the whole budget, as far as there is one.
+/// Computes the closure error S = d1 + d2, of which only the even part can be an error of the
+/// machine. Its limits use the whole budget, if there is one.
 Closure closure_of(const System& system, std::size_t n, const Solution& solution) {
   const Matrix C = system.covariance();
   const auto S = [&](std::size_t i) {
@@ -421,7 +423,7 @@ Closure closure_of(const System& system, std::size_t n, const Solution& solution
   return c;
 }
 
-/// Range of what the second line of X reads more than the first; there are two.
+/// Returns the range of the difference of the second and first line of X; both must exist.
 DiagonalResult::Racking racking_of(const DiagonalReadings& r, const System& system,
                                    const Solution& s, const std::vector<double>& ECX) {
   const auto X = of_direction(r.X, r.D1.x_direction);
@@ -449,7 +451,7 @@ void fill_yaw(const DiagonalReadings& r, const System& system, const Solution& s
   const auto X = of_direction(r.X, r.D1.x_direction);
   if (X.size() == 1 && r.ECX.empty()) return;
   const auto readings = system.N().cols();
-  // The scatter of lengths shows nothing of an angle.
+  // The scatter of lengths contains no information about an angle.
   const bool known = system.noise_known() || X.size() == 2;
   const auto put = [&](double value, double u, const Row& J) {
     out.ECX.value.push_back(value);
@@ -458,7 +460,8 @@ void fill_yaw(const DiagonalReadings& r, const System& system, const Solution& s
     out.ECX.shares.push_back(s.shares_of_readings(J));
   };
   const std::size_t curve = r.n + 1;
-  const auto noise = [&](const MeanCurve& c, std::size_t i) {  // of a difference to the first
+  // standard uncertainty of a difference to the first point
+  const auto noise = [&](const MeanCurve& c, std::size_t i) {
     const double one = system.noise_known() ? c.u : 1.0;
     return i == 0 ? 0.0 : one * (c.zeroed ? 1.0 : std::sqrt(2.0));
   };
@@ -490,7 +493,7 @@ void fill_yaw(const DiagonalReadings& r, const System& system, const Solution& s
   out.racking = racking_of(r, system, s, out.ECX.value);
 }
 
-/// Variance of what is made of the readings, by repetition and all inputs.
+/// Returns the variance of a linear function of the readings, by repetition and all inputs.
 double variance_of(const System& system, const Solution& s, const Row& J) {
   double sum = 0.0;
   for (Eigen::Index i = 0; i < J.size(); ++i) {
@@ -554,7 +557,7 @@ Expected<DiagonalResult> solve_diagonals(const DiagonalReadings& r, const Readin
   DiagonalResult out;
   out.unknowns = system.unknowns();
   const std::size_t slopes = static_cast<std::size_t>(system.A().cols()) - out.unknowns;
-  out.rank = s.rank() - slopes;  // which are always determined
+  out.rank = s.rank() - slopes;  // the slopes are always determined
   out.noise_known = system.noise_known();
   out.residual_u = s.scale();
   out.dof = s.dof();
@@ -602,7 +605,7 @@ Band straightness_band(const DiagonalResult& r, double Lx, double Ly, double G) 
   const std::size_t n = r.q_odd.value.size() - 1;
   for (std::size_t i = 0; i <= n; ++i) {
     const double q = r.q_odd.value[i];
-    // Odd about mid-travel and 0 at the ends: at those points there is nothing to bound.
+    // The odd part is 0 at the ends and at mid-travel, so it has no bound there.
     const double half = i == 0 || i == n || 2 * i == n ? 0.0 : c * G / s;
     band.low.push_back(r.EYX_even.value[i] + q / s - half);
     band.high.push_back(r.EYX_even.value[i] + q / s + half);

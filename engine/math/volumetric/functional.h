@@ -7,16 +7,18 @@
 #include "nonio/math/budget.h"
 #include "nonio/math/volume_map.h"
 
-/// Linear results of a fit: value, u of the repetition, shares of the inputs.
+/// Linear functions of the results of a fit: value, u of the repetition, shares of the inputs.
 namespace nonio::math {
 
-/// Unknowns with their covariance and, if there is a model, their derivatives by the readings.
+/// Fitted unknowns with their covariance and, if there is a model, their derivatives by the
+/// readings.
 struct Estimator {
   Eigen::VectorXd x;
   Eigen::MatrixXd covariance;
   Eigen::MatrixXd of_readings{};
   const ReadingModel* model = nullptr;
-  /// Of the repetition, for a row of derivatives by the readings; none: as the budget has them.
+  /// Returns the degrees of freedom of the repetition for a row of derivatives by the readings;
+  /// empty: those of the budget.
   std::function<double(const Eigen::RowVectorXd&)> dof{};
 
   double value(const Eigen::RowVectorXd& row) const { return row.dot(x); }
@@ -24,10 +26,10 @@ struct Estimator {
   Shares shares(const Eigen::RowVectorXd& row) const;
 };
 
-/// Rows of the three components of the error at a place.
+/// Returns, for a position, three rows that give the components of the error from the unknowns.
 using ErrorRows = std::function<Eigen::MatrixXd(const Corner&)>;
 
-/// The map of what `rows` gives, less that in the middle of the volume.
+/// Returns the map of the error that `rows` gives, minus that at the middle of the volume.
 VolumeMap map_of(const Estimator&, const ErrorRows& rows, const Corner& low, const Corner& high,
                  std::size_t parts);
 

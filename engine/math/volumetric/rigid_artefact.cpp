@@ -15,14 +15,16 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
-constexpr double no_lever = 1e-6;  // of the size of an artefact: a turn that moves no ball
-constexpr double no_plane = 1e-3;  // of the size: balls on one line do not state how it is turned
-constexpr double least_u = 1e-9;   // m, m/m; what is stated counts with no smaller one
+// relative to the size of an artefact: a rotation that moves no ball
+constexpr double no_lever = 1e-6;
+// relative to the size: balls on one line do not determine the rotation
+constexpr double no_plane = 1e-3;
+constexpr double least_u = 1e-9;  // m, m/m; smallest standard uncertainty used for stated values
 
 Vector3d vector_of(const Corner& c) { return {c[0], c[1], c[2]}; }
 
-/// Where a ball was. A coordinate that was not measured is that of a plane across it: a tilt of that plane
-/// changes the others in second order only.
+/// Returns the position of a ball. A coordinate that was not measured is set to 0, a plane
+/// perpendicular to it: a tilt of that plane changes the other coordinates in second order only.
 Vector3d place_of(const ArtefactPlacement& p, std::size_t i) {
   Vector3d at = vector_of(p.at[i]);
   for (std::size_t k = 0; k < 3; ++k)
@@ -30,16 +32,18 @@ Vector3d place_of(const ArtefactPlacement& p, std::size_t i) {
   return at;
 }
 
-/// The placement of an artefact: a ball at q is at R (q - from) + to.
+/// The position and orientation of an artefact: a ball at q is at R (q - from) + to.
 struct Stand {
   Matrix3d R = Matrix3d::Identity();
   Vector3d from = Vector3d::Zero(), to = Vector3d::Zero();
-  bool turned_by_all = false;  ///< balls not on one line: all rotations can be determined
+  /// whether the balls are not on one line, so that all rotations are determined
+  bool turned_by_all = false;
   Vector3d place(const Vector3d& q) const { return R * (q - from) + to; }
   Vector3d back(const Vector3d& p) const { return R.transpose() * (p - to) + from; }
 };
 
-/// The placement that fits pairs best: rotation U diag(1, 1, det) V' of the matrix sum p q'.
+/// Returns the position and orientation that fits the pairs best: rotation U diag(1, 1, det) V' of
+/// the matrix sum p q'.
 Stand best_stand(const std::vector<Vector3d>& q, const std::vector<Vector3d>& p) {
   Stand s;
   const auto n = static_cast<double>(q.size());
@@ -55,7 +59,7 @@ Stand best_stand(const std::vector<Vector3d>& q, const std::vector<Vector3d>& p)
   return s;
 }
 
-/// Places the balls in one frame and the placements about them.
+/// Determines the coordinates of all balls in one frame, and the placements relative to it.
 class Frame {
  public:
   explicit Frame(const Artefact& a) : a_(a), q_(a.balls.size()), is_placed_(a.placements.size()) {}
@@ -85,7 +89,8 @@ class Frame {
   const Stand& stand(std::size_t p) const { return *is_placed_[p]; }
 
  private:
-  /// By its balls that are known; it then gives the positions of the others.
+  /// Fits a placement by its balls with known coordinates, and derives the coordinates of its other
+  /// balls.
   bool link(std::size_t p) {
     const ArtefactPlacement& placement = a_.placements[p];
     std::vector<Vector3d> q, at;
@@ -150,8 +155,8 @@ void put_placement(const Artefact& a, const Frame& frame, std::size_t p, std::si
     for (std::size_t i = 0; i < n; ++i) {
       const std::size_t b = placement.ball[i];
       const Vector3d place = stand.place(frame.ball(b)), lever = place - stand.to;
-      // The errors are evaluated where the placement has the ball: at the positions as read, their
-      // scatter would seem to determine the scale, which only a certificate does.
+      // Evaluate the errors at the ball positions of the fitted placement: at the measured
+      // positions, their scatter would seem to determine the scale, which only a certificate does.
       Corner where = placement.at[i];
       for (std::size_t c = 0; c < 3; ++c)
         if (placement.measured[c]) where[c] = place[at(c)];
@@ -169,7 +174,8 @@ void put_placement(const Artefact& a, const Frame& frame, std::size_t p, std::si
   }
 }
 
-/// What the certificate states of the balls, and of their scale, the unknown behind them.
+/// Line of the values that the certificate states of the balls, and of their scale, the last
+/// unknown.
 class Stated {
  public:
   void add(double value, double u, const std::vector<std::pair<std::size_t, double>>& shares) {

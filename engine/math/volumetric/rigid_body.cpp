@@ -19,10 +19,11 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-constexpr double changes_nothing = 1e-6;  // of a result, by what is open
-constexpr double shows_nothing = 1e-9;    // of a column, in the volume
+// relative change of a result by undetermined combinations
+constexpr double changes_nothing = 1e-6;
+constexpr double shows_nothing = 1e-9;  // relative size of a column in the volume
 constexpr double same_share = 1e-6;
-constexpr std::size_t places_of_curve = 21;  // of a curve
+constexpr std::size_t places_of_curve = 21;  // points of a curve
 
 std::string name_of(const RigidTerm& term) {
   return term.kind == RigidTerm::Kind::squareness ? term.error
@@ -45,7 +46,7 @@ void find_combinations(const RigidFit& f, RigidSolution& out) {
   }
 }
 
-/// The terms of the least identifiable direction, the largest first.
+/// Returns the terms of the least identifiable direction, the largest first.
 Combination weakest_of(const RigidFit& f) {
   Combination out;
   if (f.solved.rank == 0) return out;
@@ -61,7 +62,7 @@ Combination weakest_of(const RigidFit& f) {
   return out;
 }
 
-/// The requested results of the fit, as far as they are identifiable.
+/// Computes the requested results of the fit that are identifiable.
 class Results {
  public:
   Results(const RigidFit& f, const RigidBox& box, const ReadingModel* model) : f_(f), box_(box) {
@@ -72,7 +73,8 @@ class Results {
     e_.model = model;
     if (model == nullptr) return;
     e_.of_readings = f.solved.map;
-    // The model has the inputs of what is stated: the repetition is that of the readings alone.
+    // The model contains the inputs of stated values, so subtract them: the repetition is that of
+    // the readings alone.
     for (std::size_t i = 0; i < f.table.stated.size(); ++i)
       if (const double u = f.table.stated[i]; u > 0.0) {
         const VectorXd by = u * f.solved.map.col(at(i));
@@ -88,8 +90,7 @@ class Results {
            orthogonal_part(f_.solved.V, VectorXd(row.transpose())).norm() < changes_nothing * size;
   }
 
-  /// Row of an error at a place of its axis: of a length less that at the start where it is
-  /// positioning.
+  /// Returns the row of an error at a position of its axis; for positioning relative to the start.
   RowVectorXd row_of(const std::string& error, const Corner& place) const {
     RowVectorXd row = RowVectorXd::Zero(at(f_.terms.size()));
     for (std::size_t k = 0; k < f_.terms.size(); ++k) {
@@ -112,12 +113,12 @@ class Results {
   }
 
  private:
-  /// Welch and Satterthwaite over the groups.
+  /// Returns the degrees of freedom by Welch and Satterthwaite over the groups.
   double dof_of(const RowVectorXd& J) const {
     std::vector<double> share(f_.scatter.s.size(), 0.0);
     for (Index i = 0; i < J.size(); ++i) {
       const std::size_t g = f_.table.group[static_cast<std::size_t>(i)];
-      if (g == share.size()) continue;  // stated
+      if (g == share.size()) continue;  // a stated value
       share[g] += J[i] * J[i] * f_.scatter.s[g] * f_.scatter.s[g];
     }
     double sum = 0.0, fourth = 0.0;
@@ -181,7 +182,8 @@ void put_results(const RigidFit& f, const RigidBox& box, const RigidWish& wish,
       wish.parts);
 }
 
-/// Degrees that the places of the readings allow: at least two for each polynomial.
+/// Returns the largest degree that the positions of the readings allow: at least two positions for
+/// each polynomial.
 std::size_t allowed_degree(const std::vector<RigidLine>& lines, const RigidBox& box) {
   std::size_t least = most_degree;
   for (std::size_t k = 0; k < 3; ++k) {

@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 
 constexpr std::size_t scatter_rounds = 20;
 
-/// How many unknowns several lines share: those that are numbered.
+/// Returns the number of unknowns that lines share: the largest index plus 1.
 std::size_t shared_unknowns(const std::vector<RigidLine>& lines) {
   std::size_t count = 0;
   for (const RigidLine& line : lines)
@@ -59,7 +59,7 @@ RigidTable table_of(const std::vector<RigidLine>& lines, const std::vector<Rigid
   return t;
 }
 
-/// An orthonormal basis of columns, whatever their rank.
+/// Returns an orthonormal basis of the space of the columns, of any rank.
 MatrixXd basis_of(MatrixXd columns) {
   for (Index k = 0; k < columns.cols(); ++k)
     if (const double size = columns.col(k).norm(); size > 0.0) columns.col(k) /= size;
@@ -79,7 +79,7 @@ RigidSolved solve_once(const RigidTable& t, const std::vector<double>& scatter) 
   VectorXd y = root.cwiseProduct(t.value);
   A = orthogonal_part(Q, A);
   y = orthogonal_part(Q, y);
-  // A = H R with few columns: the singular values of R are those of A.
+  // A = H R with few columns: R has the singular values of A.
   const Eigen::HouseholderQR<MatrixXd> qr(A);
   const Index small = std::min(A.rows(), A.cols());
   const MatrixXd R = upper(qr, small);
@@ -99,7 +99,7 @@ RigidSolved solve_once(const RigidTable& t, const std::vector<double>& scatter) 
   return s;
 }
 
-/// s of each group from the residuals; where nothing is left of a group, that of the others.
+/// Returns s of each group from the residuals; 0 for a group without degrees of freedom.
 RigidScatter scatter_of(const RigidTable& t, const RigidSolved& solved,
                         const std::vector<double>& used) {
   RigidScatter out{std::vector<double>(t.groups, 0.0), std::vector<double>(t.groups, 0.0)};
@@ -114,7 +114,7 @@ RigidScatter scatter_of(const RigidTable& t, const RigidSolved& solved,
   return out;
 }
 
-/// Twice the negative logarithm of the likelihood and Schwarz's price of the unknowns.
+/// Returns twice the negative logarithm of the likelihood plus Schwarz's cost of the unknowns.
 double schwarz(const RigidTable& t, const RigidSolved& s, const std::vector<double>& scatter) {
   const auto n = static_cast<double>(t.value.size());
   double sum = s.residual.squaredNorm() + static_cast<double>(s.rank) * std::log(n);
@@ -123,7 +123,7 @@ double schwarz(const RigidTable& t, const RigidSolved& s, const std::vector<doub
   return sum;
 }
 
-/// Errors of exact readings: rounding, which is no scatter.
+/// Residuals of exact readings below this are rounding errors, not scatter.
 constexpr double no_scatter = 1e-12;
 
 }  // namespace

@@ -6,23 +6,24 @@
 #include "dense.h"
 #include "rigid_terms.h"
 
-/// The least-squares fit of rigid_body.h: terms, which are identifiable, scatter of the groups.
+/// The least-squares fit of rigid_body.h: terms, identifiable combinations, scatter of the groups.
 namespace nonio::math {
 
-/// Readings, their terms and the set-up, in one matrix each.
+/// Matrices of the terms and of the set-up, one row per reading.
 struct RigidTable {
   Eigen::MatrixXd terms, set_up;
   Eigen::VectorXd value;
-  std::vector<std::size_t> group;  ///< `groups` of what is stated
-  std::vector<double> stated;      ///< standard uncertainty; 0 of a reading
+  std::vector<std::size_t> group;  ///< group of each row; `groups` for stated values
+  std::vector<double> stated;      ///< standard uncertainty of stated values; 0 for readings
   std::size_t groups = 0;
 };
 
-/// One fit with the readings divided by the scatter of their groups.
+/// One fit, with the readings divided by the scatter of their groups.
 struct RigidSolved {
-  Eigen::VectorXd x, residual;  ///< residual: of the readings divided by their scatter
-  Eigen::MatrixXd V, map;       ///< kept right vectors; unknowns by readings
-  Eigen::VectorXd sigma;        ///< all, falling
+  Eigen::VectorXd x, residual;  ///< solution; residuals of the readings divided by their scatter
+  /// right singular vectors that are kept; matrix from readings to unknowns
+  Eigen::MatrixXd V, map;
+  Eigen::VectorXd sigma;  ///< all singular values, descending
   Eigen::VectorXd leverage;
   Eigen::Index rank = 0, set_up = 0;
 };
@@ -36,7 +37,7 @@ struct RigidFit {
   RigidTable table;
   RigidSolved solved;
   RigidScatter scatter;
-  double price = 0.0;  ///< by Schwarz's criterion
+  double price = 0.0;  ///< Schwarz's criterion
 };
 
 RigidFit fit_rigid_body(const std::vector<RigidLine>&, const RigidBox&,

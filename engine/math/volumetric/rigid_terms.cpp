@@ -15,7 +15,8 @@ struct Named {
   Kind kind;
   std::size_t axis, along;
 };
-/// In this order an error that others could be is one of the last.
+/// Order of the errors: if several errors explain the same readings, a later one is reported as
+/// undetermined.
 constexpr std::array<Named, 21> all_named{{
     {"EXX", Kind::positioning, 0, 0},  {"EYY", Kind::positioning, 1, 1},
     {"EZZ", Kind::positioning, 2, 2},  {"C0Y", Kind::squareness, 1, 2},
@@ -44,8 +45,8 @@ Corner unit_along(std::size_t k) {
   return out;
 }
 
-/// From the pivot of an axis to the tool: along the axes that it carries. A squareness turns the
-/// second axis itself.
+/// Returns the vector from the pivot of an axis to the tool, along the axes that it carries. A
+/// squareness rotates the second axis itself.
 Corner carried(const RigidTerm& term, const RigidBox& box, const Corner& at) {
   Corner out{};
   if (term.kind == Kind::squareness)
@@ -62,7 +63,7 @@ double largest_in(const RigidTerm& term, const RigidBox& box) {
   return most;
 }
 
-/// Two unit vectors across a direction.
+/// Returns two unit vectors perpendicular to a direction.
 std::array<Corner, 2> across_of(const Corner& sense) {
   const Corner up = std::fabs(sense[2]) < 0.9 ? unit_along(2) : unit_along(0);
   Corner level = cross_product(up, sense);
@@ -77,7 +78,7 @@ Corner way_of(const RigidLine& line, std::size_t i) {
   return out;
 }
 
-/// The reading that is farthest along the beam.
+/// Returns the vector to the reading that is farthest along the beam.
 Corner farthest_way(const RigidLine& line) {
   Corner best{};
   for (std::size_t i = 0; i < line.readings.size(); ++i) {
@@ -88,7 +89,7 @@ Corner farthest_way(const RigidLine& line) {
   return best;
 }
 
-/// Direction of travel of a line, by its two readings that are farthest apart.
+/// Returns the direction of travel of a line, from the reading farthest from the first one.
 Corner travel_of(const RigidLine& line) {
   Corner best{};
   for (std::size_t i = 0; i < line.readings.size(); ++i)

@@ -10,13 +10,13 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// One move of an axis over its interval i, and its coefficients on the readings: +1 after, -1
-/// before, where the reading before the first move is the zero of the pass.
+/// One move of an axis over its interval i, as a difference of two readings: +1 after, -1 before;
+/// the reading before the first move is the zero of the pass.
 struct Increment {
-  std::size_t pass = 0, after = 0;  ///< moves done when it was read
+  std::size_t pass = 0, after = 0;  ///< number of moves before the reading
 };
 
-/// The move of `axis` over interval i (from position i to i + 1) in a pass.
+/// Returns the move of `axis` over interval i (from position i to i + 1) in a pass.
 Increment increment(const StepDiagonals& d, std::size_t pass, std::size_t axis, std::size_t i) {
   const std::size_t place =
       static_cast<std::size_t>(std::find(d.order.begin(), d.order.end(), axis) - d.order.begin());
@@ -32,7 +32,7 @@ double size_of(const StepDiagonals& d, const Increment& r) {
   return read(d, r.pass, r.after) - read(d, r.pass, r.after - 1);
 }
 
-/// Which of the four lines a pass goes along.
+/// Returns the index of the body diagonal, 0 to 3, of a pass.
 std::size_t line_of(const StepDiagonals::Pass& p) {
   return (p.sign[0] * p.sign[1] > 0 ? 0U : 1U) + (p.sign[0] * p.sign[2] > 0 ? 0U : 2U);
 }
@@ -44,7 +44,8 @@ std::array<double, 4> shares(const StepDiagonals& d) {
   return share;
 }
 
-/// Function values as a matrix on the readings of all passes, each with its zero first.
+/// Returns the matrix from the readings of all passes, each with its zero first, to the function
+/// values.
 Eigen::MatrixXd averaging(const StepDiagonals& d) {
   const std::size_t each = 3 * d.n + 1;
   const auto share = shares(d);
@@ -67,10 +68,9 @@ Eigen::MatrixXd averaging(const StepDiagonals& d) {
   return W;
 }
 
-/// Puts the slopes right of two straightnesses that share a plane: their sum is in the totals of
-/// the diagonals, whatever the set-up, and how it is split is a rotation of the frame.
-///     sigma_pq = L / (4 T_p T_q) sum of e_p e_q D;   E_qp (far end) = 0, E_pq (far end) = sigma
-///     T_q
+/// Corrects the slopes of two straightnesses that share a plane: the totals of the diagonals
+/// determine their sum, whatever the set-up, and their difference is a rotation of the frame.
+///   sigma_pq = L / (4 T_p T_q) sum of e_p e_q D;   E_qp (far end) = 0, E_pq (far end) = sigma T_q
 void slopes_from_totals(const StepDiagonals& d, std::size_t p, std::size_t q, Eigen::MatrixXd& W) {
   const std::size_t each = 3 * d.n + 1;
   const auto share = shares(d);
@@ -93,7 +93,7 @@ void slopes_from_totals(const StepDiagonals& d, std::size_t p, std::size_t q, Ei
   tilt(q, p, end);
 }
 
-/// Check sums in the order of the moves' intervals, NaN where a reading is missing.
+/// Returns the check sums of each axis in the order of its intervals; NaN if a reading is missing.
 std::array<std::vector<double>, 3> check_sums(const StepDiagonals& d) {
   const auto share = shares(d);
   std::array<std::vector<double>, 3> sums;
@@ -110,14 +110,14 @@ std::array<std::vector<double>, 3> check_sums(const StepDiagonals& d) {
   return sums;
 }
 
-/// Variance of a check sum over that of a reading.
+/// Returns the ratio of the variance of a check sum to that of a reading.
 double check_gain(const StepDiagonals& d) {
   double sum = 0.0;
   for (const double share : shares(d)) sum += 2.0 * share;
   return sum;
 }
 
-/// Sums for the line through each axis' check sums, all with one slope.
+/// Sums for lines through the check sums of each axis, with a common slope.
 struct LineThrough {
   std::array<double, 3> mean{}, centre{}, count{};
   double slope = 0.0, sxx = 0.0, rest = 0.0, total = 0.0;

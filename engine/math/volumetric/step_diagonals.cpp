@@ -15,17 +15,18 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using Index = Eigen::Index;
 
-constexpr double undetermined = 1e-10;  // share of the largest eigenvalue: not determined
-constexpr double unmoved = 1e-6;        // a part of a unit vector
-constexpr int corrections = 2;          // of second order
+constexpr double undetermined = 1e-10;  // relative to the largest eigenvalue: not determined
+constexpr double unmoved = 1e-6;        // fraction of a unit vector
+constexpr int corrections = 2;          // number of corrections of second order
 
-/// Unit vectors across u.
+/// Returns two unit vectors perpendicular to u.
 std::array<Vector3d, 2> across(const Vector3d& u) {
   const Vector3d one = u.unitOrthogonal();
   return {one, u.cross(one)};
 }
 
-/// Columns: function values, set-up angles times L, zeros of the passes, zeros of the series.
+/// Layout of the columns: function values, set-up angles times L, zeros of the passes, zeros of the
+/// series.
 struct Layout {
   Index functions = 0, set_up = 0, zeros = 0, series = 0;
   Index first_zero() const { return functions + set_up; }
@@ -34,17 +35,16 @@ struct Layout {
 };
 
 struct ReadingRow {
-  std::size_t pass, moves;  ///< 0: before the first move, the zero
+  std::size_t pass, moves;  ///< moves 0: the zero before the first move
 };
 
-/// Rows of readings (weight 1), of series, of the gauge.
+/// Rows of readings (weight 1), of series, and of the gauge.
 struct Design {
   Layout layout;
   MatrixXd A;
   VectorXd b;
   std::vector<ReadingRow> readings;
-  VectorXd
-      series_weight;  ///< of each series' readings, one behind the other; 0 if it does not count
+  VectorXd series_weight;  ///< weights of the readings of all series, concatenated; 0 if not used
 };
 
 std::size_t node(const StepDiagonals& d, int sign, std::size_t moves) {
@@ -78,7 +78,8 @@ void put_reading(const StepDiagonals& d, const ReadingRow& row, Design& design, 
   design.b[r] = row.moves == 0 ? 0.0 : pass.reading[row.moves - 1];
 }
 
-/// E_aa between its positions, as a row of function values; false outside of them.
+/// Adds E_aa, interpolated between its positions, to a row of the function values; false outside of
+/// them.
 bool put_position(const StepDiagonals& d, std::size_t axis, double x, double weight,
                   Eigen::Ref<Eigen::RowVectorXd> row) {
   const double steps = (x - d.low[axis]) / d.travel[axis] * static_cast<double>(d.n);
@@ -124,7 +125,7 @@ Design design_of(const StepDiagonals& d, const std::vector<AxisSeries>& series,
     const double weight = s.u > 0.0 && u_reading > 0.0 ? u_reading / s.u : 1.0;
     for (std::size_t i = 0; i < s.position.size(); ++i, ++r) {
       Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(design.layout.columns());
-      if (!put_position(d, s.axis, s.position[i], weight, row)) continue;  // a row of zeros
+      if (!put_position(d, s.axis, s.position[i], weight, row)) continue;  // leaves a row of zeros
       row[design.layout.first_series() + static_cast<Index>(k)] = weight;
       design.A.row(r) = row;
       design.b[r] = weight * s.deviation[i];
@@ -132,13 +133,14 @@ Design design_of(const StepDiagonals& d, const std::vector<AxisSeries>& series,
     }
   }
   if (choices.set_up_known) return design;
-  // Mirrors of unknown orientation leave the rotations free: EYX, EZX, EZY are 0 at the far end.
+  // Mirrors of unknown orientation leave the rotations undetermined: set EYX, EZX, EZY to 0 at the
+  // far end.
   for (const auto& [axis, along] : {std::pair{0U, 1U}, std::pair{0U, 2U}, std::pair{1U, 2U}})
     design.A(r++, static_cast<Index>(function_column(axis, along, d.n, d.n))) = 1.0;
   return design;
 }
 
-/// The pseudo-inverse of the normal equations, and what it leaves open.
+/// The pseudo-inverse of the normal equations, and the directions that it does not determine.
 struct Factor {
   MatrixXd inverse, open;
   Index rank = 0;
@@ -162,7 +164,7 @@ VectorXd solve(const Design& design, const Factor& f, const VectorXd& b) {
   return times(f.inverse, transposed_times(design.A, b));
 }
 
-/// Error of the point after some moves of a pass, less that of its start.
+/// Returns the error of the point after some moves of a pass, minus that at its start.
 Vector3d error_of(const StepDiagonals& d, const ReadingRow& row, const VectorXd& x) {
   const auto& pass = d.passes[row.pass];
   const auto moves = d.counts(row.moves);
@@ -185,7 +187,8 @@ Vector3d set_up_of(const StepDiagonals& d, std::size_t pass, const Design& desig
   return (sides[0] * x[first] + sides[1] * x[first + 1]) / d.diagonal();
 }
 
-/// Readings less the terms of second order: nu.E, and the shorter path of a beam off the diagonal.
+/// Returns the readings minus the terms of second order: nu.E, and the shorter path of a beam that
+/// is not parallel to the diagonal.
 VectorXd without_second_order(const StepDiagonals& d, const Design& design, const VectorXd& x,
                               const StepChoices& choices) {
   VectorXd b = design.b;
@@ -201,7 +204,7 @@ VectorXd without_second_order(const StepDiagonals& d, const Design& design, cons
   return b;
 }
 
-/// Scatter of the readings about the best functions, whatever the axis series show.
+/// Scatter of the readings about the fitted functions, independent of the axis series.
 struct Scatter {
   double u = 0.0, dof = 0.0;
 };
@@ -221,7 +224,7 @@ std::array<bool, 3> known_scales(const StepDiagonals& d, const Factor& f) {
   return known;
 }
 
-/// Whether what is open shows in no curve that is given.
+/// Whether the undetermined directions change no curve that is given.
 bool complete(const StepDiagonals& d, const Factor& f, const std::array<bool, 3>& known) {
   const auto size = static_cast<Index>(9 * d.n);
   if (f.open.cols() > 8) return false;
@@ -237,7 +240,8 @@ bool complete(const StepDiagonals& d, const Factor& f, const std::array<bool, 3>
   return true;
 }
 
-/// Function values by the readings in the order of the model: passes with their zeros, series.
+/// Returns the derivatives of the function values by the readings in the order of the model: passes
+/// with their zeros, then series.
 Sensitivity sensitivity_of(const StepDiagonals& d, const Design& design, const Factor& f,
                            const ReadingModel* model) {
   Sensitivity out{model, {}};
@@ -261,7 +265,7 @@ double used_u(const StepChoices& choices, const Scatter& s) {
   return choices.u_reading > 0.0 ? choices.u_reading : s.u;
 }
 
-/// Generalised least squares of values y with covariance C on a line; what is left of them.
+/// Fits a line to values y with covariance C by generalised least squares, and tests the residuals.
 ShapeContrast against_line(const AxisSeries& s, const MatrixXd& C, const VectorXd& y, double dof) {
   ShapeContrast out;
   out.axis = s.axis;
@@ -294,7 +298,7 @@ AxisSeries inside(const StepDiagonals& d, const AxisSeries& s) {
   return in;
 }
 
-/// Compares each series with the functions that the diagonals alone give.
+/// Compares each series with the functions from the diagonals alone.
 std::vector<ShapeContrast> contrast_shapes(const StepDiagonals& d,
                                            const std::vector<AxisSeries>& series,
                                            const StepChoices& choices, const Design& design,

@@ -9,7 +9,8 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// Takes the line away from n + 1 values of which the first is 0, as a matrix on the other n.
+/// Returns the matrix that subtracts a line from n + 1 values of which the first is 0; it applies
+/// to the other n.
 Eigen::MatrixXd without_line(std::size_t n, const Eigen::RowVectorXd& slope, bool centred) {
   const Index m = at(n) + 1;
   const Eigen::VectorXd i = Eigen::VectorXd::LinSpaced(m, 0.0, static_cast<double>(n));
@@ -24,7 +25,7 @@ Eigen::MatrixXd without_line(std::size_t n, const Eigen::RowVectorXd& slope, boo
   return P;
 }
 
-/// Least-squares slope, per position, as a row on the values at 1..n.
+/// Returns the least-squares slope, per position, as a row for the values at 1..n.
 Eigen::RowVectorXd line_slope(std::size_t n) {
   const Index m = at(n) + 1;
   const Eigen::VectorXd i = Eigen::VectorXd::LinSpaced(m, 0.0, static_cast<double>(n));
@@ -68,7 +69,7 @@ StepCurve curve(const StepDiagonals& d, std::size_t axis, std::size_t along,
   return c;
 }
 
-/// sign (slope E_qp + slope E_pq), slopes per m.
+/// Returns sign (slope E_qp + slope E_pq), with slopes per m.
 Estimated shear(const StepDiagonals& d, std::size_t p, std::size_t q, double sign,
                 const Eigen::VectorXd& x, const Eigen::MatrixXd& C, const Sensitivity& s) {
   Eigen::RowVectorXd t = Eigen::RowVectorXd::Zero(x.size());

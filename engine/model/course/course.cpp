@@ -13,8 +13,9 @@ namespace nonio::model {
 
 namespace {
 
-/// Scatter of successive readings: from second differences of what the model leaves, of which a
-/// smooth course has next to nothing. Robust: the median of their sizes.
+/// Estimates the standard deviation of readings from the second differences of residuals, in which
+/// a smooth course nearly vanishes. Robust: uses the median of their absolute values. None for
+/// fewer than 20 residuals.
 std::optional<NoiseFloor> floor_of(const std::vector<double>& residual) {
   if (residual.size() < 20) return std::nullopt;
   std::vector<double> d;
@@ -22,7 +23,7 @@ std::optional<NoiseFloor> floor_of(const std::vector<double>& residual) {
     d.push_back(std::fabs(residual[i - 1] - 2.0 * residual[i] + residual[i + 1]));
   const auto middle = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2);
   std::nth_element(d.begin(), middle, d.end());
-  constexpr double of_normal = 0.674490;  // median of |N|
+  constexpr double of_normal = 0.674490;  // median of |x| for a standard normal x
   NoiseFloor out;
   out.s = *middle / of_normal / std::sqrt(6.0);
   out.dof = static_cast<double>(d.size()) / 3.0;
@@ -30,7 +31,8 @@ std::optional<NoiseFloor> floor_of(const std::vector<double>& residual) {
   return out;
 }
 
-/// What is left by classes of something: how much the classes differ.
+/// Tests whether the residuals differ between classes (F-test). `fewer`: number of readings per
+/// independent reading. None if there are too few independent readings.
 std::optional<Place> place_of(Where where, const std::vector<double>& residual,
                               const std::vector<std::size_t>& classes, std::size_t count,
                               double fewer) {
@@ -60,11 +62,11 @@ std::optional<Place> place_of(Where where, const std::vector<double>& residual,
   place.p = math::f_upper(F, dof, rest);
   place.share = std::max(0.0, (between - dof * (squares - between) / rest) / squares);
   place.rms = std::sqrt(place.share * squares / static_cast<double>(residual.size()));
-  place.at = static_cast<double>(largest_class);  // the number of the class
+  place.at = static_cast<double>(largest_class);  // index of the class with the largest mean
   return place;
 }
 
-/// Classes of equal width from the least to the largest value.
+/// Divides values into `count` classes of equal width between the smallest and the largest value.
 std::vector<std::size_t> classes_of(const std::vector<double>& values, std::size_t count,
                                     double& low, double& width) {
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
@@ -77,8 +79,8 @@ std::vector<std::size_t> classes_of(const std::vector<double>& values, std::size
   return out;
 }
 
-/// How much fewer independent entries there are than entries: 1 + 2 sum of the correlations up to the
-/// first that is small, each pair of them.
+/// Returns the number of residuals per independent residual: 1 + 2 x sum of the autocorrelations,
+/// added in pairs until the first pair that is not positive.
 double fewer_than(const VectorXd& residual) {
   const Index n = residual.size();
   const VectorXd r = residual.array() - residual.mean();
@@ -94,7 +96,8 @@ double fewer_than(const VectorXd& residual) {
   return sum;
 }
 
-/// In the bins of the search: what is left within them is noise.
+/// Tests where the residuals differ (time and channels, in classes), on the means of the bins of
+/// the search; differences within a bin count as noise.
 std::vector<Place> places_of(const Part& part, const std::vector<double>& all) {
   constexpr std::size_t classes = 8;
   const CourseData data(part);

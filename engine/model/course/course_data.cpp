@@ -8,7 +8,7 @@ namespace nonio::model {
 
 namespace {
 
-/// The largest number up to `n` without other factors than 2, 3 and 5.
+/// Returns the largest number up to `n` with no prime factors except 2, 3 and 5.
 std::size_t smooth(std::size_t n) {
   for (; n > 1; --n) {
     std::size_t rest = n;

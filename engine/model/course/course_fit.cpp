@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Generalised least squares on means of bins, with noise that is correlated in time. Shapes are those
-// with most evidence, on their grids and then between the grid's values.
+// Fits terms by generalised least squares on the means of bins, with noise that is correlated in
+// time. The shapes are those with the largest evidence, first on their grids and then between grid
+// values.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -49,7 +50,7 @@ class CourseFit {
     return out;
   }
 
-  /// - ln of the evidence with these shapes, each given by its place on its grid.
+  /// Returns -ln of the evidence with the shapes at these indices of their grids.
   double cost_with(const std::vector<std::size_t>& at) const {
     std::vector<Index> columns;
     for (std::size_t k = 0; k < at.size(); ++k)
@@ -60,7 +61,7 @@ class CourseFit {
     return pool_->cost(columns, *sides_).mean();
   }
 
-  /// The shapes with most evidence: one term after the other, from several beginnings.
+  /// Finds the shapes with the largest evidence by coordinate descent from three starting points.
   void search() {
     pool_.emplace(data_, noise_);
     places_.clear();
@@ -75,7 +76,7 @@ class CourseFit {
     double least = std::numeric_limits<double>::infinity();
     for (const double share : {0.0, 0.5, 1.0}) {
       std::vector<std::size_t> at;
-      for (std::size_t k = 0; k < terms_.size(); ++k)  // neighbours begin apart
+      for (std::size_t k = 0; k < terms_.size(); ++k)  // start adjacent terms at different shapes
         at.push_back(static_cast<std::size_t>((k % 2 == 0 ? share : 1.0 - share) *
                                               static_cast<double>(grids_[k]->size() - 1)));
       const double cost = descend(at);
@@ -104,7 +105,8 @@ class CourseFit {
     return least;
   }
 
-  /// The same with columns that are in no pool.
+  /// Returns the same cost, -ln of the evidence, with `instead` as the columns of term k and the
+  /// chosen columns of the other terms.
   double cost_of_chosen(std::size_t k, const MatrixXd& instead) const {
     CoursePool pool(data_, noise_);
     std::vector<Index> columns;
@@ -121,7 +123,7 @@ class CourseFit {
     return data_.means(*columns);
   }
 
-  /// Between the neighbours of a continuous shape on its grid.
+  /// Optimizes continuous shapes between adjacent values of their grids.
   void refine() {
     for (int round = 0; round < 2; ++round)
       for (std::size_t k = 0; k < terms_.size(); ++k) {
@@ -154,12 +156,13 @@ class CourseFit {
     CourseColumns before =
         std::exchange(chosen_[k], {with(best), columns_at(terms_[k], with(best))});
     if (const auto qr = decomposed(); qr.rank() < qr.cols())
-      chosen_[k] = std::move(before);  // two effects of one channel have met
+      chosen_[k] = std::move(before);  // two effects of one channel have become equal
     else
       terms_[k].shape = chosen_[k].shape;
   }
 
-  /// Of the columns of all terms; its rank shows whether they can be separated.
+  /// Decomposes the columns of all terms; a rank below their number means that the terms cannot be
+  /// separated.
   Eigen::ColPivHouseholderQR<MatrixXd> decomposed() const {
     Eigen::ColPivHouseholderQR<MatrixXd> qr(
         of_unit_length(CourseWhitening(data_, noise_).of(chosen().columns)));
@@ -217,7 +220,7 @@ class CourseFit {
     return "these readings cannot separate the effects of the model";
   }
 
-  /// Of coefficients and searched shapes, of the linearised problem.
+  /// Computes u of the coefficients and of the searched shapes from the linearised problem.
   void uncertainties(const CourseModel& model, const VectorXd& x, Fit& out) const {
     const MatrixXd& a = model.columns;
     CourseModel linearised = model;
@@ -280,12 +283,13 @@ class CourseFit {
   const CourseData& data_;
   std::vector<Term> terms_;
   CourseNoise noise_;
-  std::vector<std::vector<Quantity>> of_;  ///< what the coefficients of each term are
+  std::vector<std::vector<Quantity>> of_;  ///< quantities of the coefficients of each term
   std::vector<char> searched_;
   std::vector<const std::vector<CourseColumns>*> grids_;
   std::vector<CourseColumns> chosen_;
   std::optional<CoursePool> pool_;
-  std::vector<std::vector<std::vector<Index>>> places_;  ///< in the pool: of each term and shape
+  /// pool indices of the columns, by term and shape
+  std::vector<std::vector<std::vector<Index>>> places_;
   std::optional<CourseSides> sides_;
 };
 

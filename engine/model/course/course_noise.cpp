@@ -56,7 +56,8 @@ MatrixXd CourseWhitening::of(MatrixXd columns) const {
 
 namespace {
 
-/// Every noise that is searched: its correlation time as a part of the test.
+/// Calls `visit` for every combination of correlation time and scatter that is searched; the
+/// correlation time is the duration of the test divided by `part_of_test`.
 template <class Visit>
 void for_each_noise(const CourseData& data, const CourseModel& model, const MatrixXd& displacements,
                     const Visit& visit) {

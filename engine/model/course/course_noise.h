@@ -3,63 +3,69 @@
 
 #include "course_data.h"
 
-/// Noise of displacements over time: what no channel explains repeats itself from bin to bin.
+/// Noise of displacements over time, which is correlated from bin to bin.
 namespace nonio::model {
 
-/// Wandering with an exponential correlation in time, and scatter that is new in each bin.
+/// Noise that is the sum of a part with exponential correlation in time and of a part that is
+/// independent in each bin.
 struct CourseNoise {
-  double correlation_time;  ///< of the wandering, s
-  double scatter = 0.0;     ///< variance of the scatter / variance of the wandering
+  double correlation_time;  ///< correlation time of the correlated part, s
+  double scatter = 0.0;     ///< variance of the independent part / variance of the correlated part
 };
 
-/// The noise with which effects are fitted and searched, but for its scatter.
+/// Returns the noise with which effects are fitted and searched, with scatter 0.
 CourseNoise noise_of_fit(const CourseData& data);
 
-/// Generalised least squares: after it the noise of a column is independent from bin to bin, and the
-/// column has nothing of an unknown zero. Unit: that of the column, for wandering of variance 1.
-/// Source: Kalman 1960; Harvey, Forecasting, structural time series models and the Kalman filter, 3.4.
+/// Whitens columns for generalised least squares: the noise of the result is independent from bin
+/// to bin, and the result contains no unknown zero. Unit: that of the column, scaled so that the
+/// correlated part of the noise has variance 1. Source: Kalman 1960; Harvey, Forecasting,
+/// structural time series models and the Kalman filter, 3.4.
 class CourseWhitening {
  public:
   CourseWhitening(const CourseData& data, const CourseNoise& noise);
 
   MatrixXd of(MatrixXd columns) const;
-  /// Half the logarithm of the determinant of the covariance.
+  /// Half the natural logarithm of the determinant of the noise covariance.
   double half_log_determinant() const { return half_log_determinant_; }
-  /// Variance of the zero / variance of the wandering.
+  /// Variance of the zero / variance of the correlated part of the noise.
   double variance_of_zero() const { return variance_of_zero_; }
 
  private:
-  std::vector<double> follows_, gain_, scale_;  ///< of each bin
-  VectorXd zero_;                               ///< direction of a zero, unit length
+  /// for each bin: decay to the next bin, Kalman gain, 1 / standard deviation
+  std::vector<double> follows_, gain_, scale_;
+  VectorXd zero_;  ///< whitened column of ones, scaled to unit length
   double half_log_determinant_ = 0.0, variance_of_zero_ = 0.0;
 
   void filter(MatrixXd& columns) const;
 };
 
-/// Columns and what the coefficient of each is.
+/// Columns of a model, and the quantity of each coefficient.
 struct CourseModel {
   MatrixXd columns;  ///< bins x k
   std::vector<Quantity> of{};
 
-  /// Adds columns of a term whose coefficients are these; the last one is that of all further ones.
+  /// Appends the columns of a term; `quantities` are those of its coefficients, and the last one
+  /// applies to all further columns.
   void add(const MatrixXd& more, const std::vector<Quantity>& quantities);
 };
 
-/// The scatter with most evidence in addition to these columns.
+/// Returns the value of `CourseNoise::scatter` with the largest evidence for these columns.
 double most_likely_scatter(const CourseData& data, const CourseNoise& noise,
                            const CourseModel& model);
 
-/// - ln of the evidence of these columns with the most likely noise, in the mean over displacements.
+/// Returns -ln of the evidence of these columns with the most likely noise, averaged over the
+/// displacements.
 double likely_cost(const CourseData& data, const CourseModel& model);
 
-/// What the fit of some columns does not know.
+/// Uncertainties that remain after a fit of some columns.
 struct CourseUncertainty {
-  double s = 0.0;       ///< standard deviation of a displacement that the columns do not explain, m
+  /// standard deviation of the part of the displacement that the columns do not explain, m
+  double s = 0.0;
   double zero = 0.0;    ///< standard uncertainty of the zero, m
-  MatrixXd covariance;  ///< of the coefficients of the columns
+  MatrixXd covariance;  ///< covariance matrix of the coefficients
 };
 
-/// With the most likely noise of this part's displacement.
+/// Returns the uncertainties with the noise that is most likely for the first displacement.
 CourseUncertainty uncertainty_of(const CourseData& data, const CourseModel& model);
 
 }  // namespace nonio::model

@@ -11,7 +11,8 @@ namespace {
 
 // docs/dev/constants.md, M40.
 constexpr double most_displacements = 3.0;
-constexpr double first_ridge = 1e-3;  // of the variance of the displacements
+// first value of the ridge, in units of the variance of the displacements
+constexpr double first_ridge = 1e-3;
 
 VectorXd picked(const MatrixXd& of, Index column, const std::vector<Index>& rows) {
   VectorXd out(static_cast<Index>(rows.size()));

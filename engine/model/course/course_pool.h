@@ -9,56 +9,61 @@
 
 #include "course_noise.h"
 
-/// Many columns over time, of which sets are judged by their evidence.
+/// Evaluates the evidence of many sets of columns over time.
 namespace nonio::model {
 
 struct CourseSides;
 
-/// Columns, each once, and their products under a noise that is correlated in time. Coefficients have
-/// a normal prior as wide as a body allows: half of 50 um/K, or three times what the displacement
-/// does.
+/// A pool of distinct columns, and their products under noise that is correlated in time. Each
+/// coefficient has a normal prior with the largest plausible standard deviation: half of 50 um/K,
+/// or the value that gives three times the scatter of the displacement.
 class CoursePool {
  public:
-  /// Scatter that is searched (`CourseNoise`).
+  /// Searched values of `CourseNoise::scatter`, the ratio of independent to correlated variance.
   static constexpr std::array scatters{0.0, 1.0, 30.0, 1000.0};
 
   CoursePool(const CourseData& data, const CourseNoise& noise);
 
-  /// Where the columns are; bins x k. `of`: what their coefficients are; the last one counts for all
+  /// Adds columns (bins x k) and returns their indices in the pool; a column that it already
+  /// contains is not added again. `of`: quantities of the coefficients; the last one applies to all
   /// further columns.
   std::vector<Index> add(const MatrixXd& columns, const std::vector<Quantity>& of);
-  /// Before any other call.
+  /// Computes the products of all columns. Call it after the last `add` and before any other
+  /// member.
   void finish();
 
-  /// - ln of the evidence of these columns for each side. The zero, the coefficients and the variance
-  /// of the noise are integrated out.
+  /// Returns -ln of the evidence of these columns for each side, with the zero, the coefficients
+  /// and the variance of the noise integrated out.
   Eigen::RowVectorXd cost(const std::vector<Index>& columns, const CourseSides& sides) const;
-  /// Coefficients of the columns as they were added: columns x sides.
+  /// Returns the coefficients of the unscaled columns: columns x sides.
   MatrixXd coefficients(const std::vector<Index>& columns, const CourseSides& sides) const;
-  /// Of the noise that the columns leave of the first side, m^2.
+  /// Returns the variance of the noise when the columns are fitted to the first side, m^2.
   double variance(const std::vector<Index>& columns, const CourseSides& sides) const;
-  /// Of the coefficients of the columns as they were added, for noise of unit variance; `variance`:
-  /// that of the noise, for the prior.
+  /// Returns the covariance of the coefficients of the unscaled columns for noise of unit variance.
+  /// `variance`: variance of the noise, m^2, which sets the weight of the prior.
   MatrixXd covariance(const std::vector<Index>& columns, double variance) const;
-  /// What these columns leave of displacements, bins x displacements.
+  /// Returns the residuals after these columns are fitted to displacements, bins x displacements.
   MatrixXd remainder(const std::vector<Index>& columns, const MatrixXd& displacements) const;
-  /// RMS of blocks of one side that are left out, each less its own mean, m.
+  /// Cross-validation: RMS of one side over blocks, each predicted from the other blocks and
+  /// reduced by its own mean, m.
   double left_out(const std::vector<Index>& columns, const CourseSides& sides, Index side) const;
 
   static constexpr std::size_t most_columns = 6;
 
-  /// What is added to `columns` one by one, whatever adds most evidence.
+  /// Result of a greedy search that adds columns to `columns` one by one, each time the one with
+  /// the largest gain of evidence.
   struct Greedy {
     std::vector<Index> added;
-    double gain = 0.0;      ///< of evidence, at best, less the penalty for each of them
-    double variance = 0.0;  ///< of the noise after the last one
+    /// largest gain of ln evidence after any number of columns, each reduced by the penalty
+    double gain = 0.0;
+    double variance = 0.0;  ///< variance of the noise after the last added column, m^2
   };
-  /// For sides [from, from + count), which have the same columns.
+  /// Searches for sides [from, from + count) together, with the same columns.
   Greedy greedy(const std::vector<Index>& columns, const CourseSides& sides, Index from,
                 Index count) const;
-  /// Variance of the noise / variance of a coefficient in units of its prior, m^2.
+  /// Variance of the noise for a coefficient that is scaled by its prior, m^2: the ridge parameter.
   double ridge() const { return ridge_; }
-  /// ln of the number of columns: what one of them must add.
+  /// Returns ln of the number of columns: the evidence that each additional column must exceed.
   double penalty() const;
 
   const CourseData& data() const { return data_; }
@@ -73,27 +78,31 @@ class CoursePool {
 
   const CourseData& data_;
   CourseWhitening whitening_;
-  std::vector<VectorXd> columns_;  ///< times their priors
+  /// added columns, multiplied by the standard deviation of their prior
+  std::vector<VectorXd> columns_;
   std::vector<double> prior_;
   std::map<std::pair<double, double>, std::vector<Index>> places_;
   MatrixXd raw_, white_, products_;
-  /// Products in each block: of the white columns, and of the columns less their means there.
+  /// Products of the columns within each block: of the whitened columns, and of the columns reduced
+  /// by their means in the block.
   struct Blocks {
     std::vector<MatrixXd> white, centred;
   };
   const Blocks& blocks() const;
-  mutable std::optional<Blocks> blocks_;  ///< made when blocks are left out
-  double sd_ = 0.0;                       ///< of the displacements, m
-  double ridge_ = 0.0;  ///< variance of the noise / variance of a coefficient, m^2
+  mutable std::optional<Blocks> blocks_;  ///< computed at the first cross-validation
+  double sd_ = 0.0;                       ///< largest standard deviation of a displacement, m
+  double ridge_ = 0.0;  ///< variance of the noise / variance of a scaled coefficient, m^2
 };
 
-/// Products of a pool with displacements: the same for many displacements at once.
+/// Products of a pool's columns with displacements, computed once for many sets of columns.
 struct CourseSides {
-  MatrixXd products;           ///< pool x displacements
-  Eigen::RowVectorXd squares;  ///< of each displacement, m^2
+  /// products of the pool's columns with the displacements: pool x displacements
+  MatrixXd products;
+  Eigen::RowVectorXd squares;  ///< whitened sum of squares of each displacement, m^2
   struct Blocks {
-    std::vector<MatrixXd> white, centred;             ///< as of the pool
-    std::vector<Eigen::RowVectorXd> centred_squares;  ///< of each block, m^2
+    std::vector<MatrixXd> white, centred;  ///< as in CoursePool::Blocks, with the displacements
+    /// sum of squares in each block about its mean, m^2
+    std::vector<Eigen::RowVectorXd> centred_squares;
   };
 
   CourseSides(const CoursePool& pool, MatrixXd displacements);
@@ -101,7 +110,7 @@ struct CourseSides {
 
  private:
   MatrixXd displacements_, white_;
-  mutable std::optional<Blocks> blocks_;  ///< made when blocks are left out
+  mutable std::optional<Blocks> blocks_;  ///< computed at the first cross-validation
 };
 
 }  // namespace nonio::model

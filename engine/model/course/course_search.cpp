@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which effects a course is missing: sets of at most six, judged by their evidence under noise that is
-// correlated in time. What such a search finds where there is no cause is found by the same search in
-// copies of the remainder whose phases are random (Theiler et al. 1992).
+// Searches the effects that the model of a course lacks: sets of at most six, compared by their
+// evidence under noise that is correlated in time. What the search would find by chance is
+// determined by the same search in surrogates of the residual with random phases (Theiler et al.
+// 1992).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,30 +20,31 @@ namespace nonio::model {
 
 namespace {
 
-using Set = std::vector<std::size_t>;  // of entries, ascending
+using Set = std::vector<std::size_t>;  // entry indices, ascending
 
 // docs/dev/constants.md, M40.
 constexpr std::size_t most_terms = 6, kept_sets = 12, copies = 100, fitted_anew = 5;
-constexpr double same_rms = 1.05;  // noise of two explanations that cannot be separated
+constexpr double same_rms = 1.05;  // RMS ratio up to which two explanations are not separable
 constexpr double named_p = 0.01;
-constexpr double of_floor = 1.5;  // what noise explains
+constexpr double of_floor = 1.5;  // RMS up to this multiple of the floor is explained by noise
 constexpr std::size_t most_instances = 64;
 
-/// A shape of an effect that is not in the model.
+/// One shape of an effect that is not in the model.
 struct Entry {
   std::size_t term;
   std::vector<double> shape;
-  MatrixXd made;               ///< its columns in the bins
-  std::vector<Index> columns;  ///< of the pool
+  MatrixXd made;               ///< columns of this shape in the bins
+  std::vector<Index> columns;  ///< indices in the pool
 };
 
-/// What columns show: evidence that they add, and by how much ln(RMS) of what is left out falls with
-/// them.
+/// Support for added columns: the gain of ln evidence, and the decrease of ln(RMS) of the
+/// cross-validation.
 struct Shown {
   double evidence, fall;
 };
 
-/// What a search finds in copies of a remainder. Largest of many: a Gumbel distribution.
+/// Distribution of the largest gain that a search finds in surrogates of a residual: a Gumbel
+/// distribution.
 struct InCopies {
   double at = 0.0, width = 0.0;
 
@@ -62,7 +64,7 @@ struct InCopies {
   }
 };
 
-/// p of what is shown, by either of the two (Bonferroni).
+/// The p-value of a gain by the better of two criteria, with Bonferroni correction.
 struct SearchInCopies {
   InCopies evidence, fall;
 
@@ -100,7 +102,8 @@ class CourseSearch {
 
   const Set& found() const { return set_; }
 
-  /// Ends with -1 if it has a column twice: then nothing can be fitted.
+  /// Returns the pool indices of the model's and the set's columns. The result ends with -1 if a
+  /// column occurs twice, because such a set cannot be fitted.
   std::vector<Index> columns_of(const Set& set) const {
     std::vector<Index> out = base_;
     for (const std::size_t e : set)
@@ -126,7 +129,7 @@ class CourseSearch {
                        [&](std::size_t e) { return entries_[e].term == term; });
   }
 
-  /// The best entry of each term in addition to `set`: {entry, level}.
+  /// Returns the best entry of each term in addition to `set`: {entry, level}.
   std::map<std::size_t, std::pair<std::size_t, double>> best_with(const Set& set) const {
     std::map<std::size_t, std::pair<std::size_t, double>> out;
     for (std::size_t e = 0; e < entries_.size(); ++e) {
@@ -138,7 +141,8 @@ class CourseSearch {
     return out;
   }
 
-  /// Effects of the same channel, which show only together: fast one way and slowly back.
+  /// Adds pairs of effects of the same channel, because a fast and an opposite slow response are
+  /// detected only together.
   void add_pairs(std::map<Set, double>& grown) const {
     for (std::size_t a = 0; a < entries_.size(); ++a)
       for (std::size_t b = a + 1; b < entries_.size(); ++b) {
@@ -152,8 +156,8 @@ class CourseSearch {
       }
   }
 
-  /// Of the best sets of each size that with most evidence under its most likely noise, less the
-  /// penalty for each of its effects.
+  /// Returns the set with the largest evidence under its most likely noise, reduced by the penalty
+  /// for each effect, among the best sets of each size.
   Set best() const {
     std::vector<Set> beam{{}};
     std::vector<std::pair<Set, double>> best{{{}, level_of({})}};
@@ -190,8 +194,8 @@ class CourseSearch {
     return best[chosen].first;
   }
 
-  /// What one more term would seem to improve in addition to `set` if the remainder had nothing to
-  /// do with any of them.
+  /// Returns the distribution of the gain by the best further term in addition to `set` if no
+  /// further effect exists.
   SearchInCopies chance_with(const Set& set) const {
     const std::vector<Index> columns = columns_of(set);
     const CourseSides sides = sides_of_copies(columns);
@@ -213,11 +217,12 @@ class CourseSearch {
     return {InCopies(gained), InCopies(fell)};
   }
 
-  /// ln(RMS) of blocks that are left out, in the mean over displacements that are searched together.
+  /// Returns ln(RMS) of the cross-validation of a set, averaged over displacements that are
+  /// searched together.
   double left_out(const Set& set) const { return left_out(columns_of(set), *sides_, 0); }
 
-  /// p of the search as a whole: what columns that are added one by one show in the readings, and
-  /// where there is no cause.
+  /// Returns the p-value of the search as a whole: compares the gain of columns added one by one to
+  /// the readings with the gain in surrogates.
   double p_of_search() const {
     const CourseSides sides = sides_of_copies(base_);
     std::vector<double> gained, fell;
@@ -242,14 +247,14 @@ class CourseSearch {
 
   Term term_of(std::size_t e) const { return catalogue_[entries_[e].term]; }
   const Entry& entry(std::size_t e) const { return entries_[e]; }
-  /// Of this displacement alone, m.
+  /// Returns the RMS of the cross-validation of this displacement alone, m.
   double left_out_with(const Set& set) const {
     const auto columns = columns_of(set);
     return has_twice(columns) ? std::numeric_limits<double>::infinity()
                               : pool_->left_out(columns, *sides_, 0);
   }
   double penalty() const { return pool_->penalty(); }
-  /// Differences of evidence below this do not separate two explanations.
+  /// Returns the difference of ln evidence below which two explanations are not separable.
   double same() const { return static_cast<double>(data_.size()) * std::log(same_rms); }
 
  private:
@@ -261,7 +266,7 @@ class CourseSearch {
     return sum / static_cast<double>(together());
   }
 
-  /// At best, with 1, 2, ... columns.
+  /// Returns the largest gain reached when columns are added one by one.
   Shown shown_one_by_one(const CourseSides& sides, Index from) const {
     const auto greedy = pool_->greedy(base_, sides, from, together());
     std::vector<Index> columns = base_;
@@ -292,7 +297,7 @@ class CourseSearch {
     sides_.emplace(*pool_, data_.displacements());
   }
 
-  /// The columns of the model and of a set.
+  /// Returns the columns of the model and of a set.
   CourseModel model_with(const Set& set) const {
     CourseModel out{MatrixXd(data_.size(), 0)};
     for (const Term& term : model_)
@@ -312,7 +317,8 @@ class CourseSearch {
     return {*pool_, made};
   }
 
-  /// The same spectrum of changes and the same coherence of displacements, other phases.
+  /// Returns a surrogate: the spectrum of its changes and the coherence between displacements are
+  /// those of `rest`, but its phases are random.
   MatrixXd copy_of(const MatrixXd& rest, SplitMix64& random) const {
     const Index n = rest.rows() - 1;
     std::vector<double> angle(static_cast<std::size_t>(n / 2 + 1));
@@ -350,7 +356,7 @@ class CourseSearch {
   Set set_;
 };
 
-/// Candidates and verdict from the best set.
+/// Derives candidates and the verdict from the best set.
 class CourseExplanation {
  public:
   CourseExplanation(const CourseData& data, const std::vector<Term>& model,
@@ -397,12 +403,13 @@ class CourseExplanation {
   }
 
  private:
-  /// What the best set loses without one of its effects, and the chance that noise shows as much.
+  /// One effect of the best set: the ln evidence lost without it, and the probability of such a
+  /// loss by chance.
   struct Member {
     std::size_t entry;
     double loss, p;
-    double alone = 0.0;     ///< evidence that it adds by itself
-    double predicts = 0.0;  ///< by how much ln(RMS) of what is left out falls with it alone
+    double alone = 0.0;     ///< gain of ln evidence as the only addition to the model
+    double predicts = 0.0;  ///< decrease of ln(RMS) of the cross-validation as the only addition
   };
 
   void judge_members() {
@@ -420,7 +427,7 @@ class CourseExplanation {
     const Set others = CourseSearch::without(set_, e);
     add(e, {member.alone, member.loss}, member.p);
     Candidate& c = out_.candidates.back();
-    // What takes its place as well, cannot be separated from it.
+    // An effect that can replace it with nearly equal evidence cannot be separated from it.
     for (const auto& [term, one] : search_.best_with(others))
       if (term != search_.entry(e).term && !search_.has_term(set_, term) &&
           one.second < all + search_.same())
@@ -429,7 +436,8 @@ class CourseExplanation {
     if (member.p < named_p) certain_.emplace_back(member.predicts, c.term.name());
   }
 
-  /// Evidence of an entry: as the only addition to the model, and within the best set.
+  /// Gain of ln evidence of an entry: as the only addition to the model, and in addition to the
+  /// best set.
   struct Gain {
     double alone, within;
   };
@@ -448,8 +456,8 @@ class CourseExplanation {
     out_.candidates.push_back(std::move(c));
   }
 
-  /// Fitted with the model: for the first ones, and those of the best set, with all shapes anew; for
-  /// the others the shapes stay as they were found.
+  /// Fits the candidate together with the model. `anew`: all shapes are searched again (first
+  /// candidates and members of the best set); otherwise the shapes are kept as found.
   void fit(Candidate& c, bool anew) {
     std::vector<Term> terms = anew ? model_ : out_.comparison.fit.terms;
     terms.push_back(c.term);
@@ -490,7 +498,7 @@ class CourseExplanation {
       }
       v.kind = Verdict::Kind::missing;
       v.effect = certain_.empty() ? best_.second : out_.certain.front();
-      // The verdict and its numbers are those of the first candidate.
+      // The verdict and its numbers must be those of the first candidate.
       std::stable_partition(out_.candidates.begin(), out_.candidates.end(),
                             [&](const Candidate& c) { return c.term.name() == v.effect; });
       for (const Candidate& c : out_.candidates)

@@ -31,7 +31,8 @@ void centre(MatrixXd& columns) {
   for (Index k = 0; k < columns.cols(); ++k) columns.col(k).array() -= columns.col(k).mean();
 }
 
-/// From when on windows of a twentieth of the time are larger than 2 u in the mean.
+/// Returns the time from which on the RMS of the prediction error in a window (a twentieth of the
+/// readings, at least 10) exceeds 2 u; none if it never does.
 std::optional<double> fails_from(const std::vector<double>& time, const Prediction& p) {
   const std::size_t n = time.size(), window = std::max<std::size_t>(10, n / 20);
   for (std::size_t from = 0; from + window <= n; from += window) {

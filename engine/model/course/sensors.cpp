@@ -13,7 +13,7 @@ namespace {
 // docs/dev/constants.md, M45.
 constexpr double small_loss = 1.1, known_well = 0.1;
 
-/// Columns of each term, and left-out RMS of any choice of terms.
+/// The columns of each term, and the RMS of the cross-validation of any choice of terms.
 class Terms {
  public:
   Terms(const Part& part, const std::vector<Term>& terms)
@@ -44,7 +44,8 @@ class Terms {
   std::optional<CourseSides> sides_;
 };
 
-/// Of an effect: one, two of a difference, none if it follows no channel.
+/// Returns the channels of an effect: one, two for a difference of channels, none if it follows no
+/// channel.
 std::vector<std::string> channels_of(const Term& term, const Observations& o) {
   const std::string& name = term.axis.name;
   if (o.channel(name) != nullptr) return {name};
@@ -86,7 +87,7 @@ class Worth {
     return all;
   }
 
-  /// Terms all of whose channels are there, and those that need none.
+  /// Selects the terms whose channels are all in `channels`, and the terms that need none.
   std::vector<bool> with(const std::vector<std::string>& channels) const {
     std::vector<bool> out;
     for (const auto& of : of_term_)
@@ -96,7 +97,8 @@ class Worth {
     return out;
   }
 
-  /// One channel less at a time, whichever is missed least.
+  /// Removes channels one at a time, each time the one whose removal increases the RMS least, as
+  /// long as the loss is small.
   void smallest() {
     out_.smallest = channels_;
     out_.rms_smallest = out_.rms;
@@ -112,7 +114,7 @@ class Worth {
     }
   }
 
-  /// The source of which most is lost.
+  /// Finds the source (a channel that is not a temperature) whose removal increases the RMS most.
   void unseen() {
     for (const Sensors::One& one : out_.used) {
       const auto* channel = part_.table.channel(one.channel);

@@ -18,10 +18,10 @@ Vector less(Vector a, const Vector& b) {
 
 struct Ball {
   Vector at{};
-  std::size_t row = 0;  // of its first coordinate
+  std::size_t row = 0;  // row of its first coordinate
 };
 
-/// One ball for each three rows, which sense x, y and z.
+/// Combines each three rows, which sense x, y and z, into one ball centre.
 std::vector<Ball> gathered(const Observations& o) {
   std::vector<Ball> balls;
   for (std::size_t i = 0; i + 2 < o.size(); i += 3) {
@@ -32,7 +32,7 @@ std::vector<Ball> gathered(const Observations& o) {
   return balls;
 }
 
-/// Mean of the centres at each angle.
+/// Returns the mean centre at each angle.
 std::map<double, math::BallCentre> mean_centres(const Observations& o,
                                                 const std::vector<Ball>& balls) {
   std::map<double, math::BallCentre> places;
@@ -80,7 +80,8 @@ std::optional<Part> balls_of(const Observations& read, const Axis& axis, const s
       const auto& approach = read.axes.front().approach;
       o.axes[0].position.push_back(angle);
       o.axes[0].approach.push_back(approach.empty() ? std::int8_t{1} : approach[ball.row]);
-      // On the circle itself: the noise of readings makes no effect independent of another.
+      // Use positions on the circle itself, because measured positions would make dependent effects
+      // appear independent.
       for (std::size_t k = 0; k < 3; ++k)
         o.axes[1 + k].position.push_back(circle->centre[k] + circle->radius * out[k]);
       o.sense.push_back(sense);

@@ -8,9 +8,10 @@
 
 namespace nonio::model {
 
-/// Centres of a ball (a coordinate a reading, as readers give them) as what is left of the nearest
-/// circle: two lines, radial and axial. Radius and height are the zeros of the lines; tangential
-/// deviations show nothing of the axis and are left out. None if there is no circle to be found.
+/// Converts centres of a ball (one coordinate per reading, as readers return them) to deviations
+/// from the best-fit circle, as two lines, radial and axial. Radius and height are the zeros of the
+/// lines; tangential deviations contain no error of the axis and are omitted. None if no circle can
+/// be fitted.
 std::optional<Part> balls_of(const Observations& read, const Axis& axis, const std::string& id);
 
 }  // namespace nonio::model

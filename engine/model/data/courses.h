@@ -7,7 +7,7 @@
 
 namespace nonio::model {
 
-/// Adds a part for each displacement of a measurement over time.
+/// Appends a part for each displacement of a measurement over time.
 void append_courses(const Measurement& measurement, const Observations& read,
                     std::vector<Part>& parts);
 

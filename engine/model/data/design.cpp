@@ -8,7 +8,8 @@ namespace nonio::model {
 
 namespace {
 
-/// Errors along an axis as readings sense them that look in another direction.
+/// Multiplies errors along an axis by the component of each reading's direction of sensing along
+/// it.
 void project(const Observations& o, const Axis& axis, MatrixXd& columns) {
   const std::size_t k = coordinate_of(axis.name);
   if (axis.rotary || k > 2) return;
@@ -16,7 +17,8 @@ void project(const Observations& o, const Axis& axis, MatrixXd& columns) {
     columns.row(i) *= o.sense_of(static_cast<std::size_t>(i))[k];
 }
 
-/// The columns in the rows of each group; of differences without the first.
+/// Copies the columns to a separate block for each group, 0 in the rows of the others; for
+/// differences the first group has no block.
 MatrixXd in_groups(const Observations& o, const Term& term, const MatrixXd& columns) {
   const Index first = term.differences ? 1 : 0, k = columns.cols();
   MatrixXd out =
@@ -92,7 +94,7 @@ Expected<std::vector<MatrixXd>> blocks_of(const Observations& o, const std::vect
   }
   if (lost != nullptr) lost->assign(terms.size(), 0);
   if (!curves) return blocks;
-  MatrixXd before(static_cast<Index>(o.size()), 0);  // orthonormal: what comes before a term
+  MatrixXd before(static_cast<Index>(o.size()), 0);  // orthonormal basis of the earlier terms
   for (std::size_t t = 0; t < terms.size(); ++t) {
     MatrixXd own = root.asDiagonal() * blocks[t];
     take_out_zeros(o, root, own);

@@ -19,16 +19,17 @@ namespace nonio::model {
 
 namespace {
 
-/// In which order the readings of one axis were taken.
+/// The order in which the readings of one axis were taken.
 struct Order {
-  std::vector<std::uint32_t> rows;  ///< of the table, first reading first
-  bool known = true;                ///< false: unknown; nothing follows from the time
-  bool assumed = false;             ///< the cycle of the standard, since the file's cannot be it
+  std::vector<std::uint32_t> rows;  ///< row indices, first reading first
+  bool known = true;                ///< if false, no conclusion from time is allowed
+  /// taken as the cycle of ISO 230-2, because the order of the file is impossible
+  bool assumed = false;
 };
 
 using Rows = std::vector<std::uint32_t>;
 
-/// One run in one direction, its rows as listed.
+/// Rows of each pass (run and direction), as listed.
 using Passes = std::map<std::pair<std::uint32_t, std::int8_t>, Rows>;
 
 Passes passes_of(const Observations& o) {
@@ -54,7 +55,7 @@ bool grouped(const Passes& passes) {
   return *high < *other_low || *other_high < *low;
 }
 
-/// Some pass is listed from its end to its begin.
+/// Whether a pass is listed from its end to its start.
 bool against_its_direction(const Observations& o, const Passes& passes) {
   const auto& position = o.axes.front().position;
   return std::any_of(passes.begin(), passes.end(), [&](const auto& entry) {
@@ -66,8 +67,9 @@ bool against_its_direction(const Observations& o, const Passes& passes) {
   });
 }
 
-/// Run by run, the direction that is listed first first, each pass along its direction. Runs are
-/// counted in each direction: the second group of a file may go on counting.
+/// Returns the rows in pendulum order: run by run, the direction that is listed first first, each
+/// pass along its direction. Runs are counted separately in each direction, because the second
+/// group of a file may continue the numbering.
 Rows pendulum(const Observations& o, const Passes& passes) {
   const auto& axis = o.axes.front();
   std::map<std::int8_t, std::uint32_t> count;
@@ -86,10 +88,11 @@ Rows pendulum(const Observations& o, const Passes& passes) {
   return rows;
 }
 
-/// `said` as in the manifest: "pendulum", "as-listed", "unknown", or empty. Times that every
-/// reading has count before all else. Without them and without a word: as listed, unless no machine
-/// can have run so: all of one direction before all of the other in several runs, or a pass listed
-/// against its own direction. Then the cycle of ISO 230-2 (there and back, run by run).
+/// Returns the order of the readings. If every reading has a time, the times decide. Otherwise
+/// `said`, from the manifest: "pendulum", "as-listed", "unknown", or empty. If it is empty, the
+/// order is as listed, unless no machine can have moved so: several runs with all readings of one
+/// direction before all of the other, or a pass listed against its direction. Then it is taken as
+/// the cycle of ISO 230-2 (forward and back, run by run).
 Order order_of(const Observations& o, const std::string& said) {
   Order out;
   out.rows.resize(o.size());
@@ -110,7 +113,7 @@ Order order_of(const Observations& o, const std::string& said) {
 }
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-constexpr double no_share = 1e-9;  // of a unit vector
+constexpr double no_share = 1e-9;  // smallest significant component of a unit vector
 
 int components(const Vector& sense) {
   return static_cast<int>(
@@ -122,7 +125,7 @@ bool moves(const Observations::AxisColumn& axis) {
   return *low < *high;
 }
 
-/// Everything but positions and lines.
+/// Appends the measured columns of `more`, but not positions and lines.
 void append_readings(Part& part, const Observations& more, const std::string& id) {
   Observations& to = part.table;
   const std::size_t before = to.size(), added = more.size();
@@ -135,7 +138,8 @@ void append_readings(Part& part, const Observations& more, const std::string& id
   to.missing += more.missing;
 }
 
-/// One axis's place in the readings of a measurement that may not have moved it.
+/// Returns the positions of one axis in a measurement. If the axis did not move, they are the
+/// position that the manifest states, else NaN.
 Observations::AxisColumn column_of(const std::string& axis, const Observations& o,
                                    const Measurement& m) {
   if (const auto* column = o.axis(axis)) {
@@ -157,7 +161,8 @@ Vector point_of(const Observations& o, std::size_t i) {
   return p;
 }
 
-/// Of a circle: the way round from its point at 0 deg, counter-clockwise.
+/// Appends the places of a circle: the arc length from its point at 0 deg, counter-clockwise, and
+/// the direction of travel.
 void append_angles(Part& part, const Observations& o, const Measurement& m) {
   double radius = 0.0;
   std::size_t u = 0, v = 1;
@@ -181,8 +186,8 @@ void append_angles(Part& part, const Observations& o, const Measurement& m) {
   }
 }
 
-/// Place of each reading along its line, and from which side it was reached: by the one axis that
-/// moves, or along the direction of sensing.
+/// Appends the place of each reading along its line, and the direction of approach: of the one axis
+/// that moves, or along the direction of sensing.
 void append_places(Part& part, const Observations& o, const Measurement& m) {
   std::vector<const Observations::AxisColumn*> moved;
   for (const auto& axis : o.axes)
@@ -202,7 +207,8 @@ void append_places(Part& part, const Observations& o, const Measurement& m) {
     }
     const Vector& sense = o.sense_of(i);
     Vector p = point_of(o, i);
-    for (std::size_t k = 0; k < 3; ++k)  // of three of four step diagonals not all at `from`
+    // three of the four step diagonals do not start with all axes at `from`
+    for (std::size_t k = 0; k < 3; ++k)
       p[k] -= (to[k] - from[k]) * sense[k] < 0.0 ? to[k] : from[k];
     part.along.push_back(dot(p, sense));
     double way = 0.0;
@@ -216,7 +222,7 @@ void append_lines(Observations& to, const Observations& more, const std::string&
   const std::size_t before = to.line.size();
   const auto first = static_cast<std::uint32_t>(to.lines.size());
   for (Observations::Line line : more.lines) {
-    // Two tables may both have a line "1"; in one part a name is one line.
+    // Two tables may both contain a line "1"; within a part, names of lines must be unique.
     if (std::any_of(to.lines.begin(), to.lines.end(),
                     [&](const auto& known) { return known.name == line.name; }))
       line.name = id + " " + line.name;
@@ -233,7 +239,8 @@ void append_lines(Observations& to, const Observations& more, const std::string&
 
 bool sensed_along_one_axis(const Observations& o) {
   if (o.axes.size() != 1 || o.axes.front().approach.size() != o.size()) return false;
-  if (o.angular) return o.axes.front().rotary;  // yaw of a linear axis is no position of it
+  // for example, yaw is not a deviation along its linear axis
+  if (o.angular) return o.axes.front().rotary;
   if (o.axes.front().rotary) return false;
   const std::size_t k = coordinate_of(o.axes.front().axis);
   for (std::size_t i = 0; i < o.size(); ++i) {
@@ -286,7 +293,8 @@ void append_run(Part& part, const Observations& listed, const Measurement& m) {
     to.angular = more.angular;
   }
   auto& axis = to.axes.front();
-  // Times of two measurements do not have one beginning: what lags is known within one only.
+  // Times of two measurements have different origins, so channels with a lag can be used with one
+  // measurement only.
   if (part.measurements.empty())
     to.channels = more.channels;
   else
@@ -295,7 +303,7 @@ void append_run(Part& part, const Observations& listed, const Measurement& m) {
   axis.approach.insert(axis.approach.end(), from.approach.begin(), from.approach.end());
   part.along = axis.position;
   part.way = axis.approach;
-  if (more.lines.size() > 1) {  // each with its own zero
+  if (more.lines.size() > 1) {  // each line has a zero of its own
     append_lines(to, more, m.id);
   } else {
     to.line.insert(to.line.end(), more.size(), static_cast<std::uint32_t>(to.lines.size()));
@@ -310,7 +318,7 @@ void append_space(Part& part, const Campaign& campaign, const std::vector<Observ
                   const std::vector<std::size_t>& members) {
   Observations& to = part.table;
   to.structure = campaign.machine.structure;
-  std::set<std::pair<std::size_t, std::string>> axes;  // in the order of the coordinates
+  std::set<std::pair<std::size_t, std::string>> axes;  // sorted by coordinate
   const auto add = [&](const std::string& axis) {
     if (const std::size_t k = coordinate_of(axis); k < 3) axes.insert({k, axis});
   };

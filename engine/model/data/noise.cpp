@@ -17,8 +17,9 @@ constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 constexpr double least_dof = 8.0;
 constexpr double most_neighbours = 0.95;
 
-/// The residuals of a pass of m readings with correlation rho after a polynomial of k terms in the
-/// order is fitted: of M = P V P the trace, the sum next to its diagonal, and the sum of squares.
+/// Moments of the residuals of a pass of m readings with correlation rho (covariance V), after a
+/// polynomial with k terms in the order is fitted (projection P): of M = P V P the trace, the sum
+/// of the elements next to the diagonal, and the sum of squares.
 struct Moments {
   double trace = 0.0, lagged = 0.0, squares = 0.0;
 };
@@ -55,7 +56,7 @@ Moments moments(Index m, Index k, double rho) {
   return {M.trace(), M.diagonal<1>().sum(), M.squaredNorm()};
 }
 
-/// Variance of the sum of products of neighbours of independent readings.
+/// Returns the variance of the sum of products of adjacent residuals for independent readings.
 double variance_of_products(Index m, Index k) {
   MatrixXd b = MatrixXd::Zero(m, m);
   b.diagonal<1>().setConstant(0.5);
@@ -63,8 +64,8 @@ double variance_of_products(Index m, Index k) {
   return 2.0 * without_powers(powers_of_order(m, k), b).squaredNorm();
 }
 
-/// AlikePasses that are alike: so many readings, of which so many powers are taken out. `share`: of
-/// how many of them, less what the means of their cells take.
+/// Passes grouped by number of readings and of fitted powers, and summed moments over all passes.
+/// `share_`: number of passes of each group, reduced for the means of their cells.
 class AlikePasses {
  public:
   AlikePasses(const Repeats& r, const std::vector<double>& weight) {
@@ -98,11 +99,12 @@ class AlikePasses {
   }
 
  private:
-  static constexpr Index longest = 60;  // of a longer one the ends matter no more
+  // longer passes are treated as this long, because the effect of their ends is negligible
+  static constexpr Index longest = 60;
   std::map<std::pair<Index, Index>, double> share_;
 };
 
-/// Products of neighbours in a pass, and squares.
+/// Sums over a table of products of adjacent residuals in a pass, and of squares.
 struct Products {
   double lagged = 0.0, squares = 0.0;
 };
@@ -120,7 +122,8 @@ Products products_of(const Repeats& r, const Saturated& s, const std::vector<dou
   return out;
 }
 
-/// What the products of neighbours over the squares are with each correlation, on a grid.
+/// Expected ratio of the sum of products of adjacent residuals to the sum of squares, as a function
+/// of the correlation, interpolated on a grid.
 class ExpectedRatio {
  public:
   explicit ExpectedRatio(const AlikePasses& passes) {
@@ -141,9 +144,9 @@ class ExpectedRatio {
   std::vector<double> ratio_;
 };
 
-/// The correlation of neighbours, from the products of neighbours over the squares. It is used
-/// where more than `least_seen` standard deviations are seen, and then drawn to 0 as far as few
-/// readings leave it open: normal, most are below `usual`.
+/// Estimates the correlation of adjacent readings from the ratio of products of adjacent residuals
+/// to squares. It is used if it exceeds `least_seen` standard deviations, and is then reduced
+/// towards 0 according to its uncertainty, by a normal prior with most values below `usual`.
 void find_neighbours(const Repeats& r, const Saturated& s, const std::vector<double>& weight,
                      Noise& noise) {
   // docs/dev/constants.md, M25.
@@ -159,7 +162,8 @@ void find_neighbours(const Repeats& r, const Saturated& s, const std::vector<dou
   const double z = (ratio - none.lagged / none.trace) / sd;
   if (!std::isfinite(z)) return;
   noise.p = 0.5 * std::erfc(z / std::sqrt(2.0));
-  if (z <= least_seen) {  // not used, so estimated coarsely: near 0 the ratio is a straight line
+  // not used, so a coarse estimate suffices: near 0 the ratio is linear in the correlation
+  if (z <= least_seen) {
     const Moments little = passes(0.05);
     const double slope = (little.lagged / little.trace - none.lagged / none.trace) / 0.05;
     noise.measured = std::clamp(z * sd / slope, -most_neighbours, most_neighbours);
@@ -176,8 +180,8 @@ void find_neighbours(const Repeats& r, const Saturated& s, const std::vector<dou
   noise.u_neighbours = noise.measured / z;
 }
 
-/// Sum of squares and degrees of freedom of each target's repeats, along the axis. A cell of one
-/// reading has neither: its residual is 0 whatever the noise is.
+/// Sum of squares and degrees of freedom of the repeats of each target, along the axis. A cell of
+/// one reading contributes to neither, because its residual is always 0.
 struct TargetScatter {
   std::vector<double> at, squares, dof;
 };
@@ -204,7 +208,7 @@ TargetScatter scatter_of(const Part& part, const Repeats& repeats, const Saturat
   return out;
 }
 
-/// What a stretch predicts for each reading.
+/// Sets the relative scatter of each reading from the range `noise.stretch`.
 void spread_out(const Part& part, Noise& noise) {
   noise.rough.clear();
   for (const double x : part.table.axes.front().position)
@@ -213,15 +217,16 @@ void spread_out(const Part& part, Noise& noise) {
                               : noise.stretch->outside);
 }
 
-/// The stretch of targets whose scatter differs most from that of the others, if chance does not
-/// give such a one: F-test of the two variances, times the number of stretches.
+/// Finds the range of targets whose scatter differs most from that of the others, if it is
+/// significant: F-test of the two variances, corrected for the number of ranges.
 void find_stretch(const Part& part, const Repeats& repeats, const Saturated& s,
                   const std::vector<double>& weight, Noise& noise) {
   constexpr std::size_t fewest = 3, most_targets = 400;
   // docs/dev/constants.md, M26.
   constexpr double least_ratio = 1.5, by_chance = 0.005;
   const double rho2 = noise.in_repeats * noise.in_repeats;
-  const double independent = (1.0 - rho2) / (1.0 + rho2);  // squares of neighbours go together
+  // squares of correlated neighbors are correlated, too
+  const double independent = (1.0 - rho2) / (1.0 + rho2);
   if (part.kind != Part::Kind::axis || !(s.dof >= 2.0 * least_dof)) return;
   const TargetScatter scatter = scatter_of(part, repeats, s, weight, s.dof * independent);
   const std::size_t targets = scatter.at.size();
@@ -233,7 +238,7 @@ void find_stretch(const Part& part, const Repeats& repeats, const Saturated& s,
   }
   const double all = squares.back(), n = dof.back();
   const double stretches = 0.5 * static_cast<double>(targets * targets);
-  double best = 12.0;  // smaller values occur by chance in one of 2000 stretches
+  double best = 12.0;  // smaller values occur by chance in one of 2000 ranges
   for (std::size_t a = 0; a + fewest <= targets; ++a)
     for (std::size_t b = a + fewest; b <= targets; ++b) {
       const double in = squares[b] - squares[a], f = dof[b] - dof[a];
@@ -256,7 +261,7 @@ void find_stretch(const Part& part, const Repeats& repeats, const Saturated& s,
   if (noise.stretch) spread_out(part, noise);
 }
 
-/// Inside and outside of a known stretch anew, from what is left with their weights.
+/// Estimates the scatter inside and outside of a known range again, from the weighted residuals.
 void measure_stretch(const Part& part, const Repeats& repeats, const Saturated& s,
                      const std::vector<double>& weight, Noise& noise) {
   const TargetScatter scatter = scatter_of(part, repeats, s, weight, s.dof);
@@ -283,7 +288,8 @@ double digit_of(const Observations& o) {
   for (std::size_t i = 1; i < value.size(); ++i)
     if (value[i] - value[i - 1] > same) step = std::min(step, value[i] - value[i - 1]);
   if (!std::isfinite(step)) return 0.0;
-  // The smallest step carries the rounding of two values; the whole span measures it better.
+  // The smallest step contains the rounding of two values; the whole span determines it more
+  // accurately.
   const double steps = std::round((value.back() - value.front()) / step);
   if (!(steps >= 1.0) || steps > 1e6) return 0.0;
   step = (value.back() - value.front()) / steps;
@@ -309,7 +315,7 @@ Noise noise_of(const Part& part, const Repeats& repeats, const std::vector<doubl
   find_stretch(part, repeats, left, weight, noise);
   if (!noise.stretch) return noise;
   std::vector<double> with = with_scatter(weight, noise);
-  // What a pass shares carries scatter of the stretch to the others: less with its weights.
+  // Pass terms carry scatter of the range to other readings, less so with its weights; iterate.
   for (int round = 0; round < 3; ++round) {
     left = saturate(repeats, part.table.deviation, with);
     measure_stretch(part, repeats, left, weight, noise);
@@ -329,7 +335,8 @@ std::optional<NoiseFloor> noise_floor(const Repeats& repeats, const Saturated& s
     const AlikePasses passes(repeats, weight);
     const Moments with = passes(noise.in_repeats), none = passes(0.0);
     variance *= none.trace / with.trace;
-    dof *= with.trace * with.trace / with.squares / none.trace;  // Satterthwaite
+    // effective degrees of freedom (Satterthwaite)
+    dof *= with.trace * with.trace / with.squares / none.trace;
     const Moments more = passes(std::min(noise.in_repeats + noise.u_neighbours, most_neighbours));
     by_neighbours = std::sqrt(with.trace / more.trace) - 1.0;
   }

@@ -10,45 +10,48 @@
 #include "nonio/model/comparison.h"
 #include "repeats.h"
 
-/// Correlation of the noise, from the residuals of repeats (docs/model.md).
+/// Estimates the correlation of the noise from the residuals of repeats (docs/model.md).
 namespace nonio::model {
 
-/// Largest step of which all readings are whole multiples from each other; 0 if there is none.
+/// Returns the largest step of which all differences of readings are integer multiples; 0 if there
+/// is none.
 double digit_of(const Observations& o);
 
-/// Weights of the readings with their scatter: `weight` over the square of `rough`.
+/// Returns the weights divided by the square of the relative scatter `rough` of each reading.
 std::vector<double> with_scatter(const std::vector<double>& weight, const Noise& noise);
 
-/// The stretch of targets that scatters differently and the correlation of neighbours, both from
-/// what the repeats leave: no model of the catalogue is in it.
+/// Estimates, from the residuals of repeats alone, the range of targets with a different scatter
+/// and the correlation of adjacent readings. No model of the catalogue is used.
 Noise noise_of(const Part& part, const Repeats& repeats, const std::vector<double>& weight);
 
-/// `saturated` with the weights of `with_scatter`. What passes share takes some of what neighbours
-/// share with it; the floor is what it would be without.
+/// Returns the scatter of repeats with the weights of `with_scatter`. The pass terms of `saturate`
+/// absorb a part of the correlation of adjacent readings; the result is corrected for this.
 std::optional<NoiseFloor> noise_floor(const Repeats& repeats, const Saturated& saturated,
                                       const std::vector<double>& weight, const Noise& noise);
 
-/// `noise` with a zero that is not steady, or with other neighbours than repeats show, where what
-/// these terms (their shapes given) leave is more likely so: restricted likelihood (Patterson and
-/// Thompson 1971) over its kinds and sizes.
+/// Returns `noise` with a random zero, or with a stronger correlation of adjacent readings, if this
+/// makes the residuals of these terms (with their shapes) more likely: restricted likelihood
+/// (Patterson and Thompson 1971), maximised over kinds and sizes.
 Noise with_zero(const Observations& o, const std::vector<Term>& terms,
                 const std::vector<double>& weight, const Noise& noise);
 
-/// n ln(squares/n) + ln|V| of a model together with a zero that is not steady, minimised over its
-/// size: `Workbench::State::criterion` without its price.
+/// Minimum over the size of a random zero of n ln(squares/n) + ln|V| for a model together with this
+/// zero: `Workbench::State::criterion` without its penalty.
 struct Unsteady {
-  double walks = std::numeric_limits<double>::infinity();    ///< a zero that walks, row by row
-  double of_run = std::numeric_limits<double>::infinity();   ///< each run has its own
-  double of_pass = std::numeric_limits<double>::infinity();  ///< each run in one direction
-  double size_of_pass = 0.0;                                 ///< of the latter, over s
+  /// zero as a random walk from row to row
+  double walks = std::numeric_limits<double>::infinity();
+  double of_run = std::numeric_limits<double>::infinity();   ///< zero of its own for each run
+  double of_pass = std::numeric_limits<double>::infinity();  ///< zero of its own for each pass
+  double size_of_pass = 0.0;  ///< size of the zero of a pass, in units of s
   double least() const { return std::min(walks, of_run); }
 };
-/// `model` holds the model's columns; rows in their order, of weight 0 are left out.
+/// Computes the criterion for each kind of random zero. `model`: the model's columns, in the order
+/// of the rows; rows of weight 0 are ignored.
 Unsteady walk_with(const Observations& o, const std::vector<double>& weight, Noise noise,
                    const MatrixXd& model);
 
-/// The criterion of neighbours that are alike, of a steady zero, with the correlation that makes it
-/// least; 0 of |V| are the independent readings.
+/// Returns the criterion with correlated adjacent readings and a constant zero, minimised over the
+/// correlation; ln|V| is relative to independent readings.
 double criterion_of_neighbours(const Observations& o, const std::vector<double>& weight,
                                Noise noise, const MatrixXd& model);
 

@@ -74,7 +74,7 @@ class Parts {
     order_.push_back(m);
   }
 
-  /// An axis run that the diagonals of its state are explained together with.
+  /// Whether an axis run is explained together with the diagonals of its state.
   bool in_space(std::size_t m) const {
     const std::size_t k = coordinate_of(read_[m].axes.front().axis);
     if (!oblique_ || read_[m].angular || !coordinates_.contains(k)) return false;
@@ -103,12 +103,12 @@ class Parts {
       parts_.push_back(std::move(*part));
   }
 
-  /// All that is sensed in this state of the machine, once; without diagonals only what is sensed
-  /// in the same direction on the same axis.
+  /// Adds one part with all measurements in space of this state of the machine; without diagonals
+  /// only those with the same axis and direction of sensing.
   void add_space(std::size_t m) {
     if (done_.contains(m)) return;
     const std::string state = state_of(measurement(m));
-    if (state.empty() && oblique_ && states_.size() > 1) return;  // goes with every state
+    if (state.empty() && oblique_ && states_.size() > 1) return;  // it belongs to every state
     Part part;
     part.kind = Part::Kind::space;
     std::vector<std::size_t> members;
@@ -139,14 +139,14 @@ class Parts {
   const std::vector<Observations>& read_;
   std::map<std::size_t, Kind> kind_;
   std::vector<std::size_t> order_;
-  std::set<std::string> states_;       // of what is sensed across
-  std::set<std::size_t> coordinates_;  // that it moves or senses
+  std::set<std::string> states_;       // states of measurements sensed across the motion
+  std::set<std::size_t> coordinates_;  // coordinates that these measurements move or sense
   std::set<std::size_t> done_;
   bool oblique_ = false;
   std::vector<Part> parts_;
 };
 
-/// Whether an effect of one axis concerns this part.
+/// Whether effects of this axis can occur in this part.
 bool concerns(const Part& part, const Axis& axis) {
   if (part.kind == Part::Kind::axis) return true;
   if (part.kind == Part::Kind::balls || part.kind == Part::Kind::course || axis.rotary)
@@ -159,8 +159,8 @@ bool concerns(const Part& part, const Axis& axis) {
   return false;
 }
 
-/// Groups of the measurements of an axis by what the manifest states of each; null where it does not
-/// state it of all, or the same of all.
+/// Groups the measurements of an axis by a property that the manifest states; null if it is not
+/// stated for all, or is the same for all.
 std::shared_ptr<const Grouping> grouping_by(
     const std::string& by, const std::vector<const Measurement*>& measurements,
     const std::function<std::string(const Measurement&)>& text) {
@@ -176,8 +176,8 @@ std::shared_ptr<const Grouping> grouping_by(
   return out->name.size() > 1 ? out : nullptr;
 }
 
-/// By what the lines of an axis differ: what the manifest states first, then one by one. What
-/// divides them as another does is the same.
+/// Returns the ways to group the lines of an axis: by stated properties first, then by measurement.
+/// A property that gives the same groups as an earlier one is omitted.
 std::vector<std::shared_ptr<const Grouping>> groupings_of(const Part& part,
                                                           const Campaign& campaign) {
   std::vector<std::shared_ptr<const Grouping>> out;
@@ -201,8 +201,8 @@ std::vector<std::shared_ptr<const Grouping>> groupings_of(const Part& part,
   return out;
 }
 
-/// The term with groups; none if they divide other lines, or the effect predicts nothing in one of
-/// them.
+/// Returns the term with groups by the property `by`; none if the part has no such groups, or if
+/// the effect is a description or part of the set-up.
 std::optional<Term> grouped(const Part& part, Term term, const std::string& by) {
   if (term.effect->description || term.effect->is_nuisance) return std::nullopt;
   for (const auto& grouping : part.groupings)
@@ -219,15 +219,15 @@ std::string listed_groupings(const Part& part) {
   return out.empty() ? "two measurements of one axis" : out;
 }
 
-/// Effects of channels are of displacements over time, and of axis runs next to which channels were
-/// recorded; in the other parts there are none.
+/// Whether an effect can be in this part. Effects of channels occur in displacements over time, and
+/// in axis tests with recorded channels; no other part has them.
 bool can_be_in(const Part& part, const Effect& effect) {
   if (!effect.of_channels) return part.kind != Part::Kind::course;
   return part.kind == Part::Kind::course ||
          (part.kind == Part::Kind::axis && !part.table.channels.empty());
 }
 
-/// The term of an effect in this part; none if it is not of anything here.
+/// Returns the term of an effect in this part; none if the effect does not apply to it.
 std::optional<Term> term_of(const Part& part, const Effect& effect, const std::string& written) {
   if (!can_be_in(part, effect)) return std::nullopt;
   if (effect.instances) {

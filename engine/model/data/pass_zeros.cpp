@@ -37,11 +37,11 @@ ZerosOfPasses::ZerosOfPasses(const Part& part, const Repeats& r, const std::vect
     if (n[p] == 0.0) order.push_back(p);
     sum[p] += weight[i] * residual[i], n[p] += weight[i];
     run[p] = part.table.run.empty() ? 0 : part.table.run_of(i);
-    way[p] = i < part.way.size() ? part.way[i] : 0.0;  // a part made by hand has none
+    way[p] = i < part.way.size() ? part.way[i] : 0.0;  // parts made by tests have no direction
   }
   for (const std::size_t p : order)
     zeros_.push_back({sum[p] / n[p], way[p], n[p], r.side[p], run[p]});
-  // A pass of which every reading is suspect is not one of them.
+  // A pass in which every reading is suspect is not counted.
   std::vector<char> read(sides_, 0);
   for (const Zero& z : zeros_) read[z.side] = 1;
   degrees_ = static_cast<double>(zeros_.size()) -
@@ -93,7 +93,7 @@ bool ZerosOfPasses::unordered() const {
   return least * tests > by_chance;
 }
 
-/// Less the mean of each side.
+/// Subtracts the mean of each side.
 void ZerosOfPasses::centre(VectorXd& values) const {
   std::vector<double> sum(sides_, 0.0), n(sides_, 0.0);
   for (std::size_t p = 0; p < zeros_.size(); ++p)

@@ -9,23 +9,26 @@
 
 namespace nonio::model {
 
-/// Passes of the same side less the mean of their side: how many are independent.
+/// Returns the degrees of freedom of passes: their number minus the number of sides (line and
+/// direction).
 double degrees_of_passes(const Repeats&);
 
-/// Share of the sum of squares of columns (less their means) that is the same all through a pass.
+/// Returns the fraction of the sum of squares of columns (about their means) that is constant
+/// within each pass.
 double share_of_passes(const Repeats&, const MatrixXd& columns);
 
-/// Means of what is left of each pass, in the order in which the passes were made.
+/// Mean residual of each pass, in the order in which the passes were made.
 class ZerosOfPasses {
  public:
   ZerosOfPasses(const Part&, const Repeats&, const std::vector<double>& weight,
                 const std::vector<double>& residual);
 
-  /// Chance that passes of the same side differ so much, if readings of standard deviation s are all
-  /// that differs.
+  /// Returns the p-value of the differences between passes of the same side under the hypothesis
+  /// that readings scatter independently with standard deviation s.
   double p_of_differences(double s) const;
-  /// Whether they come in any order. A step between two passes, a trend, one run that differs, or any of
-  /// these of the reversal is a cause and no scatter. Few passes do not show it.
+  /// Whether the zeros of passes have no systematic order. A step between two passes, a trend, one
+  /// different run, or any of these in the reversal is a cause, not scatter. Few passes do not show
+  /// it.
   bool unordered() const;
 
  private:

@@ -18,7 +18,8 @@ namespace nonio::model {
 
 namespace {
 
-/// What is left of a group of `before` when it is divided by `by`; numbered by first appearance.
+/// Divides each group of `before` by the values `by`; the new groups are numbered by first
+/// appearance.
 std::vector<std::uint32_t> divided(const std::vector<std::uint32_t>& before,
                                    const std::vector<std::uint64_t>& by, std::size_t& groups) {
   struct Hash {
@@ -36,7 +37,7 @@ std::vector<std::uint32_t> divided(const std::vector<std::uint32_t>& before,
   return out;
 }
 
-/// Rows of each group, in their order, in one array.
+/// The rows of each group, in their order, stored in one array.
 class Members {
  public:
   Members(const std::vector<std::uint32_t>& group, std::size_t groups)
@@ -57,7 +58,7 @@ class Members {
   std::vector<std::uint32_t> rows_;
 };
 
-/// Median of values whose order may be changed.
+/// Returns the median; may reorder the values.
 double median_of(std::span<double> x) {
   const std::size_t half = x.size() / 2;
   if (x.size() <= 8)
@@ -78,7 +79,7 @@ Repeats::Repeats(const Observations& o) {
   for (std::size_t i = 0; i < n; ++i) line[i] = line_of(o, i);
   target = line;
   for (const auto& axis : o.axes) {
-    // 0.0 is added so that -0.0 is 0.0.
+    // Adding 0.0 converts -0.0 to 0.0.
     for (std::size_t i = 0; i < n; ++i)
       by[i] = std::bit_cast<std::uint64_t>(axis.position[i] + 0.0);
     target = divided(target, by, targets);
@@ -106,8 +107,8 @@ Repeats::Repeats(const Observations& o) {
 
 namespace {
 
-/// Columns of a pass over `order`: 1, z, z^2 as far as the pass is long enough; orthonormal in the
-/// weighted rows.
+/// Columns of a pass over `order`: 1, z, z^2 as far as the pass is long enough; orthonormal with
+/// the weights of the rows.
 struct PassColumns {
   MatrixXd weighted, plain;
 };
@@ -122,7 +123,7 @@ PassColumns columns_of_pass(const Rows& rows, const std::vector<double>& order, 
       b(static_cast<Index>(i), c) = c == 0   ? 1.0
                                     : c == 1 ? order[rows[i]]
                                              : order[rows[i]] * order[rows[i]];
-  // Gram-Schmidt with the weights, carried out on all rows.
+  // Gram-Schmidt with the weights, applied to all rows.
   MatrixXd wb = b;
   for (Index c = 0; c < k; ++c) {
     for (Index d = 0; d <= c; ++d)
@@ -180,7 +181,7 @@ Saturated saturate(const Repeats& r, const std::vector<double>& y,
   for (std::size_t c = 0; c < r.cells; ++c)
     cells_used += std::any_of(cells[c].begin(), cells[c].end(), [&](auto i) { return w(i) > 0.0; });
   out.dof = used - cells_used;
-  // What the passes of a side have in common is in its cells already.
+  // The part that all passes of a side share is already contained in the cell means.
   std::vector<Index> common(r.sides, 0);
   for (std::size_t p = 0; p < r.passes; ++p) {
     const Index columns = shared[p].plain.cols();
@@ -193,12 +194,13 @@ Saturated saturate(const Repeats& r, const std::vector<double>& y,
 
 namespace {
 
-/// Readings that are compared with each other: those of a target; where each of its cells has four
-/// readings those of a cell, so that a reversal that differs from target to target is no scatter.
+/// Groups of readings that are compared with each other: those of a target; if each cell of the
+/// target has four readings, those of a cell, so that a reversal that differs between targets does
+/// not count as scatter.
 struct Groups {
   std::vector<std::uint32_t> of;
   std::size_t count;
-  bool any_repeats = false;  ///< three readings or more in one of them
+  bool any_repeats = false;  ///< whether a group has at least three readings
   explicit Groups(const Repeats& r) : of(r.target), count(r.targets + r.cells) {
     std::vector<std::size_t> in_cell(r.cells, 0), in_group(count, 0);
     for (const std::uint32_t cell : r.cell) ++in_cell[cell];
@@ -212,12 +214,14 @@ struct Groups {
   }
 };
 
-/// What is left when the median of its target or cell and the running median of its pass are taken
-/// out of each reading, twice: no model, and a misread value spoils no other.
+/// Residuals after the median of its target or cell and the running median of its pass are
+/// repeatedly subtracted from each reading. This needs no model, and an outlier does not affect
+/// other readings.
 std::vector<double> polished(const Repeats& r, const std::vector<double>& y) {
   const Groups groups(r);
   const Members targets(groups.of, groups.count), passes(r.pass, r.passes);
-  // Where some are repeated, the others have their error still, and no neighbour is measured by it.
+  // If some targets are repeated, only their readings are used for the running median, because the
+  // others still contain the error of their target.
   const auto is_usable = [&](std::uint32_t i) {
     return !groups.any_repeats || targets[groups.of[i]].size() >= 3;
   };
@@ -251,7 +255,7 @@ std::vector<double> polished(const Repeats& r, const std::vector<double>& y) {
 std::vector<double> apart_from_others(const Repeats& r, const std::vector<std::uint32_t>& rows,
                                       const std::vector<double>& e) {
   const Groups groups(r);
-  // Of each group that is requested, its values in order: one left out moves the middle by one.
+  // Sort the values of each requested group; omitting one value shifts the median by one place.
   std::vector<std::size_t> asked(groups.count, 0);
   std::size_t lists = 0;
   for (const auto i : rows)
@@ -267,7 +271,7 @@ std::vector<double> apart_from_others(const Repeats& r, const std::vector<std::u
     const auto own =
         static_cast<std::size_t>(std::lower_bound(v.begin(), v.end(), e[i]) - v.begin());
     const auto other = [&](std::size_t k) { return v[k < own ? k : k + 1]; };
-    // One or two next to targets that were repeated: neither contradicts its repeats.
+    // A reading with too few repeats, next to repeated targets, cannot contradict its repeats.
     const bool alone = others < (groups.any_repeats ? 2U : 1U);
     out.push_back(alone ? (groups.any_repeats ? 0.0 : e[i])
                         : e[i] - (others % 2 == 1
@@ -279,8 +283,8 @@ std::vector<double> apart_from_others(const Repeats& r, const std::vector<std::u
 
 namespace {
 
-/// Deviations without what the set-up predicts of them (a mirror's tilt jumps from reading to
-/// reading): by least absolute residuals, which a misread value does not move much.
+/// Returns the deviations minus the predicted effects of the set-up (a mirror's tilt varies from
+/// reading to reading), fitted by least absolute residuals, which an outlier hardly affects.
 std::vector<double> without_set_up(const Observations& o, const std::vector<Term>& model) {
   std::vector<Term> set_up;
   for (const Term& term : model)
@@ -298,8 +302,9 @@ std::vector<double> without_set_up(const Observations& o, const std::vector<Term
   return e;
 }
 
-/// How much more than all readings those about each one scatter: of the targets next to it, by the
-/// median; 1 where it is not twice as much. A rough stretch is no row of misreadings.
+/// Returns, for each reading, the ratio of the scatter of the readings about it (targets next to
+/// it, by the median) to that of all; 1 if it is below 2. A range with more scatter is not a series
+/// of outliers.
 std::vector<double> rougher_than(double s, const Observations& o, const std::vector<double>& e) {
   constexpr std::size_t fewest = 16;
   // docs/dev/constants.md, M27.
@@ -310,7 +315,7 @@ std::vector<double> rougher_than(double s, const Observations& o, const std::vec
   std::vector<std::size_t> row(e.size());
   std::iota(row.begin(), row.end(), std::size_t{0});
   std::stable_sort(row.begin(), row.end(), [&](auto a, auto b) { return at[a] < at[b]; });
-  // Whole targets: three, and more until there are enough readings.
+  // Use whole targets: three, and more until there are enough readings.
   std::vector<std::size_t> first;
   for (std::size_t k = 0; k < row.size(); ++k)
     if (k == 0 || at[row[k]] != at[row[k - 1]]) first.push_back(k);
@@ -341,7 +346,8 @@ std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
   const std::size_t n = y.size();
   if (n < 10) return {};
   const std::vector<double> e = polished(r, y);
-  // Taking out medians takes out noise too: measured, 1.1 to 1.25 with 4 to 10 readings a target.
+  // Subtracting medians also removes noise: by a measured factor of 1.1 to 1.25 with 4 to 10
+  // readings per target.
   const double display = digit_of(o) / std::sqrt(12.0);
   const double s_rough = std::max(1.2 * math::robust_deviation(e), display);
   if (!(s_rough > 0.0)) return {};
@@ -364,7 +370,7 @@ std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
   const double dof = known ? left.dof : static_cast<double>(n) / 4.0;
   std::vector<double> in_cell(r.cells, 0.0);
   for (std::size_t i = 0; i < n; ++i) in_cell[r.cell[i]] += weight[i];
-  double least = 3.0;  // smallest t that would be named
+  double least = 3.0;  // smallest significant t
   // docs/dev/constants.md, M12.
   while (math::t_two_sided(least, dof) * static_cast<double>(n) > 0.01) least += 0.01;
   std::vector<Suspect> out;
@@ -372,7 +378,8 @@ std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
     const double others = in_cell[r.cell[i]];
     const bool repeated = known && others > 0.0;
     const double residual = repeated ? left.e[i] : e[i];
-    // A pass adds about 3 of its readings' worth of uncertainty, a cell 1 of its own.
+    // The pass terms increase the variance by about 0.2 of that of a reading, the mean of the cell
+    // by 1/n.
     const double sigma = s * rougher[i] * std::sqrt(1.0 + (repeated ? 1.0 / others + 0.2 : 0.3));
     const double t = residual / sigma;
     if (math::t_two_sided(t, dof) * static_cast<double>(n) > 0.01) continue;

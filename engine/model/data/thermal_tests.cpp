@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A body that is heated evenly and cools by its surface goes from whatever state to its end as 1 -
-// exp(-t/tau): a start that is warm, and a clock that starts later, change the amplitude (and what
-// a constant growth states), not tau. Several tests of one axis: mean of ln tau, weights 1/u^2.
+// A body that is heated evenly and cools by its surface approaches its final state from any initial
+// state as 1 - exp(-t/tau): a warm start, and a later origin of time, change the amplitude (and the
+// apparent constant growth), but not tau. Several tests of one axis: mean of ln tau, weights 1/u^2.
 #include "thermal_tests.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace nonio::model {
 
 namespace {
 
-/// Of one test; tau 0 where it gives none.
+/// Result of one test; `given` is false if it determines no time constant.
 struct OfTest {
   std::string measurement;
   double ln_tau = 0.0, u = 0.0;
@@ -31,7 +31,7 @@ OfTest of_test(const Measurement& m, const Observations& o) {
   const math::Track growth = math::growth(math::visits_of(o));
   if (growth.size() < 2) return out;
   const auto fit = math::time_constants(growth);
-  // The effects that need it have one time constant.
+  // The effects that use it have exactly one time constant.
   if (fit.answer != math::TimeConstants::Answer::resolved || fit.parts.size() != 1) return out;
   const auto& part = fit.parts.front();
   if (!(part.tau > 0.0) || !(part.u_tau > 0.0)) return out;

@@ -15,7 +15,8 @@ namespace {
 // docs/dev/constants.md, M22.
 constexpr std::size_t most_runs = 20, least_positions = 25;
 
-/// Group of each value when neighbours among the distinct ones are joined to at most `most` groups.
+/// Returns the group of each value, if adjacent distinct values are joined into at most `most`
+/// groups.
 std::vector<std::size_t> grouped(const std::vector<double>& values, std::size_t most) {
   std::vector<double> distinct = values;
   std::sort(distinct.begin(), distinct.end());
@@ -51,7 +52,7 @@ Observations thinned(const Observations& o, const std::vector<double>& weight) {
   const auto& axis = o.axes.front();
   std::vector<double> runs(o.run.begin(), o.run.end());
   runs.resize(o.size(), 1.0);
-  // So many means fit into `thin_beyond` on each side of each line.
+  // Number of means on each side of each line that fit into `thin_beyond`.
   const std::size_t means = thin_beyond / 2 / std::max<std::size_t>(o.lines.size(), 1);
   const auto run_group =
       grouped(runs, std::clamp<std::size_t>(means / least_positions, 2, most_runs));
@@ -96,7 +97,8 @@ Observations thinned(const Observations& o, const std::vector<double>& weight) {
     mean_into(out.humidity, o.humidity, i, row);
     mean_into(mean_squared_u, squared_u, i, row);
   }
-  // Rows whose target is in one bin get one position, or they would not repeat each other.
+  // Rows of one group of targets get one common position, otherwise they would not repeat each
+  // other.
   std::map<std::size_t, std::pair<double, double>> place;
   std::vector<std::size_t> group_of(count.size());
   for (const auto& [key, row] : row_of) {

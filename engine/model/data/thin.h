@@ -5,17 +5,19 @@
 
 namespace nonio::model {
 
-/// Longer tables are searched, and their positions described, from means of their readings.
+/// Tables with more readings are searched, and the places of their residuals tested, on means of
+/// readings.
 inline constexpr std::size_t thin_beyond = 6000;
 
-/// Means of readings that lie close together: of one line and direction, of neighbouring runs and
-/// neighbouring positions, as many as stay below `thin_beyond` rows where that leaves 2 runs and 25
-/// positions. Readings of weight 0 are left out. The noise of a mean is smaller; what varies slowly
-/// stays.
+/// Averages readings that are close together: of one line and direction, of adjacent runs and
+/// adjacent positions, so that fewer than `thin_beyond` rows remain, but at least 2 runs and 25
+/// positions. Readings of weight 0 are omitted. The noise of a mean is smaller; slow variations
+/// remain.
 Observations thinned(const Observations& o, const std::vector<double>& weight);
 Part thinned(const Part& part, const std::vector<double>& weight);
 
-/// Only tables of one axis can: the readings of several seldom lie close together.
+/// Whether readings can be averaged: only in tables of one axis, because readings in space are
+/// seldom close together.
 bool can_be_thinned(const Observations& o);
 
 }  // namespace nonio::model

@@ -7,7 +7,8 @@ namespace nonio::model {
 
 namespace {
 
-/// Covariance of the two states of a line: what neighbours share, and the level.
+/// Covariance of the two states of a line: the part correlated between adjacent readings, and the
+/// level.
 struct Covariance {
   double near = 1.0, both = 0.0, level = 0.0;
   bool begun = false;
@@ -46,7 +47,7 @@ void Whitening::filter(const Noise& noise, const Observations& o) {
     Step& s = step_[i];
     const std::uint32_t pass = noise.pass[i], run = o.run.empty() ? 1 : o.run[i];
     const bool other = !P.begun || (noise.zero == Zero::of_run ? P.run != run : P.pass != pass);
-    s.keep_near = P.begun ? rho : 0.0;  // the machine goes on from pass to pass
+    s.keep_near = P.begun ? rho : 0.0;  // the correlation continues from pass to pass
     s.keep_level = P.begun && !(own && other) ? 1.0 : 0.0;
     P.near = s.keep_near * s.keep_near * P.near + 1.0 - s.keep_near * s.keep_near;
     P.both *= s.keep_near * s.keep_level;

@@ -7,31 +7,33 @@
 
 namespace nonio::model {
 
-/// Rows of a table times their root weights and, where the noise is not independent, less what the
-/// rows before predict: what comes out is independent noise of one scatter. Each line by itself,
-/// rows in their order; rows of weight 0 become 0. The filter of a first-order autoregression in
-/// each line with a level: Durbin and Koopman, Time Series Analysis by State Space Methods, 4.3.
+/// Whitens rows of a table: multiplies them by their root weights and, if the noise is correlated,
+/// subtracts the prediction from earlier rows, so that the noise becomes independent with one
+/// standard deviation. Each line separately, rows in their order; rows of weight 0 become 0.
+/// Method: filter of a first-order autoregression with a level in each line (Durbin and Koopman,
+/// Time Series Analysis by State Space Methods, 4.3).
 class Whitening {
  public:
-  /// The noise as the repeats show it, which weights and tests have; a zero that walks or is
-  /// another one in each run is in u only, and stays visible as a place.
+  /// Returns the noise without its random zero, as repeats show it, for weights and tests. A random
+  /// zero enters only u; otherwise it would no longer be visible as a place of the residuals.
   static Noise of_repeats(Noise noise);
   Whitening(const Observations& o, const std::vector<double>& weight, const Noise& noise);
 
   MatrixXd operator()(const MatrixXd& columns) const;
-  /// Takes from whitened columns what an unknown zero of each line takes.
+  /// Removes from whitened columns the component that the unknown zero of each line absorbs.
   void take_out_zeros(MatrixXd& whitened) const;
-  /// Root weights; of independent noise all that is done to a row.
+  /// Root weights of the rows; for independent noise, whitening only multiplies by them.
   const VectorXd& root() const { return root_; }
   bool independent() const { return step_.empty(); }
-  /// ln of the determinant of the noise's correlations; with unknown zeros of the lines as of a
-  /// diffuse start.
+  /// ln of the determinant of the noise correlation; the unknown zeros of the lines have a diffuse
+  /// prior.
   double log_det() const { return log_det_; }
 
  private:
-  struct Step {  // one row
+  struct Step {  // filter coefficients of one row
     double gain_near = 0.0, gain_level = 0.0, over_root = 0.0;
-    double keep_near = 0.0, keep_level = 0.0;  // from the row before on its line
+    // factors for the state of the previous row on the line
+    double keep_near = 0.0, keep_level = 0.0;
     double loading = 0.0;
   };
   void filter(const Noise& noise, const Observations& o);
@@ -42,7 +44,7 @@ class Whitening {
   double log_det_ = 0.0;
 };
 
-/// Covariance of the readings' noise over s^2, dense; 0 for rows of weight 0.
+/// Returns the covariance matrix of the readings' noise divided by s^2; 0 for rows of weight 0.
 MatrixXd covariance_of(const Observations& o, const VectorXd& root, const Noise& noise);
 
 }  // namespace nonio::model

@@ -13,7 +13,7 @@ namespace {
 
 using Zero = Noise::Zero;
 
-/// Columns of a model as one matrix, each of unit length.
+/// Returns the columns of a model as one matrix, each of unit length.
 MatrixXd columns_of_model(const std::vector<MatrixXd>& blocks, Index rows) {
   MatrixXd out(rows, 0);
   for (const MatrixXd& block : blocks) {
@@ -24,13 +24,13 @@ MatrixXd columns_of_model(const std::vector<MatrixXd>& blocks, Index rows) {
   return out;
 }
 
-/// Restricted likelihood of what a model leaves.
+/// Restricted likelihood of the residuals of a model under a given noise.
 class Likelihood {
  public:
   Likelihood(const Observations& o, const MatrixXd& model, const std::vector<double>& weight)
       : o_(o), model_(model), weight_(weight) {}
 
-  /// -2 ln of it.
+  /// Returns -2 ln of the restricted likelihood.
   double operator()(const Noise& noise) const {
     const Whitening white(o_, weight_, noise);
     MatrixXd x = white(model_);
@@ -55,8 +55,9 @@ class Likelihood {
   const std::vector<double>& weight_;
 };
 
-/// Signs of a noise that is not as it is taken to be, from what a model leaves: score tests, by far
-/// cheaper than the likelihood. In standard deviations; where there is none, nothing is searched.
+/// Score tests for a deviation of the noise from its assumed form, computed from the residuals of a
+/// model; much cheaper than the likelihood. Results are in standard deviations; kinds of noise with
+/// a small score are not searched.
 class Signs {
  public:
   Signs(const Observations& o, const MatrixXd& model, const std::vector<double>& weight,
@@ -74,7 +75,7 @@ class Signs {
     variance_ = left_.squaredNorm() / dof_;
   }
 
-  /// Of a random share of each of these columns.
+  /// Score of a noise with random coefficients of these columns.
   double of(const MatrixXd& columns) const {
     MatrixXd z = white_(columns);
     white_.take_out_zeros(z);
@@ -86,7 +87,7 @@ class Signs {
     return (math::transposed_times(z, left_).squaredNorm() / variance_ - trace) / std::sqrt(spread);
   }
 
-  /// Of neighbours that are alike.
+  /// Score of a stronger correlation of adjacent readings.
   double of_neighbours() const {
     double found = 0.0, expected = 0.0, pairs = 0.0;
     for (Index i = 1; i < left_.size(); ++i) {
@@ -105,7 +106,7 @@ class Signs {
   double dof_ = 0.0, variance_ = 0.0;
 };
 
-/// A column for each group; neighbours share one where there are very many.
+/// Returns an indicator column for each group; adjacent groups share one if there are more than 60.
 MatrixXd of_groups(const std::vector<std::uint32_t>& group) {
   constexpr Index most = 60;
   std::map<std::uint32_t, Index> number;
@@ -119,7 +120,7 @@ MatrixXd of_groups(const std::vector<std::uint32_t>& group) {
   return out;
 }
 
-/// Steps of a walk, some readings taken together.
+/// Returns columns of step functions for a random walk, with steps at up to 24 readings.
 MatrixXd steps_of_walk(const Observations& o) {
   constexpr Index most = 24;
   const auto n = static_cast<Index>(o.size());
@@ -134,7 +135,7 @@ MatrixXd steps_of_walk(const Observations& o) {
   return out;
 }
 
-/// Kinds and sizes of a zero, tried one after the other.
+/// Tries kinds and sizes of a random zero, and keeps the most likely noise.
 class Search {
  public:
   Search(const Likelihood& likelihood, const Noise& noise, double worth)
@@ -146,7 +147,8 @@ class Search {
     for (const double rho : {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9}) {
       Noise with = noise_;
       with.neighbours = rho;
-      // A walk that is as likely is worse for u of what changes in time.
+      // If a random walk is equally likely, it is preferred, because it gives a larger u of effects
+      // in time.
       const double value = likelihood_(with) + less_likely;
       if (value < least_) least_ = value, best_ = with, likely_.clear();
       if (rho > noise_.neighbours && value > before) break;
@@ -155,7 +157,8 @@ class Search {
   }
 
   void zero(Zero kind, const std::vector<double>& sizes) {
-    constexpr double unlikely = 12.0;  // of -2 ln: of so many sizes none counts
+    // difference of -2 ln likelihood beyond which sizes are ignored
+    constexpr double unlikely = 12.0;
     std::vector<Tried> tried;
     double least = std::numeric_limits<double>::infinity();
     for (const double size : sizes) {
@@ -165,14 +168,14 @@ class Search {
       const double value = tried.back().value;
       if (value < least_) least_ = value, best_ = with, likely_.clear();
       least = std::min(least, value);
-      if (value > least + unlikely) break;  // beyond its minimum
+      if (value > least + unlikely) break;  // the minimum has been passed
     }
     if (best_.zero == kind && likely_.empty())
       likely_ = tried, whole_ = tried.size() == sizes.size();
   }
 
-  /// The most likely noise; its zero as large as it is in the mean over all likely sizes, since a
-  /// few runs leave that open: u is then what GUM-S1 (6.4.9.4) gives few values, and covers.
+  /// Returns the most likely noise. The size of its zero is averaged over all likely sizes, because
+  /// few runs leave it uncertain: u then corresponds to what GUM-S1 (6.4.9.4) gives for few values.
   Noise found() const {
     constexpr double open_beyond = 0.02;
     Noise out = best_;
@@ -196,7 +199,7 @@ class Search {
   const Noise& noise_;
   Noise best_;
   double least_;
-  std::vector<Tried> likely_;  // of the best kind
+  std::vector<Tried> likely_;  // likely sizes of the best kind
   bool whole_ = false;
 };
 
@@ -205,10 +208,11 @@ class Search {
 Noise with_zero(const Observations& o, const std::vector<Term>& terms,
                 const std::vector<double>& weight, const Noise& noise) {
   // docs/dev/constants.md, M28.
-  constexpr double worth = 1.5;    // an uncertainty too small is worse than one too large
-  constexpr double no_sign = 1.2;  // score, where a gain of `worth` is hardly to be had
+  // bonus for a random zero, because an uncertainty that is too small is worse than one too large
+  constexpr double worth = 1.5;
+  constexpr double no_sign = 1.2;  // score below which a gain of `worth` is improbable
   // docs/dev/constants.md, M31.
-  constexpr std::size_t most = 1500;  // beyond, the covariance of all readings is too large
+  constexpr std::size_t most = 1500;  // above, the covariance matrix of all readings is too large
   if (o.size() > most || o.size() < 10 || noise.pass.empty()) return noise;
   const auto blocks = blocks_of(o, terms, root_weights(o, weight));
   if (!blocks) return noise;
@@ -236,7 +240,8 @@ Noise with_zero(const Observations& o, const std::vector<Term>& terms,
 
 namespace {
 
-/// n ln(squares/n) + ln|V| of whitened columns, the last of them the readings.
+/// Returns n ln(squares/n) + ln|V| of whitened columns, of which the last one contains the
+/// readings.
 double deviance(const Observations& o, const std::vector<double>& weight, const Noise& noise,
                 const MatrixXd& columns) {
   const Whitening white(o, weight, noise);
@@ -297,7 +302,7 @@ double criterion_of_neighbours(const Observations& o, const std::vector<double>&
   noise.neighbours = 0.0;
   const double none = Whitening(o, weight, noise).log_det();
   double least = std::numeric_limits<double>::infinity();
-  // Beyond, they are a walk in all but name.
+  // A higher correlation is practically a random walk.
   for (const double rho : {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8}) {
     noise.neighbours = rho;
     least = std::min(least, deviance(o, weight, noise, columns) - none);

@@ -25,7 +25,7 @@ namespace {
 // docs/dev/constants.md, M36.
 constexpr double stated_below = 0.001;
 
-/// Weighted sums of a column over cells or passes.
+/// Weighted sums of a column over groups of readings, such as cells or passes.
 struct Sums {
   std::vector<double> sum, n;
   Sums(const std::vector<std::uint32_t>& of, std::size_t count, const std::vector<double>& weight,
@@ -37,14 +37,15 @@ struct Sums {
   double mean(std::size_t k) const { return n[k] > 0.0 ? sum[k] / n[k] : 0.0; }
 };
 
-/// Less the mean of the repeats of each cell.
+/// Subtracts from each reading the mean of its cell.
 std::vector<double> within_cells(const Finding& f, std::vector<double> x) {
   const Sums cells(f.repeats.cell, f.repeats.cells, f.weight, x);
   for (std::size_t i = 0; i < x.size(); ++i) x[i] -= cells.mean(f.repeats.cell[i]);
   return x;
 }
 
-/// Straight line of the zeros of passes over their times.
+/// Fits a straight line to the zeros of passes over their times; returns it if its slope is
+/// significant.
 std::optional<Statement> drift(const Finding& f, double dof) {
   const auto read = readings_of(f.part.table, f.part.axes.front());
   if (!read || !(read->duration > 0.0) || !(dof > 2.0)) return std::nullopt;
@@ -65,7 +66,7 @@ std::optional<Statement> drift(const Finding& f, double dof) {
   return out.p < stated_below ? std::optional(out) : std::nullopt;
 }
 
-/// The reversal of each target, all of one sign, each by itself larger than chance gives.
+/// Returns the reversals if those of all targets have the same sign and each one is significant.
 std::optional<Statement> reversal(const Finding& f, double dof) {
   const Repeats& r = f.repeats;
   const std::vector<double>& y = f.part.table.deviation;
@@ -94,14 +95,14 @@ std::optional<Statement> reversal(const Finding& f, double dof) {
   }
   if (n < 3.0 || !(out.low * out.high > 0.0)) return std::nullopt;
   out.value = sum / n;
-  out.u = std::sqrt(variance / n);  // the zeros of passes are in all targets
+  out.u = std::sqrt(variance / n);  // zeros of passes affect all targets alike
   out.p = std::min(1.0, out.p * n);
   return out.p < stated_below ? std::optional(out) : std::nullopt;
 }
 
-/// What the readings of an axis show whatever repeats at each target from each side: a drift of the
-/// zero, a reversal at every target. Each pass may have a zero of its own: they are tested against
-/// that scatter. Empty where fewer than 3 passes repeat others.
+/// Returns statements about an axis that hold whatever error repeats at each target from each side:
+/// a drift of the zero, a reversal at every target. They are tested against the scatter of passes,
+/// because each pass may have a zero of its own. Empty if fewer than 3 passes repeat others.
 std::vector<Statement> statements_of(const Finding& f) {
   std::vector<Statement> out;
   const double dof = static_cast<double>(f.repeats.passes) - static_cast<double>(f.repeats.sides);
@@ -135,7 +136,8 @@ bool of_place(const Finding& f, const Term& term) {
   return of_place(f.part.table, f.repeats, term);
 }
 
-/// What a description predicts: of each target a value or a reversal, else of each reading.
+/// Computes the values of a description: one value or one reversal per target, or else one value
+/// per reading.
 void measure(const Finding& f, const std::vector<double>& says, Description& d) {
   std::vector<double> values = says;
   if (of_place(f, d.term)) {
@@ -167,8 +169,8 @@ void measure(const Finding& f, const std::vector<double>& says, Description& d) 
   if (!values.empty()) d.low = *low - zero, d.high = *high - zero;
 }
 
-/// What the model and the effects that are certain leave, by descriptions: one after the other, the
-/// best first, as long as the evidence pays for their columns.
+/// Describes the residuals of the model and the significant effects: adds descriptions one after
+/// the other, the best first, as long as the gain of evidence exceeds the cost of their columns.
 std::vector<Description> described(const Finding& finding, const std::vector<Term>& certain) {
   std::vector<Term> terms = finding.of_model.fit.terms;
   terms.insert(terms.end(), certain.begin(), certain.end());
@@ -202,7 +204,7 @@ std::vector<Description> described(const Finding& finding, const std::vector<Ter
   return out;
 }
 
-/// Terms of the candidates that are certain, with their shapes.
+/// Returns the terms of the significant candidates, with their shapes.
 std::vector<Term> certain_terms(const Explanation& out) {
   std::vector<Term> terms;
   for (const std::string& name : out.certain)
@@ -211,7 +213,8 @@ std::vector<Term> certain_terms(const Explanation& out) {
   return terms;
 }
 
-/// Effects that are certain in addition to the model and do not repeat at a place; their candidates.
+/// Returns the candidates of effects that are significant in addition to the model and do not
+/// repeat at a place.
 std::vector<Candidate> certain_in(const Part& part, const std::vector<Term>& model,
                                   const std::vector<Term>& catalogue, std::uint64_t seed) {
   std::vector<Candidate> out;
@@ -231,7 +234,8 @@ std::vector<Candidate> certain_in(const Part& part, const std::vector<Term>& mod
   return out;
 }
 
-/// An effect that is certain only together with descriptions.
+/// Replaces the candidate of an effect that is significant only together with descriptions, and
+/// adds the effect to `out.certain`.
 void take_over(Candidate found, const std::vector<std::string>& descriptions, Explanation& out) {
   const std::string name = found.term.name();
   if (std::find(out.certain.begin(), out.certain.end(), name) != out.certain.end()) return;
@@ -245,7 +249,8 @@ void take_over(Candidate found, const std::vector<std::string>& descriptions, Ex
   out.certain.push_back(name);
 }
 
-/// What is left with all that is certain in the model.
+/// Returns the RMS of the residuals with all significant effects in the model; that of the model if
+/// this fit fails.
 double rms_with_certain(const Finding& finding, const Explanation& out) {
   std::vector<Term> terms = finding.of_model.fit.terms;
   for (Term& term : certain_terms(out)) terms.push_back(std::move(term));
@@ -303,7 +308,8 @@ Expected<Explanation> explain_all(const Part& part, const std::vector<Term>& mod
   return out;
 }
 
-/// Searched on means of neighbours; how well each candidate does, on all readings.
+/// Judges candidates that were searched on means of adjacent readings: fits each one to all
+/// readings, and sets its RMS.
 void judge_on_all(const Part& part, const std::vector<Term>& model,
                   const std::vector<Term>& catalogue, const Groundwork::Found& ground,
                   Explanation& out) {
@@ -324,7 +330,7 @@ void judge_on_all(const Part& part, const std::vector<Term>& model,
   }
 }
 
-/// What the search suspects besides, because the best explanation contradicts it.
+/// Adds suspect readings that the search found because they contradict the best explanation.
 void add_suspects(const std::vector<Suspect>& found, Comparison& comparison) {
   for (const Suspect& s : found)
     if (std::none_of(comparison.suspects.begin(), comparison.suspects.end(),
@@ -362,7 +368,7 @@ Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
   auto out = explain_all(ground.thin ? *ground.thin : part, model, catalogue, seed,
                          ground.thin ? *ground.of_thin : ground.whole);
   if (!out) return out;
-  // The model is compared as `compare` does it: one model has one RMS.
+  // Compare the model as `compare` does, so that one model has one RMS.
   NONIO_TRY(auto comparison, compare(part, model, known));
   if (ground.thin)
     judge_on_all(part, model, catalogue, ground, *out);

@@ -13,7 +13,7 @@ namespace nonio::model {
 
 namespace {
 
-/// The readings with those to be taken behind them, and their noise as it is now.
+/// The readings followed by planned readings, with the noise of the present ones.
 struct Longer {
   Observations table;
   std::vector<double> weight;
@@ -42,7 +42,8 @@ Longer longer_by(const Further& f, const Fit& fit, std::size_t n) {
   return out;
 }
 
-/// What a fit's term predicts for longer readings; empty where its columns are others there.
+/// Returns what a fitted term predicts for the longer table; empty if the longer table changes its
+/// columns.
 VectorXd said_of(const Observations& o, const Fit& fit, std::size_t term) {
   VectorXd value(static_cast<Index>(fit.parameters.size()));
   Index linear = 0;
@@ -58,7 +59,8 @@ VectorXd said_of(const Observations& o, const Fit& fit, std::size_t term) {
   return said;
 }
 
-/// The new readings exactly as the fit predicts them: they change nothing but the design.
+/// Sets the planned readings to the prediction of the fit, so that they change only the design;
+/// false if a prediction is not possible.
 bool predict(Longer& longer, const Fit& fit, std::size_t n) {
   for (std::size_t i = n; i < longer.table.size(); ++i)
     longer.table.deviation[i] = fit.zero[line_of(longer.table, i)];
@@ -71,7 +73,8 @@ bool predict(Longer& longer, const Fit& fit, std::size_t n) {
   return true;
 }
 
-/// Shapes that were unknowns of a fit have an uncertainty.
+/// Returns, for each term, whether one of its shapes was an unknown of the fit (it has an
+/// uncertainty).
 std::vector<char> searched_in_fit(const Fit& fit) {
   std::vector<char> out;
   for (const Term& term : fit.terms)
@@ -87,10 +90,11 @@ std::vector<Foresight::Factor> factors_of(const Fit& now, const Longer& longer) 
   const auto then =
       fit_at(longer.table, now.terms, searched_in_fit(now), longer.weight, longer.noise);
   if (!then || then->parameters.size() != now.parameters.size() || now.redundancy == 0) return out;
-  // Predicted readings leave nothing, so that s falls as redundancy grows; noise does not.
+  // Predicted readings have no residuals, so s would fall as redundancy grows; this factor keeps
+  // the noise constant.
   const double same_s =
       std::sqrt(static_cast<double>(then->redundancy) / static_cast<double>(now.redundancy));
-  // More runs do not make a stated time constant better known, nor what depends on it.
+  // More runs do not improve a stated time constant, nor parameters that depend on it.
   std::set<std::string> stated;
   for (const Term& term : now.terms)
     if (has_stated(term)) stated.insert(term.name());
@@ -103,7 +107,7 @@ std::vector<Foresight::Factor> factors_of(const Fit& now, const Longer& longer) 
   return out;
 }
 
-/// Sum of squares that only this term of a fit can take, of these readings.
+/// Returns the sum of squares of these readings that only this term of a fit explains.
 double taken_by(const Fit& fit, std::size_t term, const Observations& o,
                 const std::vector<double>& weight, const Noise& noise) {
   const Whitening white(o, weight, Whitening::of_repeats(noise));
@@ -148,7 +152,8 @@ std::vector<Foresight::Evidence> evidence_of(const Explanation& e, const Fit& be
   return out;
 }
 
-/// The model with what the best explanation adds to it, all shapes as they were found.
+/// Fits the model together with the effects of the best explanation, with the shapes that were
+/// found.
 Expected<Fit> best_fit(const Part& part, const Explanation& e) {
   const Fit& fit = e.comparison.fit;
   std::vector<Term> terms = fit.terms;

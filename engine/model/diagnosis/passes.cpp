@@ -12,7 +12,7 @@ namespace nonio::model {
 
 namespace {
 
-/// Whether a place is determined by differences within passes, of which many are known.
+/// Whether a place is determined by differences within passes, of which there are many.
 bool within_passes(const Where& where) {
   const auto has = [&](Factor f) { return where.has(f); };
   return (has(Factor::position) || has(Factor::screw_phase) || has(Factor::angle)) &&
@@ -48,7 +48,7 @@ std::vector<double> PassZeros::noise() const {
   return out;
 }
 
-/// With zeros of passes as a part of the noise.
+/// Returns the noise with zeros of passes as a part of it.
 Noise PassZeros::with_passes() const {
   Noise noise = f_.noise.zero == Noise::Zero::of_pass ? f_.noise : f_.of_best.fit.noise;
   noise.neighbours = noise.in_repeats;
@@ -99,7 +99,7 @@ bool PassZeros::shows(const std::string& name) const {
                        std::min(dof, of_passes)) < named_below;
 }
 
-/// Of what an effect predicts, how much is the same all through a pass.
+/// Returns the fraction of an effect's prediction that is constant within each pass.
 double PassZeros::share_of(const std::string& name) const {
   for (std::size_t t = 0; t < f_.of_best.fit.terms.size(); ++t)
     if (const std::vector<double>& part = f_.of_best.fit.part[t];

@@ -10,26 +10,29 @@
 
 namespace nonio::model {
 
-/// The zeros of passes in what the best explanation leaves: whether they are a part of the noise,
-/// and what that noise leaves of places and effects (docs/model.md, "Verdict").
+/// Decides whether zeros of passes in the residuals of the best explanation are a part of the
+/// noise, and repeats the tests of places and effects with that noise (docs/model.md, "Verdict").
 class PassZeros {
  public:
   explicit PassZeros(const Finding&);
 
-  /// Passes have zeros of their own that differ as if drawn at random.
+  /// Whether each pass has a zero of its own that varies randomly.
   bool scatter() const { return left_.has_value(); }
-  /// Whole passes are to be drawn again for the rate of false alarms: where the readings of a pass
-  /// are no independent noise. Few signs of whole passes are a coarser draw than many of stretches.
+  /// Whether the rate of false alarms must be determined by flipping the signs of whole passes,
+  /// because the readings of a pass are not independent. Flipping a few whole passes gives a
+  /// coarser result than flipping many stretches.
   bool drawn_again() const;
-  /// What the best explanation leaves of each reading, less what its repeats have in common: with
-  /// all that a pass shares.
+  /// Returns the residual of each reading in the best explanation minus the mean of its repeats,
+  /// including the part that a pass shares.
   std::vector<double> noise() const;
-  /// Where they scatter: the places of such a residual. One that is determined by differences between
-  /// passes is known as badly as these.
+  /// Returns the places of `residual`, tested with zeros of passes as a part of the noise. Requires
+  /// that these zeros scatter. The test of a place that is determined by differences between passes
+  /// uses the scatter of passes.
   std::vector<Place> places(const std::vector<double>& residual,
                             const std::optional<NoiseFloor>& floor, double least) const;
-  /// Where they scatter: whether an effect of the best explanation is there also next to them. One
-  /// that is nearly the same within a pass has no more evidence than there are passes.
+  /// Whether an effect of the best explanation is significant if the zeros of passes scatter. An
+  /// effect that is nearly constant within a pass has only as much evidence as the number of passes
+  /// allows.
   bool shows(const std::string& effect) const;
 
  private:

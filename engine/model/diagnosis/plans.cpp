@@ -31,15 +31,15 @@ void fill_measured(Observations& o) {
 namespace {
 
 // docs/dev/constants.md, M13.
-constexpr double enough = 4.0;  // standard deviations between two explanations
+constexpr double enough = 4.0;  // standard deviations between two explanations that are separable
 
-struct Course {  // one further measurement
+struct Course {  // A planned measurement of an axis.
   std::string id;
   std::vector<double> targets;
   std::size_t runs = 1;
-  double pause = 0.0;     // s before it
-  bool pendulum = true;   // + sweep, then - sweep; else each target from both sides at once
-  bool reversed = false;  // - sweep first
+  double pause = 0.0;     // time before it, s
+  bool pendulum = true;   // true: + pass, then - pass; false: each target from both sides in turn
+  bool reversed = false;  // - pass first
 };
 
 void append(Observations& o, const Course& course, double interval) {
@@ -72,8 +72,8 @@ void append(Observations& o, const Course& course, double interval) {
   fill_measured(o);
 }
 
-/// Distance, in standard deviations, between what one effect has `said` and the nearest that
-/// `other` with the model can predict. Its shapes are searched.
+/// Returns the distance, in standard deviations, between the prediction `said` of one effect and
+/// the nearest one of the model with `other`, whose shapes are searched.
 double distance(const Observations& o, const std::vector<Term>& model, const VectorXd& said,
                 const Term& other, double s) {
   Observations imagined = o;
@@ -93,7 +93,7 @@ std::vector<Course> courses_of(const Observations& o, const AxisReadings& r) {
   targets.erase(std::unique(targets.begin(), targets.end()), targets.end());
   std::vector<double> between;
   for (std::size_t i = 0; i + 1 < targets.size(); ++i)
-    between.push_back(targets[i] + 0.382 * (targets[i + 1] - targets[i]));  // no simple fraction
+    between.push_back(targets[i] + 0.382 * (targets[i + 1] - targets[i]));  // not a simple fraction
   const double whole = std::max(r.duration, 1.0);
   std::vector<Course> out;
   out.push_back({"another-run", targets, 1});
@@ -123,7 +123,8 @@ std::vector<Further> further_runs(const Part& part, const Axis& axis) {
 
 namespace {
 
-/// Those that reach far enough first, at most three.
+/// Returns at most three plans: those with enough power by increasing cost, then the others by
+/// decreasing power.
 std::vector<Plan> cheapest(std::vector<Plan> plans) {
   std::stable_sort(plans.begin(), plans.end(), [](const Plan& a, const Plan& b) {
     const bool a_enough = a.power >= enough, b_enough = b.power >= enough;

@@ -5,31 +5,32 @@
 
 namespace nonio::model {
 
-/// A table with one measurement more, whose deviations are 0.
+/// A table with one additional planned measurement, whose deviations are 0.
 struct Further {
   std::string id, of;  ///< as in Plan
   Observations table;
 };
 
-/// Further measured quantities of planned readings at the end of the table: as they were last
-/// known. Weights and columns need an entry for each reading.
+/// Fills the other measured columns of planned readings at the end of the table with their last
+/// known values, because weights and columns need an entry for each reading.
 void fill_measured(Observations& o);
 
-/// Further runs of an axis, laid behind its readings.
+/// Returns tables with one additional run of an axis, appended to its readings.
 std::vector<Further> further_runs(const Part& part, const Axis& axis);
 
-/// What could be measured besides on a machine with several axes, or on a ball.
+/// Returns tables with one additional measurement on a machine with several axes, or of a ball.
 std::vector<Further> further_in_space(const Part& part);
 
-/// Further measurements that would separate a candidate from its aliases: each plan's readings are
-/// added to the existing ones, and the distance that the alias cannot explain is computed. Plans
-/// that reach four standard deviations, cheapest first; the best one if none does.
+/// Returns further measurements that would separate a candidate from its aliases: the planned
+/// readings are added to the existing ones, and the part of the candidate that no alias can explain
+/// is computed, in standard deviations. The plans that reach four, cheapest first; if none does,
+/// the best one.
 std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
                             const Candidate& candidate, const std::vector<Term>& catalogue,
                             double s);
 
-/// The same for two effects that cancel each other, with the values of their linear parameters:
-/// their joint effect compared with that of each alone.
+/// Returns further measurements that would separate two effects that cancel each other; `value`:
+/// their linear parameters. Their joint effect is compared with that of each alone.
 std::vector<Plan> plans_for_pair(const Part& part, const std::vector<Term>& model,
                                  const std::vector<Term>& pair, const std::vector<double>& value,
                                  double s);

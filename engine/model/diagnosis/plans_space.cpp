@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t most_stops = 21;
 
-/// One more line from one side, then back.
+/// Appends one line that passes all stops in order and then back.
 void append_line(Observations& o, const std::string& name, const std::vector<Vector>& stops,
                  const Vector& sense) {
   if (!o.sense.empty()) o.sense.resize(o.size() + 2 * stops.size(), sense);
@@ -36,10 +36,10 @@ void append_line(Observations& o, const std::string& name, const std::vector<Vec
   o.lines.push_back({name, sense});
 }
 
-/// The measured volume as it is commanded.
+/// The measured volume in commanded coordinates.
 struct Volume {
   Vector low{}, high{};
-  std::array<std::vector<double>, 3> places;  // of each axis, some of them
+  std::array<std::vector<double>, 3> places;  // selected positions of each axis
   bool has(std::size_t k) const { return places[k].size() >= 3; }
 };
 
@@ -60,7 +60,7 @@ Volume volume_of(const Observations& o) {
   return v;
 }
 
-/// All stops of one axis; the others are at `at`.
+/// Returns the stops along one axis; the other coordinates are those of `at`.
 std::vector<Vector> along(const Volume& v, std::size_t k, const Vector& at) {
   std::vector<Vector> stops;
   for (const double x : v.places[k]) {
@@ -93,7 +93,7 @@ void add_other_lines(const Part& part, const Volume& v, std::vector<Further>& ou
       Vector at = v.low;
       at[other] = v.high[other];
       Further f{"other-line", {letter_of(axis), letter_of(other)}, part.table};
-      // Both ends: a run without a stated position is at the corner.
+      // Plan both ends, because a run without a stated position is taken to be at the corner.
       append_line(f.table, "plan 1", along(v, axis, v.low), unit_along(axis));
       append_line(f.table, "plan 2", along(v, axis, at), unit_along(axis));
       out.push_back(std::move(f));
@@ -122,7 +122,7 @@ void add_diagonals(const Part& part, const Volume& v, std::vector<Further>& out)
     }
 }
 
-/// The same ball at half the distance from the axis.
+/// Appends a plan to measure the same ball at half the distance from the axis.
 void add_smaller_circle(const Part& part, std::vector<Further>& out) {
   const Observations& o = part.table;
   Further f{"other-radius", "", o};

@@ -12,16 +12,17 @@ namespace nonio::model {
 
 namespace {
 
-/// Residuals without what a whole pass shares.
+/// Returns the residuals minus the terms of each whole pass.
 std::vector<double> within_passes(const Repeats& repeats, const std::vector<double>& residual,
                                   const std::vector<double>& weight) {
-  Repeats alone = repeats;  // every reading a cell of its own would leave nothing: one cell a pass
+  // one cell per pass, because with one cell per reading no residual would remain
+  Repeats alone = repeats;
   alone.cell = alone.pass;
   alone.cells = alone.passes;
   return saturate(alone, residual, weight).e;
 }
 
-/// Readings on the two sides of a split.
+/// Number of readings on each side of a split.
 struct Sides {
   std::size_t low = 0, high = 0;
   void add(bool is_low) { ++(is_low ? low : high); }
@@ -29,9 +30,10 @@ struct Sides {
   bool mixed() const { return low > 0 && high > 0; }
 };
 
-/// Whether the repeats of a cell are on different sides more often than those of something with two
-/// states can be that changes neither in each reading nor from pass to pass. Readings that were
-/// invented with a stated standard deviation for two runs are. `low`: share of the readings.
+/// Whether the repeats of a cell are on different sides of the split more often than independent
+/// states of each reading allow, and the sides do not follow the passes. Readings invented for two
+/// runs with a given standard deviation have this property. `low`: share of readings below the
+/// split.
 bool are_opposite(const std::vector<Sides>& of_cell, const std::vector<Sides>& of_pass,
                   double low) {
   // docs/dev/constants.md, M44.
@@ -70,12 +72,12 @@ bool two_valued(const Repeats& repeats, const std::vector<double>& residual,
     const double apart = left / k - (sum - left) / (n - k);
     const double between = apart * apart * k * (n - k) / n;
     const double within = (squares - sum * sum / n - between) / n;
-    // Of normal noise 7, of evenly spread noise 12.
+    // 7 for normal noise, 12 for uniform noise
     if (apart * apart / within > best)
       best = apart * apart / within, best_apart = -apart, split = i + 1;
   }
   // docs/dev/constants.md, M33.
-  constexpr double one_digit = 1.6;  // two neighbouring digits of a coarse display
+  constexpr double one_digit = 1.6;  // two adjacent digits of a coarse display
   if (best < 18.0 || best_apart < one_digit * digit) return false;
   std::vector<Sides> of_cell(repeats.cells), of_pass(repeats.passes);
   for (std::size_t i = 0; i < e.size(); ++i) {
@@ -90,7 +92,8 @@ bool two_valued(const Repeats& repeats, const std::vector<double>& residual,
 
 namespace {
 
-/// Rows of cells that more than one run read: of the others it is not known whether a run is wild.
+/// Marks rows of cells that more than one run has read; in other cells, the scatter of a run is not
+/// known.
 std::vector<char> in_repeated_cells(const Observations& o, const Repeats& repeats) {
   std::vector<std::uint32_t> first(repeats.cells, 0);
   std::vector<char> several(repeats.cells, 0), out(o.size(), 0);
@@ -119,7 +122,7 @@ std::optional<Place> next_to_a_misread_target(const Observations& o, const Repea
     middle[repeats.target[i]] += residual[i] / 2.0;
     difference[repeats.target[i]] += way * residual[i];
   }
-  // About their mean, without one target.
+  // Returns the sum of squares about their mean, without one target.
   const auto squares_without = [m](const std::vector<double>& x, std::size_t out) {
     double sum = 0.0, squares = 0.0;
     for (std::size_t t = 0; t < m; ++t) sum += t == out ? 0.0 : x[t];
@@ -130,7 +133,8 @@ std::optional<Place> next_to_a_misread_target(const Observations& o, const Repea
   std::optional<Place> best;
   const auto dof = static_cast<double>(m - 2);
   for (std::size_t t = 0; t < m; ++t) {
-    // Variances of a reading: of a middle of two it is half, of a difference twice as much.
+    // Scale to the variance of one reading: that of a mean of two is half of it, that of a
+    // difference twice.
     const double between = 2.0 * squares_without(middle, t) / dof;
     const double within = squares_without(difference, t) / 2.0 / dof;
     const double p = std::min(
@@ -153,7 +157,7 @@ std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
   std::vector<double> of_repeats = weight;
   for (std::size_t i = 0; i < weight.size(); ++i)
     if (repeated[i] == 0) of_repeats[i] = 0.0;
-  // Of what repeats: what a model makes of targets that one run alone has read is no scatter of it.
+  // Use repeated readings only: a model's errors at targets of a single run are not scatter.
   const bool some = std::find(repeated.begin(), repeated.end(), 0) != repeated.end();
   const std::vector<double> e_of = some ? saturate(repeats, o.deviation, of_repeats).e
                                         : within_passes(repeats, residual, weight);
@@ -172,7 +176,7 @@ std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
   for (std::size_t run = 0; run < of_run.size(); ++run) {
     const auto k = static_cast<double>(of_run[run].size());
     if (k < 6.0 || n - k < 6.0) continue;
-    // By its median, so that one misread value makes no wild run.
+    // Use the median, so that one outlier does not make a run significant.
     std::vector<double> size;
     double squares = 0.0;
     for (const double x : of_run[run]) size.push_back(std::fabs(x)), squares += x * x;
@@ -183,7 +187,7 @@ std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
         for (const double x : of_run[r]) others.push_back(std::fabs(x));
     const double s_others = 1.4826 * math::median(others);
     const double F = math::test_ratio(s * s, std::max(s_others * s_others, display));
-    // A median knows a scatter as well as 0.37 times as many squares do.
+    // A scatter from the median has the precision of one from 0.37 times as many squares.
     const double p = math::f_upper(F, 0.37 * k, 0.37 * (n - k)) * runs;
     if (F < 4.0 || p > 1e-4 || (worst && p >= worst->p)) continue;
     worst = Place{{Factor::run}, squares / all, p, s, static_cast<double>(run), Quantity::count};

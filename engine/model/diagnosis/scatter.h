@@ -5,22 +5,22 @@
 #include "data/repeats.h"
 #include "nonio/model/comparison.h"
 
-/// How the residuals of an explanation scatter: parts that no effect causes.
+/// Tests of the scatter of the residuals of an explanation that no effect can cause.
 namespace nonio::model {
 
-/// Repeats of one target fall into two groups with nothing between them: no noise does that.
-/// Neighbouring digits of a display are none.
+/// Whether the repeats of targets fall into two groups with a gap between them, which noise does
+/// not cause. Adjacent digits of a display do not count.
 bool two_valued(const Repeats& repeats, const std::vector<double>& residual,
                 const std::vector<double>& weight, double digit);
 
-/// Each target read once from each of two sides, and one reading may be misread: whether targets
-/// differ by more than their two sides do, with the best of them left out. Place "position", p
-/// corrected for which is left out.
+/// For targets read once from each of two sides, of which one reading may be an outlier: tests
+/// whether targets differ by more than their two sides do, with the most favorable target omitted.
+/// Returns the place "position", with p corrected for the choice of the omitted target.
 std::optional<Place> next_to_a_misread_target(const Observations& o, const Repeats& repeats,
                                               const std::vector<double>& residual,
                                               const std::vector<double>& weight);
 
-/// One run with a scatter of its own.
+/// Returns the run whose scatter differs most from that of the others, if it is significant.
 std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
                               const std::vector<double>& residual,
                               const std::vector<double>& weight, const Noise& noise);

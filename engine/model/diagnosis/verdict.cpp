@@ -21,21 +21,24 @@ namespace nonio::model {
 
 namespace {
 
-// The same of an effect that is certain, whatever else there is.
+// Largest remaining share, at the positions of an effect, with which it is significant whatever
+// causes the rest.
 // docs/dev/constants.md, M7.
 constexpr double certain_share = 0.06;
-// Far more than chance requires, because the remainder is not independent noise.
+// Evidence for that; far above the level of chance, because the residuals are not independent
+// noise.
 // docs/dev/constants.md, M8.
 constexpr double certain_evidence = 50.0;
 // docs/dev/constants.md, M9.
 constexpr double most_of_one_target = 0.3;
 // docs/dev/constants.md, M9.
 constexpr double most_of_one_pass = 0.5;
-// Effects with less evidence are not compared with a zero that is not steady:
-// sizes that are printed as the smallest would be lost.
+// Effects with less evidence are not compared with a random zero: otherwise effects of the printed
+// smallest detectable size would be rejected.
 // docs/dev/constants.md, M29.
 constexpr double least_against_zero = 30.0;
-// Two effects whose parts run against each other like this are one thing without a name.
+// Two effects whose predictions are correlated below minus this value are reported as a pair that
+// cancels.
 // docs/dev/constants.md, M10.
 constexpr double cancels_beyond = 0.95;
 
@@ -63,10 +66,12 @@ class Judge {
     for (const Place& place : f_.of_model.places)
       if (place.p < place_p) out_.fails.push_back(place);
     const double least = least_serious(f_.of_best.floor);
-    // Where the search took zeros of passes for noise, names and places are tested next to them.
+    // If the search treated zeros of passes as noise, effects and places are tested with them in
+    // the model.
     const bool searched = f_.noise.zero == Noise::Zero::of_pass;
     std::vector<Place> left = Judge::serious(f_.of_best.places, least);
-    // What zeros of passes that scatter leave too is no reason for a verdict, but one for doubt.
+    // A place that vanishes if zeros of passes scatter does not decide the verdict, but raises
+    // doubt.
     std::vector<Place> serious =
         passes_.scatter()
             ? Judge::serious(passes_.places(f_.of_best.fit.residual, f_.of_best.floor, least),
@@ -120,8 +125,8 @@ class Judge {
   }
 
  private:
-  /// Whether the cells differ from the best explanation by more than their repeats scatter, in what
-  /// the passes of a side do not share: places hold what is common to a pass, and test it.
+  /// Whether cells differ from the best explanation by more than their repeats scatter, apart from
+  /// what the passes of a side share, because places test that part.
   bool lacks_fit() const {
     if (!f_.of_best.floor || !(f_.of_best.floor->dof >= 8.0)) return false;
     const std::vector<double> weight = with_scatter(f_.weight, f_.noise);
@@ -132,7 +137,7 @@ class Judge {
     passes.cells = passes.passes;
     const Saturated within = saturate(passes, e, weight);
     const double s2 = f_.of_best.floor->s * f_.of_best.floor->s;
-    // Of neighbours that are alike, as far as their number of independent squares goes.
+    // Correct for the number of independent squares if adjacent readings are correlated.
     const double of_dof = f_.of_best.floor->dof / all.dof;
     const double excess = within.squares - all.squares;
     const double dof = degrees_of_cells();
@@ -143,7 +148,8 @@ class Judge {
                least_serious(f_.of_best.floor);
   }
 
-  /// Of cells less what the passes of a side share and what the best explanation predicts.
+  /// Returns the degrees of freedom of the cells: their number minus the terms that the passes of a
+  /// side share and the parameters of the best explanation.
   double degrees_of_cells() const {
     std::vector<Index> in_pass(f_.repeats.passes, 0), shared(f_.repeats.sides, 0);
     std::vector<char> used(f_.repeats.cells, 0);
@@ -157,19 +163,21 @@ class Judge {
                                std::accumulate(shared.begin(), shared.end(), Index{0}));
   }
 
-  /// Whether less is left than readings of this scatter could leave.
+  /// Whether the residuals are smaller than readings with this scatter allow.
   bool below_scatter() const {
     const Fit& fit = f_.of_best.fit;
     if (!f_.of_best.floor || fit.redundancy == 0 || f_.of_best.floor->s <= f_.noise.digit)
       return false;
     const auto redundancy = static_cast<double>(fit.redundancy);
     const NoiseFloor& floor = *f_.of_best.floor;
-    const double dof = 0.5 * std::pow(floor.s / floor.u, 2);  // a correlation is known badly
+    // correlation increases the uncertainty of the floor
+    const double dof = 0.5 * std::pow(floor.s / floor.u, 2);
     return math::f_upper(std::pow(math::test_ratio(floor.s, fit.s), 2), dof, redundancy) <
            lacks_fit_p;
   }
 
-  /// Where nothing is found, that of targets which a misread reading may hide.
+  /// If no effect is found, returns the place "position" if the targets differ significantly once
+  /// one possible outlier is omitted.
   std::optional<Place> of_targets() const {
     if (!out_.together.empty()) return std::nullopt;
     auto place =
@@ -178,8 +186,8 @@ class Judge {
     return place;
   }
 
-  /// The zero that is not steady, if the model with it, or with it in place of the first effect, is
-  /// a better explanation than the best set of effects.
+  /// Returns the kind of random zero if the model with it, or with it in place of the first effect,
+  /// is a better explanation than the best set of effects; else `steady`.
   Noise::Zero unsteady_zero() const {
     if (out_.together.empty() || f_.noise.zero != Noise::Zero::steady) return Noise::Zero::steady;
     const Noise::Zero instead = better_zero(f_.of_model.fit.terms, f_.start);
@@ -200,8 +208,9 @@ class Judge {
     return with_terms.walks < own ? Noise::Zero::walks : Noise::Zero::steady;
   }
 
-  /// By how much evidence for zeros of runs must exceed this: a small effect is not rejected in
-  /// favour of possible zeros, whereas a large one would leave far more of itself with them.
+  /// Returns the margin by which the evidence for zeros of runs must be larger: a small effect is
+  /// not rejected in favor of possible zeros, whereas a large one would leave much larger residuals
+  /// with them.
   static double as_good_as(double evidence) {
     // docs/dev/constants.md, M30.
     constexpr double share = 0.1;
@@ -222,12 +231,12 @@ class Judge {
     return without - f_.walk_with(terms).least() - price > certain_evidence;
   }
 
-  /// Whether something else is left in the places where this effect works: then it may be no more
-  /// than the nearest thing in the catalogue.
+  /// Whether a serious residual remains at the places of this effect: the effect may then be only
+  /// the most similar one in the catalogue.
   bool in_doubt(const std::string& name, const std::vector<Place>& serious, double share) const {
     for (std::size_t t = 0; t < f_.of_best.fit.terms.size(); ++t) {
       if (f_.of_best.fit.terms[t].name() != name) continue;
-      // Its own contribution: effects that cancel each other may both be large.
+      // Use its own contribution, because effects that cancel each other may both be large.
       const double rms2 =
           (f_.bench->without(f_.best, f_.index_of(name)).squares - f_.best.squares) /
           f_.bench->readings();
@@ -246,7 +255,7 @@ class Judge {
     return nullptr;
   }
 
-  /// Correlation of what two effects predict for the readings, without the zeros of lines.
+  /// Returns the correlation of the predictions of two effects, without the zeros of lines.
   double correlation(const std::string& one, const std::string& other) const {
     const auto *a = part_of(one), *b = part_of(other);
     if (a == nullptr || b == nullptr) return 0.0;
@@ -259,8 +268,8 @@ class Judge {
     return size > 0.0 ? both.col(0).dot(both.col(1)) / size : 0.0;
   }
 
-  /// Not the same at every reading of a target: what is constant in time is visible in the first
-  /// runs.
+  /// Whether an effect varies between readings of a target. One that is constant in time would
+  /// already be visible in the first runs.
   bool in_time(const std::string& name) const {
     const std::size_t e = f_.index_of(name);
     return std::none_of(f_.best.blocks.begin(), f_.best.blocks.end(), [&](std::size_t b) {
@@ -288,11 +297,13 @@ class Judge {
     return nullptr;
   }
 
-  /// Growth about the middle and a drift of the zero are together one growth from another place.
-  /// Where a bearing may be there, the growth is named first: the drift would be its shadow.
+  /// Checks whether a growth about the middle and a drift of the zero are together one growth about
+  /// another fixed point. If a bearing can be at that point, the growth is named first, because the
+  /// drift only follows from it.
   void find_one_growth() {
     // docs/dev/constants.md, M21.
-    constexpr double farthest = 0.8;  // of the stretch, from its middle
+    // largest distance of the fixed point from the middle, as a fraction of the measured stretch
+    constexpr double farthest = 0.8;
     auto& names = out_.together;
     if (f_.part.kind != Part::Kind::axis || f_.part.axes.front().rotary) return;
     const std::string axis = ":" + f_.part.axes.front().name;
@@ -308,8 +319,8 @@ class Judge {
     if (drift < growth) std::iter_swap(drift, growth);
   }
 
-  /// Whether what a cancelling pair predicts together, which has no name, works where an effect
-  /// does.
+  /// Whether the joint prediction of a cancelling pair, which has no name, has the places of an
+  /// effect.
   bool with_cancelling(const std::string& name) const {
     const auto* own = part_of(name);
     if (own == nullptr) return false;
@@ -331,7 +342,7 @@ class Judge {
     return false;
   }
 
-  /// A further run that one of the two alone, in whatever form, could not follow.
+  /// Plans a further run that neither effect of the pair alone could explain, with any shapes.
   void plan_for_cancelling() {
     const auto& [one, other] = out_.cancelling.front();
     std::vector<Term> pair;
@@ -343,8 +354,8 @@ class Judge {
     out_.plans = plans_for_pair(f_.part, f_.of_model.fit.terms, pair, value, f_.of_best.fit.s);
   }
 
-  /// Effects whose evidence is valid whatever the remainder is: overwhelming, and nothing of their
-  /// size is left at their positions.
+  /// Lists effects that are significant whatever causes the residuals: their evidence is very
+  /// large, and no residual of their size remains at their positions.
   void list_certain(const std::vector<Place>& serious, bool walks) {
     for (const std::string& name : out_.together) {
       const auto c = std::find_if(out_.candidates.begin(), out_.candidates.end(),
@@ -358,20 +369,21 @@ class Judge {
     }
   }
 
-  /// Whether the readings of one target are most of its evidence: then it is that target.
+  /// Whether the readings of one target contribute most of the evidence of an effect, which is then
+  /// a property of that target.
   bool of_one_target(const std::string& name) const {
     return share_of_one(name, f_.repeats.target, f_.repeats.targets) > most_of_one_target;
   }
 
-  /// Whether a cause of the library explains no more than a free value of one target, a free
-  /// reversal there or a free slope of one run would: then it is that target or run, and no cause.
-  /// Causes of the zero and of the reversal of one run are in the library.
+  /// Whether an effect of the library explains no more than a free value of one target, a free
+  /// reversal there or a free slope of one run would: then it is a property of that target or run,
+  /// and not a cause. Zeros and reversals of single runs are themselves in the library.
   bool is_single(const std::string& name) const {
     const std::size_t e = f_.index_of(name);
     if (!f_.terms[e].library) return false;
     const Workbench::State rest = f_.bench->without(f_.best, e);
     const auto targets = static_cast<Index>(f_.repeats.targets);
-    std::map<std::uint32_t, Index> column;  // of the slope of each run
+    std::map<std::uint32_t, Index> column;  // column of the slope of each run
     for (const std::uint32_t run : f_.part.table.run)
       column.try_emplace(run, 2 * targets + static_cast<Index>(column.size()));
     const std::vector<double>& along = f_.part.along;
@@ -395,20 +407,21 @@ class Judge {
       if (const double squares = own.col(k).squaredNorm();
           squares > 1e-6 * free.col(k).squaredNorm())
         most = std::max(most, with_left(k) * with_left(k) / squares);
-    // One parameter, one name, and which of these targets and runs.
+    // The cost of one parameter, one name, and the choice among these targets and runs.
     const double n = f_.bench->readings();
     const double price = f_.price_of_zero() + 2.0 * std::log(static_cast<double>(free.cols()));
     return n * std::log(std::max(rest.squares - most, 1e-300) / n) + rest.price + price <
            f_.best.criterion + alias_evidence;
   }
 
-  /// Where passes have zeros of their own: whether one pass is most of its evidence.
+  /// Whether one pass contributes most of the evidence of an effect, if passes have zeros of their
+  /// own.
   bool of_one_pass(const std::string& name) const {
     return f_.noise.zero == Noise::Zero::of_pass &&
            share_of_one(name, f_.repeats.pass, f_.repeats.passes) > most_of_one_pass;
   }
 
-  /// Of the evidence of an effect, that of the group of readings which has most of it.
+  /// Returns the largest share of an effect's evidence that one group of readings contributes.
   double share_of_one(const std::string& name, const std::vector<std::uint32_t>& group,
                       std::size_t groups) const {
     const VectorXd without = f_.residual(f_.bench->without(f_.best, f_.index_of(name)));
@@ -419,7 +432,7 @@ class Judge {
     return *std::max_element(share.begin(), share.end()) / explained.dot(without);
   }
 
-  /// Where something that predicts so much for each reading works.
+  /// Returns the places in which a prediction (one value per reading) varies.
   std::vector<Where> places_of(const std::vector<double>& says) const {
     const VectorXd part = Eigen::Map<const VectorXd>(says.data(), static_cast<Index>(says.size()));
     const VectorXd centred = part.array() - part.mean();
@@ -427,7 +440,7 @@ class Judge {
     return (*factors_)(f_.bench->white()(centred));
   }
 
-  /// Structure smaller than this is not worth a verdict.
+  /// Returns the RMS below which structure does not change the verdict, m or rad.
   double least_serious(const std::optional<NoiseFloor>& floor) const {
     return least_left * (floor ? floor->s : f_.of_best.fit.s);
   }
@@ -439,8 +452,8 @@ class Judge {
     return out;
   }
 
-  /// Floors that the repeats of so many campaigns with this noise would give: chi-square
-  /// distributed, by the cube of a normal variate (Wilson and Hilferty 1931).
+  /// Draws noise floors of simulated campaigns with this noise: chi-square distributed,
+  /// approximated by the cube of a normal variate (Wilson and Hilferty 1931).
   std::vector<std::optional<NoiseFloor>> floors(std::size_t campaigns) const {
     std::vector<std::optional<NoiseFloor>> out(campaigns, f_.of_best.floor);
     if (!f_.of_best.floor) return out;
@@ -449,14 +462,15 @@ class Judge {
     const auto uniform = [&] { return (static_cast<double>(random() >> 11) + 0.5) * 0x1p-53; };
     for (auto& floor : out) {
       const double size = std::sqrt(-2.0 * std::log(uniform()));
-      const double z = size * std::cos(2.0 * std::numbers::pi * uniform());  // Box and Muller
+      // method of Box and Muller
+      const double z = size * std::cos(2.0 * std::numbers::pi * uniform());
       floor->s *= std::pow(std::max(1.0 - spread + z * std::sqrt(spread), 0.0), 1.5);
     }
     return out;
   }
 
-  /// Noise alone, as large as that of a reading: what repeats leave, else what the best explanation
-  /// leaves (with root weights).
+  /// Returns a sample of the noise of the readings (with root weights): the residuals of repeats,
+  /// scaled to the floor; if there are too few, the residuals of the best explanation.
   VectorXd noise() const {
     const Saturated left =
         saturate(f_.repeats, f_.of_best.fit.residual, with_scatter(f_.weight, f_.noise));
@@ -471,7 +485,8 @@ class Judge {
     return f_.bench->white()(Eigen::Map<const VectorXd>(e.data(), static_cast<Index>(e.size())));
   }
 
-  /// The same with whole passes of the residuals, each with its sign: where their zeros scatter.
+  /// Determines the rate of false alarms by flipping the signs of whole passes of the residuals, if
+  /// zeros of passes scatter.
   void count_with_passes(Verdict& v) const {
     constexpr std::size_t draws = 200;  // docs/dev/constants.md, M14
     const std::vector<double> e = passes_.noise();
@@ -511,7 +526,8 @@ class Judge {
     v.false_alarms = alarms / static_cast<double>(named.size());
   }
 
-  /// Zeros of runs sit in the runs, also where waves in time describe them with fewer columns.
+  /// Adds the place "run" if the zeros of runs cause the residuals, even if waves in time describe
+  /// them with fewer columns.
   void tell_runs() {
     const auto is_run = [](const Place& place) { return place.where == Where{Factor::run}; };
     auto& told = out_.fails;
@@ -525,7 +541,8 @@ class Judge {
     std::rotate(told.begin(), at, at + 1);
   }
 
-  /// What the best explanation leaves, without zeros of runs or passes if there are such.
+  /// Returns the residuals of the best explanation, minus zeros of runs or passes if these are
+  /// random.
   std::vector<double> without_zeros(Noise::Zero zero) const {
     std::vector<double> e = f_.of_best.fit.residual;
     const bool of_pass = f_.noise.zero == Noise::Zero::of_pass;
@@ -549,7 +566,8 @@ class Judge {
            two_valued(f_.repeats, without_zeros(zero), f_.weight, f_.noise.digit);
   }
 
-  /// The verdict's effect leads the list, also where one with more evidence is in doubt.
+  /// Moves the verdict's effect to the front of the candidates, also before one with more evidence
+  /// that is in doubt.
   void lift(const std::string& name) {
     auto& c = out_.candidates;
     const auto at =

@@ -6,17 +6,18 @@
 
 namespace nonio::model {
 
-/// What is left counts against the verdict `nothing` below this p.
-// docs/dev/constants.md, M5.
+/// A residual structure with p below this contradicts the verdict `nothing`.
+/// docs/dev/constants.md, M5.
 inline constexpr double serious_p = 0.005;
 
 // docs/dev/constants.md, M4.
 inline constexpr double least_left =
-    0.25;  ///< of the noise: smaller structure is not worth a verdict
+    0.25;  ///< fraction of the noise; smaller structure does not change the verdict
 // docs/dev/constants.md, M35.
 inline constexpr double lacks_fit_p = 1e-4;
 
-/// More suspects than this, of the readings and in number: then they do not repeat.
+/// The verdict is `unrepeatable` if more than this share of the readings, and more than
+/// `few_suspects` readings, are suspect.
 inline constexpr double most_suspects = 0.06;
 inline constexpr std::size_t few_suspects = 2;
 inline bool too_many(std::size_t suspects, std::size_t readings) {
@@ -24,8 +25,8 @@ inline bool too_many(std::size_t suspects, std::size_t readings) {
          static_cast<double>(suspects) > most_suspects * static_cast<double>(readings);
 }
 
-/// Verdict, where the model fails, and the plans for the verdict's aliases; the verdict's effect
-/// comes to lead `out.candidates`.
+/// Sets the verdict, the places where the model fails, and the plans that separate the verdict's
+/// aliases; moves the verdict's effect to the front of `out.candidates`.
 void judge(const Finding& finding, Explanation& out);
 
 }  // namespace nonio::model

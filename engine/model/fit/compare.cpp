@@ -56,7 +56,7 @@ std::vector<double> cross_validated(const Observations& o, const std::vector<Ter
   a *= scale.cwiseInverse().asDiagonal();
   const Eigen::Map<const VectorXd> y(o.deviation.data(), n);
   const VectorXd root = root_weights(o, weight);
-  // Each run's share of the normal equations; it is left out by taking its share away.
+  // Share of each run in the normal equations; subtracting it omits the run.
   const auto share_of = [&](const std::vector<Index>& rows, MatrixXd& normal, VectorXd& right) {
     const MatrixXd here = root(rows).asDiagonal() * a(rows, Eigen::all);
     normal = math::transposed_product(here, here);
@@ -69,8 +69,9 @@ std::vector<double> cross_validated(const Observations& o, const std::vector<Ter
     normal += share;
     right += right_share;
   }
-  // Of columns of unit length: where the other runs hardly determine a direction (a curve over the few
-  // targets of partial runs), what they predict is their noise, hundreds of times as large.
+  // Smallest pivot of columns of unit length: if the other runs hardly determine a direction (a
+  // curve over the few targets of partial runs), their prediction is noise, amplified hundreds of
+  // times.
   constexpr double predicts = 1e-5;
   std::vector<double> out(o.size(), std::numeric_limits<double>::quiet_NaN());
   for (const auto& [run, rows] : runs) {
@@ -100,7 +101,8 @@ std::optional<double> rms_of(const std::vector<double>& residual,
 
 namespace {
 
-/// `squares` of the whitened residuals.
+/// Returns the test of lack of fit; `squares`: sum of squares of the whitened residuals, `repeats`:
+/// degrees of freedom of the repeats. None if there is no floor or no degree of freedom.
 std::optional<LackOfFit> lack_of_fit(const Fit& fit, const std::optional<NoiseFloor>& floor,
                                      double repeats, double squares) {
   if (!floor) return std::nullopt;
@@ -114,7 +116,7 @@ std::optional<LackOfFit> lack_of_fit(const Fit& fit, const std::optional<NoiseFl
   return out;
 }
 
-/// Orthonormal columns of a fit, whitened and without the zeros of lines.
+/// Returns orthonormal columns of a fit, whitened and without the zeros of lines.
 MatrixXd basis_of(const Observations& o, const std::vector<Term>& terms, const Whitening& white) {
   MatrixXd a(static_cast<Index>(o.size()), 0);
   const auto blocks = blocks_of(o, terms, white.root());
@@ -130,7 +132,7 @@ MatrixXd basis_of(const Observations& o, const std::vector<Term>& terms, const W
   return math::orthonormal(qr, a.cols());
 }
 
-/// Whitened residuals of a fit.
+/// Returns the whitened residuals of a fit.
 VectorXd white_residual(const Fit& fit, const Whitening& white) {
   return white(
       Eigen::Map<const VectorXd>(fit.residual.data(), static_cast<Index>(fit.residual.size())));
@@ -156,8 +158,9 @@ std::vector<Place> PlacesLeft::operator()(const std::vector<double>& residual,
 
 namespace {
 
-/// The places of what a fit leaves. Where neighbours are alike, a place counts as far as it does
-/// with every correlation that the repeats leave open, none at all too: few readings know it badly.
+/// Returns the places of the residuals of a fit. If adjacent readings are correlated, p is the
+/// largest one over all correlations that the repeats allow, including none, because few readings
+/// determine the correlation poorly.
 std::vector<Place> places_left(const Part& part, const Repeats& repeats, const Fit& fit,
                                const Saturated& saturated, const std::vector<double>& weight) {
   const auto tested = [&](const Noise& noise) {
@@ -251,7 +254,7 @@ Ground ground_of(const Part& part, Repeats repeats, std::vector<Suspect> suspect
 }
 
 Groundwork::Found found_in(const Part& part, const std::vector<Term>& model) {
-  // Of a course successive readings are the repeats.
+  // In a course, successive readings replace repeats.
   if (part.kind == Part::Kind::course) return {Ground{Repeats(Observations{})}};
   Repeats repeats(part.table);
   auto suspects = suspects_of(part.table, repeats, model);

@@ -11,7 +11,7 @@ namespace nonio::model {
 
 std::vector<double> weights_without(std::size_t readings, const std::vector<Suspect>& suspects);
 
-/// The inputs of a comparison with one table.
+/// The repeats, suspect readings, weights and noise of one table.
 struct Ground {
   Repeats repeats;
   std::vector<Suspect> suspects{};
@@ -21,12 +21,12 @@ struct Ground {
 
 struct Groundwork::Found {
   Ground whole;
-  /// Of a long table its means, which places are searched in and shapes are searched on.
+  /// For a long table: means of its readings, on which shapes and places are searched.
   std::optional<Part> thin{};
   std::optional<Ground> of_thin{};
 };
 
-/// `known`, or made and held here.
+/// Refers to `known` if it is given, else creates and owns a Groundwork.
 class GroundworkOf {
  public:
   GroundworkOf(const Part& part, const std::vector<Term>& model, const Groundwork* known) {
@@ -41,22 +41,23 @@ class GroundworkOf {
   const Groundwork::Found* found_;
 };
 
-/// The comparison with these readings suspected, around a fit that exists already.
+/// Returns the comparison for an existing fit and these suspect readings.
 Comparison comparison_of(const Part& part, const Repeats& repeats, Fit fit,
                          std::vector<Suspect> suspects);
 
-/// Of each term whether its shapes are searched.
+/// Returns, for each term, whether its shapes are searched.
 std::vector<char> searched_in(const std::vector<Term>& terms);
 
-/// The fit repeated, where the zero is a random walk or differs from run to run.
+/// Repeats the fit if the zero is a random walk or differs from run to run.
 Expected<Fit> with_its_zero(const Observations& o, Fit fitted, const std::vector<char>& searched);
 
-/// The comparison with these readings suspected; no places of a long table, whose shapes are
-/// searched on `thin`.
+/// Returns the comparison with these suspect readings. For a long table, shapes are searched on its
+/// means `thin`, and places are not tested.
 Expected<Comparison> compare_on(const Part& part, const std::vector<Term>& model,
                                 const Ground& ground, const Observations* thin = nullptr);
 
-/// The tests of places with one noise, its zero included, for what a fit leaves or noise like it.
+/// Tests of all places with a given noise, including its random zero, for residuals of a fit or of
+/// simulated noise.
 class PlacesLeft {
  public:
   PlacesLeft(const Part&, const Repeats&, const Fit&, const Noise&);
@@ -69,14 +70,14 @@ class PlacesLeft {
   PlaceTests tests_;
 };
 
-/// Where what a fit leaves sits.
+/// Returns the smallest set of places that contains the residuals of a fit.
 std::vector<Place> seats_in(const Part& part, const Repeats& repeats, const Comparison& comparison);
 
-/// Each run left out in turn: what the others, with the shapes as they are, predict of it. NaN for
-/// readings of a run that the others cannot predict; empty with one run.
+/// Cross-validation: residual of each reading when its run is predicted from the others, with the
+/// given shapes. NaN for readings of a run that the others do not determine; empty with one run.
 std::vector<double> cross_validated(const Observations& o, const std::vector<Term>& terms,
                                     const std::vector<double>& weight);
-/// Root of the weighted mean square of what can be predicted.
+/// Returns the root of the weighted mean square of the finite residuals; none if there are none.
 std::optional<double> rms_of(const std::vector<double>& residual,
                              const std::vector<double>& weight);
 

@@ -19,16 +19,17 @@ namespace nonio::model {
 
 namespace {
 
-// Filip (NIST StRD), the hardest polynomial of the yardsticks, passes; columns that agree to
-// twelve digits do not.
+// The polynomial Filip (NIST StRD), the most difficult reference problem, passes with this
+// threshold; columns that agree to twelve digits do not.
 constexpr double rank_threshold = 1e-12;
 
 struct Design {
   MatrixXd a;                      // whitened rows; zeros of lines first, then terms
-  std::vector<std::string> names;  // of all columns
+  std::vector<std::string> names;  // name of each column
   std::vector<Index> first;        // first column of each term, and the end
-  std::vector<MatrixXd> blocks;    // of each term
-  std::vector<Index> lost;  // columns of a curve that the readings do not separate from others
+  std::vector<MatrixXd> blocks;    // columns of each term
+  // number of columns of a curve that the readings do not separate from others, per term
+  std::vector<Index> lost;
 };
 
 Expected<Design> design_of(const Observations& o, const std::vector<Term>& terms,
@@ -55,7 +56,8 @@ Expected<Design> design_of(const Observations& o, const std::vector<Term>& terms
   return d;
 }
 
-/// The names in the first null direction of a rank-deficient design.
+/// Returns the names of the columns that a rank-deficient design does not separate: those in its
+/// first null direction.
 std::string inseparable(const MatrixXd& scaled, const std::vector<std::string>& names) {
   const Eigen::JacobiSVD<MatrixXd> svd(math::transposed_product(scaled, scaled),
                                        Eigen::ComputeThinV);
@@ -71,11 +73,12 @@ std::string inseparable(const MatrixXd& scaled, const std::vector<std::string>& 
 
 struct Solution {
   VectorXd x;
-  MatrixXd cofactor;     // (A^T W A)^-1
-  double squares = 0.0;  // weighted
+  MatrixXd cofactor;     // cofactor matrix, (A^T W A)^-1
+  double squares = 0.0;  // weighted sum of squared residuals
 };
 
-/// `y` whitened like the design.
+/// Solves the least-squares problem; `weighted`: readings, whitened like the design. Error: names
+/// of columns that are not separable.
 Expected<Solution> solve(const Design& d, const VectorXd& weighted) {
   const Index unknowns = d.a.cols();
   VectorXd scale = d.a.colwise().norm().transpose();
@@ -99,7 +102,7 @@ Expected<Solution> solve(const Design& d, const VectorXd& weighted) {
   return s;
 }
 
-/// Weighted sum of squares with these shapes; infinite where there is none.
+/// Returns the weighted sum of squared residuals with these shapes; infinite if the fit fails.
 double squares_with(const Observations& o, const std::vector<Term>& terms, const Whitening& white,
                     const VectorXd& y) {
   auto d = design_of(o, terms, white);
@@ -108,7 +111,8 @@ double squares_with(const Observations& o, const std::vector<Term>& terms, const
   return rotated.tail(rotated.size() - d->a.cols()).squaredNorm();
 }
 
-/// Sum of squares as a function of one term's shape: all other columns are taken out once.
+/// Sum of squares as a function of the shapes of one term; the columns of the other terms are
+/// eliminated once.
 class SquaresOf {
  public:
   SquaresOf(const Observations& o, const std::vector<Term>& terms, std::size_t t,
@@ -124,7 +128,7 @@ class SquaresOf {
     math::take_out(others_, left_);
   }
 
-  /// Infinite where the term has no columns.
+  /// Returns the sum of squares; infinite if the term has no columns.
   double operator()(const Term& term) const {
     auto block = columns_of(o_, term, term.shape);
     if (!block) return std::numeric_limits<double>::infinity();
@@ -142,7 +146,7 @@ class SquaresOf {
   MatrixXd others_;
 };
 
-/// Between the neighbours of a grid's best value.
+/// Optimizes a shape between the grid values adjacent to its best one.
 void refine(const Observations& o, std::vector<Term>& terms, std::size_t t, std::size_t k,
             const Whitening& white, const VectorXd& y) {
   const std::vector<double> grid = terms[t].effect->shapes[k].grid(o, terms[t].axis);
@@ -166,7 +170,7 @@ void refine(const Observations& o, std::vector<Term>& terms, std::size_t t, std:
   value = at(middle) <= squares ? middle : start;
 }
 
-/// Shapes that were not given: the grid's best.
+/// Sets the shapes that were not given to the best values of their grids.
 Expected<void> start_shapes(const Observations& o, std::vector<Term>& terms,
                             const std::vector<char>& searched, const std::vector<double>& weight,
                             const Noise& noise) {
@@ -183,7 +187,7 @@ void refine_shapes(const Observations& o, std::vector<Term>& terms,
   for (std::size_t t = 0; t < terms.size(); ++t)
     for (const Effect::Shape& shape : terms[t].effect->shapes)
       continuous += searched[t] && shape.continuous;
-  // One after the other; shapes of a large effect that go along with each other want more rounds.
+  // Optimize one after the other; correlated shapes of a large effect need more rounds.
   constexpr std::size_t fewest = 2, most = 8;
   constexpr double still_better = 1e-3;
   double before = std::numeric_limits<double>::infinity();
@@ -198,19 +202,19 @@ void refine_shapes(const Observations& o, std::vector<Term>& terms,
   }
 }
 
-/// Whether a shape is an unknown of the fit: not where it has its usual or its only value.
+/// Whether a shape is an unknown of the fit: false if it has its usual or its only value.
 bool estimated(const Observations& o, const Term& term, std::size_t k) {
   const Effect::Shape& shape = term.effect->shapes[k];
   if (!shape.continuous || is_usual(term, term.shape, k)) return false;
   return !usual_of(term, k) || shape.grid(o, term.axis).size() > 1;
 }
 
-/// Derivative of a term's part by its shape k, by central differences.
+/// Returns the derivative of a term's prediction with respect to shape k, by central differences.
 Expected<VectorXd> shape_column(const Observations& o, const Term& term, std::size_t k,
                                 const VectorXd& linear) {
   const Effect::Shape& shape = term.effect->shapes[k];
   double size = std::max(std::fabs(term.shape[k]), 1e-12);
-  if (usual_of(term, k)) {  // may lie at 0
+  if (usual_of(term, k)) {  // may be at 0
     const std::vector<double> grid = shape.grid(o, term.axis);
     if (grid.size() > 1) size = std::max(size, grid.back() - grid.front());
   }
@@ -226,8 +230,8 @@ Expected<VectorXd> shape_column(const Observations& o, const Term& term, std::si
   return VectorXd((*above - *below) * linear / (2.0 * step));
 }
 
-/// A stated shape becomes one that is searched, between its neighbours on the grid too, where the
-/// evidence pays for it as for any other (workbench.h, price).
+/// Searches the shapes that another measurement states, also between grid values, and keeps the
+/// found value if its gain of evidence exceeds the cost of a searched shape (workbench.h, price).
 void free_stated(const Observations& o, std::vector<Term>& terms, const std::vector<char>& searched,
                  const std::vector<double>& weight, const Noise& noise) {
   const Whitening white(o, weight, Whitening::of_repeats(noise));
@@ -248,7 +252,7 @@ void free_stated(const Observations& o, std::vector<Term>& terms, const std::vec
   }
 }
 
-/// Shapes that were found on means of the readings: steps of Gauss and Newton on all of them.
+/// Improves shapes that were found on means of readings by two Gauss-Newton steps on all readings.
 void step_shapes(const Observations& o, std::vector<Term>& terms, const std::vector<char>& searched,
                  const Whitening& white, const VectorXd& y) {
   const VectorXd weighted = white(y);
@@ -279,7 +283,7 @@ void step_shapes(const Observations& o, std::vector<Term>& terms, const std::vec
   }
 }
 
-/// Where times were not measured, they are numbers of readings, not seconds.
+/// Whether the times of this axis are numbers of readings, because times were not measured.
 bool untimed(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
   return r && !r->timed;
@@ -312,13 +316,13 @@ void name_parameters(Fit& out, const Observations& o, const Design& design) {
   }
 }
 
-/// Whether the noise has more than the weights of a fit.
+/// Whether the noise has contributions that the weights of a fit do not contain.
 bool more_than_weights(const Noise& noise) {
   return noise.zero != Noise::Zero::steady || noise.neighbours != noise.in_repeats;
 }
 
-/// Cofactors of a solution whose weights are not the inverse of the covariance of the noise:
-/// A V A^T with the linear map A from the readings to the unknowns.
+/// Returns the cofactor matrix A V A^T of a solution whose weights are not the inverse of the noise
+/// covariance V; A is the linear map from the readings to the unknowns.
 MatrixXd spread(const MatrixXd& design, const MatrixXd& cofactor, const Whitening& white,
                 const MatrixXd& covariance) {
   const MatrixXd both = white(white(covariance).transpose());
@@ -326,8 +330,8 @@ MatrixXd spread(const MatrixXd& design, const MatrixXd& cofactor, const Whitenin
   return math::product(math::transposed_product(map, both), map);
 }
 
-/// s of a fit, as its uncertainties have it: where the noise has more than its weights, of what
-/// that noise leaves.
+/// Returns s of a fit for uncertainties: if the noise has contributions that the weights do not
+/// contain, from residuals whitened with them.
 double s_for_uncertainty(const Fit& fit, const Observations& o, const Solution& solution) {
   if (fit.redundancy == 0) return 0.0;
   const auto redundancy = static_cast<double>(fit.redundancy);
@@ -341,8 +345,9 @@ double s_for_uncertainty(const Fit& fit, const Observations& o, const Solution& 
   return left.norm() / std::sqrt(redundancy);
 }
 
-/// Adds what interpolated temperatures may do to the parameters, in units of s^2 of the fit; where
-/// their error is not known, no parameter has an uncertainty. `plain`: cofactors of the solution.
+/// Adds the effect of interpolated temperatures on the parameters, in units of s^2 of the fit; if
+/// their error is not known, no parameter gets an uncertainty. `plain`: cofactor matrix of the
+/// solution.
 void add_interpolation(MatrixXd& cofactor, const MatrixXd& plain, const Observations& o,
                        const std::vector<Term>& terms, const Design& design, const Solution& s,
                        const Whitening& white, double s_of_fit) {
@@ -360,7 +365,8 @@ void add_interpolation(MatrixXd& cofactor, const MatrixXd& plain, const Observat
   cofactor += math::product_transposed(of_parameters, of_parameters) / (s_of_fit * s_of_fit);
 }
 
-/// What one standard uncertainty of a shape that another measurement states makes of the unknowns.
+/// Returns the change of the unknowns for one standard uncertainty of a shape that another
+/// measurement states.
 VectorXd by_stated(const Term& term, const VectorXd& linear, const Observations& o,
                    const MatrixXd& plain, const MatrixXd& a, const Whitening& white) {
   const auto column = shape_column(o, term, term.stated->shape, linear);
@@ -369,15 +375,16 @@ VectorXd by_stated(const Term& term, const VectorXd& linear, const Observations&
   return math::product(plain, math::transposed_product(a, white(wrong)));
 }
 
-/// A stated shape among the parameters, and what its error makes of the unknowns.
+/// A stated shape, its index among the parameters, and the change of the unknowns for one standard
+/// uncertainty of it.
 struct StatedShape {
   std::size_t parameter;
   double u;
   VectorXd of_unknowns;
 };
 
-/// The stated shapes have the uncertainty that they came with, and go along with what their error
-/// makes of the others: too large a value of theirs is an error of the opposite sign.
+/// Sets the uncertainties of stated shapes to their stated values, and their correlations with the
+/// other parameters, which have the sign opposite to the change of the unknowns.
 void put_stated(Fit& out, const std::vector<StatedShape>& stated, const std::vector<Index>& place) {
   for (const StatedShape& one : stated) {
     out.parameters[one.parameter].u = one.u;
@@ -390,12 +397,12 @@ void put_stated(Fit& out, const std::vector<StatedShape>& stated, const std::vec
   }
 }
 
-/// Covariance of the linear parameters and of the shapes that were searched, linearised: columns
-/// of the design and the derivatives by the shapes together.
+/// Computes the covariance of the linear parameters and of the searched shapes from the linearised
+/// problem: columns of the design together with the derivatives by the shapes.
 void fill_covariance(Fit& out, const Observations& o, Design design, const Solution& s,
                      const std::vector<char>& searched, const Whitening& white) {
-  std::vector<Index> place(out.parameters.size(), -1);         // row of the cofactor matrix
-  std::vector<std::pair<std::size_t, std::size_t>> stated_at;  // parameter, term
+  std::vector<Index> place(out.parameters.size(), -1);         // row in the cofactor matrix
+  std::vector<std::pair<std::size_t, std::size_t>> stated_at;  // indices of parameter and term
   Index row = design.first.front(), extra = 0;
   std::size_t at = 0;
   const Index plain = design.a.cols();
@@ -419,7 +426,7 @@ void fill_covariance(Fit& out, const Observations& o, Design design, const Solut
     const VectorXd none = VectorXd::Zero(design.a.rows());
     if (auto joint = solve(design, none))
       cofactor = std::move(joint->cofactor);
-    else  // a shape without a maximum of its own: known no better than its grid
+    else  // a shape without an optimum between grid values: known only to the step of its grid
       for (Index& p : place)
         if (p >= plain) p = -1;
     out.redundancy -= std::min(out.redundancy, static_cast<std::size_t>(extra));
@@ -458,7 +465,8 @@ void fill_covariance(Fit& out, const Observations& o, Design design, const Solut
   for (std::size_t i = 0; i < p; ++i) {
     out.correlation[i][i] = 1.0;
     if (place[i] < 0) continue;
-    // The effect of a zero of unknown size cannot be determined.
+    // If the readings do not determine the size of the random zero, u of parameters that depend on
+    // it is not determined either.
     out.parameters[i].u = open[static_cast<std::size_t>(place[i])] != 0
                               ? std::numeric_limits<double>::quiet_NaN()
                               : s_of_u * std::sqrt(cofactor(place[i], place[i]));
@@ -528,7 +536,7 @@ Expected<Fit> fit_at(const Observations& o, std::vector<Term> terms,
   out.redundancy = static_cast<std::size_t>(used - design.a.cols());
   const Index lines = design.first.front();
   out.zero.assign(s->x.data(), s->x.data() + lines);
-  // A reading of weight 0 has a residual too: what it is away from the model.
+  // A reading of weight 0 also has a residual: its distance from the model.
   VectorXd residual = y;
   for (Index i = 0; i < y.size(); ++i)
     residual(i) -= s->x(static_cast<Index>(line_of(o, static_cast<std::size_t>(i))));
@@ -548,7 +556,7 @@ Expected<Fit> fit_at(const Observations& o, std::vector<Term> terms,
   fill_covariance(out, o, std::move(design), *s, searched, white);
   double sum = 0.0;
   for (const double w : out.weight) sum += w;
-  // What is left of the readings as they are, not of the whitened ones.
+  // Use residuals of the original readings, not of the whitened ones.
   const double squares = white.independent() && noise.rough.empty()
                              ? s->squares
                              : root_weights(o, out.weight).cwiseProduct(residual).squaredNorm();

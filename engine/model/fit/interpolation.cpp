@@ -11,16 +11,16 @@ namespace nonio::model {
 
 namespace {
 
-// Gaps beyond so many share columns, with signs that cancel in the mean.
+// If there are more gaps, several share a column, with alternating signs.
 constexpr std::size_t most_columns = 50;
 
-/// Rows of one line in the order of time.
+/// Rows of one line, ordered by time, with and without a temperature.
 struct TemperatureCourse {
   std::vector<std::uint32_t> known, blank;
 };
 
-/// Rows between two known temperatures, or beyond the last one: what they are off, K, where the
-/// line is off by one standard uncertainty.
+/// Consecutive blank rows between two known temperatures, or after the last one, and their
+/// temperature errors, K, for one standard uncertainty of the interpolation.
 struct Gap {
   std::vector<std::uint32_t> row;
   std::vector<double> off;
@@ -41,13 +41,14 @@ std::vector<TemperatureCourse> temperature_courses(const Observations& o, const 
   return out;
 }
 
-/// How far known temperatures lie from a straight line between two others (`inside`), or from a
-/// constant (beyond an end), that are at least `span` apart.
+/// Estimates the error of interpolation from known temperatures: their distance from a straight
+/// line between two others (`inside`), or from a constant (`beyond`), that are at least `span`
+/// apart.
 class Wrong {
  public:
   Wrong(const TemperatureCourse& course, const AxisReadings& r) : known_(course.known), r_(r) {}
 
-  /// In the middle of a gap, K; NaN if not known.
+  /// Returns the error in the middle of a gap, K; NaN if not known.
   double inside(double span) const {
     double sum = 0.0, count = 0.0;
     for_stretches(span, 2, [&](std::size_t a, std::size_t b, double scale) {
@@ -61,7 +62,7 @@ class Wrong {
     return count < fewest ? nan : std::sqrt(sum / count);
   }
 
-  /// So long after the last known temperature, or before the first, K.
+  /// Returns the error at a time `span` after the last known temperature, or before the first, K.
   double beyond(double span) const {
     double sum = 0.0, count = 0.0;
     for_stretches(span, 1, [&](std::size_t a, std::size_t b, double scale) {
@@ -80,8 +81,9 @@ class Wrong {
     return (t(k) - t(a)) / (t(b) - t(a));
   }
 
-  /// From each known temperature to the first that is `span` later, and so many further on. Over a
-  /// longer stretch the error grows at least in proportion, if nothing jumps.
+  /// Calls `use` for each known temperature and the first one that is at least `span` and
+  /// `fewest_on` temperatures later. The error of a longer stretch is scaled down in proportion,
+  /// which assumes no jumps.
   template <typename Use>
   void for_stretches(double span, std::size_t fewest_on, const Use& use) const {
     std::size_t b = 0;
@@ -96,11 +98,12 @@ class Wrong {
   const AxisReadings& r_;
 };
 
-/// False if too few temperatures are known to estimate the error of the line.
+/// Appends the gaps of a line; false if too few temperatures are known to estimate the
+/// interpolation error.
 bool add_gaps(const TemperatureCourse& course, const AxisReadings& r, std::vector<Gap>& gaps) {
   const Wrong wrong(course, r);
   const auto& known = course.known;
-  std::size_t at = known.size() + 1;  // of the known temperature after the last gap
+  std::size_t at = known.size() + 1;  // index of the first known temperature after the last gap
   for (const std::uint32_t i : course.blank) {
     const auto after = std::upper_bound(known.begin(), known.end(), r.t[i],
                                         [&](double t, std::uint32_t k) { return t < r.t[k]; });
@@ -124,7 +127,7 @@ bool add_gaps(const TemperatureCourse& course, const AxisReadings& r, std::vecto
   return true;
 }
 
-/// Terms with their linear parameters, and what each reading gets from them.
+/// Terms with their linear parameters, and their joint prediction for each reading.
 struct Said {
   std::vector<Term> terms;
   std::vector<VectorXd> linear;
@@ -139,7 +142,7 @@ struct Said {
   }
 };
 
-/// The terms of this axis that need the temperature.
+/// Returns the terms of this axis whose prediction depends on the material temperature.
 Expected<Said> warmed(const Observations& filled, const AxisReadings& r,
                       const std::vector<Term>& terms, const std::vector<VectorXd>& linear,
                       const std::string& axis) {
@@ -159,7 +162,8 @@ Expected<Said> warmed(const Observations& filled, const AxisReadings& r,
   return out;
 }
 
-/// A column for each gap: what it changes of what is stated.
+/// Returns one column per gap: the change of the prediction for one standard uncertainty of its
+/// temperatures.
 Expected<MatrixXd> columns_of_gaps(const Observations& filled, const Said& said,
                                    const std::vector<Gap>& gaps) {
   NONIO_TRY(const auto as_fitted, said.of(filled));

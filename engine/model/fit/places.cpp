@@ -12,15 +12,15 @@
 
 namespace nonio::model {
 
-/// Columns that vary with one factor only; `repeated`: found by differences between repeats of one
-/// cell (time, run, temperature), else by the cells themselves (position, direction, phase).
+/// Columns that vary with one factor only. `repeated`: determined by differences between repeats of
+/// one cell (time, run, temperature), else by the cells themselves (position, direction, phase).
 struct FactorColumns {
   Where of;
   MatrixXd columns;
   bool repeated = false;
-  std::vector<double> levels{};  // of dummies: target, run
+  std::vector<double> levels{};  // values of indicator columns: target, run
   Quantity quantity = Quantity::number;
-  std::string line{};  // in space: the line whose places these are
+  std::string line{};  // line to which the positions belong, in space
 };
 
 namespace {
@@ -68,7 +68,8 @@ MatrixXd dummies(const std::vector<std::size_t>& level, std::size_t levels) {
   return out;
 }
 
-/// Distinct values, at most `most_bins` of them: beyond, neighbours share a bin.
+/// Returns indicator columns of the distinct values; if there are more than `most_bins`, adjacent
+/// values share a bin.
 FactorColumns binned(Factor of, const std::vector<double>& value, Quantity quantity) {
   const std::set<double> distinct(value.begin(), value.end());
   const std::size_t in_bin =
@@ -103,8 +104,8 @@ MatrixXd times(const MatrixXd& columns, const VectorXd& by) { return by.asDiagon
 
 }  // namespace
 
-/// What readings are split by: the axis that moves or, in space, the way along each line; and the
-/// products of two factors.
+/// The factors by which readings are grouped: those of the axis that moves or, in space, of the
+/// position along each line; and products of two factors.
 class Factors {
  public:
   Factors(const Part& part, const Repeats& repeats) {
@@ -122,15 +123,16 @@ class Factors {
     } else {
       add_lines(part, d);
     }
-    if (repeats.passes <= repeats.sides) return;  // nothing is repeated
+    if (repeats.passes <= repeats.sides) return;  // there are no repeats
     add_repeated(part.table, r, d, repeats);
   }
 
   const std::vector<FactorColumns>& all() const { return all_; }
-  /// A pair with its first factor; of direction and position, the cells, all of both.
+  /// Returns the columns of a pair together with those of its first factor; for direction and
+  /// position, which are the cells, with those of both.
   MatrixXd whole(const FactorColumns& f) const {
     if (!is_pair(f)) return f.columns;
-    // In space places belong to lines: there is no factor of all positions.
+    // In space positions belong to lines, so there is no factor of all positions.
     MatrixXd main = f.of.first == Factor::direction ? column(Factor::direction) : position_;
     if (!f.repeated) {
       const MatrixXd& second = column(*f.of.second, f.line);
@@ -162,7 +164,7 @@ class Factors {
     return r;
   }
 
-  /// Of each line, from -1 to 1.
+  /// Returns the position along each line, scaled to -1..1.
   static VectorXd from_the_middle(const Part& part) {
     const std::size_t lines = lines_of(part.table);
     std::vector<double> low(lines, INFINITY), high(lines, -INFINITY);
@@ -190,7 +192,7 @@ class Factors {
     if (axis.rotary) pair(Factor::direction, Factor::angle, times(column(Factor::angle), d), false);
   }
 
-  /// What the lines of one axis do not have in common; their zeros are unknown.
+  /// Adds the factor of differences between the lines of one axis, whose zeros are unknown.
   void add_measurements(const Observations& o, const VectorXd& d) {
     const auto lines = static_cast<Index>(lines_of(o));
     if (lines < 2 || lines > most_bins) return;
@@ -208,7 +210,8 @@ class Factors {
     add(std::move(f));
   }
 
-  /// Each line's own places: what sits at one place of one diagonal sits elsewhere on the other.
+  /// Adds the positions of each line as a factor of its own, because a position on one diagonal is
+  /// another place than that on the other.
   void add_lines(const Part& part, const VectorXd& d) {
     const Quantity quantity = position_of(part.kind == Part::Kind::balls);
     for (std::uint32_t line = 0; line < lines_of(part.table); ++line) {
@@ -273,7 +276,7 @@ class Factors {
     all_.push_back({{a, b}, std::move(columns), repeated});
   }
   std::vector<FactorColumns> all_;
-  MatrixXd position_;  // from -1 to 1
+  MatrixXd position_;  // position of each reading, -1 to 1
   bool both_ways_ = true;
 };
 
@@ -287,16 +290,16 @@ MatrixXd orthonormal(MatrixXd columns) {
   return math::orthonormal(qr, qr.rank());
 }
 
-/// Takes out of whitened columns what is the same in all repeats of a cell.
+/// Removes from whitened columns the part that is constant over all repeats of a cell.
 class Cells {
  public:
   Cells(const Repeats& r, const Whitening& white) : r_(r), root_(white.root()) {
-    constexpr std::size_t most = 400;  // beyond, their means do
+    constexpr std::size_t most = 400;  // above, the means of cells are used
     if (white.independent() || r.cells > most) return;
     columns_ = white(dummies({r.cell.begin(), r.cell.end()}, r.cells));
     MatrixXd products = math::transposed_product(columns_, columns_);
     for (double& x : products.diagonal())
-      if (!(x > 0.0)) x = 1.0;  // all its readings are suspected
+      if (!(x > 0.0)) x = 1.0;  // all its readings are suspect
     products_.compute(products);
   }
   void take_out(MatrixXd& columns) const {
@@ -325,28 +328,28 @@ class Cells {
 
   const Repeats& r_;
   const VectorXd& root_;
-  MatrixXd columns_{};  // of the cells, where whitened ones are not each other's strangers
+  MatrixXd columns_{};  // columns of the cells, for correlated noise
   Eigen::LLT<MatrixXd> products_{};
 };
 
-/// Whether what a factor predicts differs between repeats of a cell: what comes back in every run
-/// sits in the cells, even where a wave of time describes it with fewer columns.
+/// Whether the prediction of a factor differs between repeats of a cell. A structure that returns
+/// in every run belongs to the cells, even if a wave in time describes it with fewer columns.
 bool separates_repeats(const Cells& cells, const MatrixXd& basis, const VectorXd& residual) {
   // docs/dev/constants.md, M19.
-  constexpr double least = 0.1;  // of its squares; of a line in time over two runs, a fifth
+  constexpr double least = 0.1;  // share of its squares; a linear trend over two runs has a fifth
   MatrixXd said = math::times(basis, math::transposed_times(basis, residual));
   const double all = said.squaredNorm();
   cells.take_out(said);
   return said.squaredNorm() > least * all;
 }
 
-/// Orthonormal columns of every factor: without zeros of lines, without what the model can predict,
-/// pairs without their factors.
+/// Returns orthonormal columns of every factor: without the zeros of lines, without the columns of
+/// the model, and for pairs without their single factors.
 std::vector<MatrixXd> bases_of(const Factors& factors, const Repeats& repeats,
                                const Whitening& white, const MatrixXd& model) {
   const Cells cells(repeats, white);
   std::vector<MatrixXd> out;
-  std::map<std::pair<Factor, std::string>, MatrixXd> single;  // with its line
+  std::map<std::pair<Factor, std::string>, MatrixXd> single;  // keys are factor and line
   for (const FactorColumns& f : factors.all()) {
     MatrixXd columns = white(f.columns);
     white.take_out_zeros(columns);
@@ -356,7 +359,8 @@ std::vector<MatrixXd> bases_of(const Factors& factors, const Repeats& repeats,
     if (f.of.second)
       for (const auto& of : {std::pair{f.of.first, std::string()}, std::pair{*f.of.second, f.line}})
         if (const MatrixXd& one = single[of]; one.cols() > 0) math::take_out(one, columns);
-    // A column that the model predicts already leaves rounding, not a direction.
+    // If the model already predicts a column, only rounding errors remain, which are not a
+    // direction.
     for (Index k = 0; k < columns.cols(); ++k)
       if (!(columns.col(k).norm() > 1e-3 * before(k))) columns.col(k).setZero();
     MatrixXd basis = orthonormal(std::move(columns));
@@ -366,13 +370,14 @@ std::vector<MatrixXd> bases_of(const Factors& factors, const Repeats& repeats,
   return out;
 }
 
-/// Whitened columns of a factor whose levels are separable; of another none.
+/// Returns the whitened columns of a factor with at least three levels; for others none.
 MatrixXd levels_of(const FactorColumns& f, const Whitening& white) {
   return f.levels.size() < 3 ? MatrixXd(f.columns.rows(), 0) : white(f.columns);
 }
 
-/// The level of a factor of dummies that holds most of its sum of squares, if one does; `s2` known
-/// from `dof`.
+/// Sets `place.at` to the level (a target, a run) that contributes at least half of the factor's
+/// sum of squares, if there is one, and lowers `place.p` if one level is more significant than the
+/// factor. `s2`: residual variance with `dof` degrees of freedom.
 void find_level(const FactorColumns& f, const MatrixXd& columns, const VectorXd& residual,
                 double s2, double dof, Place& place) {
   if (columns.cols() == 0) return;
@@ -466,7 +471,7 @@ std::vector<Place> seats_of(const Residuals& left) {
       if (k == 0.0 || k >= left.dof / 2.0) continue;
       const double here = math::transposed_times(bases[f], rest).squaredNorm();
       const double value = -n * std::log1p(-std::min(here / rest.squaredNorm(), 1.0 - 1e-12)) -
-                           k * std::log(n) - 10.0;  // 10: one place in a hundred by chance
+                           k * std::log(n) - 10.0;  // 10: about one place in a hundred by chance
       if (value > gain && (!factors.all()[f].repeated || separates_repeats(cells, bases[f], rest)))
         best = f, gain = value, fall = here;
     }

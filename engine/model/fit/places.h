@@ -15,19 +15,20 @@ struct Residuals {
   const Part& part;
   const Repeats& repeats;
   const Whitening& white;
-  const VectorXd& residual;  ///< whitened
+  const VectorXd& residual;  ///< whitened residuals
   const MatrixXd& basis;     ///< orthonormal columns of the model, without zeros of lines
-  double dof;                ///< of the residual
+  double dof;                ///< degrees of freedom of the residual
   const std::optional<NoiseFloor>& floor;
 };
 
-/// The tests of every place that these readings can show, for one residual of a model or many.
+/// Tests of all places that these readings can show, for one residual of a model or many.
 class PlaceTests {
  public:
-  /// `basis` of the model as in Leftover.
+  /// `basis`: orthonormal columns of the model, as in Residuals.
   PlaceTests(const Part&, const Repeats&, const Whitening& white, const MatrixXd& basis,
              double dof);
-  /// With the share of what is left, largest first; only those whose rms is above `least`.
+  /// Returns the places by their share of the residual sum of squares, largest first; only those
+  /// whose rms is above `least`.
   std::vector<Place> operator()(const VectorXd& residual, const std::optional<NoiseFloor>& floor,
                                 double least = -1.0) const;
 
@@ -36,18 +37,19 @@ class PlaceTests {
   std::shared_ptr<const Tests> tests_;
 };
 
-/// The fewest places that hold what is left: one after the other, each with all that its factors
-/// predict together ("direction x time" with what is constant in time), as long as the evidence
-/// pays for their columns. For structure that no effect explains.
+/// Returns the smallest set of places that contains the residuals of a model, for structure that no
+/// effect explains: adds places one after the other, each including the effect of its factors alone
+/// ("direction x time" includes "direction"), as long as the evidence exceeds the cost of their
+/// columns.
 std::vector<Place> seats_of(const Residuals&);
 
-/// What a term's part varies with (direction, position, direction x time, ...), by the share
-/// of its sum of squares: those whose own share is at least a twentieth, or whose product with
-/// another is.
+/// Finds the factors with which a term's prediction varies (direction, position, direction x time,
+/// ...): those with at least a twentieth of its sum of squares, alone or as a product with another
+/// factor; largest share first.
 class FactorsOf {
  public:
   FactorsOf(const Part& part, const Repeats& repeats, const Whitening& white);
-  /// Of a whitened part.
+  /// Returns the factors of a whitened prediction.
   std::vector<Where> operator()(const VectorXd& signal) const;
 
  private:

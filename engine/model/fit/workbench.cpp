@@ -8,14 +8,15 @@
 namespace nonio::model {
 
 namespace {
-// Of a column of unit length, what must be left when the others are taken out.
+// Smallest remaining squared length of a column of unit length after the others are removed.
 constexpr double independent = 1e-7;
-// In space columns run along with each other (a step diagonal's mirror and its three axes): not
-// curves, which would rather be taken for the noise of rounding.
+// In space, columns are nearly parallel (a step diagonal's mirror and its three axes). This does
+// not apply to curves, for which a smaller value would admit rounding noise.
 constexpr double independent_in_space = 1e-11;
-// A part of a curve in space that the readings show so weakly would be as large as no guide is.
+// A weaker combination of a curve in space would imply an impossibly large guideway error.
 constexpr double shown_of_curve = weakest_of_curve * weakest_of_curve;
-// Usual size of each part of a curve in space, m or rad: 30 um of straightness, 30 urad of angle.
+// Usual size of each component of a curve in space, m or rad: 30 um of straightness, 30 urad of
+// angle.
 // docs/dev/constants.md, M43.
 constexpr double usual_curve = 30e-6;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -34,7 +35,7 @@ bool varies_with_target_only(const MatrixXd& columns, const std::vector<std::uin
 
 }  // namespace
 
-/// How many values its shapes are chosen from.
+/// Counts the values among which the shapes of an effect are chosen.
 void Workbench::count_shapes(Instance& instance) const {
   const auto& shapes = instance.term.effect->shapes;
   instance.tried.assign(std::size_t{1} << shapes.size(), 0);
@@ -49,7 +50,7 @@ void Workbench::count_shapes(Instance& instance) const {
   }
 }
 
-/// Bit k: shape k has its usual value.
+/// Returns a bit mask: bit k is set if shape k has its usual value.
 std::size_t Workbench::usual_ones(const Term& term, const std::vector<double>& shape) {
   std::size_t out = 0;
   for (std::size_t k = 0; k < shape.size(); ++k)
@@ -57,21 +58,22 @@ std::size_t Workbench::usual_ones(const Term& term, const std::vector<double>& s
   return out;
 }
 
-/// A block with usual values of its shapes was chosen from those that have them: the others need
-/// evidence.
+/// Sets the cost of the choice of a block's shapes. A block with usual values was chosen only among
+/// blocks with these values; others need more evidence.
 void Workbench::fill_search(Block& block) const {
   const Instance& instance = instances_[block.effect];
   const auto tried = static_cast<double>(instance.tried[usual_ones(instance.term, block.shape)]);
   block.searched = 0, block.cost_of_shape = 0.0;
   if (!(tried > 1.0)) return;
-  // Neighbours on a grid are alike: about a third of its values are independent.
+  // Adjacent grid values are correlated: about a third of the values are independent.
   const bool curve = instance.term.effect->curve;
   block.cost_of_shape = 2.0 * std::log(std::max(curve ? tried : tried / 3.0, 2.0));
   for (std::size_t k = 0; k < instance.free.size() && !curve; ++k)
     block.searched += instance.free[k] != 0 && !is_usual(instance.term, block.shape, k);
 }
 
-/// Whether a block, with so many unknowns of position, has nearly one free value per target.
+/// Whether a set with this block would have nearly one free value per target; `of_position`: its
+/// number of other unknowns of position.
 bool Workbench::follows_targets(const Block& block, Index of_position) const {
   if (!block.of_position) return false;
   const bool stated = block.effect < stated_;
@@ -193,8 +195,8 @@ double Workbench::price(const Block& block, Index columns) const {
 }
 
 double Workbench::criterion(double squares, double price, Index parameters) const {
-  // Of few readings a large share is fitted by whatever comes (Hurvich and Tsai 1989, who take two
-  // more off: measured, effects of 5 times the noise are lost then in ten readings).
+  // With few readings, chance fits a large share of them (Hurvich and Tsai 1989; they use two
+  // readings less, but then effects of 5 times the noise are lost in ten readings, as measured).
   const double free = used_ - static_cast<double>(zeros_ + parameters);
   if (few_) price *= used_ / std::max(free, 0.5);
   return used_ * std::log(std::max(squares, 1e-300) / used_) + price;
@@ -242,7 +244,7 @@ Workbench::State Workbench::state(std::vector<std::size_t> blocks) const {
 
 namespace {
 
-/// t^T S^-1 t of one block; NaN if S is not safely positive definite.
+/// Returns t^T S^-1 t of one block; NaN if S is not safely positive definite.
 double fall_of(const MatrixXd& s, const VectorXd& t, double least) {
   const Eigen::LLT<MatrixXd> llt(s);
   if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > std::sqrt(least)))
@@ -250,7 +252,7 @@ double fall_of(const MatrixXd& s, const VectorXd& t, double least) {
   return math::whitened(llt, t).squaredNorm();
 }
 
-/// The same in those directions of the block that are independent.
+/// Returns t^T S^-1 t over the independent directions of the block only, and their number.
 double fall_of_some(const MatrixXd& s, const VectorXd& t, double least, Index& rank) {
   const auto [values, vectors] = math::spectrum(s);
   const VectorXd along = math::transposed_times(vectors, t);
@@ -358,14 +360,15 @@ double Workbench::least_of(const Block& block) const {
   return instances_[block.effect].term.effect->description ? independent : shown_of_curve;
 }
 
-/// Of the diagonal of a factor: every column is used in full.
+/// Returns the smallest diagonal element of the Cholesky factor with which every column counts as
+/// fully independent.
 double Workbench::wholly_independent() const {
   return several_axes_ && reducible_ ? 3.0 * weakest_of_curve : std::sqrt(independent);
 }
 
 bool Workbench::reducible(const Block& block) const { return instances_[block.effect].reducible; }
 
-/// Gram and Schmidt block by block, on scalar products.
+/// Orthonormalizes the columns block by block, using scalar products only.
 Workbench::Directions Workbench::directions(const std::vector<std::size_t>& blocks,
                                             const MatrixXd& gram) const {
   Directions out{MatrixXd(gram.rows(), 0), {}, true};
@@ -389,7 +392,8 @@ Workbench::Directions Workbench::directions(const std::vector<std::size_t>& bloc
   return out;
 }
 
-/// `p.products` holds what columns have in the directions of the state, those of the block from `row` on.
+/// Returns the decrease of squares by a block; rows from `row` of `p.products` are the products of
+/// its columns with the directions of the state.
 double Workbench::fall_of_block(const Projection& p, Index row, const Block& block,
                                 Index& rank) const {
   rank = block.count;
@@ -462,7 +466,8 @@ Workbench::State Workbench::with(const State& state, const Gains& gains, std::si
   return more;
 }
 
-/// A curve counts with as many parameters as it has directions independent of the state's.
+/// As `with`, for a curve: it counts only as many parameters as it has directions independent of
+/// the state.
 Workbench::State Workbench::with_curve(const State& state, const Gains& gains,
                                        std::size_t effect) const {
   State best = state;

@@ -18,11 +18,11 @@ namespace {
 
 constexpr std::size_t most_effects = 8;
 // docs/dev/constants.md, M46.
-constexpr double least_joint_rms = 0.1;  ///< of the noise: smaller effects are not worth a name
+constexpr double least_joint_rms = 0.1;  ///< relative to the noise: smaller effects are not named
 // docs/dev/constants.md, M47.
 constexpr double differs_below = 0.001, as_much_as_noise = 0.01;
 constexpr Index shuffles = 200;  // half of them of stretches, half of whole passes
-// Of many campaigns the date of a change is looked for in steps, then between them.
+// With many campaigns, the date of a change is searched in steps, then between them.
 constexpr std::size_t most_dates = 32;
 
 class JointSearch {
@@ -56,7 +56,8 @@ class JointSearch {
     double evidence = -std::numeric_limits<double>::infinity();
   };
 
-  /// The best block and way of each effect that is not in `choices`, or of one only.
+  /// Returns the best block, with the best `Holds`, of each effect that is not in `choices`; only
+  /// of effect `only` if it is given.
   std::map<std::string, Scored> scored(const Choices& choices, const std::string& only = "") const {
     const auto gains = system_.gains(choices, y_);
     std::map<std::string, Scored> best;
@@ -77,7 +78,7 @@ class JointSearch {
     return best;
   }
 
-  /// The best; of those that are as good the one with the fewest unknowns.
+  /// Returns the best effect; among nearly equal ones that with the fewest unknowns.
   Scored simplest(const std::map<std::string, Scored>& all) const {
     Scored best;
     for (const auto& [effect, one] : all)
@@ -106,7 +107,7 @@ class JointSearch {
     }
   }
 
-  /// An effect with fewer unknowns in the place of one that is no better.
+  /// Replaces an effect by one with fewer unknowns that explains the readings equally well.
   void prefer_simpler() {
     const auto unknowns = [&](std::size_t b) { return r_.blocks[b].count + r_.blocks[b].searched; };
     for (std::size_t i = 0; i < choices_.size(); ++i)
@@ -130,7 +131,8 @@ class JointSearch {
     return s.sound ? s.criterion() : std::numeric_limits<double>::infinity();
   }
 
-  /// Shapes, and whether an effect is shared, looked for again while the others stay.
+  /// Searches shapes, and whether an effect is shared, again with the others fixed, until nothing
+  /// changes.
   void settle() {
     for (int round = 0; round < 4; ++round) {
       bool any = false;
@@ -139,8 +141,8 @@ class JointSearch {
     }
   }
 
-  /// The best shape of one effect; then whether its campaigns differ, and since when. Returns whether
-  /// something changed.
+  /// Finds the best shape of one effect; then whether its value differs between campaigns, and
+  /// since when. Returns whether something changed.
   bool settle(std::size_t i) {
     const Choice before = choices_[i];
     const std::string effect = r_.blocks[before.block].effect;
@@ -158,7 +160,8 @@ class JointSearch {
     return now.block != before.block || now.holds != before.holds || now.after != before.after;
   }
 
-  /// One change between two campaigns, if values in each say no more.
+  /// Tries one change between two campaigns, in place of a value in each campaign, if that is
+  /// equally good.
   void look_for_date(std::size_t i) {
     const std::size_t n = r_.members.size();
     const Choice own = choices_[i];
@@ -181,8 +184,8 @@ class JointSearch {
     if (p_same(i) < differs_below) choices_[i] = own;
   }
 
-  /// Chance of such differences of an effect between the campaigns where there are none but those that
-  /// its choice has.
+  /// Returns the p-value of the differences of an effect between campaigns, beyond those that its
+  /// choice allows.
   double p_same(std::size_t i) const {
     Choices own = choices_;
     own[i].holds = Holds::own;
@@ -192,7 +195,8 @@ class JointSearch {
     return math::f_upper((a.squares - b.squares) / q, q, dof_);
   }
 
-  /// F-test of one effect against the noise of the repeats; not corrected for the search.
+  /// Returns p of the F-test of one effect against the noise of the repeats; not corrected for the
+  /// search.
   double p_of(const Choices& choices, std::size_t i) const {
     const auto all = system_.solve(choices), rest = system_.solve(without(choices, i));
     const JointBlock& block = r_.blocks[choices[i].block];
@@ -207,7 +211,8 @@ class JointSearch {
     return std::sqrt(std::max(fall, 0.0) * noise2_ / system_.readings());
   }
 
-  /// What is left, with the signs of short stretches or of whole passes flipped at random.
+  /// Returns the residuals, followed by copies with the signs of short stretches or of whole passes
+  /// flipped at random.
   std::vector<MatrixXd> flipped() const {
     const auto left = system_.residuals(choices_, system_.solve(choices_));
     std::mt19937_64 random(seed_);
@@ -233,8 +238,9 @@ class JointSearch {
     return out;
   }
 
-  /// Independent tests that give as small a p as the flipped readings do, at their median and in one
-  /// of twenty, of stretches or of passes: whichever are more.
+  /// Returns the equivalent number of independent tests: that with which the smallest p of flipped
+  /// readings agrees at its median and at its lowest twentieth, for stretches or for passes,
+  /// whichever is largest.
   double trials_of(const JointSystem::Gains& gains) const {
     std::vector<double> least[2];
     for (Index k = 0; k < shuffles; ++k) {
@@ -261,7 +267,7 @@ class JointSearch {
     return trials;
   }
 
-  /// Effects that noise could have given, or too small to matter, go.
+  /// Removes effects that are not significant or too small.
   void prune() {
     while (true) {
       chance_.trials = trials_of(system_.gains(choices_, flipped()));
@@ -278,7 +284,7 @@ class JointSearch {
     }
   }
 
-  /// Differences that the flipped readings give as well are none.
+  /// Makes effects shared whose differences between campaigns also occur in flipped readings.
   void settle_differences() {
     for (std::size_t i = 0; i < choices_.size(); ++i) {
       if (choices_[i].holds == Holds::shared) continue;
@@ -306,7 +312,7 @@ class JointSearch {
         [](const JointEffect& a, const JointEffect& b) { return a.evidence > b.evidence; });
   }
 
-  /// Of what is left of readings over their standard deviation; m or rad.
+  /// Returns the RMS of normalised residuals, converted to m or rad.
   double rms_of(const std::vector<VectorXd>& left) const {
     double squares = 0.0;
     for (std::size_t m = 0; m < left.size(); ++m)
@@ -380,7 +386,7 @@ class JointSearch {
     out.trials = chance_.trials;
   }
 
-  /// Squares of the means of the cells, over all campaigns.
+  /// Returns the sum of squares of the cell means over all campaigns, for each column of `y`.
   VectorXd of_cells(const std::vector<MatrixXd>& y) const {
     VectorXd out = VectorXd::Zero(y.front().cols());
     for (std::size_t m = 0; m < y.size(); ++m) {
@@ -398,7 +404,8 @@ class JointSearch {
     return out;
   }
 
-  /// Whether the means of the cells differ from the model by more than what the passes scatter.
+  /// Sets the verdict: tests whether the cell means differ from the model by more than the scatter
+  /// of passes.
   void judge(JointExplanation& out) const {
     std::vector<MatrixXd> left;
     for (const VectorXd& e : system_.residuals(choices_, system_.solve(choices_)))
@@ -406,7 +413,8 @@ class JointSearch {
     const double found = of_cells(left)(0);
     const VectorXd chance = of_cells(flipped());
     double mean = 0.0, squares = 0.0, n = 0.0;
-    for (Index k = 1; k < shuffles; k += 2) mean += chance(k), ++n;  // of whole passes
+    // odd copies have the signs of whole passes flipped
+    for (Index k = 1; k < shuffles; k += 2) mean += chance(k), ++n;
     mean /= n;
     for (Index k = 1; k < shuffles; k += 2) squares += std::pow(chance(k) - mean, 2);
     const double s = std::sqrt(squares / (n - 1.0));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The model of an axis or of several, applied to readings that it was not fitted to.
+// Applies the model of one or several axes to readings that it was not fitted to.
 #include "nonio/model/prediction.h"
 
 #include <algorithm>
@@ -14,8 +14,8 @@ namespace {
 
 const char* const mark = "unseen ";
 
-/// Both tables as one, so that curves and levers have the same places in both. Lines and bodies of the
-/// second have a name of their own.
+/// Joins both tables, so that the knots of curves and the origins of levers are the same in both.
+/// Lines and bodies of the second get names of their own.
 Expected<Observations> joined(const Observations& seen, const Observations& unseen) {
   Observations out = seen;
   if (seen.angular != unseen.angular) return fail("one is in um, the other in arcsec");
@@ -57,7 +57,7 @@ Expected<MatrixXd> columns_of_terms(const Observations& o, const std::vector<Ter
   return out;
 }
 
-/// One column for the zero of each line of these rows.
+/// Returns one indicator column for the zero of each line of these rows.
 MatrixXd zeros_of(const Observations& o, Index first, Index rows) {
   std::vector<std::uint32_t> lines;
   for (Index i = first; i < first + rows; ++i) {
@@ -96,7 +96,7 @@ Expected<Prediction> predict_places(const Part& seen, const std::vector<Term>& m
   const auto n = static_cast<Index>(seen.table.size()), m = static_cast<Index>(unseen.table.size());
   const VectorXd y = Eigen::Map<const VectorXd>(both.deviation.data(), n + m);
 
-  // The fit to what was seen.
+  // Fit the seen readings.
   VectorXd root(n);
   for (Index i = 0; i < n; ++i)
     root(i) = std::sqrt(
@@ -118,7 +118,7 @@ Expected<Prediction> predict_places(const Part& seen, const std::vector<Term>& m
                                             MatrixXd::Identity(a.cols(), a.cols()));
   const MatrixXd covariance = s2 * cofactor.topLeftCorner(k, k);
 
-  // What it predicts; zeros and set-up of the other readings are new.
+  // Predict the unseen readings; their zeros and set-up are new unknowns.
   const MatrixXd free = with(of_unseen.bottomRows(m), zeros_of(both, n, m));
   const Eigen::ColPivHouseholderQR<MatrixXd> decomposed(free);
   const MatrixXd q = math::orthonormal(decomposed, decomposed.rank());

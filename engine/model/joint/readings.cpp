@@ -13,11 +13,12 @@ namespace nonio::model {
 
 namespace {
 
-/// Share of a column that must not be explained by the zeros and the member's own model.
+/// Smallest share of a column that must remain after the zeros and the member's own model are
+/// removed.
 constexpr double shown = 1e-4;
 
-/// The stretch that all members together measured, as two readings more: a curve has its knots, and a
-/// period its grid, in the same places in each.
+/// The range that all members together have measured, appended as two additional readings, so that
+/// the knots of a curve and the grid of a period are the same in each member.
 struct Stretch {
   double low = 0.0, high = 0.0;
 };
@@ -43,7 +44,8 @@ bool joins(const Term& t) {
   return !t.grouping && !t.effect->description && !t.effect->is_nuisance && !t.library;
 }
 
-/// The same at every reading of a target from one side: it does not depend on time.
+/// Whether the columns are equal for all readings of a target from one side, so that they do not
+/// depend on time.
 bool is_of_place(const MatrixXd& columns, const std::vector<std::uint32_t>& cell) {
   std::map<std::uint32_t, Index> first;
   for (Index i = 0; i < columns.rows(); ++i) {
@@ -53,7 +55,7 @@ bool is_of_place(const MatrixXd& columns, const std::vector<std::uint32_t>& cell
   return true;
 }
 
-/// Whether the shapes are known here, and other ones: the pitch of another screw.
+/// Whether this member has known shapes that differ from these, such as the pitch of another screw.
 bool is_of_another(const Observations& o, const Term& term, const std::vector<double>& shape) {
   for (std::size_t k = 0; k < shape.size(); ++k) {
     const std::vector<double> grid = term.effect->shapes[k].grid(o, term.axis);
@@ -94,7 +96,7 @@ class Reader {
         stretch_.low = std::min(stretch_.low, x), stretch_.high = std::max(stretch_.high, x);
   }
 
-  /// Shapes from the member with the most readings that has the effect.
+  /// Lists the blocks of all effects, with the shapes of the member with the most readings.
   void list_blocks() {
     std::map<std::string, std::pair<const Term*, const Member*>> all;
     std::vector<std::string> order;
@@ -154,8 +156,8 @@ class Reader {
     return out;
   }
 
-  /// Differences of the means of passes that follow each other on one side, without the means of the
-  /// targets: 2 (offset^2 + s^2/n). A drift is hardly in them.
+  /// Sums the squared differences of the means of successive passes of one side, without the means
+  /// of the targets; their expectation is 2 (offset^2 + s^2/n). A slow drift contributes little.
   void sum_offsets(const Ground& ground, const std::vector<double>& y, double s) {
     const Repeats& r = ground.repeats;
     std::vector<double> cell(r.cells, 0.0), in_cell(r.cells, 0.0), mean(r.passes, 0.0),
@@ -178,13 +180,14 @@ class Reader {
     }
   }
 
-  /// Variance of the offsets of passes over that of a reading, the same in all campaigns.
+  /// Returns the variance of the offsets of passes relative to that of a reading; it is the same
+  /// for all campaigns.
   double offsets_of_passes() const {
     return differences_ > 0.0 ? std::max(offsets_ / differences_, 0.0) : 0.0;
   }
 
-  /// Takes from the rows of each pass so much of their mean that what is left is independent: generalised
-  /// least squares with a random offset of each pass.
+  /// Subtracts from the rows of each pass the fraction of their mean that makes them independent:
+  /// generalised least squares with a random offset of each pass.
   static void take_out_offsets(const MemberReadings& m, double variance, MatrixXd& columns) {
     if (!(variance > 0.0)) return;
     std::map<std::uint32_t, std::vector<Index>> passes;
@@ -198,7 +201,7 @@ class Reader {
     }
   }
 
-  /// Orthonormal columns of the zeros and of the member's own model.
+  /// Returns orthonormal columns of the zeros and of the member's own model.
   static Expected<MatrixXd> of_model(const MemberReadings& m, const Whitening& white,
                                      const Observations& o, const std::vector<Term>& terms,
                                      double offsets) {
@@ -279,7 +282,7 @@ class Reader {
     return {};
   }
 
-  /// What fewer than two campaigns show is a question to each alone.
+  /// Removes blocks that fewer than two members can show, because these concern single campaigns.
   void drop_rare() {
     for (std::size_t b = 0; b < out_.blocks.size(); ++b) {
       const auto shows = std::count_if(out_.members.begin(), out_.members.end(),

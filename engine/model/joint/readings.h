@@ -8,32 +8,35 @@
 
 namespace nonio::model {
 
-/// Columns of one effect with one value of its shapes, the same in every member that shows it.
+/// Columns of one effect with one combination of its shapes, the same in every member that can show
+/// it.
 struct JointBlock {
   std::string effect;
-  const Effect* is = nullptr;  ///< of the first member that has it
+  const Effect* is = nullptr;  ///< the effect, as of the first member that has it
   Axis axis{};
   std::vector<double> shape{};
-  Index count = 0;     ///< columns
-  Index searched = 0;  ///< of its shapes
-  double cost = 0.0;   ///< 2 ln of the number of independent values of its shapes, and of its odds
+  Index count = 0;     ///< number of columns
+  Index searched = 0;  ///< number of searched shapes
+  /// 2 ln of the number of independent values of its shapes, plus its prior cost
+  double cost = 0.0;
 };
 
-/// The readings of one member and the columns of all blocks: whitened, over the standard deviation of
-/// a reading, without the zeros of the lines and without the member's own model.
+/// The readings of one member and the columns of all blocks: whitened, divided by the standard
+/// deviation of a reading, without the zeros of the lines and without the member's own model.
 struct MemberReadings {
   MatrixXd x;
   VectorXd y;
-  std::vector<Index> first;         ///< column of each block; -1: these readings do not show it
+  /// first column of each block; -1: not identifiable from these readings
+  std::vector<Index> first;
   std::vector<MatrixXd> own;        ///< scalar products of each block's columns
-  std::vector<std::uint32_t> pass;  ///< of each reading
-  std::vector<std::uint32_t> cell;  ///< a target reached from one side
-  VectorXd scale;                   ///< what 1 of y is, m or rad; 0: left out
+  std::vector<std::uint32_t> pass;  ///< pass of each reading
+  std::vector<std::uint32_t> cell;  ///< cell of each reading: a target approached from one side
+  VectorXd scale;                   ///< factor that converts y to m or rad; 0: not used
   std::size_t cells = 0;
   double readings = 0.0;
-  Index unknowns = 0;  ///< zeros and the own model
+  Index unknowns = 0;  ///< number of zeros and of parameters of the own model
   double s = 0.0;      ///< standard deviation of a reading, m or rad
-  double dof = 0.0;    ///< of s
+  double dof = 0.0;    ///< degrees of freedom of s
   std::optional<NoiseFloor> floor{};
 };
 

@@ -10,10 +10,11 @@ namespace nonio::model {
 namespace {
 
 constexpr double no_gain = std::numeric_limits<double>::quiet_NaN();
-/// Share of a column that must be independent of the others.
+/// Smallest share of a column that must be independent of the others.
 constexpr double least_independent = 1e-6;
 
-/// Whether what is left of scalar products is safely positive definite next to what they were.
+/// Whether the remaining scalar products are safely positive definite relative to those before
+/// elimination.
 bool is_independent(const MatrixXd& left, const VectorXd& before) {
   if (left.rows() == 0) return true;
   const VectorXd unit = before.cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
@@ -196,7 +197,8 @@ JointSystem::Gains JointSystem::gains(const std::vector<Choice>& choices,
     const MemberReadings& member = r_.members[m];
     const Split part = split(choices, m);
     const Index o = part.own.cols(), a = part.shared.cols();
-    MatrixXd all(member.y.size(), a + columns);  // shared columns and readings without the own ones
+    // shared columns and readings, without the own columns
+    MatrixXd all(member.y.size(), a + columns);
     all << part.shared, y[m];
     const MatrixXd inverse = inverse_of(math::transposed_product(part.own, part.own));
     if (o > 0)

@@ -5,56 +5,56 @@
 
 namespace nonio::model {
 
-/// A block in the joint model.
+/// A block of the joint model, and how its value varies between campaigns.
 struct Choice {
   std::size_t block = 0;
   Holds holds = Holds::shared;
-  std::size_t after = 0;  ///< of changed: the first member with the second value
+  std::size_t after = 0;  ///< for `changed`: the first member with the second value
 };
 
-/// Normal equations of the members together: columns that members share, and columns of one member
-/// alone, which are eliminated member by member.
+/// Normal equations of all members: columns shared between members, and columns of single members,
+/// which are eliminated member by member.
 class JointSystem {
  public:
   explicit JointSystem(const JointReadings& readings) : r_(readings) {}
 
   struct Solution {
     bool sound = true;     ///< every choice has independent columns
-    double squares = 0.0;  ///< left, of readings over their standard deviation
+    double squares = 0.0;  ///< residual sum of squares, in units of the variance of a reading
     double price = 0.0;
     Index parameters = 0;
     double criterion() const { return squares + price; }
     VectorXd shared;  ///< values of the shared columns, choice by choice
     MatrixXd covariance;
-    std::vector<VectorXd> own;  ///< of each member its columns, choice by choice
+    std::vector<VectorXd> own;  ///< values of each member's own columns, choice by choice
     std::vector<MatrixXd> own_covariance;
   };
   Solution solve(const std::vector<Choice>& choices) const;
 
-  /// Values of one choice for a group of members (shared: 0; changed: 0, 1; own: the member), and their
-  /// covariance; empty where it does not show.
+  /// Returns the values of one choice for a group of members (shared: 0; changed: 0, 1; own: the
+  /// member), and their covariance; empty if it is not identifiable.
   std::pair<VectorXd, MatrixXd> values(const std::vector<Choice>& choices, const Solution& s,
                                        std::size_t choice, std::size_t group) const;
 
-  /// What each member's readings leave.
+  /// Returns the residuals of each member.
   std::vector<VectorXd> residuals(const std::vector<Choice>& choices, const Solution& s) const;
 
-  /// Fall of the squares with one more block: for each block and each column of `y` (one matrix per
-  /// member). NaN where the block adds no independent column.
+  /// Decrease of the squares by one more block, for each block and each column of `y` (one matrix
+  /// per member). NaN if the block adds no independent column.
   struct Gains {
     MatrixXd shared, own;
     std::vector<Index> own_parameters;
-    std::vector<double> own_price;  ///< of its parameters
+    std::vector<double> own_price;  ///< cost of its parameters
   };
   Gains gains(const std::vector<Choice>& choices, const std::vector<MatrixXd>& y) const;
 
   double readings() const;
-  double price_of(const JointBlock& block) const;  ///< of its shapes and its name
+  double price_of(const JointBlock& block) const;  ///< cost of its shapes and its name
   std::size_t effects() const;
   const JointReadings& all() const { return r_; }
 
  private:
-  struct Place {  // of a member's column in a solution
+  struct Place {  // Place of a member's column in a solution.
     bool shared;
     Index at, column, count;
   };
@@ -62,7 +62,7 @@ class JointSystem {
   Index shared_columns(const std::vector<Choice>& choices) const;
   struct Split {
     MatrixXd own, shared;   // columns of one member
-    std::vector<Index> at;  // of its shared columns among all
+    std::vector<Index> at;  // indices of its shared columns among all
   };
   Split split(const std::vector<Choice>& choices, std::size_t member) const;
 

@@ -16,15 +16,16 @@ namespace {
 
 using State = Workbench::State;
 
-/// An effect that leaves so much less evidence does not become as good by other shapes of the rest.
-// docs/dev/constants.md, M41.
+/// An effect whose loss of evidence exceeds this is not tried with other shapes of the remaining
+/// effects.
+/// docs/dev/constants.md, M41.
 constexpr double hopeless = 100.0;
 
 double normal_below(double x) { return 0.5 * std::erfc(-x * std::numbers::sqrt2 / 2.0); }
 
-/// How large an effect must be to be found. In units of the variance of a reading the fall of the
-/// sum of squares that it gives is about (sqrt(a^2 + k - 1) + z)^2: a^2 what the readings show of
-/// it, k its unknowns, z normal.
+/// Computes the smallest detectable size of an effect. In units of the variance of a reading, an
+/// effect reduces the sum of squares by about (sqrt(a^2 + k - 1) + z)^2: a^2 is its detectable sum
+/// of squares, k its number of unknowns, z standard normal.
 class Sizes {
  public:
   Sizes(const Finding& f, std::size_t effect, bool member)
@@ -40,16 +41,17 @@ class Sizes {
       shown_.push_back({std::max((1.0 - hidden) * seen, 1e-12), wanted(block, dof),
                         static_cast<double>(Workbench::unknowns_of(block))});
     }
-    // Shapes that these readings hardly show (a jump before the last reading) are not counted.
+    // Shapes that these readings hardly show (a step before the last reading) are not counted.
     std::sort(shown_.begin(), shown_.end(),
               [](const Shown& a, const Shown& b) { return a.visible > b.visible; });
     shown_.resize(shown_.size() - shown_.size() / 10);
   }
 
-  /// Root mean square of the one that is found nine times in ten, its shape being any of the grid.
+  /// Returns the RMS of an effect that is detected with probability 0.9, if its shape is any one of
+  /// the grid.
   double smallest() const {
     if (shown_.empty()) return 0.0;
-    double low = 0.0, high = 1e4;  // in standard deviations of a reading, of all readings together
+    double low = 0.0, high = 1e4;  // size over all readings, in standard deviations of a reading
     for (int step = 0; step < 50; ++step) {
       const double a = (low + high) / 2.0;
       double found = 0.0;
@@ -60,7 +62,7 @@ class Sizes {
     return high * s_ / std::sqrt(f_.bench->readings());
   }
 
-  /// Mean of what is found, by what is there, of an effect as large as this one is found to be.
+  /// Returns the mean ratio of found to true size for an effect that is found this large.
   double bias(const Workbench::Block& block) const {
     const double fall = f_.bench->without(f_.best, effect_).squares - f_.best.squares;
     const double a = std::sqrt(std::max(fall, 0.0)) / s_;
@@ -78,7 +80,8 @@ class Sizes {
   struct NextToZeros {
     double seen, dof;
   };
-  /// What zeros of passes leave to be seen of the squares of a block, and the degrees of freedom.
+  /// Returns the fraction of the sum of squares of a block that remains if zeros of passes are
+  /// noise, and the degrees of freedom.
   NextToZeros next_to_zeros(const Workbench::Block& block) const {
     if (f_.noise.zero == Noise::Zero::steady) return {1.0, dof_};
     Term term = f_.terms[effect_];
@@ -96,7 +99,8 @@ class Sizes {
                 : std::max(degrees_of_passes(f_.repeats), 1.0)};
   }
 
-  /// Square root of the least fall that gives a name: by evidence, by chance, by size.
+  /// Returns the square root of the smallest decrease of squares with which an effect is named: by
+  /// evidence, by significance, by size.
   double wanted(const Workbench::Block& block, double dof) const {
     const double n = f_.bench->readings();
     const auto k = static_cast<double>(Workbench::unknowns_of(block));
@@ -118,7 +122,8 @@ class Sizes {
   std::size_t effect_;
   double s_, dof_;
   std::vector<Shown> shown_;
-  mutable double price_ = -1.0, unknowns_ = 0.0, of_dof_ = 0.0, wanted_ = 0.0;  // the last
+  // cached last result and its arguments
+  mutable double price_ = -1.0, unknowns_ = 0.0, of_dof_ = 0.0, wanted_ = 0.0;
 };
 
 class CandidateOf {
@@ -162,7 +167,8 @@ class CandidateOf {
   }
 
  private:
-  /// Effects that can replace a member of the best explanation at hardly any loss.
+  /// Returns the effects that can replace a member of the best explanation with hardly any loss of
+  /// evidence.
   std::vector<std::string> aliases_of(std::size_t member) const {
     std::vector<std::string> names;
     const State rest = f_.bench->without(f_.best, member);
@@ -183,8 +189,8 @@ class CandidateOf {
     return names;
   }
 
-  /// A cause with fewer parameters that alone explains nearly all that the best explanation does: a
-  /// curve follows every form, and that of a cause is known only roughly.
+  /// Whether a cause with fewer parameters explains nearly all of what the best explanation does: a
+  /// curve can follow any shape, while the shape of a cause is only approximately known.
   bool is_form_of(std::size_t cause) const {
     if (!f_.terms[cause].library) return false;
     const State alone = f_.bench->joined(f_.start, f_.bench->gains(f_.start, cause), cause);
@@ -193,9 +199,10 @@ class CandidateOf {
                unexplained_share * (f_.start.squares - f_.best.squares);
   }
 
-  /// Hardly any evidence is lost, or hardly any likelihood apart from the cost of further columns:
-  /// the cost of the search decides which effect is named, not which is the true one. In space,
-  /// where one curve can contain another effect completely, also if only the parameters cost more.
+  /// Whether a changed set loses hardly any evidence, or hardly any likelihood apart from the cost
+  /// of additional columns: the cost of the search must not decide which effect is true. In space,
+  /// where one curve can contain another effect completely, the cost of parameters is ignored as
+  /// well.
   bool as_good(const State& changed) const {
     if (changed.criterion < f_.best.criterion + alias_evidence) return true;
     const double n = f_.bench->readings();
@@ -212,7 +219,8 @@ class CandidateOf {
     return sum;
   }
 
-  /// Evidence of an effect outside the best explanation: added to it, or instead of a member.
+  /// Computes the evidence for an effect outside the best explanation: added to it, or in place of
+  /// a member.
   void score_outsider(std::size_t e, Candidate& c) const {
     const State more = f_.bench->joined(f_.best, f_.bench->gains(f_.best, e), e);
     if (more.blocks.size() > f_.best.blocks.size()) {
@@ -233,8 +241,9 @@ class CandidateOf {
     }
   }
 
-  /// Added to the model as `nonio model add` does it, so that the RMS printed beforehand is the one
-  /// obtained: all shapes are searched anew, and readings have the weights of a comparison.
+  /// Fits the candidate with the model as `nonio model add` does, so that the RMS printed
+  /// beforehand is the one obtained: all shapes are searched again, and readings have the weights
+  /// of a comparison.
   void fit_candidate(Candidate& c) const {
     const std::vector<Term> model(f_.terms.begin(),
                                   f_.terms.begin() + static_cast<std::ptrdiff_t>(f_.in_model));

@@ -7,8 +7,9 @@
 
 namespace nonio::model {
 
-/// Every effect outside the model, with its evidence, its aliases and the smallest that would be
-/// found; most evidence first. `ground`: of the comparison that adding the effect is judged by.
+/// Returns every effect outside the model, with its evidence, its aliases and the smallest size
+/// that would be detected; most evidence first. `ground`: inputs of the comparison in which the
+/// candidates' RMS is computed.
 std::vector<Candidate> candidates_of(const Finding& finding, const Ground& ground);
 
 }  // namespace nonio::model

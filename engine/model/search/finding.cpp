@@ -61,7 +61,8 @@ class Finder {
     NONIO_TRY(auto start, best_start());
     f_.start = std::move(start);
     f_.best = best_explanation(*f_.bench, f_.start);
-    // An effect between the values of a grid would be taken for another effect.
+    // Refine shapes between grid values, because the error of a grid value would be attributed to
+    // another effect.
     constexpr double worth_another_round = 1.0;
     for (int round = 0; round < 3; ++round) {
       const bool finer = add_refined(f_.start), alone = round == 0 && add_refined_alone();
@@ -74,16 +75,16 @@ class Finder {
     return {};
   }
 
-  /// Of the repeats; 0 where there are none.
+  /// Returns the standard deviation of the repeats; 0 if there are too few.
   double scatter() const {
     constexpr double fewest = 8.0;
     const Saturated repeated = saturate(f_.repeats, f_.part.table.deviation, f_.weight);
     return repeated.dof >= fewest ? std::sqrt(repeated.squares / repeated.dof) : 0.0;
   }
 
-  /// Within a pass a random walk of the zero looks like correlated neighbours. Whether it is, with
-  /// the model, a better explanation than all that was found: then the readings are treated as
-  /// independent, and the random walk stays visible.
+  /// Whether a random walk of the zero explains the readings better than all effects that were
+  /// found. Within a pass it resembles a correlation of adjacent readings; in this case the
+  /// readings are treated as independent, so that the random walk remains visible.
   bool walks_rather() {
     if (!(f_.noise.in_repeats > 0.0)) return false;
     Noise alone = f_.noise;
@@ -99,10 +100,10 @@ class Finder {
     return walk < alike;
   }
 
-  /// Passes whose zeros differ by chance, in any order: whether the model, or the best explanation so
-  /// far, with such zeros explains more than all that was found without them, and as much as a zero
-  /// that walks. Then they are noise, as large as the best explanation leaves them, until their size
-  /// stays.
+  /// Whether zeros of passes scatter at random: with such zeros, the model or the best explanation
+  /// is better than everything found without them, and at least as good as with a random walk. Then
+  /// they are treated as noise, with the size that the best explanation leaves, and the search is
+  /// repeated until this size is stable.
   bool passes_scatter() {
     constexpr double same_size = 1.2;  // docs/dev/constants.md, M48
     if (of_pass_ == 0.0 && !(zeros_left(f_.start).unordered() &&
@@ -129,9 +130,9 @@ class Finder {
     return {f_.part, f_.repeats, f_.weight, fitted ? fitted->residual : f_.part.table.deviation};
   }
 
-  /// Each effect of the best explanation alone with the model: others must not fit the remainder
-  /// that a coarse grid leaves of a large one. So too the causes of the library that explain most,
-  /// whose grids are the coarsest: another effect would be taken for them.
+  /// Refines each effect of the best explanation alone with the model, because other effects must
+  /// not fit the error of its coarse grid; likewise the causes of the library that explain most,
+  /// whose grids are the coarsest.
   bool add_refined_alone() {
     constexpr std::size_t causes = 4;  // docs/dev/constants.md, M37
     const Workbench::Gains gains = f_.bench->gains(f_.start);
@@ -158,8 +159,9 @@ class Finder {
     return any;
   }
 
-  /// Instants and periods of a model hold each other fast: tried from two sides. A curve that comes
-  /// in last leaves to the others what they need.
+  /// Returns the better of two searches for the model's shapes: instants and periods depend on each
+  /// other, so they are searched from two starting orders. A curve that is added last leaves to the
+  /// other terms what they need.
   Expected<State> best_start() const {
     std::vector<std::size_t> written(f_.in_model);
     std::iota(written.begin(), written.end(), std::size_t{0});
@@ -173,8 +175,8 @@ class Finder {
     return start;
   }
 
-  /// The model with its shapes searched; its terms come in as they are `open`, or those first that
-  /// explain most.
+  /// Searches the shapes of the model's terms. The terms are added in the order of `open`, or those
+  /// that explain most first.
   Expected<State> started(std::vector<std::size_t> open, bool largest_first) const {
     State start = f_.bench->state({});
     while (!open.empty()) {
@@ -197,7 +199,7 @@ class Finder {
     return in_order(f_.bench->settled(std::move(start)));
   }
 
-  /// Blocks in the order of the model.
+  /// Sorts blocks by the order of the model.
   State in_order(State state) const {
     std::sort(state.blocks.begin(), state.blocks.end(), [&](std::size_t a, std::size_t b) {
       return f_.bench->effect_of(a) < f_.bench->effect_of(b);
@@ -205,11 +207,11 @@ class Finder {
     return state;
   }
 
-  /// Shapes of a state between the values of their grids, as values of the grids.
+  /// Adds the optimal shapes of a state, which are between grid values, to the grids.
   bool add_refined(const State& state) {
     bool any = add_fitted(state, terms_of_state(state));
     any = add_moved(state) || any;
-    // Another effect may fit the remainder of such a value.
+    // Another effect may have fitted the error of a grid value.
     for (const std::size_t b : state.blocks)
       if (const std::size_t e = f_.bench->effect_of(b); e >= f_.in_model)
         any = add_without(state, e) || any;
@@ -229,7 +231,8 @@ class Finder {
     return add_moved(rest) || any;
   }
 
-  /// A usual value stays where it is, unless it is moved a little: perhaps it is not the best.
+  /// Moves shapes away from their usual values, which otherwise do not change, to check whether
+  /// another value is better.
   bool add_moved(const State& state) {
     std::vector<Term> moved = terms_of_state(state);
     bool usual = false;
@@ -256,8 +259,9 @@ class Finder {
     return any;
   }
 
-  /// Few readings without repeats: a misread value bends every effect. So each is left out in turn,
-  /// and the best explanation of the others predicts it.
+  /// Finds suspect readings if there are few readings and no repeats, where one outlier affects
+  /// every effect: each reading is omitted in turn and predicted by the best explanation of the
+  /// others.
   std::vector<Suspect> suspect_without_repeats() {
     // docs/dev/constants.md, M18.
     constexpr std::size_t fewest = 8, most = 40;
@@ -270,11 +274,12 @@ class Finder {
     Suspect worst;
     double least = all;
     std::vector<std::pair<double, std::vector<Term>>> each{{all, terms_of_state(f_.best)}};
-    const double price = 3.0 * std::log(static_cast<double>(n));  // a value, and which of n
+    // one value, and the choice of one of n readings
+    const double price = 3.0 * std::log(static_cast<double>(n));
     for (std::size_t i = 0; i < n; ++i) {
       f_.suspects = {{i, 0.0, 0.0, 0.0}};
       if (!search()) continue;
-      // As of all readings: a criterion of fewer has another unit.
+      // Convert to all readings, because a criterion of fewer readings is not comparable.
       const double used = f_.bench->readings();
       const double criterion = f_.best.criterion + price +
                                (static_cast<double>(n) - used) * std::log(f_.best.squares / used);
@@ -291,8 +296,8 @@ class Finder {
     return least < all ? std::vector<Suspect>{worst} : std::vector<Suspect>{};
   }
 
-  /// A reading of weight 0 compared with the prediction of the best explanation of the others: none
-  /// if (it) /// is as far away as one of so many may be.
+  /// Compares a reading of weight 0 with the prediction from the others; none if its distance is
+  /// not significant.
   std::optional<Suspect> predicted(std::size_t row) const {
     // docs/dev/constants.md, M12.
     constexpr double rarely = 0.01;
@@ -300,7 +305,7 @@ class Finder {
     const double dof = f_.dof(f_.best), n = f_.bench->readings() + 1.0;
     const auto fitted = fit_near(f_.part.table, terms_of_state(f_.best), flags(false), f_.weight);
     if (!fitted || !(dof >= 3.0) || !(f_.best.squares > 0.0)) return {};
-    // Leverage of a row outside: no more than the largest within, at best a guess.
+    // The leverage of a row that is not in the fit is approximated by the largest one in the fit.
     double leverage = 1.0 / n;
     for (Index i = 0; i < basis.rows(); ++i)
       leverage = std::max(leverage, 1.0 / n + basis.row(i).squaredNorm());
@@ -312,7 +317,7 @@ class Finder {
     return Suspect{row, e, e / sigma, least * sigma};
   }
 
-  /// Whether the best explanation suspects other readings than before.
+  /// Whether the best explanation leads to other suspect readings than before.
   bool suspect_again() {
     const std::size_t n = f_.part.table.size();
     const auto fitted = fit_near(f_.part.table, terms_of_state(f_.best), flags(false), f_.weight);
@@ -327,7 +332,8 @@ class Finder {
     for (std::uint32_t i = 0; i < n; ++i)
       if (std::fabs(e[i]) >= least * s) high.push_back(i);
     const std::vector<double> apart = apart_from_others(f_.repeats, high, e);
-    // Also as it was read: what the explanation makes of one run is no misreading.
+    // Require this also of the original deviations: an error of the explanation in one run does not
+    // make a reading suspect.
     const std::vector<double> as_read =
         apart_from_others(f_.repeats, high, f_.part.table.deviation);
     std::vector<Suspect> now;
@@ -361,7 +367,7 @@ class Finder {
     return out;
   }
 
-  /// Effects that noise could have given, or too small to matter, leave the best explanation.
+  /// Removes effects from the best explanation that are not significant or too small.
   void prune() {
     while (true) {
       std::size_t weakest = f_.terms.size();
@@ -403,8 +409,9 @@ class Finder {
   }
 
   Finding f_;
-  bool alone_ = false;    ///< readings are taken for independent
-  double of_pass_ = 0.0;  ///< size of the zeros of passes over s, where these are noise
+  bool alone_ = false;  ///< readings are treated as independent
+  /// size of the zeros of passes relative to s, if these are treated as noise; else 0
+  double of_pass_ = 0.0;
   const std::vector<Term>& model_;
   Workbench::Made made_;
 };

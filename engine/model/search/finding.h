@@ -13,48 +13,52 @@
 
 namespace nonio::model {
 
-inline constexpr double alias_evidence = 6.0;  ///< 2 ln 20: one twentieth is no difference
+/// 2 ln 20: explanations are equally good unless the odds are more than 20 to 1
+inline constexpr double alias_evidence = 6.0;
 // docs/dev/constants.md, M3.
-inline constexpr double least_rms = 0.2;  ///< of the noise: smaller effects are not worth a name
+inline constexpr double least_rms = 0.2;  ///< relative to the noise: smaller effects are not named
 
-// What is left in the same place, of what the candidate predicts: beyond, the candidate is not it.
+// Largest residual at the places of a candidate, as a share of the candidate's own contribution;
+// above, the candidate is in doubt.
 // docs/dev/constants.md, M6.
 inline constexpr double unexplained_share = 0.04;
 
-/// What the search over all sets of effects has found in one part: candidates and the verdict are
-/// read off it.
+/// Result of the search over all sets of effects in one part, from which candidates and the verdict
+/// are derived.
 struct Finding {
   const Part& part;
   Repeats repeats;
-  std::vector<Term> terms{};  ///< of the model, then the catalogue's others
-  std::size_t in_model = 0;   ///< so many terms are the model's
+  std::vector<Term> terms{};  ///< terms of the model, then the other terms of the catalogue
+  std::size_t in_model = 0;   ///< number of terms of the model
   std::uint64_t seed = 0;
-  std::vector<Term> descriptions{};  ///< of the catalogue, that the model does not have
+  /// descriptions of the catalogue that the model does not contain
+  std::vector<Term> descriptions{};
   std::vector<Suspect> suspects{};
-  std::vector<double> weight{};  ///< of each reading: 0 for suspects
-  Noise noise{};                 ///< as the repeats show it
+  std::vector<double> weight{};  ///< weight of each reading: 0 for suspects
+  Noise noise{};                 ///< noise estimated from the repeats
   std::optional<Workbench> bench{};
-  /// Few readings without repeats: effects that with another reading suspected, or none, are nearly
-  /// as good an explanation.
+  /// With few readings and no repeats: effects of explanations that are nearly as good if another
+  /// reading, or none, is suspect.
   std::vector<std::string> otherwise{};
-  Workbench::State start{}, best{};  ///< the model; with what the best explanation adds
-  Chance chance{};                   ///< what noise finds in this search
-  Comparison of_model{}, of_best{};  ///< fits of both
+  Workbench::State start{}, best{};  ///< the model alone; the best explanation
+  Chance chance{};                   ///< significance of effects in this search
+  Comparison of_model{}, of_best{};  ///< comparisons of the model and of the best explanation
 
   std::size_t index_of(const std::string& name) const;
   double dof(const Workbench::State& state) const;
-  /// Of an effect of the best explanation, as p_of of a state; where zeros of passes are noise, what is
-  /// nearly the same all through a pass has no more evidence than there are passes.
+  /// Returns p of an effect of the best explanation, not corrected for the search. If zeros of
+  /// passes are noise, an effect that is nearly constant within a pass has only as much evidence as
+  /// the number of passes allows.
   double p_of(std::size_t effect) const;
-  /// Standard deviation that the best explanation leaves.
+  /// Returns the standard deviation of the residuals of the best explanation.
   double left() const;
-  /// Of these terms together.
+  /// Returns the columns of these terms together.
   Expected<MatrixXd> columns_of(const std::vector<Term>& some) const;
-  /// These terms with a zero that is not steady.
+  /// Returns the criterion of these terms together with a random zero.
   Unsteady walk_with(const std::vector<Term>& some) const;
-  /// What a zero that is not steady costs: one parameter, one name.
+  /// Returns the cost of a random zero: one parameter, one name.
   double price_of_zero() const;
-  /// What a state leaves, whitened.
+  /// Returns the whitened residuals of a state.
   VectorXd residual(const Workbench::State& state) const;
 };
 

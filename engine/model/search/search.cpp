@@ -26,7 +26,7 @@ std::set<std::size_t> effects_of(const Workbench& bench, const State& s) {
   return out;
 }
 
-/// All states with one more effect, best first, one for each set of effects.
+/// Returns the best states with one more effect, best first, one for each set of effects.
 std::vector<State> grown(const Workbench& bench, const std::vector<State>& level) {
   std::vector<State> next;
   std::set<std::set<std::size_t>> seen;
@@ -50,7 +50,8 @@ std::vector<State> grown(const Workbench& bench, const std::vector<State>& level
   return next;
 }
 
-/// One effect dropped, or exchanged for another, if that is better.
+/// Removes one effect, or exchanges it for another, if this improves the criterion; false if
+/// nothing improves.
 bool improve(const Workbench& bench, const State& start, State& best) {
   const auto fixed = effects_of(bench, start);
   for (const std::size_t e : effects_of(bench, best)) {
@@ -138,7 +139,7 @@ SignFlips shuffled(const Workbench& bench, const State& complete, const VectorXd
   const MatrixXd said = math::transposed_product(basis, out.noise);
   out.noise.noalias() -= basis * said;
   out.squares = out.noise.colwise().squaredNorm().transpose();
-  // Products with the columns (which hold no zeros) by stretches: a fifth of the work.
+  // Compute products with the columns (which contain no zeros) by stretches: a fifth of the work.
   const MatrixXd& x = bench.columns();
   MatrixXd of_stretch = MatrixXd::Zero(blocks + basis.cols(), x.cols());
   for (Index k = 0; k < x.cols(); ++k)
@@ -154,10 +155,11 @@ SignFlips shuffled(const Workbench& bench, const State& complete, const VectorXd
 
 namespace {
 
-/// One effect added to a complete model in every shuffle, with the shape that the search chooses.
+/// Result of adding one effect to a complete model in every copy, with the shape that the search
+/// chooses.
 struct Added {
   VectorXd fall, parameters;
-  std::vector<char> better;  ///< the criterion falls
+  std::vector<char> better;  ///< whether the criterion decreases
 };
 
 class ChanceOf {
@@ -200,7 +202,7 @@ class ChanceOf {
     return out;
   }
 
-  /// Of a fall with so many parameters.
+  /// Returns p of a decrease of squares by this number of parameters.
   double p(Index shuffle, double fall, double parameters) const {
     const double dof = dof_ - parameters;
     return math::f_upper(
@@ -223,7 +225,8 @@ class ChanceOf {
 
 Chance measure_chance(const Workbench& bench, const State& complete, const SignFlips& shuffles) {
   const ChanceOf of(bench, complete, shuffles);
-  // Largest fall for each number of parameters: an F-test costs more than all else.
+  // Keep only the largest decrease for each number of parameters, because the F-test is by far the
+  // most expensive step.
   std::vector<std::map<double, double>> largest(static_cast<std::size_t>(shuffles.squares.size()));
   for (std::size_t e = 0; e < bench.instances().size(); ++e) {
     if (bench.holds(complete, e)) continue;
@@ -233,7 +236,7 @@ Chance measure_chance(const Workbench& bench, const State& complete, const SignF
       fall = std::max(fall, added.fall(i));
     }
   }
-  // The smallest of m independent p: -ln(1 - p) is exponential with rate m.
+  // For the smallest of m independent p, -ln(1 - p) is exponentially distributed with rate m.
   double sum = 0.0;
   for (std::size_t i = 0; i < largest.size(); ++i) {
     double least = 1.0;

@@ -7,30 +7,34 @@
 
 namespace nonio::model {
 
-/// The best set of effects that contains those of `start`: several sets are grown side by side,
-/// each step by the effect with its shape that lowers the criterion most; then effects are dropped
-/// and exchanged until nothing improves. A plain forward selection keeps the compromise that it met
-/// first; this does not.
+/// Returns the best set of effects that contains those of `start`: several sets are grown in
+/// parallel, each step by the effect, with its shape, that reduces the criterion most; then effects
+/// are removed and exchanged until nothing improves. A plain forward selection would keep an early
+/// compromise.
 Workbench::State best_explanation(const Workbench& bench, const Workbench::State& start);
 
-/// What noise alone finds in this search when `complete` holds all that there is.
+/// Significance of an effect that is added to `complete`, given that noise alone can produce
+/// effects anywhere in this search.
 struct Chance {
-  double trials = 1.0;  ///< independent tests that the search amounts to
+  double trials = 1.0;  ///< number of independent tests that the search is equivalent to
 
-  /// 1 - (1 - p)^trials
+  /// Returns p corrected for the search: 1 - (1 - p)^trials.
   double corrected(double p) const;
 };
 
-/// Noise made of `residual`: the signs of short stretches of its passes flipped at random (what
-/// neighbours share within a pass stays), less its part in the zeros and a state's columns.
+/// Simulated noise: copies of `residual` in which the signs of short stretches of passes are
+/// flipped at random, so that the correlation within a stretch is preserved, without the components
+/// in the zeros and in a state's columns.
 struct SignFlips {
-  MatrixXd noise;        ///< a column for each shuffle
-  MatrixXd products;     ///< a row for each shuffle: with all columns of the bench
-  MatrixXd in_complete;  ///< of all columns, what they have in the directions of the state
-  VectorXd squares;      ///< of each shuffle
+  MatrixXd noise;     ///< one column per copy
+  MatrixXd products;  ///< one row per copy: products with all columns of the bench
+  /// for all columns: their products with the orthonormal directions of the state
+  MatrixXd in_complete;
+  VectorXd squares;  ///< sum of squares of each copy
 };
 // docs/dev/constants.md, M15.
-inline constexpr std::size_t stretch_of_signs = 5;  ///< readings whose sign is flipped together
+/// number of readings whose sign is flipped together
+inline constexpr std::size_t stretch_of_signs = 5;
 inline constexpr std::size_t whole_pass = static_cast<std::size_t>(-1);
 SignFlips shuffled(const Workbench& bench, const Workbench::State& complete,
                    const VectorXd& residual, const std::vector<std::uint32_t>& pass,
@@ -39,15 +43,16 @@ SignFlips shuffled(const Workbench& bench, const Workbench::State& complete,
 Chance measure_chance(const Workbench& bench, const Workbench::State& complete,
                       const SignFlips& shuffles);
 
-/// Of each shuffle, whether an effect would be named.
+/// Returns, for each copy, whether an effect would be named in it.
 std::vector<char> named_in(const Workbench& bench, const Workbench::State& complete,
                            const SignFlips& shuffles, const Chance& chance);
 
-/// F-test of one effect of a state against the rest; not corrected for any search.
+/// Returns p of the F-test of one effect of a state; not corrected for the search.
 double p_of(const Workbench& bench, const Workbench::State& state, std::size_t effect);
 
-/// An effect is named if noise would give such evidence in this search less often than this.
-// docs/dev/constants.md, M2.
+/// An effect is named if the probability of such evidence by noise anywhere in this search is below
+/// this.
+/// docs/dev/constants.md, M2.
 inline constexpr double named_below = 0.005;
 
 }  // namespace nonio::model

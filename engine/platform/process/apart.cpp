@@ -32,29 +32,30 @@ std::vector<std::filesystem::path>& hidden() {
 
 constexpr unsigned load_seconds = 10;
 
-/// Of the program; empty: not known.
+/// Folder of the program's own plugins; empty if it is not known.
 std::filesystem::path& own_folder() {
   static std::filesystem::path folder;
   return folder;
 }
 
-/// Message of the child while it loads an untried plugin; it has no value if there is no memory.
+/// Message in shared memory that the child sets while it loads an untried plugin; not valid if
+/// there is no memory.
 SharedStatus& loading_untried() {
   static SharedStatus words;
   return words;
 }
 
-bool try_all = false;  // a process that did not ended while it loaded
+bool try_all = false;  // set after a child ended while it loaded an untried plugin
 
 int end_of(pid_t child, const std::vector<pid_t>& children_before) {
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR)
     ;
-  end_children(children_before);  // what plugins have left running
+  end_children(children_before);  // processes that plugins have left running
   return status;
 }
 
-/// What the shell would do with a program that ended so.
+/// Ends this process with the exit status that a shell would report for its child.
 [[noreturn]] void end_as(int status) {
   if (WIFEXITED(status)) ::_exit(WEXITSTATUS(status));
   if (WTERMSIG(status) == SIGINT) ::_exit(130);

@@ -6,21 +6,23 @@
 
 namespace nonio::process {
 
-/// Goes on in a child if `keep_plugins_apart` was requested; the first time only.
+/// Continues in a confined child process if `keep_plugins_apart` was called; further calls do
+/// nothing. The parent waits for the child and ends with its status.
 void step_aside();
 
-/// Whatever a child inherits unwritten, it may write too.
+/// Writes all buffered output, because a child would inherit the buffers and write them a second
+/// time.
 void flush_output();
 
-/// Whether this is such a child, or one of its own.
+/// Whether this process is the child of `step_aside`, or a descendant of that child.
 bool is_apart();
 
-/// Whether a plugin must first be tried in a child of its own: it is not in the folder of the
-/// program, with which it was tested, or this process cannot be restarted.
+/// Whether a plugin must first be loaded in a trial process: it is not in the program's own folder,
+/// whose plugins were tested with it, or this process cannot be restarted.
 bool must_be_tried(const std::filesystem::path& plugin);
 
-/// While it lives, plugins are loaded that were not tried: what ends this process, or hangs, makes
-/// another one that tries all of them first.
+/// During its lifetime, plugins are loaded that were not tried. If one of them ends this process or
+/// hangs, the parent starts another process, which tries all plugins first.
 class LoadingUntried {
  public:
   LoadingUntried();
@@ -29,10 +31,12 @@ class LoadingUntried {
   ~LoadingUntried();
 };
 
-/// Where plugins are kept apart: they cannot read these files. Before they are loaded.
+/// Sets the files that plugins cannot read where they are kept apart. Call it before plugins are
+/// loaded.
 void hide_from_plugins(std::vector<std::filesystem::path> secrets);
 
-/// While it lives, standard output is standard error, where plugins are kept apart.
+/// During its lifetime, standard output is redirected to standard error, where plugins are kept
+/// apart.
 class Muted {
  public:
   Muted();
@@ -41,7 +45,7 @@ class Muted {
   ~Muted();
 
  private:
-  int output_ = -1;  ///< -1: nothing to put back
+  int output_ = -1;  ///< copy of standard output; -1: nothing to restore
 };
 
 }  // namespace nonio::process

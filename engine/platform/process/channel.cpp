@@ -35,7 +35,7 @@ bool read_all(int fd, char* to, std::size_t size) {
   return true;
 }
 
-/// One byte with room for what is sent with it.
+/// A message of one byte, with space for descriptors and credentials.
 struct Packet {
   char byte = 0;
   iovec part{&byte, 1};

@@ -14,7 +14,7 @@
 
 namespace nonio::process {
 
-/// A file descriptor that is closed at the end; -1: none.
+/// Owns a file descriptor and closes it at the end of its lifetime; -1: none.
 class Handle {
  public:
   Handle() = default;
@@ -33,24 +33,24 @@ class Handle {
   int fd_ = -1;
 };
 
-/// Both ends of a channel between two processes, closed when another program is started.
-/// `type`: SOCK_STREAM or SOCK_SEQPACKET.
+/// Returns both ends of a channel between two processes; they are closed when another program is
+/// started. `type`: SOCK_STREAM or SOCK_SEQPACKET. An error names the partner `to_whom`.
 Expected<std::array<Handle, 2>> channel_pair(int type, const std::string& to_whom);
 
-/// Length, then bytes, over a stream. False if the other side has ended; `read` also if it sends
-/// more than the limit.
+/// Write and read a text on a stream, preceded by its length. False if the other process has ended;
+/// `read_text` also if the text is longer than 1 GiB.
 bool write_text(int stream, std::string_view bytes);
 bool read_text(int stream, std::string& bytes);
 
-/// A byte and some descriptors with it, over any channel. False if the other side has ended.
+/// Sends a byte and up to four descriptors over any channel. False if the other process has ended.
 bool send_descriptors(int channel, char word, const std::vector<int>& descriptors);
 
 struct Received {
   char word = 0;
   std::vector<Handle> descriptors;  ///< closed when another program is started
-  pid_t sender = -1;                ///< as the kernel knows it; -1 where SO_PASSCRED is not set
+  pid_t sender = -1;                ///< process id from the kernel; -1 unless SO_PASSCRED is set
 };
-/// An error if the other side has ended.
+/// Receives what `send_descriptors` sent. An error if the other process has ended.
 Expected<Received> receive_descriptors(int channel);
 
 }  // namespace nonio::process

@@ -46,7 +46,7 @@ void keep_silent() {
   if (nothing > STDERR_FILENO) ::close(nothing);
 }
 
-/// Tried again for two seconds where the system has no process to give just now.
+/// Forks; if the system cannot create a process, tries again for two seconds.
 pid_t fork_patiently() {
   constexpr int most = 20;
   for (int i = 0;; ++i) {
@@ -175,7 +175,7 @@ void init_child() {
   ::signal(SIGTERM, SIG_DFL);
   struct sigaction hang_up {};
   ::sigaction(SIGHUP, nullptr, &hang_up);
-  if (hang_up.sa_handler != SIG_IGN) ::signal(SIGHUP, SIG_DFL);  // else it is under nohup
+  if (hang_up.sa_handler != SIG_IGN) ::signal(SIGHUP, SIG_DFL);  // under nohup it stays ignored
   const rlimit none{0, 0};
   ::setrlimit(RLIMIT_CORE, &none);
   ::dup2(STDERR_FILENO, STDOUT_FILENO);

@@ -12,38 +12,39 @@
 
 namespace nonio::process {
 
-/// What became of a child process.
+/// How a child process ended.
 struct ChildEnd {
-  bool well = false;  ///< it exited with 0
-  std::string words;  ///< else: "signal 11 (Segmentation fault)", "exit status 3"
+  bool well = false;  ///< it exited with status 0
+  std::string words;  ///< otherwise the reason: "signal 11 (Segmentation fault)"
   bool overdue = false;
 };
 
-/// From the status of waitpid.
+/// Converts the status that waitpid returned.
 ChildEnd child_end(int wait_status);
 
-/// A child process with a process group of its own, which is killed at the end. Moved, not copied.
+/// Owns a child process with a process group of its own, and kills both at the end of its lifetime.
 class Child {
  public:
   struct Settings {
-    double memory_MB = 0.0;  ///< private memory from now on; none if 0
-    /// It prints nothing: a reader of the parent's output waits until every process has closed it,
-    /// also a child that outlives the parent.
+    double memory_MB = 0.0;  ///< limit of private memory after the start; 0: no limit
+    /// The child prints nothing. A reader of the parent's output waits until every process has
+    /// closed it, also a child that outlives the parent.
     bool silent = false;
   };
-  /// A program in the child; descriptors of the parent, -1: nothing.
+  /// A program to start in the child, and the descriptors of its standard streams; -1: /dev/null.
   struct Program {
-    std::vector<std::string> command;      ///< the first is its path
+    std::vector<std::string> command;      ///< the first is the path of the program
     std::vector<std::string> environment;  ///< "NAME=value"
     int input = -1, output = -1, errors = -1;
   };
 
   Child() = default;
-  /// One that another process made for this one.
+  /// Takes ownership of a child that another process has created for this one.
   explicit Child(pid_t pid);
-  /// Does `work` in a child, which then ends with status 0. It has no core file, ends with its
-  /// parent, and its standard output is the standard error, so that results stay clean. An error
-  /// if the system has no process for `purpose`, "a process that signs", within two seconds.
+  /// Runs `work` in a child process, which then ends with status 0 (3 if `work` throws). The child
+  /// writes no core file, ends with its parent, and prints to standard error, so that results stay
+  /// clean. An error if the system has no process within two seconds; it names the `purpose`, for
+  /// example "a process that signs".
   static Expected<Child> start(const std::string& purpose, const Settings& settings,
                                const std::function<void()>& work);
   static Expected<Child> start(const Program& program);
@@ -55,14 +56,15 @@ class Child {
   ~Child() { end(); }
 
   explicit operator bool() const { return pid_ > 0; }
-  pid_t pid() const { return pid_; }  ///< -1: none
+  pid_t pid() const { return pid_; }  ///< -1: no process
   bool has_ended() const;
-  /// Kills it with its process group. One that waits for a disk in the kernel ends when the disk
-  /// answers: after two seconds it is left to itself. Well if there is none.
+  /// Kills the child with its process group and returns how it ended. A process that waits for a
+  /// disk in the kernel is left behind after two seconds, because it ends only when the disk
+  /// answers. Without a child, the result is `well`.
   ChildEnd end();
-  /// Waits up to `seconds`, then kills it.
+  /// Waits up to `seconds` for the end of the child, then kills it (`overdue`).
   ChildEnd wait(double seconds);
-  /// It goes on alone, until this process ends.
+  /// Gives up ownership: the child continues until this process ends.
   void release() { pid_ = -1; }
 
  private:
@@ -70,25 +72,25 @@ class Child {
 };
 
 std::vector<pid_t> own_children();
-/// Ends all but these, and whatever they leave where this process is a subreaper. One that waits
-/// for a disk in the kernel is left behind.
+/// Kills all children except `kept`, and their orphans if this process is a subreaper. A process
+/// that waits for a disk in the kernel is left behind after two seconds.
 void end_children(const std::vector<pid_t>& kept);
 
-/// To be called first in a child that `Child::start` did not make.
+/// Prepares a child that `Child::start` did not create: own process group, default signals, no core
+/// file, output to standard error. Call it first in that child.
 void init_child();
-/// Private memory that the process may have from now on. Without effect under a sanitizer, whose
-/// shadow memory is larger than any limit.
+/// Limits the private memory of this process. No effect under a sanitizer, whose shadow memory is
+/// larger than any limit.
 void limit_memory(double megabytes);
 
-/// Memory that a worker gives back to the system would only be faulted in again for the next
-/// campaign.
+/// Sets malloc to keep freed memory, because a worker needs it again for the next campaign.
 void keep_freed_memory();
-/// "NAME=value" of all variables.
+/// Returns all variables of the environment as "NAME=value".
 std::vector<std::string> present_environment();
-/// Bytes that the process has from the system for its data.
+/// Returns the bytes that malloc holds from the system.
 std::size_t memory_held();
-/// Whether that has become noticeably more: more than the tables and reports of a campaign need,
-/// far less than would hurt the next one.
+/// Whether `memory_held` has grown by more than 64 MiB since `at_start`. This is more than a
+/// campaign needs and far less than would disturb the next one.
 bool has_grown(std::size_t at_start);
 
 }  // namespace nonio::process

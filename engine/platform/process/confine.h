@@ -7,43 +7,48 @@
 
 namespace nonio::process {
 
-/// What a process with plugin code may still do. Everything here only removes rights, permanently,
-/// and applies to all processes that the process makes.
+/// Restricts what a process with plugin code can do. All functions only remove rights, permanently,
+/// and the restrictions apply to all processes that this process creates.
 
-/// What this kernel lacks of it, in words for the summary; empty: nothing.
+/// Returns what this kernel cannot restrict, as sentences for the summary; empty if nothing.
 std::vector<std::string> lacking_confinement();
 
-/// Before plugins are loaded: no new rights, no capability; below `readable` files can be read and
-/// nowhere else, nothing can be written; no program can be started, no process be contacted or
-/// signalled. An error if the kernel supports this and refuses it.
+/// Call before plugins are loaded. Removes all capabilities; allows reading only below `readable`;
+/// forbids writing files, starting programs, and contacting or signalling processes. Returns why
+/// the kernel refused; empty without an error. A kernel without Landlock or seccomp is not an
+/// error.
 std::string confine_loading(const std::vector<std::filesystem::path>& readable);
 
-/// When plugins are loaded: no file can be opened at all. An error as above.
+/// Call when plugins are loaded: forbids opening any file. Returns why the kernel refused, or an
+/// empty text.
 std::string confine_files();
 
-/// In a process that evaluates: besides, no process and no thread; only what computing needs.
+/// Call in a process that evaluates: also forbids new processes and threads, and all other system
+/// calls that computing does not need. Returns why the kernel refused, or an empty text.
 std::string confine_computing();
 
-/// For the work of one command, which reads and writes files and makes processes: no new rights, no
-/// program started, no connection to another process.
+/// Call for one command, which reads and writes files and creates processes: forbids new
+/// privileges, starting programs and connecting to processes. Returns why the kernel refused, or an
+/// empty text.
 std::string confine_visit();
 
-/// For one call of a plugin that should need nothing but its arguments: files, sockets, processes,
-/// signals, another folder or mode mask are not to be had. `told` is called with the name of the
-/// system call that was tried, and must not return. An error as above.
+/// Call before a plugin function that should need only its arguments: forbids files, sockets,
+/// processes, signals, and changing the folder or the umask. A forbidden system call calls `told`
+/// with its name, which must not return. Returns why the kernel refused, or an empty text.
 std::string confine_pure(void (*told)(const char* call));
 
-/// These files can be read no more; nor what is made from now on in the folders above them.
+/// Makes these files unreadable, and also everything that is created later in the folders above
+/// them. Returns why the kernel refused, or an empty text.
 std::string hide_files(const std::vector<std::filesystem::path>& secrets);
 
-/// Whether `confine_computing` has taken away what would change working directory and mode mask.
+/// Whether `confine_computing` is in effect, after which working folder and umask cannot change.
 bool is_computing_confined();
 
-/// Closes every descriptor but these (ascending) and 0, 1, 2.
+/// Closes all descriptors except 0, 1, 2 and `kept` (in ascending order).
 void close_others(const std::vector<int>& kept);
 
-/// Overwrites the environment but for locale, time zone, terminal and folders: it may hold a
-/// password.
+/// Overwrites all environment variables except locale, time zone, terminal and folders, because a
+/// variable may contain a password.
 void forget_environment();
 
 }  // namespace nonio::process

@@ -11,7 +11,8 @@
 
 namespace nonio::process {
 
-/// What `call` gives; where it changed what all that follows depends on, an error.
+/// Returns the result of `call`, or an error if `call` changed the process state on which later
+/// work depends (`restore_process_state`).
 template <class Call>
 auto leaving_all_as_it_is(const std::string& who, const Call& call) -> decltype(call()) {
   auto result = [&]() -> decltype(call()) {
@@ -23,7 +24,8 @@ auto leaving_all_as_it_is(const std::string& who, const Call& call) -> decltype(
   return result;
 }
 
-/// No code throws on purpose; whatever a plugin throws is caught here and reported with its name.
+/// Returns the result of `call`. Any exception of a plugin becomes an error with the plugin's name
+/// `who`; Nonio's own code does not throw on purpose.
 template <class Call>
 auto guarded(const std::string& who, const Call& call) -> decltype(call()) {
   return leaving_all_as_it_is(who, [&]() -> decltype(call()) {
@@ -41,7 +43,8 @@ auto guarded(const std::string& who, const Call& call) -> decltype(call()) {
   });
 }
 
-/// What a plugin reports of itself.
+/// Calls a function of a plugin that returns a bool; any exception becomes an error, as in
+/// `guarded`.
 template <class Ask>
 Expected<bool> guarded_answer(const std::string& who, const Ask& ask) {
   return guarded(who, [&]() -> Expected<bool> { return ask(); });

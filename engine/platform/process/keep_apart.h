@@ -5,10 +5,10 @@
 
 namespace nonio::process {
 
-/// For a program that does one thing and ends: when it first loads plugins, all that is still to do
-/// goes on in a child, which can start no program and connect to no process, and the process that
-/// was started only waits for it and ends with its exit status. What plugins print goes to the
-/// standard error. `own_plugins`: the folder of the program, whose plugins were tested with it.
+/// For a program that runs one command: when plugins are first loaded, the rest of the command
+/// continues in a confined child, which can start no program and connect to no process. The first
+/// process only waits for the child and ends with its exit status. What plugins print goes to
+/// standard error. `own_plugins`: folder of the plugins that were tested with the program.
 void keep_plugins_apart(std::filesystem::path own_plugins);
 
 }  // namespace nonio::process

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the filters of filters.h as a C++ source. Run when Nonio is built: libseccomp then may
-// fail, but not during a run, where a refused allocation makes it loop, free twice, or leave rules
-// out without a word (2.5.4, 397 allocations: 56, 25 and 134 of them).
+// Generates the filters of filters.h as C++ source when Nonio is built. If libseccomp fails, the
+// build fails; in a run, a refused allocation makes libseccomp loop, free memory twice or silently
+// leave out rules (2.5.4, 397 allocations: 56, 25 and 134 of them).
 #include <fcntl.h>
 #include <sched.h>
 #include <seccomp.h>
@@ -19,7 +19,7 @@ namespace {
 
 using nonio::process::own_process, nonio::process::parent_process;
 
-/// Nothing of this belongs into a process with plugins: whoever tries is ended, with its name.
+/// System calls that no process with plugins needs: a process that makes one is killed.
 const char* const hostile[] = {"execve",
                                "execveat",
                                "socket",
@@ -86,7 +86,8 @@ const char* const hostile[] = {"execve",
                                "syslog",
                                "acct"};
 
-/// Nor this where plugins are loaded or compute; a verb makes processes and files of its own.
+/// System calls that are also forbidden where plugins are loaded or compute. A command needs them,
+/// because it creates processes and files.
 const char* const of_verbs[] = {"fork",
                                 "vfork",
                                 "socketpair",
@@ -119,7 +120,7 @@ const char* const of_verbs[] = {"fork",
                                 "sched_setattr",
                                 "ioprio_set"};
 
-/// What a computation does, and how it looks at files that it may not open.
+/// System calls that a computation needs, including the inspection of files that it cannot open.
 const char* const computing[] = {"read",
                                  "readv",
                                  "pread64",
@@ -207,7 +208,7 @@ class Filter {
   Filter& operator=(const Filter&) = delete;
   ~Filter() { ::seccomp_release(filter_); }
 
-  /// `call`, where all of `wanted` holds for its arguments.
+  /// Adds a rule for `call` that applies if its arguments meet all conditions `wanted`.
   template <class... Compare>
   void add(std::uint32_t action, const char* call, Compare... wanted) {
     const int number = ::seccomp_syscall_resolve_name(call);
@@ -245,7 +246,7 @@ scmp_arg_cmp is_not(unsigned argument, scmp_datum_t value) {
   return {argument, SCMP_CMP_NE, value, 0};
 }
 
-/// Of an argument that the kernel takes as an int it drops the upper half.
+/// Compares the lower 32 bits of an argument, because the kernel ignores the upper half of an int.
 scmp_arg_cmp is_int(unsigned argument, std::uint32_t value) {
   return masked(argument, 0xFFFFFFFF, value);
 }
@@ -254,24 +255,24 @@ void forbid_hostile(Filter& filter) {
   for (const char* call : hostile) filter.add(SCMP_ACT_KILL_PROCESS, call);
   for (const std::uint32_t spared : {parent_process, 1U})
     filter.add(SCMP_ACT_KILL_PROCESS, "tgkill", is_int(0, spared));
-  // signals by way of a descriptor; what the terminal would take for typed
+  // signals by a descriptor, and input that is inserted into a terminal
   for (const std::uint32_t command : {F_SETOWN, F_SETSIG, 15 /* F_SETOWN_EX */})
     filter.add(SCMP_ACT_KILL_PROCESS, "fcntl", is_int(1, command));
   for (const std::uint32_t command : {0x5412 /* TIOCSTI */, 0x541C /* TIOCLINUX */})
     filter.add(SCMP_ACT_KILL_PROCESS, "ioctl", is_int(1, command));
 }
 
-/// For the process that loads plugins and makes the others: everything but what is hostile. A
-/// process may be made as its sibling only, which is how `PluginHost` does it.
+/// Prints the filter of the process that loads plugins and creates the others: everything but
+/// hostile calls. It may create a process only as its sibling, as `PluginHost` does.
 void print_loading() {
   Filter filter(SCMP_ACT_ALLOW);
   forbid_hostile(filter);
   for (const char* call : of_verbs) filter.add(SCMP_ACT_KILL_PROCESS, call);
-  filter.add(SCMP_ACT_ERRNO(ENOSYS), "clone3");  // whose arguments a filter does not see
+  filter.add(SCMP_ACT_ERRNO(ENOSYS), "clone3");  // a filter cannot inspect its arguments
   filter.add(SCMP_ACT_KILL_PROCESS, "clone", masked(0, CLONE_THREAD | CLONE_PARENT, 0));
   filter.add(SCMP_ACT_ERRNO(EAGAIN), "clone", masked(0, CLONE_THREAD, CLONE_THREAD));
   filter.add(SCMP_ACT_ERRNO(EPERM), "prlimit64", is_not(0, 0));
-  // Memory that no limit counts: shared without a file, or growing like a stack.
+  // memory to which no limit applies: shared without a file, or growing like a stack
   constexpr unsigned flags = 3;  // argument of mmap
   constexpr scmp_datum_t shared = MAP_SHARED | MAP_ANONYMOUS;
   filter.add(SCMP_ACT_KILL_PROCESS, "mmap", masked(flags, shared, shared));
@@ -279,7 +280,8 @@ void print_loading() {
   filter.print("loading");
 }
 
-/// A verb signals its own children, but neither the process that was started nor all.
+/// Prints the filter of a command, which may signal its own children, but not its parent, process 1
+/// or all processes.
 void print_visit() {
   Filter filter(SCMP_ACT_ALLOW);
   forbid_hostile(filter);
@@ -290,14 +292,15 @@ void print_visit() {
   filter.print("visit");
 }
 
-/// Forbids what `loading` forbids, and all calls that are not named here.
+/// Prints the filter of a process that computes. It permits only the calls that are listed; calls
+/// that `print_loading` forbids stay forbidden.
 void print_computing() {
   Filter filter(SCMP_ACT_ERRNO(EPERM));
   for (const char* call : computing) filter.add(SCMP_ACT_ALLOW, call);
   constexpr unsigned flags = 3;
   filter.add(SCMP_ACT_ALLOW, "mmap", masked(flags, MAP_GROWSDOWN, 0));
   filter.add(SCMP_ACT_ALLOW, "prlimit64", is(0, 0), is(2, 0));
-  // abort() and raise(), to no other process
+  // tgkill for abort() and raise(), but not to another process
   filter.add(SCMP_ACT_ALLOW, "tgkill", is(0, own_process));
   filter.add(SCMP_ACT_KILL_PROCESS, "tgkill", is_not(0, own_process));
   filter.add(SCMP_ACT_ERRNO(EAGAIN), "clone");

@@ -8,16 +8,17 @@
 
 namespace nonio::batch {
 
-/// In a process with plugins: what they print, kept back until it is known who did. Of what they
-/// print at once, 64 kB are kept.
+/// Collects what plugins print in this process until it is known which plugin printed it. At most
+/// 64 kB are kept between two calls of `pass_on`.
 class Prints {
  public:
-  /// Takes the place of standard output and error; `to`: where it is passed on.
+  /// Replaces standard output and error of the process; `to`: descriptor to which text is passed
+  /// on.
   explicit Prints(int to);
   bool valid() const { return static_cast<bool>(reading_); }
-  /// The end that another process may read when this one has died.
+  /// Descriptor of the collected text, which another process can read after this one has died.
   int reading() const { return reading_.get(); }
-  /// Passes on what was printed since the last call, with who did in front.
+  /// Passes on what was printed since the last call, preceded by the name `who`.
   void pass_on(const std::string& who);
 
  private:
@@ -25,10 +26,10 @@ class Prints {
   process::Handle reading_{};
 };
 
-/// All that is in a pipe that does not wait.
+/// Reads everything that a non-blocking pipe contains.
 std::string take_all(int pipe);
 
-/// "WHO prints: TEXT", a line of its own.
+/// Returns "WHO prints: TEXT" with a line feed at the end; "a plugin" if `who` is empty.
 std::string printed_by(const std::string& who, std::string_view text);
 
 }  // namespace nonio::batch

@@ -21,7 +21,8 @@ namespace nonio::process {
 
 namespace {
 
-/// Rounding, and whether the smallest numbers count as 0; flags of what happened are no state.
+/// Returns the rounding mode and whether denormal numbers are treated as 0, without exception
+/// flags.
 unsigned processor_mode() {
   auto mode = static_cast<unsigned>(std::fegetround());
 #if defined(__SSE__)
@@ -97,7 +98,7 @@ std::string restore_process_state() {
     say(words, "the signal mask");
     pthread_sigmask(SIG_SETMASK, &kept->signals, nullptr);
   }
-  if (is_computing_confined()) return words;  // the rest cannot be changed there
+  if (is_computing_confined()) return words;  // a confined process cannot change the rest
   if (mode_mask() != kept->mask) {
     say(words, "the umask");
     ::umask(kept->mask);

@@ -5,13 +5,13 @@
 
 namespace nonio::process {
 
-/// What a plugin must leave as it is, since all that follows in the process depends on it: rounding
-/// mode and the like of the processor, locale, signal mask, umask, working directory.
+/// State of the process that a plugin must not change, because all later work depends on it:
+/// floating-point modes, locale, signal mask, umask, working folder.
 
-/// Notes it as it is now, as the one that has to hold. Before plugins are loaded.
+/// Stores the present state as the required one. Call it before plugins are loaded.
 void keep_process_state();
-/// What is other than it was kept, in words, and put right again; empty: nothing. Before the first
-/// `keep_process_state` always empty.
+/// Restores the stored state. Returns in words what had changed; empty if nothing, or if
+/// `keep_process_state` was not called.
 std::string restore_process_state();
 
 }  // namespace nonio::process

@@ -6,11 +6,12 @@
 
 namespace nonio::process {
 
-/// What a worker is doing, readable by its parent after its death.
+/// Text in shared memory that states what a worker is doing; the parent can read it after the
+/// worker died.
 class SharedStatus {
  public:
   SharedStatus();
-  /// Those behind the descriptor of others.
+  /// Opens the text of another process by its descriptor.
   explicit SharedStatus(int descriptor);
   SharedStatus(const SharedStatus&) = delete;
   SharedStatus(SharedStatus&& other) noexcept;

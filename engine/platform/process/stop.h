@@ -3,7 +3,7 @@
 
 namespace nonio::process {
 
-/// Ends a run, or a command that waits, soon. Safe in a signal handler.
+/// Requests that a run, or a command that waits, ends soon. Safe in a signal handler.
 void request_stop();
 bool is_stop_requested();
 

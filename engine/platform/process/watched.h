@@ -19,45 +19,46 @@
 
 namespace nonio::process {
 
-/// Signs of life of a child, readable by its parent while it hangs and after its death.
+/// Signs of life of a child in shared memory. The parent can read them while the child hangs and
+/// after its death.
 struct SignsOfLife {
   std::atomic<std::uint64_t> beats;
-  std::atomic<std::uint64_t> index;  ///< of what it does
-  std::atomic<bool> reads;           ///< it may wait for a disk; else it computes
-  std::array<char, 8192> place;      ///< path that it reads
+  std::atomic<std::uint64_t> index;  ///< of the present task
+  std::atomic<bool> reads;           ///< it may be waiting for a disk; otherwise it computes
+  std::array<char, 8192> place;      ///< path that the child is reading
 
   void beat() { ++beats; }
-  /// Before each step that may hang.
+  /// Notes the path before a step that may wait for a disk.
   void reading(std::string_view path);
   std::string reads_from() const { return {place.data(), ::strnlen(place.data(), place.size())}; }
 };
 
-/// A child process for what may hang (a disk, a share) or crash (a parser). What it sends arrives
-/// in the same pieces; the parent waits for it no longer than it shows signs of life. Moved, not copied; killed at the
-/// end.
+/// A child process for work that may hang (a disk, a share) or crash (a parser). `take` returns its
+/// messages undivided; `is_silent` reports that it shows no sign of life. Movable, not copyable;
+/// the child is killed at the end of its lifetime.
 class Watched {
  public:
-  /// Sends a piece to the parent, not at once.
+  /// Queues a message for the parent. It is sent when 32 KiB are queued and when the task returns.
   using Send = std::function<void(std::string_view)>;
   using Task = std::function<void(SignsOfLife&, const Send&)>;
 
-  /// `memory_MB`: none if 0.
+  /// Starts the task in a child process. `memory_MB`: limit of its private memory; 0: none.
   static Expected<Watched> start(const Task& task, double memory_MB = 0.0);
   int channel() const { return channel_.get(); }
   const SignsOfLife& signs() const { return *signs_; }
-  /// What has come since the last call.
+  /// Returns the messages that have arrived completely since the last call.
   std::vector<std::string> take();
-  /// Nothing more can come: the process has ended.
+  /// Whether the process has closed its channel, so that nothing more can arrive.
   bool ended() const { return ended_; }
-  /// No sign of life for so long.
+  /// Whether there was no sign of life for more than `seconds`.
   bool is_silent(double seconds);
-  /// What became of the process. One that hangs is killed, and left behind if the kernel does not
-  /// let it go at once.
+  /// Ends the process and returns how it ended. A process that hangs is killed; it is left behind
+  /// if the kernel does not release it within two seconds.
   ChildEnd end() { return child_.end(); }
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// Memory that parent and child share.
+  /// Unmaps the memory that parent and child share.
   struct Shared {
     void operator()(SignsOfLife* signs) const;
   };
@@ -71,10 +72,10 @@ class Watched {
   Clock::time_point last_beat_ = Clock::now();
 };
 
-/// Message about a place without response.
+/// Returns the message about a disk or share that did not respond within `seconds`.
 std::string no_answer(double seconds);
 
-/// Returns when one of them may have sent something, or soon.
+/// Returns when a message of a child can be read, at the latest after 0.1 s.
 void wait_for_any(const std::vector<Watched>& children);
 
 }  // namespace nonio::process

@@ -29,7 +29,8 @@ namespace {
 
 Error of_system(const fs::path& path) { return Error{std::strerror(errno), path.string()}; }
 
-/// A database that is written in place. Packs are never changed and have their digest in their name.
+/// Whether a file is an SQLite database that is written in place. Packs do not count: they never
+/// change, and their name contains their digest.
 bool is_database(const fs::path& path) {
   constexpr std::string_view magic("SQLite format 3\0", 16);
   std::string head(magic.size(), '\0');
@@ -37,7 +38,8 @@ bool is_database(const fs::path& path) {
          std::ifstream(path, std::ios::binary).read(head.data(), 16) && head == magic;
 }
 
-/// What belongs to a process or to a moment.
+/// Whether a file is left out because it belongs to a running process: temporary files, locks,
+/// journals of `databases`.
 bool is_passing(const fs::path& path, const std::set<fs::path>& databases) {
   const std::string name = path.filename().string();
   if (is_temporary_name(name) || name == backup_digests) return true;
@@ -49,7 +51,7 @@ bool is_passing(const fs::path& path, const std::set<fs::path>& databases) {
   return false;
 }
 
-/// Differs between two states of a file.
+/// Inode, size, time of change and mode: they differ if a file was changed.
 using FileState = std::array<std::int64_t, 5>;
 
 class Backup {
@@ -58,7 +60,7 @@ class Backup {
 
   Expected<BackupSummary> write() {
     if (auto done = list(); !done) return fail(done.error());
-    // The file that states how far the register has gone comes before the register itself.
+    // The file that states the end of the register comes before the register itself.
     for (const fs::path& path : identities_) {
       const auto state = [&] {
         States one;
@@ -106,7 +108,7 @@ class Backup {
     return path.lexically_relative(folder_).generic_string();
   }
 
-  /// `path` as it is called, `from` where its bytes are.
+  /// Adds the file `path` to the archive with the bytes of the file `from`.
   Expected<void> add(const fs::path& path, const fs::path& from) {
     struct stat of {};
     if (::lstat(path.c_str(), &of) != 0) return fail(of_system(path));
@@ -120,7 +122,7 @@ class Backup {
       std::error_code error;
       entry.kind = TarEntry::Kind::link;
       entry.target = fs::read_symlink(path, error).string();
-      // Its bytes are elsewhere.
+      // the content of the link is outside the folder
       if (const auto to = fs::weakly_canonical(path, error).lexically_relative(folder_);
           !error && (to.empty() || *to.begin() == ".."))
         summary_.left_out.push_back(entry.name);
@@ -163,7 +165,7 @@ class Backup {
 
   using States = std::map<fs::path, FileState>;
 
-  /// Of a file or a link, if it is there.
+  /// Adds the state of a file or link to `states` unless it is missing.
   static void note_state(const fs::path& path, States& states) {
     struct stat of {};
     if (::lstat(path.c_str(), &of) == 0 && !S_ISDIR(of.st_mode))
@@ -185,10 +187,10 @@ class Backup {
     return states;
   }
 
-  /// All of its files as they were at one moment.
+  /// Adds the files of a folder, without subfolders, as they were at one moment.
   Expected<void> add_folder(const fs::path& folder) {
     struct stat of {};
-    if (::lstat(folder.c_str(), &of) != 0) return {};  // removed since it was listed
+    if (::lstat(folder.c_str(), &of) != 0) return {};  // removed after it was listed
     if (folder != folder_)
       if (auto done = tar_.add({.name = name_of(folder),
                                 .kind = TarEntry::Kind::folder,
@@ -199,7 +201,8 @@ class Backup {
     return add_until_same([&] { return states_in(folder); }, folder);
   }
 
-  /// The files of `states`, written again while one of them changes.
+  /// Adds the files of `states` and repeats this until none of them has changed meanwhile, at most
+  /// 50 times.
   Expected<void> add_until_same(const std::function<Expected<States>()>& states,
                                 const fs::path& of) {
     constexpr int most = 50;
@@ -226,7 +229,7 @@ class Backup {
   TarWriter& tar_;
   std::vector<fs::path> folders_{};
   std::set<fs::path> identities_{}, databases_{};
-  std::string digests_{};  ///< the list, as it is written
+  std::string digests_{};  ///< text of the list of digests
   BackupSummary summary_{};
 };
 
@@ -237,8 +240,8 @@ bool is_safe(const std::string& name) {
                       [](const fs::path& part) { return part == ".." || part == "."; });
 }
 
-/// Reads all of an archive and compares each file with its digest. `into` may be empty; else a new
-/// folder of this process.
+/// Reads a whole archive and compares each file with its digest. `into`: new folder for the files;
+/// empty: the archive is only checked.
 class Restore {
  public:
   Restore(const fs::path& file, fs::path into) : file_(file), into_(std::move(into)) {}
@@ -312,7 +315,7 @@ class Restore {
     return well ? Expected<void>() : fail(error);
   }
 
-  /// Nothing is below a link: it would be written where the link leads.
+  /// Refuses an archive with a name below a link, which would be written to the target of the link.
   Expected<void> below_no_link() const {
     for (const std::string& name : names_)
       for (fs::path above = fs::path(name).parent_path(); !links_.empty() && !above.empty();
@@ -340,7 +343,8 @@ class Restore {
     return {};
   }
 
-  /// Links come last, so that nothing is written through one; permissions of folders from below.
+  /// Creates folders and links and sets the permissions of folders. Links come last, so that no
+  /// file is written through one; permissions are set from the innermost folder outwards.
   Expected<void> finish() const {
     std::error_code error;
     for (const bool link : {false, true})
@@ -408,7 +412,7 @@ Expected<BackupSummary> restore_backup(const fs::path& file, const fs::path& fol
   if (!error && !fs::create_directory(temporary, error) && !error)
     return fail(Error{"exists already: another restore is running, or was interrupted; remove it",
                       temporary.string()});
-  // What the folder had is not known; a site may contain keys and passwords.
+  // the original permissions are not known, and a site may contain keys and passwords
   if (!error) fs::permissions(temporary, fs::perms::owner_all, error);
   if (error) return fail(Error{error.message(), temporary.string()});
   auto restored = Restore(file, temporary).read();

@@ -8,28 +8,29 @@
 
 #include "nonio/sdk/error.h"
 
-/// The content of a folder in one archive (tar.h), with the SHA-256 of each file.
+/// Archives of a folder (tar.h) with the SHA-256 of each file.
 namespace nonio::storage {
 
 struct BackupSummary {
   std::uint64_t files = 0, bytes = 0;
-  std::vector<std::string> left_out;  ///< neither file, folder nor link
+  /// entries that are neither file, folder nor link, and links that lead outside the folder
+  std::vector<std::string> left_out;
 };
 
-/// The digests of the archive's files, its last member, as `sha256sum -c` reads them.
+/// Name of the last file in an archive: the digests of all others in the format of `sha256sum -c`.
 inline constexpr const char* backup_digests = ".nonio-backup.sha256";
 
-/// Writes `file`, which appears whole or not at all and is read back before. Other processes may
-/// write into the folder meanwhile: a database is copied as of one moment, and the files of each
-/// folder are those of one moment after that. So a register, copied first, never lacks an entry that
-/// its site has noted before. Not archived: locks, and what is being written. Errors: `file` exists
-/// or is in the folder; a folder changes all the time; a database is damaged.
+/// Writes a folder into the archive `file`, which appears completely or not at all and is read back
+/// before. Other processes may write into the folder meanwhile: each database is copied as of one
+/// moment, and later the files of each folder as of one moment. The register is copied first, so
+/// its site never refers to an entry that the copy lacks. Locks and temporary files are left out.
+/// Errors: `file` exists or is in the folder; a folder changes all the time; a database is damaged.
 Expected<BackupSummary> write_backup(const std::filesystem::path& folder,
                                      const std::filesystem::path& file);
 
-/// Unpacks an archive of `write_backup` into a folder that is missing or empty; it gets its content
-/// at once. All digests are compared before. Errors: a file is damaged, missing or more than is
-/// listed; the folder has content.
+/// Restores an archive of `write_backup` in `folder`, which must be missing or empty. All digests
+/// are compared before the folder appears with its content. Errors: a file is damaged, missing or
+/// not listed; the folder is not empty.
 Expected<BackupSummary> restore_backup(const std::filesystem::path& file,
                                        const std::filesystem::path& folder);
 

@@ -11,7 +11,8 @@
 /// The implementation of `Database`: one class for SQLite, one for PostgreSQL.
 namespace nonio::storage {
 
-/// Each call gives an error, "" if it went well. After an error `rollback` comes next, or nothing.
+/// All functions return an error text, "" for success. After an error only `rollback` may be
+/// called.
 class Connection {
  public:
   Connection() = default;
@@ -28,25 +29,25 @@ class Connection {
     for (const Database::Row& row : all) take({row.begin(), row.end()});
     return trouble;
   }
-  /// The error may come with a later call.
+  /// Runs a statement without rows; a later call may return its error.
   virtual std::string put(const char* sql, std::span<const Database::Value> values) = 0;
   virtual std::string script(const std::string& sql) = 0;
   virtual std::string begin() = 0;
   virtual std::string commit() = 0;
-  /// Nothing where no transaction is open.
+  /// Rolls back the open transaction; does nothing without one.
   virtual void rollback() = 0;
 };
 
 inline constexpr const char* locked_words = "another process keeps it locked";
 inline constexpr const char* away_words = "the server is away";
 
-/// In the fewest digits that give the double back.
+/// Formats a number with the fewest digits that reproduce the double.
 std::string shortest(double number);
 
 Expected<std::unique_ptr<Connection>> connect_sqlite(const std::filesystem::path& path,
                                                      Database::Use use, double patience);
 
-/// What the library that knows libpq exports as `nonio_postgresql` (late_library.h).
+/// The functions that the library with libpq exports as `nonio_postgresql` (late_library.h).
 struct PostgreSQL {
   Expected<void> (*check_address)(const std::string& url);
   Expected<std::unique_ptr<Connection>> (*connect)(const Server& server, double patience);

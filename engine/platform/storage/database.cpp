@@ -102,7 +102,7 @@ Database::Transaction::~Transaction() {
 
 Expected<void> Database::Transaction::end() {
   if (!database_.failed()) database_.error_ = database_.connection_->commit();
-  if (database_.failed()) return database_.take_error();  // and the destructor takes it back
+  if (database_.failed()) return database_.take_error();  // the destructor rolls it back
   open_ = false;
   return {};
 }

@@ -17,18 +17,20 @@ namespace nonio::storage {
 
 class Connection;
 
-/// A database of PostgreSQL, as `[database]` of site.toml names it.
+/// A PostgreSQL database, as `[database]` of site.toml names it.
 struct Server {
-  std::string url;  ///< postgresql://..., as libpq reads it; without a password
+  std::string url;  ///< postgresql://... without a password, in libpq's format
   std::string schema;
-  std::filesystem::path password_file;  ///< empty: as libpq finds it (service, ~/.pgpass, ...)
+  std::filesystem::path password_file;  ///< empty: libpq finds it (service, ~/.pgpass, ...)
 };
 
-/// Whether libpq reads this address and no password is in it. The error never repeats it.
+/// Checks that libpq accepts this address and that it contains no password. The error does not
+/// repeat the address.
 Expected<void> check_address(const std::string& url);
 
-/// A connection to an SQLite file or a server: one process, one thread, never across a fork. After
-/// the first error in a transaction nothing more of it is done, and `Transaction::end` returns it.
+/// A connection to an SQLite file or a server, for one thread of one process, never used after a
+/// fork. After the first error in a transaction all further statements are skipped, and
+/// `Transaction::end` returns the error.
 class Database {
  public:
   struct Blob {
@@ -40,12 +42,12 @@ class Database {
 
   enum class Use { write, create, read };
   static constexpr double usual_patience = 60.0;
-  /// Made if it is missing with Use::create. With Use::read nothing is written, no lock is taken
-  /// and no journal is searched: for a file from anywhere that no process changes. A locked
-  /// database is waited for up to `patience` seconds; then `is_locked` of the error is true.
+  /// Opens an SQLite file; Use::create creates a missing one. Use::read writes nothing, takes no
+  /// lock and ignores journals: for a file that no process changes. Waits up to `patience` seconds
+  /// for a locked database; then the error fulfils `is_locked`.
   static Expected<Database> open(const std::filesystem::path& path, Use use,
                                  double patience = usual_patience);
-  /// Names of tables are those of the server's schema, whether it is there or not.
+  /// Connects to a server. Tables belong to the schema of `server`, which need not exist yet.
   static Expected<Database> open(const Server& server, double patience = usual_patience);
   Database(Database&&) noexcept;
   Database& operator=(Database&&) noexcept;
@@ -54,31 +56,33 @@ class Database {
   enum class Kind { sqlite, postgresql };
   Kind kind() const { return kind_; }
 
-  /// The rows of one statement whose `?` are these values. NULL comes as "", a double in the fewest
-  /// digits that give it back. A statement is prepared once and kept.
+  /// Runs a statement with these values for its `?` and returns the rows. NULL becomes "", a double
+  /// the fewest digits that reproduce it. Statements are prepared once and kept.
   std::vector<Row> rows(const char* sql, std::initializer_list<Value> values = {});
-  /// The same, row by row, valid during the call of `take`, which may not use the database.
+  /// Calls `take` for each row of a statement. The row is valid during the call only, and `take`
+  /// must not use the database.
   using Take = std::function<void(const std::vector<std::string_view>& row)>;
   void each(const char* sql, std::initializer_list<Value> values, const Take& take);
-  /// The first column of the first row; "" if there is none.
+  /// Returns the first column of the first row; "" if there is no row.
   std::string first(const char* sql, std::initializer_list<Value> values = {});
-  /// A statement without rows. A server gets many of them in one go, so that an error may show
-  /// only with a later call, at the latest with `rows` or the end of the transaction.
+  /// Runs a statement without rows. A server receives many of them together, so that an error may
+  /// be noticed only in a later call: at the latest in `rows` or at the end of the transaction.
   void put(const char* sql, std::initializer_list<Value> values = {});
-  /// Statements one after the other, without values and rows.
+  /// Runs several statements in sequence, without values and rows.
   void script(const std::string& sql);
   bool failed() const { return !error_.empty(); }
-  /// The first error since the last call.
+  /// Returns the first error since the last call of `take_error`.
   Expected<void> take_error();
 
-  /// Statements that are done all or not at all; taken back unless `end` was called.
+  /// A group of statements that take effect together or not at all: rolled back unless `end` was
+  /// called.
   class Transaction {
    public:
     explicit Transaction(Database& database);
     Transaction(const Transaction&) = delete;
     Transaction& operator=(const Transaction&) = delete;
     ~Transaction();
-    /// Returns when all of it is on disk.
+    /// Commits; returns when everything is on disk.
     Expected<void> end();
 
    private:
@@ -94,16 +98,17 @@ class Database {
   std::string error_;
 };
 
-/// An SQLite file as it is at one moment, whatever other processes write meanwhile, in a new file.
+/// Copies an SQLite file as of one moment into a new file, even while other processes write to it.
+/// Waits up to `patience` seconds for a lock.
 Expected<void> copy_database(const std::filesystem::path& from, const std::filesystem::path& to,
                              double patience = Database::usual_patience);
 
-/// Whether another process kept the database to itself, or its server was away: the same may succeed
-/// later.
+/// Whether the error is temporary: another process has locked the database, or its server cannot be
+/// reached. The same call may succeed later.
 bool is_locked(const Error& error);
 
-/// Tables and their columns as SQLite takes them, in PostgreSQL's words. Texts are ordered by their
-/// bytes, as SQLite orders them.
+/// Converts CREATE TABLE statements from SQLite's to PostgreSQL's dialect. Texts are sorted by
+/// their bytes, as in SQLite.
 std::string server_words(std::string sql);
 
 }  // namespace nonio::storage

@@ -15,7 +15,8 @@
 
 namespace nonio::storage {
 
-/// Poco's engine goes on where OpenSSL has no memory, and then reads what is missing.
+/// Uses OpenSSL directly, because Poco's engine ignores a failed allocation and then reads invalid
+/// memory.
 struct RunningDigest::State {
   std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context{::EVP_MD_CTX_new(),
                                                              &::EVP_MD_CTX_free};
@@ -23,7 +24,7 @@ struct RunningDigest::State {
 
 namespace {
 
-/// Looked up once: with EVP_sha256() OpenSSL 3 compares names of algorithms for every digest, which
+/// Looks up SHA-256 once. With EVP_sha256(), OpenSSL 3 looks it up by name for every digest, which
 /// takes as long as hashing a kilobyte.
 const EVP_MD* method() {
   static const EVP_MD* const found = ::EVP_MD_fetch(nullptr, "SHA256", nullptr);

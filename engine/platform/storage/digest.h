@@ -12,7 +12,7 @@
 
 namespace nonio::storage {
 
-/// SHA-256 of what is added, part by part, in lower-case hexadecimal.
+/// Computes the SHA-256 of data that are added in parts.
 class RunningDigest {
  public:
   RunningDigest();
@@ -20,22 +20,23 @@ class RunningDigest {
   RunningDigest(const RunningDigest&) = delete;
   RunningDigest& operator=(const RunningDigest&) = delete;
   void add(std::string_view bytes);
-  std::string hex();  ///< once, in the end
+  std::string hex();  ///< lower-case hexadecimal; call it once, at the end
 
  private:
   struct State;
   std::unique_ptr<State> state_;
 };
 
-/// SHA-256 in lower-case hexadecimal.
+/// Returns the SHA-256 in lower-case hexadecimal.
 std::string sha256(std::string_view bytes);
-/// HMAC of SHA-256 (RFC 2104), the same way.
+/// Returns the HMAC with SHA-256 (RFC 2104) in lower-case hexadecimal.
 std::string hmac_sha256(std::string_view key, std::string_view bytes);
-/// `after_each_part`: called while a long file is read, for who waits for signs of life.
+/// Returns the SHA-256 of a file. `after_each_part` is called repeatedly while a long file is read,
+/// for callers that must show signs of life.
 Expected<std::string> sha256_of_file(const std::filesystem::path& path,
                                      const std::function<void()>& after_each_part = {});
 
-/// The first 64 bits of a SHA-256 in hexadecimal digits: there may be very many.
+/// Returns the first 64 bits of a hexadecimal SHA-256, to save memory where there are very many.
 std::uint64_t short_digest(std::string_view sha256);
 
 }  // namespace nonio::storage

@@ -9,9 +9,9 @@
 
 namespace nonio::storage {
 
-/// The file system of the output folder, for the processes of one run. The kernel reports a lost
-/// write once, and only to descriptors that were open at the time: so this is made before the first
-/// process that writes, and all of them share it.
+/// Detects lost writes on the file system of the output folder. The kernel reports a lost write
+/// once, and only to descriptors that were open at that time. Therefore this object is created
+/// before the first process that writes, and all processes of the run share it.
 class Disk {
  public:
   explicit Disk(const std::filesystem::path& folder);
@@ -19,18 +19,17 @@ class Disk {
   Disk& operator=(const Disk&) = delete;
   ~Disk();
 
-  /// Returns when everything that was written is on disk; an error if the disk lost a write since
-  /// the last call.
+  /// Flushes the file system. An error if the disk has lost a write since the last call.
   Expected<void> flush() const;
-  /// How often it did, in any process. What was begun at another count is not reliable, because it
-  /// is not known which writes were lost.
+  /// Number of failed flushes in all processes. Work that began at another number is not reliable,
+  /// because it is not known which writes were lost.
   std::uint32_t losses() const { return losses_ == nullptr ? 0 : losses_->load(); }
 
  private:
   std::filesystem::path folder_;
   int fd_ = -1;
-  int trouble_ = 0;  ///< errno of why there is no descriptor or counter
-  std::atomic<std::uint32_t>* losses_ = nullptr;  ///< shared by the processes
+  int trouble_ = 0;  ///< errno if a descriptor or counter cannot be created
+  std::atomic<std::uint32_t>* losses_ = nullptr;  ///< shared by all processes
 };
 
 }  // namespace nonio::storage

@@ -43,7 +43,7 @@ std::function<int(const fs::path&)>& opener() {
   return set;
 }
 
-/// Without waiting: a named pipe must not stop the run.
+/// Opens a file without waiting, because a named pipe must not block the run.
 Descriptor open_to_read(const fs::path& path) {
   if (opener()) return Descriptor(opener()(path));
   return Descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
@@ -54,7 +54,7 @@ tl::unexpected<Error> system_error(std::string_view what, const fs::path& path) 
   return fail(std::string(what) + " " + path.string() + ": " + std::strerror(code));
 }
 
-/// Made and filled, not yet flushed; the system is requested to begin writing.
+/// Creates and fills a file without flushing it; the system begins to write it.
 Expected<Descriptor> write_new(const fs::path& path, std::string_view bytes) {
   Descriptor file(
       ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0644));
@@ -107,7 +107,7 @@ void MappedFile::release(std::size_t offset) const {
 
 namespace {
 
-/// Whether no process wrote between the two.
+/// Whether a file was not changed between two calls of fstat: size and times are equal.
 bool same_state(const struct stat& a, const struct stat& b) {
   const auto same = [](const timespec& x, const timespec& y) {
     return x.tv_sec == y.tv_sec && x.tv_nsec == y.tv_nsec;
@@ -115,7 +115,7 @@ bool same_state(const struct stat& a, const struct stat& b) {
   return a.st_size == b.st_size && same(a.st_mtim, b.st_mtim) && same(a.st_ctim, b.st_ctim);
 }
 
-/// Up to the end of the file or of the memory, whichever comes first.
+/// Reads up to `room` bytes; returns fewer at the end of the file.
 Expected<std::size_t> read_into(int file, char* to, std::size_t room, const fs::path& path) {
   std::size_t size = 0;
   while (size < room) {
@@ -189,7 +189,7 @@ Expected<RegularFile> open_regular(const fs::path& path) {
 
 namespace {
 
-/// Of a path that leads into a pack; none if it leads elsewhere.
+/// Reads a file in a pack; none if the path is not in a pack.
 std::optional<Expected<std::string>> read_from_pack(const fs::path& path) {
   const auto at = opener() ? std::nullopt : in_pack(path);
   if (!at) return std::nullopt;
@@ -222,7 +222,7 @@ Expected<std::string> read_file(const fs::path& path) {
   if (auto packed = read_from_pack(path)) return std::move(*packed);
   NONIO_TRY(const auto file, open_regular(path));
   std::string bytes;
-  // A byte more than there is: that none comes shows that the file ends there.
+  // One byte more than the size: if it stays empty, the file ends there.
   for (std::size_t size = 0, room = std::min(file.size, most_at_once) + 1;; room *= 2) {
     bytes.resize(room);
     NONIO_TRY(const auto read,
@@ -264,7 +264,7 @@ Expected<std::string> read_small_file(const fs::path& path) {
 
 namespace {
 
-/// Bytes of the character that the text begins with (RFC 3629); 0 if it is none.
+/// Returns the size in bytes of the first UTF-8 character (RFC 3629); 0 if it is invalid.
 std::size_t size_of_character(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (byte(0) < 0x80) return 1;
@@ -297,7 +297,8 @@ std::string path_text(std::string_view path) {
 
 namespace {
 
-/// A plain name in a folder that is no link: there is nothing to resolve.
+/// Whether `name` is a regular file directly in the folder, not a link, so that nothing needs
+/// resolving.
 bool is_plain_file_in(const fs::path& folder, const std::string& name) {
   struct stat info {};
   return name.find('/') == std::string::npos && name != "." && name != ".." &&
@@ -326,7 +327,7 @@ bool is_artifact_name(std::string_view name) {
   if (name.empty() || name.size() > 200 || name.front() == '.') return false;
   for (const char* own : {"results.json", "run.json", "earlier.json", "last-good"})
     if (name == own) return false;
-  if (name.ends_with(leftover_suffix)) return false;  // what a later run would remove
+  if (name.ends_with(leftover_suffix)) return false;  // a later run would remove it
   for (const char c : name)
     if (c == '/' || c == '\\' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f) return false;
   return true;
@@ -371,7 +372,7 @@ Expected<void> rename_file(const fs::path& from, const fs::path& to,
 Expected<void> rename_temporaries(const fs::path& folder, const std::vector<std::string>& names,
                                   const std::function<bool(const std::string&)>& is_ours) {
   for (const std::string& name : names) {
-    // The others are under their names for good before the last one is.
+    // All other names are flushed before the last file is renamed.
     if (&name == &names.back() && names.size() > 1)
       if (auto flushed = flush_folder(folder); !flushed) return flushed;
     std::function<bool()> this_is_ours;
@@ -407,8 +408,8 @@ Expected<bool> make_folder(const fs::path& folder) {
   return is_new;
 }
 
-/// All files are filled before the first is flushed, so that the file system can write them
-/// together: one journal commit instead of one for each.
+/// Fills all files before it flushes the first, so that the file system commits them together, and
+/// compares each file on the disk with its bytes.
 Expected<void> fill_and_flush(const fs::path& folder, const std::vector<Artifact>& files) {
   NONIO_TRY(const auto open, fill(folder, files));
   for (std::size_t i = 0; i < open.size(); ++i)
@@ -431,7 +432,7 @@ Expected<void> publish(const fs::path& folder, const std::vector<Artifact>& file
   const auto is_new = make_folder(folder);
   if (!is_new) return fail(is_new.error());
   auto done = fill_and_flush(folder, files);
-  // After the files: a journal that was committed for them holds the new folder already.
+  // after the files: a journal that was committed for them already contains the new folder
   if (done && *is_new) done = flush_folder(fs::absolute(folder).parent_path());
   const std::vector<std::string> names = names_of(files);
   const auto is_ours = [&](const std::string& name) {
@@ -476,7 +477,7 @@ Expected<bool> disk_gives_back(const fs::path& path, std::uint64_t size, std::st
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (!file) return system_error("cannot read", path);
   ::posix_fadvise(file.get(), 0, 0, POSIX_FADV_DONTNEED);
-  // A byte more than it is to have: that none comes shows that it ends there.
+  // One byte more than expected: if it stays empty, the file ends there.
   std::string buffer(std::min<std::uint64_t>(size + 1, 1 << 20), '\0');
   RunningDigest digest;
   std::uint64_t seen = 0;
@@ -493,7 +494,7 @@ Expected<bool> disk_gives_back(const fs::path& path, std::uint64_t size, std::st
 }
 
 void remove_temporaries(const fs::path& folder, const std::vector<std::string>& names) {
-  constexpr int tries = 3;  // a refusal may pass
+  constexpr int tries = 3;  // a refusal may be temporary
   for (const std::string& name : names)
     for (int i = 0; i < tries; ++i) {
       std::error_code error;

@@ -14,11 +14,11 @@
 
 namespace nonio::storage {
 
-/// For a process that may open no file: who opens them for reading in its place. Gives a
-/// descriptor, or -1 and errno.
+/// Sets a function that opens files for reading, for a process that may not open any itself. It
+/// returns a descriptor, or -1 and errno.
 void open_files_with(std::function<int(const std::filesystem::path&)> opener);
 
-/// A file mapped into memory for reading from front to back. Not copyable; unmapped at the end.
+/// A file that is mapped into memory, to be read from front to back. Movable, not copyable.
 class MappedFile {
  public:
   static Expected<MappedFile> open(const std::filesystem::path& path);
@@ -27,7 +27,7 @@ class MappedFile {
   ~MappedFile();
 
   std::string_view bytes() const { return {data_, size_}; }
-  /// Gives the pages before `offset` back to the system; they can still be read, from disk.
+  /// Returns the pages before `offset` to the system; reading them again loads them from disk.
   void release(std::size_t offset) const;
 
  private:
@@ -36,18 +36,18 @@ class MappedFile {
   std::size_t size_;
 };
 
-/// A file as it was at one moment, read once into memory of its own: what is hashed is what is
-/// evaluated, whatever another process writes into the file meanwhile. Not copyable.
+/// A file as it was at one moment, copied into memory, so that the bytes that are hashed are the
+/// bytes that are evaluated even if another process writes to the file. Movable, not copyable.
 class ReadFile {
  public:
-  /// An error if the file changes while it is read, several times in a row.
+  /// Reads the file; an error if it changes during each of several attempts.
   static Expected<ReadFile> open(const std::filesystem::path& path);
   ReadFile(ReadFile&& other) noexcept;
   ReadFile& operator=(ReadFile&&) = delete;
   ~ReadFile();
 
   std::string_view bytes() const { return {data_, size_}; }
-  /// Gives the pages before `offset` back to the system; they must not be read after that.
+  /// Returns the pages before `offset` to the system; they must not be read after that.
   void release(std::size_t offset);
 
  private:
@@ -55,77 +55,80 @@ class ReadFile {
       : data_(data), size_(size), mapped_(mapped) {}
   char* data_;
   std::size_t size_;
-  std::size_t mapped_;        ///< 0: nothing is
-  std::size_t released_ = 0;  ///< whole pages at the front
+  std::size_t mapped_;        ///< bytes of the mapping; 0: none
+  std::size_t released_ = 0;  ///< bytes at the front whose pages were released
 };
 
-/// A file in parts of up to a megabyte. Unlike a mapping it is safe if another process truncates
-/// the file meanwhile, so the main process reads in this way only.
+/// Calls `take` with parts of a file of up to one megabyte. Unlike a mapping this is safe if
+/// another process truncates the file, so the main process reads in this way only.
 Expected<void> read_parts(const std::filesystem::path& path,
                           const std::function<void(std::string_view)>& take);
-/// Like `read_parts` and `is_there`, of a path that leads into a pack (pack.h) too.
+/// Reads a whole file, also one in a pack (pack.h).
 Expected<std::string> read_file(const std::filesystem::path& path);
-/// A file that people write (campaign.toml, site.toml): refused above 1 MB, by its size and unread.
+/// Reads a file that people write (campaign.toml, site.toml); refuses a file above 1 MB unread.
 Expected<std::string> read_small_file(const std::filesystem::path& path);
 
-/// Whether anything exists there, also a broken link; an error if that is not known.
+/// Whether the path exists, also as a broken link or in a pack; an error if this cannot be found
+/// out.
 Expected<bool> is_there(const std::filesystem::path& path);
 
-/// A path as text: bytes that are not UTF-8 (a name in Latin-1) become \\xe9.
+/// Returns a path as UTF-8 text; other bytes (a name in Latin-1) become \\xe9.
 std::string path_text(std::string_view path);
 
-/// `relative` below `base`, with every link resolved; an error if it would lead outside.
+/// Resolves `relative` and all its links below `base`; an error if it leads outside `base`.
 Expected<std::filesystem::path> path_inside(const std::filesystem::path& base,
                                             const std::string& relative);
 
-/// Whether an artifact may have this name: a plain visible file name that the host does not use.
+/// Whether an output file may have this name: a plain, visible file name that the host does not
+/// use.
 bool is_artifact_name(std::string_view name);
 
-/// Writes files that appear whole or not at all: under a temporary name, fsync, rename, fsync of
-/// the folder. All are complete on disk before the first one is renamed, and all others have their
-/// names on disk before the last one gets its own: whoever sees the last file may rely on the
-/// others. On an error the temporary files are removed. Folders that are missing are made.
+/// Writes files that appear completely or not at all, by temporary name, fsync, rename and fsync of
+/// the folder. All files are on disk before the first is renamed, and all names but the last are on
+/// disk before the last: a process that sees the last file may rely on the others. Missing folders
+/// are created. On an error the temporary files are removed.
 Expected<void> publish(const std::filesystem::path& folder, const std::vector<Artifact>& files);
 
-/// From now on the temporary names of this process, and of those that it makes, are its own: several
-/// processes may write the same files at once, and none sees or removes what another is writing.
+/// Makes the temporary names of this process and its children unique by `token`. Several processes
+/// may then write the same files at once, and none sees or removes temporary files of another.
 void take_own_names(const std::string& token);
 bool has_own_names();
 
-/// Writes files under their temporary names, not flushed. On an error they are removed. Folders
-/// that are missing are made.
+/// Writes files under their temporary names without flushing. On an error the files are removed.
+/// Missing folders are created.
 Expected<void> write_temporaries(const std::filesystem::path& folder,
                                  const std::vector<Artifact>& files);
-/// The names that files under temporary names in a folder are to get, in order; none if there is no
-/// such folder.
+/// Returns the final names of the files that have temporary names of this process in a folder,
+/// sorted; none if the folder does not exist.
 Expected<std::vector<std::string>> temporaries(const std::filesystem::path& folder);
-/// Drops the cached pages of this file, so that it is read from the disk.
+/// Drops the cached pages of a file, so that it is next read from the disk.
 void drop_cached(const std::filesystem::path& path);
-/// Both in one: reads a flushed file from the disk, and returns whether it has exactly these bytes,
-/// by size and SHA-256. An error if it cannot be read. Takes half of the system calls.
+/// Reads a flushed file from the disk and returns whether it has this size and SHA-256. An error if
+/// it cannot be read. Needs half the system calls of `drop_cached` and `read_file`.
 Expected<bool> disk_gives_back(const std::filesystem::path& path, std::uint64_t size,
                                std::string_view sha256);
 
-/// Renames a file. On a network file system the answer to a request may be lost, and the repeated
-/// request finds no such file: then the file with the new name is checked. `is_ours`: whether it
-/// has the right bytes; without it, whether it is the same one (inode).
+/// Renames a file. On a network file system the reply may be lost, and the repeated request then
+/// finds no file `from`; in this case `to` is checked. `is_ours`: whether `to` has the expected
+/// bytes; without it the inodes are compared.
 Expected<void> rename_file(const std::filesystem::path& from, const std::filesystem::path& to,
                            const std::function<bool()>& is_ours = {});
 
-/// `publish` in two steps, for what is written elsewhere: the name to write and flush it under, and
-/// the renaming of such files.
+/// The two steps of `publish`, for files that are written elsewhere: the name under which to write
+/// and flush a file, and renaming such files.
 std::filesystem::path temporary_path(const std::filesystem::path& folder, const std::string& name);
 Expected<void> rename_temporaries(const std::filesystem::path& folder,
                                   const std::vector<std::string>& names,
                                   const std::function<bool(const std::string& name)>& is_ours = {});
 
-/// Whether a file of this name is being written, or was left half-written, by any process.
+/// Whether a name is a temporary one of any process: the file is being written, or its writer was
+/// killed.
 bool is_temporary_name(std::string_view name);
 
-/// Removes files under temporary names whose names are known: the folder need not be listed.
+/// Removes the temporary files of these names without listing the folder.
 void remove_temporaries(const std::filesystem::path& folder, const std::vector<std::string>& names);
 
-/// Removes what a killed process left half-written in a folder.
+/// Removes the incomplete files of killed processes from a folder.
 void remove_leftovers(const std::filesystem::path& folder);
 
 }  // namespace nonio::storage

@@ -10,7 +10,8 @@
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/format.h"
 
-// Compiled once, in json_values.cpp: a source that compiles it itself takes 5 to 10 % longer.
+// Instantiated once, in json_values.cpp: each source that instantiates the template takes 5 to 10 %
+// longer.
 #pragma GCC visibility push(default)
 #include <nlohmann/json.hpp>
 extern template class nlohmann::basic_json<nlohmann::ordered_map>;
@@ -18,21 +19,22 @@ extern template class nlohmann::basic_json<nlohmann::ordered_map>;
 
 namespace nonio::storage {
 
-/// Keys stay in the order in which they are written.
+/// JSON whose keys keep the order in which they are written.
 using Json = nlohmann::ordered_json;
 
-/// A text that this program wrote. Throws `Json::exception` where it is no JSON.
+/// Parses a text that this program wrote. Throws `Json::exception` if it is not JSON.
 Json parse(std::string_view text);
-/// Discarded where it is no JSON.
+/// Parses a text; the result is discarded (`is_discarded`) if the text is not JSON.
 Json parse_or_discard(std::string_view text);
-/// Discarded where it is no JSON; where an object has a key twice: one program reads the first,
-/// another one the last; and where it is nested so deeply that a copy could exhaust the stack.
+/// Parses a text. The result is discarded if the text is not JSON, if an object has a key twice
+/// (programs differ in which one they read), or if it is nested more than 64 deep, because a copy
+/// could exhaust the stack.
 Json parse_once(std::string_view text);
 
-/// Indented by one, so that a diff of two runs is readable. Text that is not UTF-8 (a file name, a
-/// plugin's message) gets replacement characters instead of stopping the run.
+/// Returns the text with an indentation of one, so that a diff of two runs is readable. Bytes that
+/// are not UTF-8 (a file name, a plugin's message) become replacement characters.
 std::string dump(const Json& json);
-/// The same in one line.
+/// Returns the text in one line; bytes that are not UTF-8 become replacement characters.
 std::string dump_line(const Json& json);
 
 inline Json to_json(const Error& error) {
@@ -44,12 +46,12 @@ inline Json to_json(const Error& error) {
   return json;
 }
 
-/// A name with its unit: "rms_um".
+/// Returns a name with the suffix of its unit: "rms_um".
 inline std::string key(const std::string& name, Quantity q) {
   return name + std::string(unit_of(q).suffix);
 }
 
-/// What is not a number, or missing, is left out.
+/// Adds a value in its unit; a missing or non-finite value is left out.
 inline void put(Json& json, const std::string& name, const std::optional<double>& value,
                 Quantity q) {
   if (!value) return;

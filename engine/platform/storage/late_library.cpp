@@ -7,7 +7,8 @@
 
 namespace nonio::storage {
 
-// Not Boost.DLL as for plugins: it takes paths, and the system's search knows where this library has its neighbours.
+// Boost.DLL, used for plugins, takes only paths; dlopen lets the system find the library by its
+// name.
 Expected<const void*> exported(const char* library, const char* symbol) {
   const auto why = [&] {
     const char* const words = ::dlerror();

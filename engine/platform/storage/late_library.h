@@ -5,9 +5,9 @@
 
 namespace nonio::storage {
 
-/// A symbol of a library of Nonio in the folder of this one, which is loaded at its first use and
-/// never unloaded: clients of servers bring thirty third-party libraries, half of the start of
-/// every command. Not for processes that may open no file any more.
+/// Returns a symbol of one of Nonio's libraries, which is loaded at its first use and never
+/// unloaded: clients of servers bring thirty third-party libraries, half of the start-up time of
+/// every command. Not for processes that can no longer open files.
 Expected<const void*> exported(const char* library, const char* symbol);
 
 template <class T>
@@ -19,5 +19,5 @@ Expected<const T*> exported_as(const char* library, const char* symbol) {
 
 }  // namespace nonio::storage
 
-/// For a constant that `exported` finds.
+/// Declares a constant that `exported` finds.
 #define NONIO_EXPORTED extern "C" __attribute__((visibility("default")))

@@ -7,15 +7,15 @@
 
 namespace nonio::storage {
 
-/// ` (nearest: "name")` for the candidate that differs least from what was found, or "" if none is
-/// near enough to be what was meant.
+/// Returns ` (nearest: "name")` for the candidate with the fewest differences from `found`; "" if
+/// no candidate is similar enough.
 std::string suggestion(std::string_view found, const std::vector<std::string>& candidates);
 
-/// "a, b and c" in no language: "a, b, c".
+/// Returns the names separated by commas ("a, b, c"), without a word of any language.
 std::string listed(const std::vector<std::string>& names);
 
-/// What to state of a value that is none of the choices: "expected one of a, b; found "c"", with
-/// the nearest. `list`: the choices with what they mean; empty: their names.
+/// Returns the message for a value that is not one of the choices: "expected one of a, b; found
+/// "c"", and the nearest choice. `list`: text for the choices; empty: their names.
 std::string not_one_of(const std::vector<std::string>& choices, std::string_view found,
                        std::string list = {});
 

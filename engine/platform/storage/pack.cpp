@@ -36,7 +36,7 @@ constexpr const char* tables =
     "CREATE TABLE digest(name TEXT PRIMARY KEY, sha256 TEXT NOT NULL) WITHOUT ROWID";
 constexpr std::int64_t plain_file = 0100644;
 
-/// What is wrong with the last statements; empty if nothing is.
+/// Returns the error of the last statements; empty if there is none.
 std::string trouble_of(Database& database) {
   const auto well = database.take_error();
   return well ? std::string() : well.error().message;
@@ -47,14 +47,15 @@ struct OpenPack {
   Database database;
 };
 
-/// Those that were used last, of this process.
+/// The packs that this process used last; they stay open.
 struct Opened {
   std::mutex mutex;
   pid_t process = 0;
   std::list<OpenPack> packs;
 };
 Opened& opened() {
-  static auto* const all = new Opened;  // a process that ends closes nothing of its parent
+  // never destroyed: a child that ends must not close connections of its parent
+  static auto* const all = new Opened;
   return *all;
 }
 constexpr std::size_t most_open = 16;
@@ -66,7 +67,7 @@ Error damaged(const fs::path& pack, const std::string& what, const std::string& 
 
 Expected<Database*> open_pack(Opened& all, const fs::path& pack) {
   if (all.process != ::getpid()) {
-    // Connections of the parent are left as they are: closing them is its own business.
+    // connections of the parent are leaked on purpose: closing them in a child could damage them
     if (all.process != 0) new std::list<OpenPack>(std::move(all.packs));
     all.packs.clear();
     all.process = ::getpid();
@@ -86,7 +87,7 @@ Expected<Database*> open_pack(Opened& all, const fs::path& pack) {
                 "; bring it back from a copy of the output folder");
   auto database = Database::open(pack, Database::Use::read);
   if (!database) return fail(damaged(pack, "", database.error().message));
-  // No view takes the place of a table: its content could depend on anything.
+  // a view could take the place of a table, and its content could depend on anything
   const std::string both = database->first(
       "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN ('sqlar', 'digest')");
   if (const std::string why = trouble_of(*database); !why.empty() || both != "2")
@@ -103,7 +104,8 @@ std::optional<std::uint64_t> number(const std::string& text) {
   return value;
 }
 
-/// What the archive states about a file before its bytes are read: a plain one, not compressed.
+/// Returns the size that the archive states for a file, none if there is no such file; an error
+/// unless it is a plain, uncompressed file of this size.
 Expected<std::optional<std::uint64_t>> size_in(Database& database, const PackAddress& at) {
   const auto rows = database.rows(
       "SELECT mode, sz, length(data), typeof(data) FROM sqlar WHERE name = ?", {at.name});
@@ -162,7 +164,7 @@ Expected<void> PackWriter::end() {
 
 namespace {
 
-/// What `use` makes of an open pack, while no other thread uses one.
+/// Returns the result of `use` for an open pack, under a lock, so that no other thread uses a pack.
 template <class Use>
 auto with_pack(const fs::path& pack, const Use& use) -> decltype(use(std::declval<Database&>())) {
   Opened& all = opened();
@@ -172,7 +174,8 @@ auto with_pack(const fs::path& pack, const Use& use) -> decltype(use(std::declva
 }
 
 Expected<std::vector<std::string>> names_in(Database& database, const PackAddress& folder) {
-  const std::string from = folder.name + "/", to = folder.name + "0";  // '0' comes after '/'
+  // '0' is the character after '/'
+  const std::string from = folder.name + "/", to = folder.name + "0";
   std::vector<std::string> names;
   for (const auto& row : database.rows(
            "SELECT name FROM sqlar WHERE name >= ? AND name < ? ORDER BY name", {from, to}))

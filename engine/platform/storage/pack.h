@@ -13,11 +13,12 @@
 #include "platform/storage/packed_results.h"
 
 /// A pack: one file with the results of many campaigns. It is an SQLite archive (`sqlite3 -At -f
-/// FILE` lists it) with a table `digest`. A name in it is the id of a campaign, '/' and the name of
-/// a file. It contains no time: the same files give the same bytes.
+/// FILE` lists it) with an additional table `digest`. A name in it is CAMPAIGN-ID/FILE. A pack
+/// contains no time, so that the same files give the same bytes.
 ///
-/// PACK/ID/FILE is the address of a file in a pack. `read_file`, `read_parts`, `sha256_of_file` and `is_there` of
-/// files.h take it as any other path. Whatever is read is compared with its digest.
+/// PACK/ID/FILE is the address of a file in a pack, which `read_file`, `read_parts`,
+/// `sha256_of_file` and `is_there` of files.h accept as a path. Each file that is read is compared
+/// with its digest.
 namespace nonio::storage {
 
 inline constexpr std::string_view packs_folder = ".nonio/packs";
@@ -27,14 +28,15 @@ struct PackAddress {
   std::filesystem::path pack;
   std::string name;
 };
-/// None if the path does not lead into a file of a folder `.nonio/packs`.
+/// Splits a path into pack and name; none if it is not a file below `.nonio/packs`.
 std::optional<PackAddress> in_pack(const std::filesystem::path& path);
 
 class PackWriter {
  public:
-  /// In a folder that no other process uses: nothing is flushed.
+  /// Creates a pack in a folder that no other process uses; nothing is flushed.
   static Expected<PackWriter> create(const std::filesystem::path& path);
-  /// In the order of the names: it decides how the bytes lie.
+  /// Adds a file. Names must be added in sorted order, because the order determines the bytes of
+  /// the pack.
   Expected<void> add(const std::string& name, std::string_view bytes);
   Expected<void> end();
 
@@ -43,21 +45,23 @@ class PackWriter {
   Database database_;
 };
 
-/// An error if there is no such pack, or if it is damaged there. None: it has no such file.
+/// Reads a file of a pack; none if the pack has no such file. An error if the pack is missing, or
+/// damaged in this place.
 Expected<std::optional<std::string>> read_packed(const PackAddress& at);
-/// The size of a file in a pack, without reading it.
+/// Returns the size of a file in a pack without reading it; none if there is no such file.
 Expected<std::optional<std::uint64_t>> size_packed(const PackAddress& at);
-/// The names in a pack that begin with `folder` and '/', without it, in order.
+/// Returns the names in a pack that begin with `folder` and '/', without this part, sorted.
 Expected<std::vector<std::string>> names_packed(const PackAddress& folder);
-/// Reads all of it. The error names campaign and file.
+/// Reads all files of a pack and compares their digests. An error names campaign and file.
 Expected<void> check_pack(const std::filesystem::path& pack);
-/// Copies a pack into OUT/.nonio/packs, where it appears whole or not at all, under a name that begins so and holds
-/// its digest: who writes other bytes writes another file.
+/// Copies a pack into OUT/.nonio/packs, where it appears completely or not at all. Its name is
+/// `begin` and a part of its digest, so that other content never replaces it.
 Expected<PackFile> hand_over(const std::filesystem::path& pack, const std::filesystem::path& out,
                              const std::string& begin);
-/// Whether the pack that was handed over is there as it was. An error if it is not names what is wrong with it.
+/// Checks that a pack that was handed over still has its digest. An error states what is wrong with
+/// it.
 Expected<void> check_handed_over(const std::filesystem::path& out, const PackFile& pack);
-/// Packs are kept open; none is afterwards. A new process opens its own.
+/// Closes all packs that this process keeps open. Reading opens them again.
 void close_packs();
 
 }  // namespace nonio::storage

@@ -22,7 +22,8 @@ namespace {
 
 constexpr std::string_view first_line = "nonio-packs/1\n";
 
-/// Up to `end`; what is behind it stays. None: there is no such character.
+/// Removes from `text` the part up to the character `end` and returns it without `end`; none if
+/// there is no such character.
 std::optional<std::string_view> cut(std::string_view& text, char end) {
   const std::size_t at = text.find(end);
   if (at == std::string_view::npos) return std::nullopt;
@@ -38,7 +39,7 @@ std::optional<std::uint64_t> number_in(std::string_view text) {
   return value;
 }
 
-/// The row that begins at `at`, without its end.
+/// Returns the row that begins at `at`, without its line feed.
 std::string_view row_at(const std::string& rows, std::size_t at) {
   return std::string_view(rows).substr(at, rows.find('\n', at) - at);
 }
@@ -123,7 +124,7 @@ void Catalogue::each(const std::function<void(std::string_view, const PackFile&)
 }
 
 Expected<void> Catalogue::publish_with(const fs::path& out, const std::vector<Entry>& more) const {
-  std::map<std::string, std::size_t> number;  // by name, of those that have a campaign
+  std::map<std::string, std::size_t> number;  // by name, for packs that contain a campaign
   std::string packs, rows;
   const auto add = [&](std::string_view id, const PackFile& pack) {
     const auto [at, is_new] = number.emplace(pack.name, number.size());
@@ -149,7 +150,7 @@ Expected<void> check_catalogue(const fs::path& out) {
 
 namespace {
 
-/// As it was read last; read again when the file is another one.
+/// The catalogue as it was last read; it is read again if the file has changed.
 struct KnownCatalogue {
   struct stat at {};
   std::shared_ptr<const Catalogue> catalogue;  ///< null: it cannot be read
@@ -165,7 +166,8 @@ bool same_file(const struct stat& a, const struct stat& b) {
          a.st_mtim.tv_sec == b.st_mtim.tv_sec && a.st_mtim.tv_nsec == b.st_mtim.tv_nsec;
 }
 
-/// False if the output folder has none. Null if it cannot be read.
+/// Returns false if the output folder has no catalogue. Sets `catalogue` to null if it cannot be
+/// read.
 bool catalogue_of(const fs::path& out, std::shared_ptr<const Catalogue>& catalogue) {
   static auto* const known = new Known;
   const fs::path path = out / packs_folder / catalogue_name;
@@ -188,7 +190,7 @@ bool has_record(const fs::path& folder) {
 
 bool is_hashed(const fs::path& out) { return is_there_to_read(out / hashed_mark); }
 
-/// `take` each folder in a folder, which may be missing.
+/// Calls `take` with each subfolder of a folder, which may be missing.
 void each_folder_in(const fs::path& folder, std::error_code& error,
                     const std::function<void(const fs::path&)>& take) {
   std::error_code here;
@@ -209,7 +211,7 @@ fs::path results_folder(const fs::path& out, const std::string& id) {
   fs::path own = own_folder(out, id);
   std::shared_ptr<const Catalogue> catalogue;
   if (!catalogue_of(out, catalogue)) return own;
-  // An address whose text is the error message for its reader.
+  // Reading this address gives the error message about the catalogue.
   if (!catalogue) return out / packs_folder / catalogue_name / id;
   const PackFile* pack = catalogue->find(id);
   if (pack == nullptr || has_record(own)) return own;
@@ -219,7 +221,7 @@ fs::path results_folder(const fs::path& out, const std::string& id) {
 Expected<void> each_results_folder(const fs::path& out,
                                    const std::function<void(const fs::path&)>& take) {
   NONIO_TRY(const auto catalogue, Catalogue::read(out));
-  std::set<std::string> in_folders;  // although a pack has them too
+  std::set<std::string> in_folders;  // campaigns in folders that a pack contains too
   std::error_code error;
   const auto take_folder = [&](const fs::path& folder) {
     const std::string id = folder.filename().string();

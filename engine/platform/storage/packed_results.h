@@ -12,20 +12,22 @@
 
 #include "nonio/sdk/error.h"
 
-/// Where the results of a campaign lie: in a folder of their own, or in a pack (pack.h).
+/// Finds the results of a campaign: in a folder of their own, or in a pack (pack.h).
 namespace nonio::storage {
 
-/// Folder of a campaign's results, to which links lead: OUT/<id>, or OUT/ab/<id> where campaigns
-/// are sorted by the first two digits of the SHA-256 of their ids.
+/// Returns the folder of a campaign's results, to which links lead: OUT/<id>; in a hashed output
+/// folder OUT/ab/<id> with the first two digits of the SHA-256 of the id.
 std::filesystem::path own_folder(const std::filesystem::path& out, const std::string& id);
-/// A file that marks such an output folder, next to the files of the run.
+/// File whose presence marks a hashed output folder.
 inline constexpr const char* hashed_mark = ".nonio/hashed";
-/// Where they are to be read: its own folder, if there is a record; else the pack that the catalogue names for it, as
-/// an address that the functions of files.h take (OUT/.nonio/packs/NAME.sqlar/<id>); else its own folder. A pack that
-/// is missing or damaged is an error where it is read, never a campaign without results.
+/// Returns the place from which results are read: the campaign's own folder if it contains a
+/// record, otherwise the address in the pack that the catalogue names
+/// (OUT/.nonio/packs/NAME.sqlar/<id>), otherwise the own folder. A missing or damaged pack is an
+/// error when it is read; the campaign is not treated as one without results.
 std::filesystem::path results_folder(const std::filesystem::path& out, const std::string& id);
-/// Every place in which results of a campaign may lie, in no order: folders, and addresses in
-/// packs. The id is its last part. An output folder that is missing has none.
+/// Calls `take` with every folder and every address in a pack that may contain results of a
+/// campaign, in no order. The last part of the path is the campaign's id. A missing output folder
+/// has none.
 Expected<void> each_results_folder(const std::filesystem::path& out,
                                    const std::function<void(const std::filesystem::path&)>& take);
 
@@ -40,17 +42,18 @@ struct PackFile {
   std::string sha256;
 };
 
-/// Which campaign is in which pack: OUT/.nonio/packs/catalogue, a text that appears whole or not at
-/// all. A campaign with a record in its own folder is not in a pack, whatever the catalogue states.
+/// Assigns campaigns to packs: OUT/.nonio/packs/catalogue, a text file that appears completely or
+/// not at all. A campaign with a record in its own folder is not in a pack, even if the catalogue
+/// has an entry.
 class Catalogue {
  public:
-  /// Without an entry if there is none.
+  /// Reads the catalogue; it has no entries if the file does not exist.
   static Expected<Catalogue> read(const std::filesystem::path& out);
-  /// Null: in none.
+  /// Returns the pack of a campaign; null if there is none.
   const PackFile* find(std::string_view id) const;
   void each(const std::function<void(std::string_view id, const PackFile& pack)>& take) const;
 
-  /// `more`, in order of the ids, takes the place of entries of the same campaigns.
+  /// Writes the catalogue. The entries `more`, sorted by id, replace those of the same campaigns.
   struct Entry {
     std::string id;
     const PackFile* pack;
@@ -65,21 +68,22 @@ class Catalogue {
   std::string rows_{};  ///< "id\tnumber of the pack\n", in order
 };
 
-/// A plain name that ends as packs do.
+/// Whether this is a plain file name with the suffix of a pack.
 bool is_pack_name(std::string_view name);
 inline constexpr const char* catalogue_name = "catalogue";
 Expected<void> check_catalogue(const std::filesystem::path& out);
 
-/// Removes the packs that contain no campaign, and incomplete copies.
+/// Removes packs that contain no campaign, and incomplete copies.
 Expected<void> sweep_packs(const std::filesystem::path& out);
 
-/// Size of a file of results and when it, or its pack, was written. None: it is missing.
+/// Size of a results file, and when the file, or the pack that contains it, was written.
 struct Written {
   std::uint64_t size = 0;
   std::int64_t seconds = 0, nanoseconds = 0;
 };
 Expected<std::optional<Written>> written_at(const std::filesystem::path& file);
-/// When the record was written; in a pack: when the catalogue that names it was.
+/// Returns when the record of a campaign was written; for a campaign in a pack, when the catalogue
+/// was. None if it is missing.
 Expected<std::optional<Written>> record_written_at(const std::filesystem::path& folder);
 
 }  // namespace nonio::storage

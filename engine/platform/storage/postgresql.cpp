@@ -26,10 +26,10 @@ struct Clear {
 };
 using Result = std::unique_ptr<PGresult, Clear>;
 
-constexpr int oldest_server = 120000;  // writes doubles in the fewest digits
+constexpr int oldest_server = 120000;  // the first that writes doubles in the fewest digits
 constexpr const char* connect_seconds = "10";
-/// Statements that are under way at once. Their answers fit into the buffers between server and
-/// program, so that none of the two waits for the other.
+/// Number of statements that are sent before their answers are read. The answers fit into the
+/// buffers between server and program, so that neither waits for the other.
 constexpr int most_under_way = 200;
 constexpr Oid type_of_bytes = 17, type_of_doubles = 701;
 
@@ -40,7 +40,8 @@ std::string in_one_line(std::string text) {
   return text;
 }
 
-/// `?` are `$1`, `$2`, ... here; texts of our statements hold no question mark.
+/// Replaces each `?` by `$1`, `$2`, ...; string literals in Nonio's statements contain no question
+/// mark.
 std::string numbered(std::string_view sql) {
   std::string out;
   int place = 0;
@@ -48,7 +49,7 @@ std::string numbered(std::string_view sql) {
   return out;
 }
 
-/// Values as libpq takes them: text, bytes as they are.
+/// Values in the form that libpq takes: numbers as text, bytes in binary.
 class Bound {
  public:
   explicit Bound(std::span<const Value> values) {
@@ -146,7 +147,8 @@ class Postgresql final : public Connection {
     return error_of(Result(::PQexec(server_.get(), sql.c_str())).get());
   }
 
-  /// The lock is what SQLite's BEGIN IMMEDIATE is: one writer of these tables at a time.
+  /// Begins a transaction and takes a lock, so that only one process writes these tables at a time,
+  /// as with SQLite's BEGIN IMMEDIATE.
   std::string begin() override {
     if (std::string trouble = script("BEGIN ISOLATION LEVEL READ COMMITTED READ WRITE");
         !trouble.empty())
@@ -160,7 +162,7 @@ class Postgresql final : public Connection {
     if (std::string trouble = settle(); !trouble.empty()) return trouble;
     const Result result(::PQexec(server_.get(), "COMMIT"));
     if (std::string trouble = error_of(result.get()); !trouble.empty()) return trouble;
-    // A transaction that failed is "committed" by taking it back.
+    // COMMIT of a failed transaction succeeds, but rolls it back.
     if (std::string_view(::PQcmdStatus(result.get())) == "COMMIT") return {};
     return name_ + ": the transaction was taken back";
   }
@@ -180,7 +182,7 @@ class Postgresql final : public Connection {
         server_.get(), [](void*, const char*) {}, nullptr);
     if (::PQserverVersion(server_.get()) < oldest_server)
       return name_ + ": expected PostgreSQL 12 or newer";
-    // What a role or a database may have set otherwise.
+    // settings that a role or a database may have changed
     return script("SET search_path TO \"" + schema_ +
                   "\"; SET extra_float_digits TO 1; SET bytea_output TO hex; "
                   "SET standard_conforming_strings TO on; SET lock_timeout TO " +
@@ -206,7 +208,7 @@ class Postgresql final : public Connection {
     return name_ + ": " + (words.empty() ? "the connection is lost" : words) + ": " + away_words;
   }
 
-  /// "" of what went well.
+  /// Returns the error text of a result; "" if there is none.
   std::string error_of(const PGresult* result) const {
     const ExecStatusType status = ::PQresultStatus(result);
     if (status == PGRES_COMMAND_OK || status == PGRES_TUPLES_OK || status == PGRES_PIPELINE_SYNC)
@@ -216,15 +218,15 @@ class Postgresql final : public Connection {
     if (state == "55P03" || state == "40P01" || state == "40001")
       return name_ + ": " + locked_words;
     const char* message = ::PQresultErrorField(result, PG_DIAG_MESSAGE_PRIMARY);
-    // It is shut down, has crashed or starts again; class 08, and what libpq reports itself,
-    // without a code: the connection is lost.
+    // The server is shut down, has crashed or is starting. The connection is lost with class 08,
+    // and with errors of libpq, which have no code.
     if ((was_there_ && state.empty()) || state.starts_with("08") || state == "57P01" ||
         state == "57P02" || state == "57P03")
       return lost_words(message);
     return message == nullptr ? own_error() : error_words(message);
   }
 
-  /// Waits for all that is under way; the first trouble of it.
+  /// Waits for all statements that were sent, and returns the first error.
   std::string settle() {
     if (under_way_ == 0) return {};
     under_way_ = 0;
@@ -233,7 +235,7 @@ class Postgresql final : public Connection {
     for (bool synced = false; !synced;) {
       const Result result(::PQgetResult(server_.get()));
       if (!result) {
-        // The end of one statement's answers, or of the connection.
+        // end of the answers of one statement, or of the connection
         if (::PQstatus(server_.get()) == CONNECTION_OK) continue;
         if (trouble.empty()) trouble = own_error();
         break;
@@ -285,7 +287,7 @@ Expected<void> check(const std::string& url) {
   char* why = nullptr;
   PQconninfoOption* options = ::PQconninfoParse(url.c_str(), &why);
   if (options == nullptr) {
-    // What libpq reports of it repeats parts of the address.
+    // The message of libpq would repeat parts of the address.
     ::PQfreemem(why);
     return fail("expected postgresql://user@host/name?option=value as libpq reads it");
   }
@@ -309,7 +311,7 @@ Expected<std::unique_ptr<Connection>> connect(const Server& server, double patie
     NONIO_TRY(auto read, server_password(server.password_file));
     password = std::move(read);
   }
-  // What comes later counts: the address may set its time limit.
+  // Later keywords have precedence, so the address can set its own time limit.
   const char* keywords[] = {"connect_timeout",
                             "fallback_application_name",
                             "dbname",
@@ -318,8 +320,8 @@ Expected<std::unique_ptr<Connection>> connect(const Server& server, double patie
                             nullptr};
   const char* values[] = {connect_seconds, "nonio",          server.url.c_str(),
                           "UTF8",          password.c_str(), nullptr};
-  // A server that refuses us is there; one that starts or stops is not, and may be available at the
-  // next attempt. Only a repeated answer is accepted.
+  // A server that rejects the connection is running; one that is starting or stopping may be
+  // available at the next attempt. Therefore a rejection is accepted only if it is repeated.
   constexpr int trials = 4;
   for (int trial = 1;; ++trial) {
     auto connection =

@@ -10,16 +10,17 @@
 
 namespace nonio::storage {
 
-/// The same numbers with every standard library: the distributions of <random> are not specified.
+/// Random numbers that are the same with every standard library, because the distributions of
+/// <random> are not specified.
 class Random {
  public:
-  /// Each stream of a seed is independent of the others.
+  /// Streams of the same seed are independent of each other.
   Random(std::uint64_t seed, std::uint64_t stream)
       : engine_(SplitMix64::mixed(SplitMix64::mixed(seed) + stream)) {}
 
   double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }  ///< in [0, 1)
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  /// Standard normal, by Box and Muller.
+  /// Returns a standard normal random number (Box and Muller).
   double normal() {
     const double r = std::sqrt(-2.0 * std::log(1.0 - uniform()));
     return r * std::cos(2.0 * std::numbers::pi * uniform());

@@ -6,9 +6,8 @@
 
 namespace nonio::storage {
 
-/// As `fs::canonical`, of a folder. Neighbouring folders take only a few calls: the result for
-/// their parent is used again while both its path and that result lead to the same folder as
-/// before.
+/// Resolves all links in the path of a folder, like `fs::canonical`. The result for the parent
+/// folder is reused for its other subfolders, while both paths still lead to the same folder.
 std::filesystem::path real_folder(const std::filesystem::path& folder, std::error_code& error);
 
 }  // namespace nonio::storage

@@ -6,16 +6,17 @@
 
 namespace nonio::storage {
 
-/// A folder for a moment, of this user alone; removed with the object.
+/// A temporary folder that only this user can read; it is removed at the end of the lifetime.
 class ScratchFolder {
  public:
-  /// Below this folder, or the system's for such (TMPDIR): "nonio-<purpose>-...".
+  /// Creates "nonio-<purpose>-..." below this folder, or in the system's folder for temporary files
+  /// (TMPDIR).
   explicit ScratchFolder(const std::string& purpose, const std::filesystem::path& below = {});
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
   ~ScratchFolder();
 
-  /// Empty if it could not be made: nothing may be written then.
+  /// Path of the folder; empty if it could not be created: then nothing may be written.
   const std::filesystem::path& path() const { return path_; }
 
  private:

@@ -14,8 +14,8 @@
 #include <variant>
 #include <vector>
 
-/// Values as bytes, between processes and runs of one program on one computer: numbers bit by bit.
-/// What is read may come from a process with plugins: each length is checked, none is trusted.
+/// Converts values to bytes and back, between processes and runs of one program on one computer;
+/// numbers are exact. The bytes may come from a process with plugins, so every length is checked.
 namespace nonio::storage {
 
 template <class T>
@@ -89,7 +89,7 @@ class ValueReader {
   void operator()(T&... values) {
     (get(values), ...);
   }
-  /// Everything was there, and nothing is left.
+  /// Whether the bytes contained all values and nothing else.
   bool well() const { return well_ && rest_.empty(); }
 
  private:
@@ -100,7 +100,8 @@ class ValueReader {
     rest_.remove_prefix(size);
     return true;
   }
-  /// Every element takes a byte at least: a length that is not true costs no memory.
+  /// Reads a length. It is refused if the remaining bytes cannot contain that many elements, so
+  /// that a wrong length allocates no memory.
   std::size_t length(std::size_t element = 1) {
     std::uint64_t size = 0;
     if (!bytes(&size, sizeof size)) return 0;
@@ -180,8 +181,8 @@ class ValueReader {
   bool well_ = true;
 };
 
-/// All members of a type, in its order: the compiler finds one that is missing here. In namespace
-/// nonio::storage, where ValueWriter and ValueReader find it.
+/// Lists all members of a type in its order; the compiler reports a missing one. Use it in
+/// namespace nonio::storage, where ValueWriter and ValueReader find it.
 #define NONIO_MEMBERS(Type, ...)                                          \
   template <class Archive, class T>                                       \
   requires std::same_as<std::remove_const_t<T>, Type>                     \
@@ -197,7 +198,8 @@ std::string pack(const T&... values) {
   return writer.take();
 }
 
-/// False if the bytes are not what `pack` makes of such values.
+/// Reads values that `pack` has written. False if the bytes are not a result of `pack` for these
+/// types.
 template <class... T>
 bool unpack(std::string_view bytes, T&... values) {
   ValueReader reader(bytes);

@@ -10,19 +10,19 @@
 
 namespace nonio::storage {
 
-/// A text that may be too long for memory, in a file. An error while it is filled is returned by
-/// `flush`, also of texts that were added to it.
+/// Writes a text that may be too long for memory to a file. `flush` returns the first error of any
+/// call, also of texts that were added.
 class Spool {
  public:
-  /// Of a path that is to stay.
+  /// Creates a file at a path, where it remains.
   static Spool at(const std::filesystem::path& path);
-  /// A file without a name, in a folder that no other process writes to.
+  /// Creates a file without a name, in a folder to which no other process writes.
   static Spool in(const std::filesystem::path& folder);
 
   void add(std::string_view text);
   void add(Spool& other);
   bool empty() const { return empty_; }
-  /// Everything is on disk.
+  /// Writes everything to disk.
   Expected<void> flush();
 
  private:
@@ -31,7 +31,7 @@ class Spool {
 
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
   bool empty_ = true;
-  int error_ = 0;  ///< errno of the first trouble
+  int error_ = 0;  ///< errno of the first error
 };
 
 }  // namespace nonio::storage

@@ -29,7 +29,7 @@ void bind(sqlite3_stmt* statement, int place, const Value& value) {
     ::sqlite3_bind_blob64(statement, place, bytes.data(), bytes.size(), SQLITE_STATIC);
 }
 
-/// Until the next step of the statement; a double as `real`.
+/// Returns a cell, valid until the next step of the statement. A double is formatted into `real`.
 std::string_view sqlite_cell(sqlite3_stmt* statement, int column, std::string& real) {
   if (::sqlite3_column_type(statement, column) == SQLITE_FLOAT)
     return real = shortest(::sqlite3_column_double(statement, column));
@@ -65,7 +65,7 @@ class Sqlite final : public Connection {
       take(row);
     }
     std::string trouble = step == SQLITE_DONE ? std::string() : error();
-    // What is bound is not ours for longer than this call; a statement at rest holds no lock.
+    // bound values are valid only during this call, and a statement that was reset holds no lock
     ::sqlite3_reset(statement);
     ::sqlite3_clear_bindings(statement);
     return trouble;
@@ -82,7 +82,8 @@ class Sqlite final : public Connection {
     return well ? std::string() : error();
   }
 
-  // At once with the right to write: two that read first and write then would wait for each other.
+  // Takes the write lock at once: two transactions that read first and then write would wait for
+  // each other.
   std::string begin() override { return put("BEGIN IMMEDIATE", {}); }
   std::string commit() override { return put("COMMIT", {}); }
   void rollback() override {
@@ -119,7 +120,7 @@ class Sqlite final : public Connection {
   std::string path_;
 };
 
-/// A path in an address of SQLite, where some characters mean something.
+/// Returns a path as an URI for SQLite, with special characters escaped and marked immutable.
 std::string address_of(const std::filesystem::path& path) {
   constexpr std::string_view digits = "0123456789ABCDEF";
   std::string address = "file:";
@@ -160,8 +161,8 @@ Expected<std::unique_ptr<Connection>> connect_sqlite(const std::filesystem::path
   if (opened != SQLITE_OK) return fail(connection->error());
   ::sqlite3_busy_timeout(file, static_cast<int>(1000.0 * patience));
   ::sqlite3_extended_result_codes(file, 1);
-  // EXTRA is FULL, and the folder is flushed too before a commit returns: the journal does not
-  // come back after a power failure and undo it.
+  // EXTRA also flushes the folder before a commit returns: otherwise the journal could reappear
+  // after a power failure and undo the commit.
   for (const char* pragma : {"PRAGMA synchronous = EXTRA", "PRAGMA foreign_keys = ON"})
     if (const std::string trouble = connection->put(pragma, {}); !trouble.empty())
       return fail(trouble);
@@ -187,7 +188,7 @@ Expected<void> copy_database(const std::filesystem::path& from, const std::files
   for (const auto* one : {&source, &copy})
     if (!one->second) return wrong(one->first.get());
   ::sqlite3_busy_timeout(source.first.get(), static_cast<int>(1000.0 * patience));
-  // A lock of its own: a step of the copy does not wait for one.
+  // takes the read lock first, because a step of the copy does not wait for one
   if (::sqlite3_exec(source.first.get(), "BEGIN; SELECT count(*) FROM sqlite_schema", nullptr,
                      nullptr, nullptr) != SQLITE_OK)
     return wrong(source.first.get());

@@ -18,11 +18,11 @@ namespace nonio::storage {
 namespace {
 
 constexpr std::size_t block = 512;
-constexpr std::uint64_t most_octal = 077777777777;  // of a size in 11 digits
+constexpr std::uint64_t most_octal = 077777777777;  // largest size in 11 octal digits
 constexpr std::uint64_t most_pax = 1U << 20U;
 using Block = std::array<char, block>;
 
-/// Fields of a header: place and length.
+/// Position and length of a field in a header.
 struct TarField {
   std::size_t at, length;
 };
@@ -57,7 +57,7 @@ Expected<std::uint64_t> octal_in(const Block& header, TarField field) {
   return value;
 }
 
-/// Of all bytes of a header, its own field as blanks.
+/// Returns the sum of all bytes of a header, with blanks in the field of the sum.
 std::uint64_t sum_of(Block header) {
   std::fill_n(header.data() + sum_field.at, sum_field.length, ' ');
   std::uint64_t sum = 0;
@@ -65,7 +65,7 @@ std::uint64_t sum_of(Block header) {
   return sum;
 }
 
-/// "27 path=...\n": the number is that of its own bytes too.
+/// Returns a line such as "27 path=...\n"; the number is the length of the whole line.
 std::string pax_line(const std::string& key, const std::string& value) {
   const std::string rest = " " + key + "=" + value + "\n";
   std::size_t length = rest.size() + 1;

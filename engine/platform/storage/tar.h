@@ -9,8 +9,7 @@
 
 #include "nonio/sdk/error.h"
 
-/// Archives in the format of tar (POSIX.1-2001: ustar, with pax headers where a name is long or a
-/// file large).
+/// Archives in tar format (POSIX.1-2001: ustar, with pax headers for long names and large files).
 namespace nonio::storage {
 
 struct TarEntry {
@@ -30,13 +29,14 @@ class TarWriter {
   TarWriter& operator=(TarWriter&&) = delete;
   ~TarWriter();
 
-  /// `bytes` calls its argument with the parts of a file; an error if they are not `entry.size`.
+  /// Adds an entry. `bytes` calls its argument with the parts of a file; an error if their total is
+  /// not `entry.size`.
   using Parts = std::function<Expected<void>(const std::function<void(std::string_view)>& take)>;
   Expected<void> add(const TarEntry& entry, const Parts& bytes = {});
   std::int64_t position() const;
-  /// What was added since then is written again.
+  /// Removes what was added after `position`.
   Expected<void> back_to(std::int64_t position);
-  /// All of it is on disk.
+  /// Completes the archive and writes it to disk.
   Expected<void> end();
 
  private:
@@ -47,8 +47,9 @@ class TarWriter {
   std::string name_;
 };
 
-/// `begin` is called for each entry, and then `take` with the parts of its bytes. An error: it is not
-/// such an archive, it is cut short, or it contains something else than files, folders and links.
+/// Functions that `read_tar` calls: `begin` for each entry, then `take` with the parts of its
+/// bytes. `read_tar` gives an error if the file is not such an archive, is incomplete, or contains
+/// anything other than files, folders and links.
 struct TarReads {
   std::function<Expected<void>(const TarEntry& entry)> begin;
   std::function<Expected<void>(std::string_view part)> take;

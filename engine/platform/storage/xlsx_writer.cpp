@@ -14,14 +14,16 @@ namespace nonio::storage {
 
 namespace {
 
-/// Of the document's properties where no day is stated: the first one that a ZIP archive can have.
+/// Time in the document's properties if no date is stated: the first day that a ZIP archive can
+/// store.
 constexpr std::time_t no_day = 315532800;
 constexpr std::array<lxw_color_t, 6> colours{0x1B6CA8, 0xC8553D, 0x4D8B31,
                                              0x7A4FA3, 0x8A6D1D, 0x4A4A4A};
 constexpr std::size_t chart_rows = 22;  ///< of the usual height
 constexpr std::uint16_t chart_width = 900, chart_height = 420;
 
-/// Nothing if it is no day from 1900-03-01 on: before it spreadsheets count a day that never was.
+/// Parses a date; none unless it is a day from 1900-03-01 on, because spreadsheets count a day
+/// before it that did not exist.
 std::optional<std::chrono::year_month_day> day_of(const std::string& text) {
   int year = 0;
   unsigned month = 0, day = 0;
@@ -40,8 +42,9 @@ bool is_hexadecimal(char c) {
   return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
 }
 
-/// "_x0041_" in a text would be read as "A" (ECMA-376 part 1, 22.9.2.19): its first underscore is
-/// written as such a sequence. Bytes that are not UTF-8 are not in texts that were read as TOML.
+/// Escapes text for a cell: "_x0041_" would be read as "A" (ECMA-376 part 1, 22.9.2.19), so its
+/// first underscore is written as such a sequence. Texts that were read from TOML contain only
+/// UTF-8.
 std::string escaped(const std::string& text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -58,7 +61,7 @@ struct Formats {
   lxw_format *bold = nullptr, *day = nullptr;
 };
 
-/// The first error of any call.
+/// Keeps the first error of several calls.
 class First {
  public:
   void operator()(lxw_error error) {
@@ -91,7 +94,7 @@ void write_cell(lxw_worksheet* sheet, lxw_row_t row, lxw_col_t column, const Cel
   }
 }
 
-/// Wide enough for what is in the column, within limits.
+/// Sets the width of each column to its longest text, within limits.
 void set_widths(lxw_worksheet* sheet, const Sheet& rows, First& first) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows.rows)
@@ -152,7 +155,7 @@ void add_chart(lxw_workbook* book, lxw_worksheet* sheet, const Chart& chart, std
   chart_axis_set_name(drawn->y_axis, chart.value_name.c_str());
   chart_axis_set_label_position(drawn->x_axis, LXW_CHART_AXIS_LABEL_POSITION_LOW);
   lxw_chart_options options{};
-  options.x_scale = chart_width / 480.0;  // of the library's usual size
+  options.x_scale = chart_width / 480.0;  // 480 x 288 is the default size of the library
   options.y_scale = chart_height / 288.0;
   first(worksheet_insert_chart_opt(sheet, static_cast<lxw_row_t>(row), 0, drawn, &options));
 }

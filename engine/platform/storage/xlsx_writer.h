@@ -7,7 +7,7 @@
 
 namespace nonio::storage {
 
-/// What the library nonio_xlsx has; `xlsx_bytes` calls it.
+/// The function that the library nonio_xlsx exports; `xlsx_bytes` calls it.
 struct XlsxWriter {
   Expected<void> (*write)(const Workbook& book, const std::filesystem::path& file,
                           const std::filesystem::path& temporary_folder) = nullptr;

@@ -8,7 +8,7 @@ namespace nonio {
 
 namespace {
 
-/// The lag at each sample of the channel, less the channel's first value.
+/// Returns the lag at each sample of the channel, minus the channel's first value.
 std::vector<double> at_samples(const Observations::Channel& c, double tau) {
   std::vector<double> y(c.value.size(), 0.0);
   double before = 0.0, step = -1.0, decay = 0.0;
@@ -17,7 +17,8 @@ std::vector<double> at_samples(const Observations::Channel& c, double tau) {
     if (i > 0 && tau > 0.0) {
       const double h = c.time[i] - c.time[i - 1];
       if (h != step) decay = std::exp(-h / tau), step = h;
-      // Of x = before + slope t the answer is x - slope tau, and what differs from it decays.
+      // For x = before + slope t the stationary solution is x - slope tau; the difference from it
+      // decays.
       const double shift = h > 0.0 ? (x - before) / h * tau : 0.0;
       y[i] = decay * (y[i - 1] - before + shift) + x - shift;
     } else {
@@ -40,10 +41,10 @@ std::vector<double> lagged(const Observations::Channel& channel, double tau,
   for (std::size_t i = 0; i < time.size(); ++i) {
     if (k >= t.size() || t[k] > time[i])
       k = static_cast<std::size_t>(std::upper_bound(t.begin(), t.end(), time[i]) - t.begin());
-    while (k < t.size() && t[k] <= time[i]) ++k;  // the first sample after this reading
+    while (k < t.size() && t[k] <= time[i]) ++k;  // index of the first sample after this reading
     if (k == 0) continue;
     if (k == t.size()) {
-      // The channel stays as it was last; the lag still follows it.
+      // The channel keeps its last value, which the lag approaches further.
       const double x = channel.value.back() - channel.value.front();
       out[i] = tau > 0.0 ? x + (y.back() - x) * std::exp(-(time[i] - t.back()) / tau) : x;
       continue;

@@ -19,7 +19,8 @@ bool is_direction(const std::array<double, 3>& s) {
   return std::all_of(s.begin(), s.end(), finite);
 }
 
-/// What is read by index: wrong numbers here would be read past the end.
+/// Checks the indices of lines and the directions of sensing, because a wrong index would read past
+/// the end of a vector.
 Expected<void> check_lines(const Observations& o) {
   if (o.size() == 0) return {};
   if (o.lines.empty()) return fail("readings of no line; expected one line at least");

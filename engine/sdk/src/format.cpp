@@ -8,13 +8,14 @@
 
 #include "nonio/sdk/powers_of_10.h"
 
-// Three ways to round, each for every finite value, the first two only faster: by one product where
-// no tie is near, to 12 digits by the same product, and by the decimal digits of std::to_chars.
+// Three methods of rounding, each exact for every finite value; the first two are faster but not
+// always applicable: by one product if no tie is near, to 12 digits by the same product, and by the
+// decimal digits of std::to_chars.
 namespace nonio {
 namespace {
 
-// size * 10^places, rounded, where that is quick and sure: below 10^12, and not so near to a tie
-// that the last digits of the double could decide (they are worth less than 0.01 there).
+// Returns size * 10^places, rounded, if one product decides it safely: below 10^12, and not so near
+// to a tie that the last digits of the double (worth less than 0.01 there) could decide.
 std::optional<std::int64_t> quickly_rounded(double size, int places) {
   if (places < 0 || places >= static_cast<int>(exact_powers_of_10.size())) return std::nullopt;
   const double product = size * exact_powers_of_10[static_cast<std::size_t>(places)];
@@ -25,12 +26,12 @@ std::optional<std::int64_t> quickly_rounded(double size, int places) {
   return rest > 0.5 ? whole + 1 : whole;
 }
 
-// Of a size that is not negative; nothing where `quickly_rounded` gives nothing.
+// Rounds a size >= 0 to 12 significant digits; nothing if `quickly_rounded` gives nothing.
 std::optional<Decimal> quick_decimal(double size) {
   if (!(size >= 1e-11 && size < 1e12)) return std::nullopt;
   int places = 11;
   while (size >= exact_powers_of_10[static_cast<std::size_t>(12 - places)]) --places;
-  if (places == 11)  // below 10: it may be below 1
+  if (places == 11)  // below 10: it may also be below 1
     while (size * exact_powers_of_10[static_cast<std::size_t>(places - 11)] < 1.0) ++places;
   const auto digits = quickly_rounded(size, places);
   return digits ? std::optional(Decimal{*digits, places}) : std::nullopt;
@@ -152,7 +153,7 @@ std::optional<Decimal> shortest_decimal(double size) {
 
 void append_shortest(std::string& out, double value) {
   const double size = std::fabs(value);
-  if (size >= 1e-3 && size < 1e5)  // there it has no exponent
+  if (size >= 1e-3 && size < 1e5)  // no exponent in this range
     if (const auto decimal = shortest_decimal(size)) {
       out += decimal_text(decimal->digits, decimal->places, value < 0.0);
       return;

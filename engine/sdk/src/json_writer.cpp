@@ -70,7 +70,7 @@ void JsonWriter::value(std::string_view text) {
   quoted(text);
 }
 
-/// The shortest number that reads back the same, with ".0" if it is whole.
+/// Writes the shortest number that parses to the same double, with ".0" if it is an integer.
 void JsonWriter::value(double number) {
   if (!std::isfinite(number)) return null();
   const double size = std::fabs(number);

@@ -63,7 +63,7 @@ Expected<void> check_roles(const Method& method) {
   return {};
 }
 
-/// The part of `check` that holds of readings from any reader.
+/// Checks the readings of any reader against the columns of the method.
 Expected<void> check_readings(const Method& method, const Readings& readings) {
   for (const auto& [name, values] : readings.columns)
     if (values.size() != readings.size())
@@ -87,7 +87,7 @@ Expected<void> check_readings(const Method& method, const Readings& readings) {
 
 using Measured = std::vector<double> Observations::*;
 
-/// Null for a role that is no column of this kind.
+/// Returns the member of Observations for a role; null for a role that has no such column.
 Measured measured(Role role) {
   switch (role) {
     case Role::time:
@@ -119,7 +119,8 @@ Observations::AxisColumn axis_of(const Measurement& m, const Column& position) {
   return {m.axis, position.quantity == Quantity::angle, {}, {}};
 }
 
-/// Along which the deviation of a length is sensed: 0 where the manifest does not state it.
+/// Returns the direction in which the deviation of a length is sensed: 0 if the manifest does not
+/// state it.
 std::array<double, 3> sense_of(const Measurement& m) {
   std::array<double, 3> sense{};
   const std::size_t k = coordinate_of(m.lateral.empty() ? m.axis : m.lateral);
@@ -175,7 +176,7 @@ Expected<Observations> observe_by_roles(const Method& method, const MethodInput&
   return o;
 }
 
-/// The values of a role in these observations; none if they do not determine it.
+/// Returns the values of a role in these observations; empty if they do not determine it.
 std::vector<double> values_of(Role role, const Observations& o) {
   std::vector<double> values;
   if (const Measured kept = measured(role)) return o.*kept;

@@ -86,7 +86,8 @@ SpaceLine space_line(const Observations& o, const SpaceReadings& s, std::size_t 
       out.length = length, out.farthest = way;
   }
   for (const auto& way : out.way) {
-    const auto off = SpaceLine::cross(way, out.farthest);  // times the length
+    // perpendicular distance times the length of `farthest`
+    const auto off = SpaceLine::cross(way, out.farthest);
     if (std::sqrt(SpaceLine::dot(off, off)) > 1e-4 * out.length * out.length) out.straight = false;
   }
   return out;

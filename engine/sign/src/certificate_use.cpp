@@ -6,7 +6,7 @@
 namespace nonio::sign {
 
 Expected<void> check_signer_use(X509* certificate) {
-  // Without the extension every bit is set: it may be used for anything.
+  // Without the extension all bits are set, because any use is allowed.
   if ((X509_get_key_usage(certificate) & (KU_DIGITAL_SIGNATURE | KU_NON_REPUDIATION)) == 0)
     return fail("is not for signatures: key usage has neither digitalSignature nor nonRepudiation");
   const std::unique_ptr<EXTENDED_KEY_USAGE, Freed<EXTENDED_KEY_USAGE_free>> uses(

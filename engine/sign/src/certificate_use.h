@@ -5,8 +5,9 @@
 
 namespace nonio::sign {
 
-/// Whether a certificate states that its key may sign documents: key usage digitalSignature or
-/// nonRepudiation, and where there is an extended key usage, one for documents or mail.
+/// Returns an error unless the certificate allows its key to sign documents: key usage
+/// digitalSignature or nonRepudiation, and if there is an extended key usage, one for documents or
+/// mail.
 Expected<void> check_signer_use(X509* certificate);
 
 }  // namespace nonio::sign

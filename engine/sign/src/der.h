@@ -19,21 +19,24 @@ struct Der {
                                 set = 0x31;
   static constexpr std::uint8_t context(unsigned n) { return static_cast<std::uint8_t>(0xA0 + n); }
 
-  /// Takes the first element off `rest`.
+  /// Removes the first element from `rest` and returns it; none if it is malformed.
   static std::optional<Der> take(std::string_view& rest);
-  /// The same, of this tag.
+  /// Does the same if the element has this tag; otherwise none.
   static std::optional<Der> take(std::string_view& rest, std::uint8_t tag);
-  /// Whether the whole text is elements of DER, down to the innermost: sequences and sets, and
-  /// nothing else that has a tag of its own, are made of others. OpenSSL reads more than that, and
-  /// puts it right before it looks at the signature.
+  /// Whether the whole text consists of DER elements, down to the innermost ones. Sequences, sets
+  /// and constructed elements of other classes must consist of elements, and every other universal
+  /// type must be primitive. This is stricter than OpenSSL, which accepts other encodings and
+  /// normalises them before it checks a signature.
   static bool sound(std::string_view text, int depth = 0);
-  /// The whole text as one element of this tag.
+  /// Returns the whole text as one element of this tag; none if it is not.
   static std::optional<Der> only(std::string_view text, std::uint8_t tag);
 };
 
-/// SHA-256, SHA-384 or SHA-512 of an AlgorithmIdentifier's content; null if it is another one.
+/// Returns SHA-256, SHA-384 or SHA-512 for the content of an AlgorithmIdentifier; null for other
+/// algorithms.
 const EVP_MD* digest_of_algorithm(std::string_view content);
-/// Whether an AlgorithmIdentifier's content names a signature that is accepted with that digest.
+/// Whether the content of an AlgorithmIdentifier names a signature algorithm that is accepted with
+/// this digest.
 bool is_signature_algorithm(std::string_view content, const EVP_MD* digest);
 
 }  // namespace nonio::sign

@@ -31,8 +31,8 @@ struct AddressesFreed {
   void operator()(addrinfo* all) const { ::freeaddrinfo(all); }
 };
 
-/// A socket that is connected. OpenSSL by itself tries a port that refuses until the time is up; here
-/// one that is closed is known at once.
+/// Returns a connected socket. Unlike OpenSSL, which retries until the time limit, it reports a
+/// refused port at once.
 Expected<int> connect_to(const char* host, const char* port, int seconds) {
   addrinfo wanted{};
   wanted.ai_socktype = SOCK_STREAM;
@@ -60,7 +60,7 @@ Expected<int> connect_to(const char* host, const char* port, int seconds) {
   return fail(why);
 }
 
-/// Null where OpenSSL connects by itself: by a proxy of the environment.
+/// Returns a connection; null if OpenSSL has to connect itself through a proxy of the environment.
 Expected<BioPtr> connection_to(const OpensslText& host, const OpensslText& port, int seconds) {
   if (OSSL_HTTP_adapt_proxy(nullptr, nullptr, host.text, 0) != nullptr) return BioPtr();
   NONIO_TRY(const auto connected, connect_to(host.text, port.text, seconds));

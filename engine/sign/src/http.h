@@ -8,16 +8,17 @@
 
 namespace nonio::sign {
 
-/// A question over plain HTTP. The answer is signed, so that it needs no TLS.
+/// A request over plain HTTP. The answer is signed, so TLS is not needed.
 struct Question {
-  const char* query = nullptr;  ///< media type of the body; null: there is no body (GET)
-  const char* reply = nullptr;  ///< media type that is required; null: any
+  const char* query = nullptr;  ///< media type of the body; null: no body (GET)
+  const char* reply = nullptr;  ///< required media type of the answer; null: any
   std::string body{};
-  std::size_t longest = 0;  ///< bytes that the answer may have
+  std::size_t longest = 0;  ///< largest size of the answer in bytes
   int seconds = 10;
 };
 
-/// The answer's bytes, one element of ASN.1. `url`: http://host[:port]/path
+/// Sends the request and returns the answer, which must be one ASN.1 element. `url`:
+/// http://host[:port]/path
 Expected<std::string> ask_server(const std::string& url, const Question& question);
 
 }  // namespace nonio::sign

@@ -53,7 +53,8 @@ Expected<Key::Impl> open_pkcs12(const std::string& path, const std::string& pass
   return impl;
 }
 
-/// The root is in the trust file of whoever verifies; without it every file is smaller.
+/// Removes root certificates from the chain: whoever verifies needs an own copy of the root anyway,
+/// and files become smaller.
 void leave_roots_out(std::vector<CertificatePtr>& chain) {
   std::erase_if(chain, [](const CertificatePtr& c) {
     return (X509_get_extension_flags(c.get()) & EXFLAG_SS) != 0;
@@ -123,7 +124,8 @@ namespace {
 
 Expected<Signed> sign_pdf(const Key::Impl& key, std::string bytes, Time now,
                           const TimeStamping& stamping) {
-  // By its place: `pdf::reserve` has just read what plugins wrote, and this process holds the key.
+  // The signature is found by its position at the end, because this process, which holds the key,
+  // must not parse the PDF; `pdf::reserve` has parsed it already.
   const auto place = pdf::signature_at_end(bytes);
   if (!place) return fail("is not prepared for a signature: " + place.error().message);
   if (place->contents.find_first_not_of('0') != std::string_view::npos)

@@ -6,19 +6,19 @@
 
 namespace nonio::sign {
 
-/// A key with its certificate and what leads from there to the root.
+/// A key with its certificate and the chain up to the root.
 struct Key::Impl {
   PrivateKeyPtr key;
   CertificatePtr certificate;
   std::vector<CertificatePtr> chain;
   Identity identity{};
 
-  Expected<std::string> sign_bytes(std::string_view bytes) const;  ///< with SHA-256
+  Expected<std::string> sign_bytes(std::string_view bytes) const;  ///< signs with SHA-256
 };
 
 Expected<Key::Impl> open_token(const KeyPlace& place, const std::string& password);
 
-/// The CMS object over two parts of a file, in DER.
+/// Returns the CMS object over the two parts of a file, in DER.
 Expected<std::string> make_cms(const Key::Impl& key, std::string_view before,
                                std::string_view after, Time now, const TimeStamping& stamping,
                                std::string& no_time_stamp);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Debian 12 reaches PKCS#11 tokens through an engine; the provider that is to follow is not in it.
+// Opens a key in a PKCS#11 token. The OpenSSL engine is used because Debian 12 does not contain the
+// provider that replaces it.
 #define OPENSSL_SUPPRESS_DEPRECATED
 #include <openssl/engine.h>
 #include <openssl/err.h>
@@ -27,7 +28,7 @@ CertificatePtr load_certificate(ENGINE* engine, const std::string& uri) {
 }  // namespace
 
 Expected<Key::Impl> open_token(const KeyPlace& place, const std::string& password) {
-  // Without a PIN the engine would prompt for one at the terminal.
+  // Without a PIN the engine would prompt for one on the terminal.
   if (password.empty()) return fail("the token " + place.pkcs11 + " needs a PIN");
   OPENSSL_init_crypto(OPENSSL_INIT_ENGINE_DYNAMIC, nullptr);
   ERR_clear_error();

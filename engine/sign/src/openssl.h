@@ -14,7 +14,7 @@
 
 #include "nonio/sign/sign.h"
 
-/// Owners for what OpenSSL gives, and its bytes and times as ours.
+/// Owners for OpenSSL objects, and conversions of its bytes and times.
 namespace nonio::sign {
 
 template <auto Free>
@@ -32,16 +32,17 @@ using CertificatePtr = std::unique_ptr<X509, Freed<X509_free>>;
 using PrivateKeyPtr = std::unique_ptr<EVP_PKEY, Freed<EVP_PKEY_free>>;
 using CmsPtr = std::unique_ptr<CMS_ContentInfo, Freed<CMS_ContentInfo_free>>;
 using RevocationPtr = std::unique_ptr<X509_CRL, Freed<X509_CRL_free>>;
-using Borrowed = std::unique_ptr<STACK_OF(X509), Freed<free_stack>>;  ///< of certificates not owned
+using Borrowed = std::unique_ptr<STACK_OF(X509), Freed<free_stack>>;  ///< stack that does not own
+                                                                      ///< its certificates
 using Owned = std::unique_ptr<STACK_OF(X509), Freed<free_owned_stack>>;
 
-/// OpenSSL's message about the last error; forgets it.
+/// Returns OpenSSL's message about the last error and clears it.
 std::string reason();
 
 inline const unsigned char* data_of(std::string_view bytes) {
   return reinterpret_cast<const unsigned char*>(bytes.data());
 }
-/// With an i2d function of OpenSSL.
+/// Returns the DER of an object; `encode` is the i2d function of its type.
 template <class T, class Encode>
 std::string der_of(T* object, Encode encode) {
   unsigned char* data = nullptr;
@@ -54,19 +55,20 @@ std::string der_of(T* object, Encode encode) {
 inline std::string der_of(const X509* certificate) { return der_of(certificate, &i2d_X509); }
 std::string_view bytes_of(const ASN1_STRING* text);
 
-/// Of what has more bytes than `pdf::max_file`.
+/// Error for data with more bytes than `pdf::max_file`.
 inline constexpr const char* too_large = "is larger than 100 MB";
 
 std::string sha256(std::string_view one, std::string_view other = {});
 std::string hex(std::string_view bytes);
 std::string subject_of(const X509* certificate);
-/// 0 if it is no time.
+/// Converts a time; 0 if it is invalid.
 Time time_of(const ASN1_TIME* time);
-/// "RSA-3072", "P-256"; an error for what is too weak or cannot be used in a CMS. `old`: what was
-/// signed before is accepted down to RSA-2048.
+/// Returns the name of a key's algorithm, such as "RSA-3072" or "P-256"; an error for keys that are
+/// too weak or cannot be used in a CMS. `old`: accept RSA-2048 for existing signatures.
 Expected<std::string> algorithm_of(EVP_PKEY* key, bool old);
 
-/// All certificates of a PEM text. An error if there is none, or something else among them.
+/// Returns all certificates of a PEM text. An error if there is none, or if it contains anything
+/// else.
 Expected<std::vector<CertificatePtr>> certificates_of(const std::string& pem);
 
 }  // namespace nonio::sign

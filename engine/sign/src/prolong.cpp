@@ -16,7 +16,7 @@ namespace nonio::sign {
 
 namespace {
 
-/// A chain, and when its first certificate was used.
+/// A chain of certificates, and the time when its first certificate was used.
 struct Used {
   std::vector<CertificatePtr> chain;
   Revocation revocation;
@@ -28,7 +28,7 @@ std::string text_of_uri(const GENERAL_NAME* name) {
   return url.starts_with("http://") ? url : "";
 }
 
-/// Addresses for OCSP (RFC 5280, 4.2.2.1).
+/// Returns the addresses of OCSP responders (RFC 5280, 4.2.2.1).
 std::vector<std::string> responders_of(X509* certificate) {
   std::vector<std::string> out;
   const std::unique_ptr<AUTHORITY_INFO_ACCESS, Freed<AUTHORITY_INFO_ACCESS_free>> all(
@@ -42,7 +42,7 @@ std::vector<std::string> responders_of(X509* certificate) {
   return out;
 }
 
-/// Addresses of lists (RFC 5280, 4.2.1.13).
+/// Returns the addresses of revocation lists (RFC 5280, 4.2.1.13).
 std::vector<std::string> places_of_lists(X509* certificate) {
   std::vector<std::string> out;
   const std::unique_ptr<CRL_DIST_POINTS, Freed<CRL_DIST_POINTS_free>> all(
@@ -61,7 +61,8 @@ std::vector<std::string> places_of_lists(X509* certificate) {
 
 std::string question_about(X509* certificate, X509* issuer) {
   const std::unique_ptr<OCSP_REQUEST, Freed<OCSP_REQUEST_free>> request(OCSP_REQUEST_new());
-  // SHA-1 names the certificate; it protects nothing, and every responder knows it (RFC 6960, 4.3).
+  // SHA-1 only identifies the certificate and protects nothing; every responder supports it (RFC
+  // 6960, 4.3).
   OCSP_CERTID* id = OCSP_cert_to_id(EVP_sha1(), certificate, issuer);
   if (!request || id == nullptr) return {};
   if (OCSP_request_add0_id(request.get(), id) == nullptr) {
@@ -120,8 +121,8 @@ class Prolongation {
     return {};
   }
 
-  /// Of the signature, of its time stamp, and of each one of the document: the newest is not yet
-  /// covered by another.
+  /// Collects the chains of the signature, of its time stamp, and of each document time stamp. The
+  /// newest one is not covered by another yet.
   Expected<void> read_chains(Added& added) {
     const Time now = how_.verifier.now;
     NONIO_TRY(auto stamps, check_document_stamps(added, known_, now));
@@ -268,7 +269,7 @@ class Prolongation {
   Trusted known_;
   std::vector<Statement> at_hand_;
   std::vector<Used> used_;
-  std::set<std::string> there_;  ///< DER that is in the file, or will be
+  std::set<std::string> there_;  ///< DER objects that the file contains or will contain
   pdf::Store store_;
   std::vector<std::string> added_;
 };

@@ -28,7 +28,7 @@ bool is_signed_by(X509_CRL* list, X509* issuer) {
   return is_his;
 }
 
-/// The newest list that the issuer signed; null if there is none.
+/// Returns the newest list signed by the issuer; null if there is none.
 X509_CRL* newest_list(const Trusted& known, X509* issuer) {
   X509_CRL* newest = nullptr;
   for (const RevocationPtr& l : known.lists)
@@ -43,7 +43,8 @@ tl::unexpected<Error> refuse_list(X509* issuer, const std::string& why) {
   return fail("the revocation list of " + quoted(subject_of(issuer)) + " " + why);
 }
 
-/// Delta lists and lists of some certificates only state that in critical extensions.
+/// Returns an error for lists with critical extensions: delta lists and partial lists are marked
+/// only by these.
 Expected<void> check_whole(const X509_CRL* list, X509* issuer) {
   for (int i = 0; i < X509_CRL_get_ext_count(list); ++i)
     if (X509_EXTENSION_get_critical(X509_CRL_get_ext(list, i)) != 0)
@@ -62,7 +63,7 @@ Expected<void> check_list(const X509_CRL* list, X509* issuer, Time now) {
   return {};
 }
 
-/// From when on the certificate counts as revoked.
+/// Returns the time from which the certificate counts as revoked.
 Time revoked_from(const X509_REVOKED* entry) {
   const Time when = time_of(X509_REVOKED_get0_revocationDate(entry));
   const std::unique_ptr<ASN1_GENERALIZEDTIME, Freed<ASN1_GENERALIZEDTIME_free>> invalid(
@@ -72,8 +73,8 @@ Time revoked_from(const X509_REVOKED* entry) {
   return stated == 0 ? when : std::min(when, stated);
 }
 
-/// RFC 3161, 4, 1: the stated reasons unspecified, affiliationChanged, superseded,
-/// cessationOfOperation.
+/// Whether a reason leaves earlier time stamps valid: unspecified, affiliationChanged, superseded,
+/// cessationOfOperation (RFC 3161, 4, 1).
 bool is_harmless(long code) { return code == 0 || (code >= 3 && code <= 5); }
 
 bool leaves_stamps_good(const X509_REVOKED* entry) {
@@ -83,10 +84,10 @@ bool leaves_stamps_good(const X509_REVOKED* entry) {
   return stated && is_harmless(ASN1_ENUMERATED_get(stated.get()));
 }
 
-/// The entry of a list or an answer for one certificate.
+/// Entry of a revocation list or an OCSP answer for one certificate.
 struct Said {
   Time made = 0, next = 0;
-  Time revoked = 0;  ///< 0: it is not
+  Time revoked = 0;  ///< 0: not revoked
   bool leaves_stamps_good = false;
 };
 
@@ -109,8 +110,9 @@ Said said_by(X509_CRL* list, X509* one) {
   return said;
 }
 
-/// RFC 6960, 4.2.2.2: the issuer himself, or one whom he charged with it. A responder whose own
-/// certificate would have to be looked up is not accepted.
+/// Returns an error unless the answer is signed by the issuer or a responder that it has authorised
+/// (RFC 6960, 4.2.2.2). A responder whose own certificate would need a revocation check is not
+/// accepted.
 Expected<void> check_responder(OCSP_BASICRESP* answer, X509* issuer) {
   const Borrowed candidates(sk_X509_new_null());
   sk_X509_push(candidates.get(), issuer);
@@ -141,7 +143,8 @@ Expected<void> check_responder(OCSP_BASICRESP* answer, X509* issuer) {
   return {};
 }
 
-/// Nothing if the answer is about other certificates.
+/// Returns the answer's entry for the certificate; none if it is about others, or if the status is
+/// unknown.
 std::optional<Said> said_by(OCSP_BASICRESP* answer, X509* one, X509* issuer) {
   for (int i = 0; i < OCSP_resp_count(answer); ++i) {
     OCSP_SINGLERESP* single = OCSP_resp_get0(answer, i);
@@ -166,7 +169,8 @@ std::optional<Said> said_by(OCSP_BASICRESP* answer, X509* one, X509* issuer) {
   return std::nullopt;
 }
 
-/// Its answer, if it is of this issuer and about that certificate.
+/// Returns the entry of a statement for the certificate; none if the statement is from another
+/// issuer or about another certificate. An error if it is damaged.
 Expected<std::optional<Said>> heard(const Statement& s, X509* one, X509* issuer) {
   if (s.answer) {
     const auto said = said_by(s.answer.get(), one, issuer);
@@ -183,7 +187,7 @@ Expected<std::optional<Said>> heard(const Statement& s, X509* one, X509* issuer)
 
 std::string kind_of(const Statement& s) { return s.answer ? "answer (OCSP)" : "list"; }
 
-/// Empty if it counts.
+/// Why an entry cannot prove that the certificate was good at `at`; empty if it can.
 std::string why_not(const Said& said, X509* one, X509* issuer, Time at, Time seen) {
   const std::string whose = " for " + quoted(subject_of(one));
   if (said.made > seen + clock_tolerance)
@@ -237,7 +241,7 @@ Expected<bool> vouches(const Statement& s, X509* one, X509* issuer, const Revoca
 
 namespace {
 
-/// One certificate of a chain and its issuer.
+/// Checks one certificate of a chain together with its issuer.
 class Line {
  public:
   Line(X509* one, X509* issuer, const Trusted& known, const Revocation& revocation)
@@ -253,8 +257,9 @@ class Line {
   }
 
  private:
-  /// While the certificate is valid the newest list counts, which must be of use now; later those
-  /// from its lifetime.
+  /// Checks the lists given by the verifier. While the certificate is valid, only the newest list
+  /// counts and must be current; after its expiry, every list of the issuer is checked, and one
+  /// that was made during its validity proves its status.
   Expected<void> check_given() {
     const bool has_run_out = time_of(X509_get0_notAfter(one_)) < revocation_.now;
     X509_CRL* newest = newest_list(known_, issuer_);

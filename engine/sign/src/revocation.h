@@ -13,43 +13,44 @@ struct Trusted;
 
 using OcspPtr = std::unique_ptr<OCSP_BASICRESP, Freed<OCSP_BASICRESP_free>>;
 
-/// Revocation data of an authority: a revocation list, or an answer by OCSP (RFC 6960).
+/// Revocation data of an authority: a revocation list or an OCSP answer (RFC 6960).
 struct Statement {
   std::string der;
-  RevocationPtr list;  ///< or else
+  RevocationPtr list;  ///< exactly one of list and answer is set
   OcspPtr answer;
-  Time seen = 0;  ///< when it is proved to have existed
+  Time seen = 0;  ///< time at which it is proved to have existed
   mutable bool used = false;
 
   static Expected<Statement> of_list(std::string_view der);
   static Expected<Statement> of_answer(std::string_view der);
 };
 
-/// What a revocation is compared with.
+/// Times and role for which revocation is checked.
 struct Revocation {
   enum class Of { signer, time_server };
   Time at;   ///< when the certificates were used
-  Time now;  ///< when they are checked: lists that are given must be of use now
+  Time now;  ///< when they are checked: given lists must be current at this time
   Of of;
-  /// When what was made with them is proved to have existed: what was revoked later is of no
-  /// account.
+  /// Time at which signatures or stamps made with them are proved to have existed: a later
+  /// revocation has no effect.
   Time until = std::numeric_limits<Time>::max();
 };
-/// How far two clocks may differ.
+/// Largest accepted difference between two clocks, s.
 inline constexpr Time clock_tolerance = 60;
 
-/// An error if a certificate of the chain was revoked before `at`, or if the newest list of an
-/// issuer is of no use: past its nextUpdate, from the future, or a part of a list only. Of a time
-/// server (RFC 3161, 4): revoked later counts too, unless the reason leaves its key unharmed. Of a
-/// certificate that has run out only what was stated before it did is heard. Else what was and was
-/// not looked at.
+/// Checks the revocation of each certificate of a chain. An error if one was revoked before `at`,
+/// or if the newest list of an issuer cannot be used: past its nextUpdate, from the future, or
+/// partial. For a time server (RFC 3161, 4), a later revocation counts too, unless its reason
+/// leaves the key unharmed. For an expired certificate, only statements made before its expiry
+/// count. Returns in words what was checked and what was not; `looked`: whether the status of the
+/// first certificate is known.
 Expected<std::string> check_revocation(const std::vector<CertificatePtr>& chain,
                                        const Trusted& trusted, const Revocation& revocation,
                                        bool& looked);
-/// Whether the statement is of `issuer`, about that certificate, and proves that it was good at
-/// `at`: it was of use when it was seen, or made after the certificate was used, and in any case
-/// before the certificate ran out, and seen before that of the issuer did. An error if it states
-/// that the certificate was revoked.
+/// Whether the statement comes from `issuer`, is about that certificate, and proves that it was
+/// good at `at`. The statement must have been current when it was seen, or made after the
+/// certificate was used; in any case made before the certificate expired, and seen before that of
+/// the issuer expired. An error if it states that the certificate was revoked.
 Expected<bool> vouches(const Statement& statement, X509* certificate, X509* issuer,
                        const Revocation& revocation);
 

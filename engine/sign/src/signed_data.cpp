@@ -58,7 +58,8 @@ Expected<SignedData> SignedData::parse(std::string_view der, Content content) {
   return out;
 }
 
-/// RFC 5652, 5.1: unsigned parts that OpenSSL accepts leniently.
+/// Reads the outer structure (RFC 5652, 5.1) and checks its unsigned parts, which OpenSSL accepts
+/// leniently.
 Expected<void> SignedData::read_outside(Content content) {
   const auto info = Der::only(der_, Der::sequence);
   if (!info || !Der::sound(der_)) return malformed("no DER");
@@ -117,7 +118,7 @@ Expected<void> SignedData::read_certificates(std::string_view text) {
   return {};
 }
 
-/// RFC 5652, 5.3
+/// Checks the SignerInfo (RFC 5652, 5.3).
 Expected<void> SignedData::read_signer(std::string_view text, Content content) {
   const auto version = Der::take(text, Der::integer);
   const auto identifier = Der::take(text, Der::sequence);
@@ -152,7 +153,8 @@ Expected<void> SignedData::read_unsigned(std::string_view text, Content content)
   return {};
 }
 
-/// The names are compared byte by byte: OpenSSL's own comparison ignores capitals and blanks.
+/// Finds the signer's certificate by issuer and serial number, compared byte by byte: OpenSSL's
+/// comparison ignores capitals and blanks.
 Expected<void> SignedData::find_certificate(std::string_view identifier) {
   for (std::size_t i = 0; i < certificates_.size(); ++i) {
     X509* c = certificates_[i].get();
@@ -207,10 +209,12 @@ Expected<void> SignedData::check_certificate_named() const {
     return bytes_of(static_cast<const ASN1_STRING*>(
         CMS_signed_get0_data_by_OBJ(signer_, OBJ_nid2obj(nid), -3, V_ASN1_SEQUENCE)));
   };
-  // SigningCertificateV2 ::= SEQUENCE { SEQUENCE OF ESSCertIDv2 { algorithm (SHA-256), hash, .. } }
+  // Syntax: SigningCertificateV2 ::= SEQUENCE { SEQUENCE OF ESSCertIDv2 { algorithm (SHA-256),
+  // hash, .. } }
   std::string_view text = attribute(NID_id_smime_aa_signingCertificateV2);
   const EVP_MD* kind = EVP_sha256();
-  if (text.empty() && !content_.empty()) {  // time stamps may have the first version, with SHA-1
+  // Time stamps may use the first version of the attribute, with SHA-1.
+  if (text.empty() && !content_.empty()) {
     text = attribute(NID_id_smime_aa_signingCertificate);
     kind = EVP_sha1();
   }

@@ -9,11 +9,11 @@
 
 namespace nonio::sign {
 
-/// Whom the verifier trusts, and what he knows to be revoked.
+/// Trusted roots and revocation data of a verifier.
 struct Trusted {
   std::vector<CertificatePtr> signer_roots, time_roots;
   std::vector<RevocationPtr> lists;
-  std::vector<Statement> kept{};  ///< what travels in the file
+  std::vector<Statement> kept{};  ///< revocation data contained in the file
 };
 Expected<Trusted> trusted(const Verifier& verifier);
 
@@ -22,25 +22,27 @@ class SignedData {
  public:
   enum class Content { detached, time_stamp };
 
-  /// Strict: one signer, DER, known algorithms, nothing beyond what is required. Every byte that is
-  /// not signed has one value that is accepted.
+  /// Parses strictly: one signer, DER, known algorithms, nothing beyond the required parts. For
+  /// every byte that is not signed, only one value is accepted.
   static Expected<SignedData> parse(std::string_view der, Content content);
 
-  /// The signed attributes of a detached signature are those that Nonio signs, once each.
+  /// Checks that the signed attributes of a detached signature are exactly those that Nonio writes,
+  /// once each.
   Expected<void> check_attributes() const;
-  /// The digest of the content and the signature over it hold.
+  /// Checks the digest of the content and the signature over it.
   Expected<void> check_signature(std::string_view before, std::string_view after) const;
-  /// The signed attributes name the signer's certificate (ESS signing-certificate, RFC 5035).
+  /// Checks that the signed attributes name the signer's certificate (ESS signing-certificate, RFC
+  /// 5035).
   Expected<void> check_certificate_named() const;
 
-  /// Whatever certificates were put in.
+  /// All certificates in the structure, not checked yet.
   const std::vector<CertificatePtr>& certificates() const { return certificates_; }
   X509* certificate() const { return signer_certificate_; }
   std::string_view certificate_der() const { return signer_der_; }
   std::string_view signature() const { return signature_; }
-  /// Of a time stamp: TSTInfo.
+  /// Content of a time stamp: TSTInfo.
   std::string_view content() const { return content_; }
-  /// Of a signature: its time-stamp token; empty if there is none.
+  /// Time-stamp token of a signature; empty if there is none.
   std::string_view time_stamp() const { return token_; }
 
  private:
@@ -61,19 +63,20 @@ class SignedData {
   std::string_view signer_der_, signature_, content_, token_;
 };
 
-/// From this certificate to a root by way of the others, all valid at that time; itself first.
+/// Returns the chain from this certificate through `others` to a root, with this certificate first.
+/// All must be valid at `at`.
 Expected<std::vector<CertificatePtr>> chain_of(X509* certificate,
                                                const std::vector<CertificatePtr>& others,
                                                const std::vector<CertificatePtr>& roots, Time at);
-/// None of them is damaged or has nothing to do with the others.
+/// Returns an error if a certificate is damaged or unrelated to the others.
 Expected<void> check_issued(const std::vector<CertificatePtr>& certificates,
                             const std::vector<CertificatePtr>& roots);
 
-/// Each of them must be in the chain, and none twice, because no signature covers the list of
-/// certificates.
+/// Returns an error unless each certificate is in the chain exactly once, because no signature
+/// covers the list of certificates.
 Expected<void> check_only(const std::vector<CertificatePtr>& certificates,
                           const std::vector<CertificatePtr>& chain);
-/// Those of `others` that lead from the certificate upwards, in their order.
+/// Returns those of `others` that lead from the certificate towards the root, in their order.
 std::vector<CertificatePtr> way_up(X509* certificate, std::vector<CertificatePtr> others);
 
 }  // namespace nonio::sign

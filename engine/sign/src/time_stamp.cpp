@@ -30,7 +30,8 @@ struct Request {
 Expected<Request> request_for(std::string_view imprint_wanted) {
   std::array<unsigned char, 8> random{};
   if (RAND_bytes(random.data(), random.size()) != 1) return fail("no random number: " + reason());
-  random[0] = static_cast<unsigned char>((random[0] & 0x3F) | 0x40);  // positive, full length
+  // Makes the number positive with full length.
+  random[0] = static_cast<unsigned char>((random[0] & 0x3F) | 0x40);
   const IntegerPtr nonce(ASN1_INTEGER_new());
   ASN1_STRING_set(nonce.get(), random.data(), random.size());
   const AlgorithmPtr algorithm(X509_ALGOR_new());
@@ -50,7 +51,7 @@ Expected<Request> request_for(std::string_view imprint_wanted) {
                  {reinterpret_cast<const char*>(random.data()), random.size()}};
 }
 
-/// TimeStampResp ::= SEQUENCE { status, token }: the token with its bytes unchanged.
+/// Returns the token of a TimeStampResp ::= SEQUENCE { status, token } with its bytes unchanged.
 Expected<std::string> token_of(const std::string& answer) {
   ERR_clear_error();
   const unsigned char* at = data_of(answer);
@@ -61,7 +62,7 @@ Expected<std::string> token_of(const std::string& answer) {
   }
   const long status =
       ASN1_INTEGER_get(TS_STATUS_INFO_get0_status(TS_RESP_get_status_info(response.get())));
-  if (status != 0 && status != 1)  // granted, granted with changes
+  if (status != 0 && status != 1)  // 0: granted, 1: granted with changes
     return fail("the server refuses, status " + std::to_string(status));
   const auto outer = Der::only(answer, Der::sequence);
   std::string_view rest = outer ? outer->content : std::string_view{};
@@ -124,8 +125,8 @@ Expected<Stamp> check_time_stamp(std::string_view token, std::string_view stampe
                 text_of(now) + " (a wrong clock, here or there?)");
   if (X509_check_purpose(data.certificate(), X509_PURPOSE_TIMESTAMP_SIGN, 0) != 1)
     return fail("was made by " + quoted(stamp.by) + ", whose certificate is not for time stamps");
-  // At the time of the stamp: that the server's certificate has run out since does not make it
-  // less true that it was given.
+  // The chain is checked at the time of the stamp, which remains valid after the server's
+  // certificate has expired.
   auto chain = chain_of(data.certificate(), data.certificates(), known.time_roots, stamp.time);
   if (!chain)
     return fail("was made by " + quoted(stamp.by) +

@@ -6,8 +6,8 @@
 
 namespace nonio::sign {
 
-/// A token (RFC 3161) over what has this SHA-256, from the configured server and checked as
-/// `verify` will check it.
+/// Requests a time-stamp token (RFC 3161) for this SHA-256 from the configured server, and checks
+/// it as `verify` will.
 Expected<std::string> ask_for_time_stamp(const TimeStamping& stamping, std::string_view imprint,
                                          Time now);
 
@@ -17,9 +17,9 @@ struct Stamp {
   std::string nonce;  ///< as in the token; empty if it has none
   std::vector<CertificatePtr> chain{};
 };
-/// Checks a stamp: over this SHA-256, by an authority that the verifier trusts and whose
-/// certificate was not revoked, not later than `now` plus a minute. `until`: when the stamp is
-/// proved to have existed; a later revocation has no effect.
+/// Checks a time stamp: it covers this SHA-256, comes from a trusted authority whose certificate
+/// was not revoked, and is not later than `now` plus a minute. `until`: when the stamp is proved to
+/// have existed; a later revocation has no effect.
 Expected<Stamp> check_time_stamp(std::string_view token, std::string_view imprint,
                                  const Trusted& trusted, Time now,
                                  Time until = std::numeric_limits<Time>::max());

@@ -32,7 +32,7 @@ void Report::skip(const char* id, const std::string& why, bool essential) {
 
 namespace {
 
-/// By its subject, or by its SHA-256 in any usual notation.
+/// Whether `who` denotes the signer: by subject, or by SHA-256 in any usual notation.
 bool is_of(std::string who, const std::string& subject, const std::string& fingerprint) {
   if (who == subject) return true;
   std::erase(who, ':');
@@ -123,7 +123,7 @@ std::vector<CertificatePtr> Report::check_chain(X509* certificate,
   bool looked = false;
   const auto revocation =
       check_revocation(*chain, known, {out_.at, verifier.now, Revocation::Of::signer}, looked);
-  // Statements in the file that are about other certificates only take nothing away.
+  // Statements in the file about other certificates do not count as a check.
   if (revocation && !looked)
     skip("certificate.revocation", *revocation, !known.lists.empty());
   else
@@ -133,8 +133,8 @@ std::vector<CertificatePtr> Report::check_chain(X509* certificate,
 
 namespace {
 
-/// The signature first, by its place in the file; the content of the file only if the signature is
-/// valid and of a trusted signer.
+/// Checks a PDF: the signature first, found by its position; the other content only if the
+/// signature is valid and from a trusted signer.
 class PdfCheck {
  public:
   PdfCheck(std::string_view bytes, const Verifier& verifier)
@@ -180,7 +180,7 @@ class PdfCheck {
     return std::move(out_);
   }
 
-  /// The one that a reader of PDF finds is the one that was checked.
+  /// Checks that the signature that a PDF reader finds is the one that was checked.
   static Expected<void> check_only(const pdf::File& file, const pdf::PdfSignature& found) {
     NONIO_TRY(const auto dictionary, pdf::find_signature(file));
     NONIO_TRY(const auto place, pdf::signature_of(file, *dictionary));
@@ -243,8 +243,8 @@ class PdfCheck {
            chain_of(signer, data.certificates(), known.signer_roots, std::min(verifier_.now, last));
   }
 
-  /// Only in a file of a trusted signer: anyone may add data to it that is signed by itself, and
-  /// nothing else.
+  /// Reads the updates, only in a file of a trusted signer: anyone can append data, but only data
+  /// with their own signatures are accepted.
   Expected<Added> check_updates(Trusted& known, std::vector<std::vector<CertificatePtr>>& chains) {
     if (!out_.holds()) return fail("are not read: the signature does not hold");
     if (!file()) return fail(file().error());

@@ -17,21 +17,21 @@ Expected<void> to_void(const Expected<T>& result) {
   return fail(result.error());
 }
 
-/// The lines of a verification as they are found.
+/// Collects the checks of a verification.
 class Report {
  public:
   explicit Report(Verified& out) : out_(out) {}
   void add(const char* id, const Expected<void>& result, const std::string& well);
   void skip(const char* id, const std::string& why, bool essential = true);
   void check_signer(X509* certificate, const Verifier& verifier);
-  /// Sets `Verified::at` to what a time stamp over `stamped` proves; `said` is the signer's time.
-  /// `existed`: when all of it is proved to have existed; 0 if nothing proves it. The chain of the
-  /// stamp.
+  /// Checks a time stamp over `stamped` and sets `Verified::at` to its time. `said`: the signer's
+  /// own time; `existed`: when the whole file is proved to have existed, 0 if nothing proves it.
+  /// Returns the chain of the stamp.
   std::vector<CertificatePtr> check_stamp(const char* id, std::string_view token,
                                           std::string_view stamped, const std::string& said,
                                           const Trusted& known, const Verifier& verifier,
                                           Time existed);
-  /// At `Verified::at`.
+  /// Checks the signer's chain at `Verified::at` and returns it.
   std::vector<CertificatePtr> check_chain(X509* certificate,
                                           const std::vector<CertificatePtr>& others,
                                           const Trusted& known, const Verifier& verifier);

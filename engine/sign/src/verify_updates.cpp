@@ -11,14 +11,15 @@ namespace nonio::sign {
 
 namespace {
 
-/// SHA-256 of a file's beginning with more behind it; reads the file once for all of them.
+/// Computes the SHA-256 of several beginnings of a file, each followed by other bytes, in one pass
+/// over the file.
 class FileDigest {
  public:
   explicit FileDigest(std::string_view bytes) : bytes_(bytes), context_(EVP_MD_CTX_new()) {
     EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr);
   }
 
-  /// `to` never goes back.
+  /// `to` must not decrease from call to call.
   std::string of(std::size_t to, std::string_view after) {
     const std::string_view more = bytes_.substr(done_, to - done_);
     EVP_DigestUpdate(context_.get(), more.data(), more.size());
@@ -38,7 +39,7 @@ class FileDigest {
   std::size_t done_ = 0;
 };
 
-/// Its statements are covered by the stamp that comes next.
+/// Adds the statements of a store; they are covered by the next stamp.
 Expected<void> take_store(const pdf::Store& store, Added& added) {
   const auto take = [&](Expected<Statement> statement) -> Expected<void> {
     if (!statement) return fail(statement.error());
@@ -120,7 +121,7 @@ Expected<std::vector<Stamp>> check_document_stamps(Added& added, Trusted& known,
 Expected<void> check_needed(const Added& added, const Trusted& known,
                             const std::vector<std::vector<CertificatePtr>>& chains) {
   std::set<std::string> in_chains, found;
-  for (const auto& chain : chains)  // but for the root, whom the verifier has
+  for (const auto& chain : chains)  // except the root, which the verifier has
     for (std::size_t i = 0; i + 1 < chain.size(); ++i) in_chains.insert(der_of(chain[i].get()));
   for (const std::string& der : added.certificates)
     if (!in_chains.contains(der) || !found.insert(der).second)

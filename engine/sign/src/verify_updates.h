@@ -6,33 +6,34 @@
 
 namespace nonio::sign {
 
-/// What a file got after it was signed, in its order.
+/// Data appended to a file after it was signed, in their order.
 struct Added {
   struct DocumentStamp {
     std::string token, imprint;
   };
   std::vector<DocumentStamp> stamps;
   std::vector<Statement> statements;
-  /// Of each statement the stamp that covers it first; `stamps.size()`: none does.
+  /// For each statement, the index of the first stamp that covers it; `stamps.size()`: none does.
   std::vector<std::size_t> covered;
   std::vector<std::string> certificates;  ///< DER
 };
 
-/// An error if there is anything else. `ends` of `pdf::ends_of_parts`; `updater` of the signed
-/// file, ready to write one more afterwards.
+/// Reads the updates of a file. An error if anything else was appended. `ends`: from
+/// `pdf::ends_of_parts`; `updater`: of the signed file, afterwards ready to write another update.
 Expected<Added> read_updates(std::string_view bytes, const std::vector<std::size_t>& ends,
                              pdf::Updater& updater);
 
-/// The newest stamp as it is now, each older one as the next one saw it. `known` gets the
-/// statements, each with the time at which it is proved to have existed.
+/// Checks the stamps: the newest at the present time, each older one at the time of the next. Adds
+/// the statements to `known`, each with the time at which it is proved to have existed.
 Expected<std::vector<Stamp>> check_document_stamps(Added& added, Trusted& known, Time now);
 
-/// Every statement and every certificate is needed for one of the chains, and none occurs twice.
+/// Checks that every statement and every certificate is needed for one of the chains, and that none
+/// occurs twice.
 Expected<void> check_needed(const Added& added, const Trusted& known,
                             const std::vector<std::vector<CertificatePtr>>& chains);
 
-/// The DER at the beginning of a signature's hexadecimal digits; an error if anything but zeros
-/// follows.
+/// Returns the DER at the beginning of a signature's hexadecimal digits; an error if anything but
+/// zeros follows.
 Expected<std::string> der_in(std::string_view digits);
 
 }  // namespace nonio::sign

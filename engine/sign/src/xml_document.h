@@ -12,8 +12,8 @@ namespace nonio::sign {
 
 using DocumentPtr = std::unique_ptr<xmlDoc, Freed<xmlFreeDoc>>;
 
-/// Without network and without a document type: entities could bring in other files, or grow
-/// without limit.
+/// Parses XML without network access and without a document type, because entities could read other
+/// files or grow without limit.
 Expected<DocumentPtr> parse_xml(std::string_view bytes);
 
 }  // namespace nonio::sign

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// XML-DSig and XAdES, enveloped, over the whole document.
+// Makes and verifies enveloped XML signatures (XML-DSig and XAdES) over a whole document.
 #include <libxml/c14n.h>
 #include <libxml/parser.h>
 #include <libxml/tree.h>
@@ -29,7 +29,7 @@ namespace {
 using ContextPtr = std::unique_ptr<xmlSecDSigCtx, Freed<xmlSecDSigCtxDestroy>>;
 using XmlKeyPtr = std::unique_ptr<xmlSecKey, Freed<xmlSecKeyDestroy>>;
 
-/// Once in a process: that is how xmlsec requires it.
+/// Initialises xmlsec once per process, as it requires. Returns whether this succeeded.
 bool started() {
   static const bool well = [] {
     xmlInitParser();
@@ -59,8 +59,8 @@ Expected<DocumentPtr> parse_xml(std::string_view bytes) {
 
 namespace {
 
-/// Elements and text and nothing else: what one program reads and another leaves out (comments,
-/// instructions for programs, sections that are not parsed) has no place in a certificate.
+/// Returns an error for nodes other than elements and text. Programs may ignore comments,
+/// processing instructions and CDATA sections, so a certificate must not contain them.
 Expected<void> check_nodes(const xmlNode* node) {
   for (; node != nullptr; node = node->next) {
     if (node->type == XML_COMMENT_NODE) return fail("has a comment: expected none");
@@ -74,7 +74,7 @@ Expected<void> check_nodes(const xmlNode* node) {
   return {};
 }
 
-/// Canonical XML 1.0, without comments.
+/// Returns the document in Canonical XML 1.0, without comments.
 std::string canonical(xmlDoc* document) {
   xmlOutputBuffer* buffer = xmlAllocOutputBuffer(nullptr);
   std::string out;
@@ -86,7 +86,8 @@ std::string canonical(xmlDoc* document) {
   return out;
 }
 
-/// The canonical form of a document that has nothing that this form leaves out.
+/// Returns the canonical form of a document; an error if it contains anything that this form would
+/// omit.
 Expected<std::string> canonical_form(std::string_view bytes) {
   NONIO_TRY(const auto document, parse_xml(bytes));
   if (auto sound = check_nodes(document.get()->children); !sound) return fail(sound.error());
@@ -95,7 +96,8 @@ Expected<std::string> canonical_form(std::string_view bytes) {
   return text;
 }
 
-/// XML requires r and s side by side where ECDSA gives a sequence of two numbers (RFC 4050).
+/// Converts an ECDSA signature from DER to r and s as two fixed-size numbers, as XML requires (RFC
+/// 4050).
 Expected<std::string> side_by_side(const std::string& der, std::size_t size) {
   const unsigned char* at = data_of(der);
   const std::unique_ptr<ECDSA_SIG, Freed<ECDSA_SIG_free>> pair(
@@ -121,7 +123,7 @@ std::size_t size_of(EVP_PKEY* key) {
   return static_cast<std::size_t>(EVP_PKEY_get_bits(key) + 7) / 8;
 }
 
-/// As XML writes it: 2026-11-22T14:20:00Z.
+/// Returns the time in the XML format, for example 2026-11-22T14:20:00Z.
 std::string xml_time(Time time) {
   std::string text = text_of(time).substr(0, 19);
   text[10] = 'T';
@@ -143,7 +145,7 @@ Expected<void> add_time_stamp(XmlSignature& signature, Time now, const TimeStamp
 
 }  // namespace
 
-/// Put together here and not by xmlsec, which cannot sign with a key that is in a token.
+/// Signs an XML document. Written without xmlsec, which cannot sign with a key in a token.
 Expected<Signed> sign_xml(const Key::Impl& key, std::string_view bytes, Time now,
                           const TimeStamping& stamping) {
   NONIO_TRY(auto content, canonical_form(bytes));
@@ -171,10 +173,10 @@ Expected<Signed> sign_xml(const Key::Impl& key, std::string_view bytes, Time now
 
 namespace {
 
-/// A signed document as bytes: since it is its own canonical form, it need not be parsed as XML to
-/// determine what was signed.
+/// The bytes of a signed document around its signature. The document is in canonical form, so it
+/// need not be parsed as XML to determine what was signed.
 struct Parts {
-  std::string_view before, after;  ///< around the signature
+  std::string_view before, after;  ///< bytes before and after the signature
   XmlSignature signature;
 
   static Expected<Parts> of(std::string_view bytes) {
@@ -185,7 +187,7 @@ struct Parts {
           "with its root and a new line");
     bytes.remove_prefix(xml_head.size());
     bytes.remove_suffix(1);
-    // Only where the signature must be: the rest is not authenticated yet.
+    // The signature is searched only where it must be, because the rest is not authenticated yet.
     const std::size_t root_end = bytes.rfind('<');
     const std::size_t from = bytes.size() - std::min(bytes.size(), longest_xml_signature);
     const std::size_t begin = bytes.find(signature_begin, from);
@@ -244,7 +246,7 @@ Expected<void> check_digests(const Parts& parts) {
   return {};
 }
 
-/// xmlsec's own, of a public key.
+/// Converts a public key to a key of xmlsec.
 Expected<XmlKeyPtr> key_of(EVP_PKEY* pkey) {
   EVP_PKEY_up_ref(pkey);
   xmlSecKeyDataPtr value = xmlSecOpenSSLEvpKeyAdopt(pkey);
@@ -254,7 +256,7 @@ Expected<XmlKeyPtr> key_of(EVP_PKEY* pkey) {
   return key;
 }
 
-/// A second opinion, by an independent program.
+/// Verifies the signature a second time with xmlsec, as an independent implementation.
 Expected<void> ask_xmlsec(xmlDoc* document, X509* certificate) {
   NONIO_TRY(auto key, key_of(X509_get0_pubkey(certificate)));
   xmlNode* signature =
@@ -268,7 +270,7 @@ Expected<void> ask_xmlsec(xmlDoc* document, X509* certificate) {
   return {};
 }
 
-/// What is read as XML is, to the byte, what was signed.
+/// Checks that the document, parsed as XML, is byte by byte what was signed.
 Expected<void> check_form(std::string_view bytes, const Parts& parts, X509* certificate) {
   if (parts.before.find(signature_namespace) != std::string_view::npos)
     return fail("has more than one signature");

@@ -32,7 +32,8 @@ std::string base64(std::string_view bytes) {
   return out;
 }
 
-/// Of what is none, nothing: written again it is then another text.
+/// Decodes Base64; empty if the text is invalid. Non-canonical text is detected later, because the
+/// signature is written again and compared.
 std::string from_base64(std::string_view text) {
   std::string out(text.size() / 4 * 3 + 3, '\0');
   const int size = EVP_DecodeBlock(reinterpret_cast<unsigned char*>(out.data()), data_of(text),
@@ -44,7 +45,7 @@ std::string from_base64(std::string_view text) {
   return out;
 }
 
-/// An element; empty ones have an end of their own, as the canonical form requires it.
+/// Returns an element; empty elements have an end tag, as the canonical form requires.
 std::string element(std::string_view name, std::string_view attributes, std::string_view content) {
   std::string out = "<";
   out += name;
@@ -72,7 +73,8 @@ std::string without_line_end(std::string text) {
   return text;
 }
 
-/// `alone`: as a document of its own, with the namespaces that its parents declare otherwise.
+/// Returns SignedInfo. `alone`: as a separate document, with the namespaces that its parents
+/// declare.
 std::string info(const XmlSignature& s, bool alone) {
   const std::string content = element(
       "Reference", attribute("Id", "content") + " " + attribute("URI", ""),
@@ -151,7 +153,8 @@ std::string XmlSignature::text() const {
 
 namespace {
 
-/// What is between two marks; continues after it. Empty if they are missing.
+/// Returns the text between two marks and advances `rest` to the second one. Empty if a mark is
+/// missing.
 std::string_view between(std::string_view& rest, std::string_view begin, std::string_view end) {
   const std::size_t from = rest.find(begin);
   if (from == std::string_view::npos) return {};

@@ -9,30 +9,32 @@
 
 namespace nonio::sign {
 
-/// How a signed document begins; what follows is its canonical form (Canonical XML 1.0) and a new
-/// line.
+/// Beginning of a signed document; its canonical form (Canonical XML 1.0) and a line feed follow.
 inline constexpr std::string_view xml_head = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
 
 /// The content of an enveloped XML signature of Nonio (XML-DSig; XAdES B-B, with `token` B-T). It
-/// has one way to be written, so that whoever reads one writes it again and compares.
+/// has exactly one serialisation, so that a reader can write it again and compare.
 struct XmlSignature {
-  bool rsa = false;        ///< else ECDSA
+  bool rsa = false;        ///< otherwise ECDSA
   std::string content;     ///< SHA-256 of the document's canonical form without signature
   std::string properties;  ///< SHA-256 of `signed_properties`
-  std::string value;       ///< of the signature over `signed_info`
-  std::vector<std::string> certificates;  ///< DER, the signer's first
-  std::string time;                       ///< 2026-11-22T14:20:00Z, as the signer states
-  std::string certificate;                ///< SHA-256 of the signer's, signed with the rest
-  std::string token{};                    ///< RFC 3161, over `value_element`; empty: none
+  std::string value;       ///< signature over `signed_info`
+  std::vector<std::string> certificates;  ///< DER, the signer's certificate first
+  std::string time;                       ///< stated by the signer, for example
+                                          ///< 2026-11-22T14:20:00Z
+  std::string certificate;                ///< SHA-256 of the signer's certificate, which is signed
+                                          ///< too
+  std::string token{};                    ///< RFC 3161 time stamp over `value_element`; empty: none
 
-  std::string text() const;  ///< the whole element
-  // Parts of it in the canonical form (exclusive) in which they are signed or stamped.
+  std::string text() const;  ///< the complete element
+  // Parts of the element in exclusive canonical form, as they are signed or stamped.
   std::string signed_info() const;
   std::string signed_properties() const;
   std::string value_element() const;
 };
 
-/// From an element that begins with `signature_begin`. An error if it is written in any other way.
+/// Parses an element that begins with `signature_begin`. An error if it differs from the only
+/// accepted serialisation.
 Expected<XmlSignature> read_xml_signature(std::string_view element);
 inline constexpr std::string_view signature_begin =
     "<Signature xmlns=\"http://www.w3.org/2000/09/xmldsig#\"";

@@ -7,12 +7,13 @@
 
 namespace nonio::controllers {
 
-/// U of what the readings of this measurement have compensated, by the budget of the campaign and by
-/// what drift and repetition make of them. A mean reversal that is not known well enough is taken
-/// out of the curve: the table then is of the mean of both directions. docs/dev/constants.md, A28.
+/// Sets U of the errors that a table of this measurement compensates, from the budget of the
+/// campaign and from drift and repetition. If the mean reversal is not known well enough, it is
+/// removed from the curve: the table is then that of the mean of both directions.
+/// docs/dev/constants.md, A28.
 void take_uncertainties(const ControllerInput& input, std::size_t index, AxisJob& job);
 
-/// The finding of a mean reversal that was taken out.
+/// Adds the finding about a mean reversal that was removed.
 void say_held(const AxisJob& job, OutputResult& result);
 
 }  // namespace nonio::controllers

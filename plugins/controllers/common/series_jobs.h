@@ -7,8 +7,9 @@
 
 namespace nonio::controllers {
 
-/// Positioning as step diagonals give it (series EXX, EYY, EZZ; EXX_shape where the scale is not known), of axes
-/// without runs of their own of that state: those make the better table. On a gantry of both sides.
+/// Returns jobs for the positioning from step diagonals (series EXX, EYY, EZZ; EXX_shape if the
+/// scale is not known), for axes without runs of their own in that state, because those give a
+/// better table. On a gantry for both sides.
 std::vector<AxisJob> series_jobs(const ControllerInput&);
 
 }  // namespace nonio::controllers

@@ -8,33 +8,33 @@
 #include "nonio/math/measuring_path.h"
 #include "nonio/sdk/plugin.h"
 
-/// What every writer of part programs does alike: which lines to measure, where to stop, what to
-/// state about it. A dialect only formats. Compiled into each plugin.
+/// Functions shared by all writers of part programs: which lines to measure, where to stop, and the
+/// comments. A dialect only formats. Compiled into each plugin.
 namespace nonio::programs {
 
-/// One part program: a path and what a person at the machine must know.
+/// One part program: a path, and information for the operator.
 struct Program {
   math::MeasuringPath path;
-  std::vector<std::string> about;  ///< plain ASCII lines for comments
+  std::vector<std::string> about;  ///< comment lines in plain ASCII
   double feed = 0.0;               ///< mm/min, or deg/min of a rotary axis
 };
 
-/// A position as programs have it: mm or deg, as many decimals as it needs up to six.
+/// Formats a position for programs: mm or deg, with as many decimals as it needs, at most six.
 std::string position(const math::MeasuringPath& path, std::size_t axis, double si);
-/// Seconds or a feed, without needless zeros.
+/// Formats seconds or a feed, without trailing zeros.
 std::string number(double value);
 
 struct Dialect {
   std::string_view output;  ///< name of the plugin, and start of its file names
-  std::string_view ending;  ///< ".ngc"
+  std::string_view ending;  ///< file name extension: ".ngc"
   std::string (*format)(const Program&, const Settings&) = nullptr;
-  bool tried = false;       ///< on a real control or its interpreter
-  bool long_names = false;  ///< an axis may be called X1
+  bool tried = false;       ///< whether it was tested on a real control or its interpreter
+  bool long_names = false;  ///< whether an axis may have a name such as X1
 };
 
-/// The options of each program writer; its own are added behind them.
+/// Returns the options common to all program writers, followed by `own`.
 std::vector<Option> options(std::vector<Option> own);
-/// A file for each line to be measured.
+/// Writes one file for each line to be measured.
 Expected<OutputResult> written(const OutputInput& in, const Dialect& dialect);
 
 }  // namespace nonio::programs

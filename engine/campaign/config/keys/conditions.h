@@ -3,7 +3,7 @@
 
 #include "campaign/config/keys/shared.h"
 
-/// [instrument] and [environment] of campaign.toml.
+/// Declares [instrument] and [environment] of campaign.toml.
 namespace nonio::config::declared {
 
 inline constexpr Key instrument_keys[] = {

@@ -6,7 +6,8 @@ namespace declared {
 
 constexpr Range a_limit = above(0.0, "expected a limit above 0");
 constexpr Range a_position = within(-1e6, 1e6, "expected a position of at most 1000000 in size");
-/// Numbers that a control uses unchanged, by the key of option `axes`; the unit is that of the file.
+/// Declares a number that the control uses unchanged. It is stored under its key in option `axes`,
+/// in the unit of the file.
 template <Key::Holds holds>
 constexpr Key::Into as_written = by<read_as_written, holds, &RecordedAxis::settings>;
 constexpr Choice state_sources[] = {{"stated"}, {"backup"}, {"nonio"}};

@@ -3,7 +3,7 @@
 
 #include "campaign/config/keys/shared.h"
 
-/// [machine] of campaign.toml, with its axes.
+/// Declares [machine] of campaign.toml with its axes.
 namespace nonio::config::declared {
 
 inline constexpr Choice structures[] = {{"gantry"}, {"single-column"}, {"bridge"}, {"other"}};

@@ -3,7 +3,7 @@
 
 #include "campaign/config/keys/shared.h"
 
-/// [[measurement]] of campaign.toml: the keys of every method. A method declares its own.
+/// Declares the keys of [[measurement]] that all methods share. Each method declares further keys.
 namespace nonio::config::declared {
 
 inline constexpr Choice on_or_off[] = {{"on"}, {"off"}};

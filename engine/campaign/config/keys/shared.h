@@ -6,8 +6,8 @@
 #include "campaign/config/checks.h"
 #include "campaign/config/formula_units.h"
 
-/// What the tables of several files have in common. Apart from the rest of the room: `text`,
-/// `date` and the like are words that others use too.
+/// Declarations that the tables of several files share. They have a namespace of their own, because
+/// words such as `text` and `date` are also used elsewhere.
 namespace nonio::config::declared {
 
 using Words = std::string_view;
@@ -20,7 +20,7 @@ inline constexpr Unit mm{"mm", 1e-3}, um{"um", 1e-6}, deg{"deg", 1.0 / deg_per_r
 inline constexpr Range not_negative = from(0.0, "expected a number that is not negative");
 inline constexpr Range above_0 = above(0.0, "expected a number above 0");
 inline constexpr Range a_tolerance = above(0.0, "expected a tolerance above 0");
-// Values beyond these are typing errors, or are in another unit.
+// Beyond these limits a value is a typing error or in another unit.
 inline constexpr Range some_um =
     within(0.0, 1e4, "expected a number that is not negative, at most 10000 um");
 inline constexpr Range some_arcsec =
@@ -91,7 +91,8 @@ inline constexpr Choice decision_rules[] = {
     {"ilac-g8-simple", "simple acceptance"},
     {"ilac-g8-guarded", "guard band w = U"}};
 inline constexpr TextRule language = {.letters = "a-z", .shortest = 2, .longest = 2};
-/// What site and campaign state of certificates; `to` is where the texts are.
+/// Declares the texts of certificates for site.toml and campaign.toml; `to` is the path of the
+/// member that contains them.
 template <auto... to>
 inline constexpr Key certificate_texts[] = {
     {"languages", into<to..., &CertificateTexts::languages>,

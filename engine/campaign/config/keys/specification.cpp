@@ -6,7 +6,7 @@ namespace declared {
 
 constexpr Range from_0 = from(0.0, "expected a number from 0");
 constexpr Unit percent{"%", 0.01}, degC{"degC"}, K_per_h{"K/h", 1.0 / 3600.0};
-// A cycle is of one of these, by the kind of its measurement and axis.
+// Lists of kinds of cycles in which a key is allowed. The kind follows from measurement and axis.
 constexpr Words with_mm[] = {"linear", "straightness", "diagonal"};
 constexpr Words with_deg[] = {"rotary", "ball-centres", "rtcp"};
 constexpr Words in_um[] = {"linear",       "straightness", "diagonal", "step-diagonal",
@@ -36,7 +36,7 @@ constexpr Choice orders[] = {{"pendulum"}, {"unidirectional"}};
 constexpr Choice directions[] = {{"+"}, {"-"}};
 constexpr Choice sensors[] = {{"turns"}, {"stands"}, {"probe"}};
 constexpr Choice carried[] = {{"table"}, {"head"}};
-/// Of cycles of these kinds.
+/// Allows a key only in cycles of these kinds.
 constexpr auto of(std::span<const Words> kinds) { return only({cycle_axis, kinds}); }
 
 constexpr Key cycle_keys[] = {
@@ -123,7 +123,7 @@ constexpr Key simulation_keys[] = {
     {"formula", tables_of<Formula>, "A hidden effect, as a formula.", formula_keys},
 };
 
-/// The others are parameters of the effect that it names.
+/// All other keys of the table are parameters of the named effect.
 constexpr Key effect_keys[] = {
     {"name", text, "The effect, \"kind:axis\".", required},
 };

@@ -13,13 +13,13 @@
 namespace nonio::reading {
 namespace {
 
-/// Beyond these limits the readings are not those of a machine tool, or are in another unit.
+/// Limits beyond which readings are not those of a machine tool, or are in another unit.
 struct Bounds {
-  double slope = 0.02;        ///< of the deviation over the travel
-  double share = 0.002;       ///< of the travel, if it is also more than `size`
+  double slope = 0.02;        ///< slope of the deviation over the travel
+  double share = 0.002;       ///< range as a share of the travel, if it is also more than `size`
   double size, most;          ///< of the range of the deviations
-  double small_share = 0.05;  ///< of a short stretch, if it is also more than `small_size`
-  double small_size;          ///< below it a short stretch shows nothing
+  double small_share = 0.05;  ///< the same for a short travel, if it is also more than `small_size`
+  double small_size;          ///< smaller ranges are plausible on any short travel
   double scatter;             ///< standard deviation of repeated readings
   double least;               ///< range that no machine keeps over a travel of `least_travel`
   double least_travel;
@@ -68,7 +68,8 @@ struct Cell {
   std::vector<double> deviations;
 };
 
-/// Distance along the line: the position of the one axis, or from the first reading in space.
+/// Returns the coordinate along the line: the position of the only axis, or in space the distance
+/// from the first reading.
 std::vector<double> along(const Observations& o) {
   if (o.axes.size() == 1) return o.axes.front().position;
   std::vector<double> out(o.size());
@@ -93,7 +94,7 @@ std::vector<Cell> cells_of(const Observations& o, const std::vector<double>& tar
   return out;
 }
 
-/// What the checks of size look at.
+/// Checks whether deviations, their slope and their scatter have a plausible size.
 class Size {
  public:
   Size(const Campaign& campaign, const Measurement& m, const Observations& o)
@@ -123,7 +124,7 @@ class Size {
                             .evidence = {{"share", slope_, Quantity::ratio},
                                          {"range", range_, deviation_},
                                          {"travel", travel_, position_}}});
-    // A straightedge or mirror can have any angle.
+    // A straightedge or mirror can be at any angle, so the slope is not checked.
     const double range = position ? range_ : range_of_rest_;
     const bool of_travel =
         same_unit() &&
@@ -156,7 +157,8 @@ class Size {
            .attention = true,
            .evidence = {{"readings", static_cast<double>(o_.size()), Quantity::count},
                         {"value", o_.deviation.front(), deviation_}}});
-    // The line goes out of a straightness; U of its optics is another one.
+    // In a straightness measurement the slope is set-up and removed, and the stated U of the laser
+    // does not apply to straightness optics.
     const bool straightness = measurement_.kind == "straightness";
     if (straightness && range_of_rest_ < 0.4 * bounds_.least && scatter_ < 0.4 * bounds_.least &&
         travel_ >= bounds_.least_travel && means_.size() > 2)
@@ -177,7 +179,7 @@ class Size {
   }
 
  private:
-  /// A ratio of both means something.
+  /// Whether deviation and position have the same unit, so that their ratio has a meaning.
   bool same_unit() const { return o_.angular == o_.axes.front().rotary; }
 
   static double scatter(const std::vector<double>& values) {
@@ -205,9 +207,9 @@ class Size {
     range_of_rest_ = range_of(rest);
   }
 
-  /// The instrument's own, k = 2 (0 if it was not stated), and the range below which it cannot have
-  /// seen anything. Its part with the length is one line, which an axis that was set with the same
-  /// instrument follows.
+  /// Returns the expanded uncertainty of the instrument (k = 2, 0 if not stated), and the smallest
+  /// range of deviations that it can plausibly show. The length-dependent part counts less, because
+  /// it cancels if the axis was adjusted with the same instrument.
   std::pair<double, double> uncertainty() const {
     constexpr double of_fixed = 0.5, of_length = 0.15;
     const Instrument& i = campaign_.instrument;
@@ -226,7 +228,8 @@ class Size {
   double travel_ = 0.0, slope_ = 0.0, range_ = 0.0, range_of_rest_ = 0.0, scatter_ = 0.0;
 };
 
-/// A step diagonal is four lines, each with a zero of its own.
+/// Returns each line of the observations separately, because each line of a step diagonal has a
+/// zero of its own.
 std::vector<Observations> lines_of(const Observations& o) {
   if (o.lines.size() < 2) return {o};
   std::vector<Observations> out(o.lines.size());
@@ -245,7 +248,8 @@ std::vector<Observations> lines_of(const Observations& o) {
   return out;
 }
 
-/// How far a measurement went along one axis.
+/// Returns the range of positions of a measurement along one axis; 0 if it does not contain the
+/// axis.
 double span_along(const Observations& o, const std::string& axis) {
   const auto* column = o.axis(axis);
   return column == nullptr ? 0.0 : range_of(column->position);
@@ -253,7 +257,8 @@ double span_along(const Observations& o, const std::string& axis) {
 
 bool near_ratio(double ratio, double wanted) { return std::fabs(ratio / wanted - 1.0) < 0.02; }
 
-/// Targets against the travel, the pitch and the other measurements of the same axis.
+/// Compares the range of the targets with the travel, the pitch and other measurements of the same
+/// axis.
 void implausible_span(const Campaign& campaign, const Measurement& m, const Observations& o,
                       const std::vector<Observations>& all, std::vector<Finding>& out) {
   const Axis* axis = campaign.machine.axis(m.axis);
@@ -289,7 +294,7 @@ void implausible_span(const Campaign& campaign, const Measurement& m, const Obse
          .evidence = {{"span", span, position}, {"pitch", *axis->screw_pitch, Quantity::length}}});
 }
 
-/// Targets where the axis cannot be: one of both was counted from another place.
+/// Reports targets outside the travel, which means that one of them was counted from another zero.
 void beyond_travel(const Campaign& campaign, const Observations& o, std::vector<Finding>& out) {
   constexpr double spare_share = 0.02;
   for (const auto& column : o.axes) {
@@ -310,8 +315,8 @@ void beyond_travel(const Campaign& campaign, const Observations& o, std::vector<
   }
 }
 
-/// A diagonal whose targets are a small piece of it, or end where one of its axes does: then they
-/// are positions of that axis, and not the way along the line.
+/// Reports a diagonal whose targets cover only a small part of its length, or the travel of one of
+/// its axes: then they are positions of that axis instead of distances along the diagonal.
 void short_diagonal(const Measurement& m, const Observations& o, std::vector<Finding>& out) {
   constexpr double nearly = 1e-3, shorter = 0.99;
   double square = 0.0;
@@ -336,7 +341,8 @@ void short_diagonal(const Measurement& m, const Observations& o, std::vector<Fin
                             .texts = {{"axis", axis}}});
 }
 
-/// U of what was evaluated against all of it: then the test shows nothing of the axis.
+/// Reports an analysis whose U is more than five times its largest value, because it shows nothing
+/// about the axis.
 void uncertain(const std::vector<Results::Analysed>& analyses, const std::string& measurement,
                std::vector<Finding>& out) {
   constexpr double most = 5.0;
@@ -359,7 +365,8 @@ void uncertain(const std::vector<Results::Analysed>& analyses, const std::string
   }
 }
 
-/// The findings of the readings of a measurement. `all`: of each measurement of the campaign.
+/// Returns the findings about the readings of a measurement. `all`: the observations of all
+/// measurements of the campaign.
 std::vector<Finding> implausible_readings(const Campaign& campaign, std::size_t measurement,
                                           const std::vector<Observations>& all,
                                           const Passes& passes) {

@@ -9,7 +9,7 @@
 namespace nonio::reading {
 namespace {
 
-/// Statistics of a column: mean and range of the readings that have a value.
+/// Mean and range of the values of a column; `known` is false if it has none.
 struct Climate {
   double mean = 0.0, range = 0.0;
   bool known = false;
@@ -62,7 +62,7 @@ void implausible_air(const Observations& o, std::vector<Finding>& out) {
   }
 }
 
-/// Times compared with the distances moved, and with the order of the rows.
+/// Compares the times with the distances moved, and with the order of the rows.
 void implausible_times(const Measurement& m, const std::vector<Stroke>& strokes,
                        const Observations& o, std::vector<Finding>& out) {
   constexpr double slowest = 3600.0;                      // s for a reading
@@ -79,7 +79,7 @@ void implausible_times(const Measurement& m, const std::vector<Stroke>& strokes,
     way += std::fabs(taken[i].second - taken[i - 1].second);
   const double lasted = taken.back().first - taken.front().first;
   const double each = lasted / static_cast<double>(taken.size() - 1);
-  // Less than the rest at each target, or faster than the axis was fed.
+  // shorter than the dwell at each target, or faster than the feed
   constexpr double shorter = 0.9, faster = 1.1;
   if (lasted > 0.0 &&
       ((m.dwell && each < shorter * *m.dwell) || (m.feed && way > faster * *m.feed * lasted)))
@@ -111,7 +111,8 @@ void implausible_times(const Measurement& m, const std::vector<Stroke>& strokes,
                    .texts = {{"which", which}}});
 }
 
-/// Centres of a ball, in the order of the file: a reading for each coordinate.
+/// Returns the centres of a ball in the order of the file, which contains a reading for each
+/// coordinate.
 std::vector<std::array<double, 3>> centres_of(const Observations& o) {
   std::vector<std::array<double, 3>> centres;
   for (std::size_t i = 0; i + 2 < o.size(); i += 3)
@@ -123,7 +124,8 @@ double apart(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/// Normal of the plane in which the centres lie, by the pair that spans it best; 0 if none does.
+/// Returns the unit normal of the plane that the first centre and the best pair of others span; 0
+/// if all centres are on a line.
 std::array<double, 3> normal_of(const std::vector<std::array<double, 3>>& centres) {
   std::array<double, 3> best{};
   double size = 0.0;

@@ -12,9 +12,9 @@
 namespace nonio::reading {
 namespace {
 
-/// Passes that agree to the last digit. How likely that is by chance: each reading agrees with
-/// q / (s sqrt(4 pi)), q the step of the digits and s the scatter of the other passes (at least
-/// what no machine goes below).
+/// Finds passes that agree to the last digit. By chance, a reading agrees with probability q / (s
+/// sqrt(4 pi)), where q is the step of the digits and s the scatter of the other passes (at least
+/// the smallest scatter of any machine).
 class Copies {
  public:
   Copies(const Passes& passes, bool angular)
@@ -42,7 +42,7 @@ class Copies {
       const auto n = static_cast<double>(std::get<2>(what).size());
       const auto [low, high] =
           std::minmax_element(std::get<2>(what).begin(), std::get<2>(what).end());
-      if (*low == *high) continue;  // nothing was read at all: reported elsewhere
+      if (*low == *high) continue;  // all readings are equal: another finding reports it
       const double least = scatter_known_ ? least_scatter_ / 3.0 : least_scatter_;
       const double one = step_ / (std::max(pair_scatter, least) * 3.5449);
       const auto pairs = static_cast<double>(strokes_.size() * strokes_.size()) / 2.0;
@@ -67,7 +67,8 @@ class Copies {
   static constexpr double um = 1e-6, arcsec = 1.0 / arcsec_per_rad;
   static constexpr std::size_t most_named = 6, next = 40, fewest = 4;
 
-  /// How many of the common readings differ by `shift`, and how many values these have.
+  /// Returns how many of the common readings differ by `shift`, and how many different values they
+  /// have.
   static std::pair<double, std::size_t> agreeing(const std::vector<std::pair<double, double>>& both,
                                                  double shift, double tolerance) {
     std::set<long long> values;
@@ -99,10 +100,11 @@ class Copies {
     return *middle;
   }
 
-  /// Standard deviation of a reading from the differences of pairs of passes, of the two fifths
-  /// that differ least: neither a misreading nor what drifts makes it larger.
+  /// Returns the standard deviation of a reading from the differences between pairs of passes, as
+  /// the 40 % quantile over all pairs, which neither a misreading nor drift increases.
   double scatter_of_pairs() const {
-    constexpr double sigma = 1.4826 / 1.4142;  // of the median of a normal distribution, for one
+    // converts the median of a difference to the standard deviation of a reading
+    constexpr double sigma = 1.4826 / 1.4142;
     std::vector<double> all;
     for (std::size_t i = 0; i < strokes_.size(); ++i)
       for (std::size_t k = i + 1; k < strokes_.size() && k <= i + next; ++k) {
@@ -120,7 +122,8 @@ class Copies {
     return std::min(*calm, scatter_);
   }
 
-  /// Two passes of which more readings agree than chance allows, unchanged or after a common shift.
+  /// Reports two passes in which more readings agree, unchanged or after a common shift, than
+  /// chance allows.
   void in_part(double of_pairs, Quantity deviation, std::vector<Finding>& out) const {
     constexpr double chance = 1e-7, most_likely = 0.3;
     if (step_ <= 0.0 || !scatter_known_) return;
@@ -158,7 +161,8 @@ class Copies {
       }
   }
 
-  /// Whether every pass agrees with all others of its direction, and the readings are not one.
+  /// Whether every pass equals all others of its direction, although the digits are fine enough to
+  /// show scatter.
   bool nothing_scatters() const {
     std::map<std::pair<std::uint32_t, int>, const Stroke*> first;
     std::size_t repeated = 0, readings = 0;
@@ -170,7 +174,7 @@ class Copies {
       readings += s.deviation.size();
     }
     if (repeated == 0 || step_ <= 0.0) return false;
-    // Digits that are coarser than the machine repeat by themselves.
+    // digits coarser than the machine's scatter repeat by themselves
     constexpr double chance = 1e-7, least_of_range = 0.01;
     double low = 0.0, high = 0.0;
     bool any = false;
@@ -185,8 +189,8 @@ class Copies {
     return std::pow(one, static_cast<double>(readings)) < chance;
   }
 
-  /// Of the passes that are no copies, by target and direction, less the shift of each pass: two
-  /// passes that follow one another share what drifts.
+  /// Computes the scatter of readings at the same target and direction from passes that are not
+  /// copies. The shift of each pass is subtracted, because successive passes share their drift.
   void scatter() {
     std::map<std::tuple<std::uint32_t, int, double>, std::pair<double, double>>
         cells;  // sum, count
@@ -223,7 +227,7 @@ class Copies {
       groups_;
 };
 
-/// Whether so many different readings cannot be the same twice by chance, wherever they were taken.
+/// Whether these readings are so numerous and different that they cannot occur twice by chance.
 bool distinguishes(const std::vector<double>& readings, double step) {
   constexpr double chance = 1e-7;
   constexpr std::size_t fewest = 5;
@@ -233,11 +237,11 @@ bool distinguishes(const std::vector<double>& readings, double step) {
   return std::pow(step / (*high - *low), static_cast<double>(readings.size()) - 1.0) < chance;
 }
 
-/// Readings by run, direction and target.
+/// A reading with its place: run, direction and target.
 using Place = std::tuple<std::uint32_t, int, double>;
 using Cells = std::vector<std::pair<Place, double>>;  // sorted
 
-/// Of repeated readings the last one.
+/// Returns the readings of all strokes sorted by place; of repeated readings the last one.
 Cells cells_by_run(const std::vector<Stroke>& strokes) {
   Cells cells;
   for (const Stroke& s : strokes)
@@ -249,10 +253,10 @@ Cells cells_by_run(const std::vector<Stroke>& strokes) {
   return cells;
 }
 
-/// Readings that both have at the same run, direction and target, if there are more than chance
-/// gives: the probability that two readings are equal is estimated, so that digits coarser than the
-/// machine's scatter give no finding. Zeros are ignored, because instruments are zeroed at a
-/// target.
+/// Returns the number of readings that both measurements have at the same run, direction and
+/// target; none if chance explains it. The probability that two readings are equal is estimated, so
+/// that digits coarser than the machine's scatter give no finding. Zeros are ignored, because
+/// instruments are zeroed at a target.
 std::optional<double> shared_readings(const Cells& one, const Cells& other) {
   constexpr double chance = 1e-7, of_all = 0.15;
   constexpr std::size_t fewest = 8, fewest_values = 6;
@@ -276,7 +280,7 @@ std::optional<double> shared_readings(const Cells& one, const Cells& other) {
   for (const auto& [value, count] : first)
     if (const auto there = second.find(value); there != second.end())
       pairs += count * there->second;
-  // A value that both have once for one reason counts once: without what is shared.
+  // The estimate leaves out the equal pairs at the same place, which may have a common cause.
   const double likely = std::max(pairs - same, 1.0) / (n * n);
   const double p = std::exp(std::lgamma(n + 1.0) - std::lgamma(same + 1.0) -
                             std::lgamma(n - same + 1.0) + same * std::log(std::min(likely, 1.0)));
@@ -312,7 +316,7 @@ std::vector<Finding> passes_of_another_measurement(const Campaign& campaign,
                                                    const std::vector<Observations>& all,
                                                    const std::vector<Passes>& passes) {
   std::vector<Finding> out;
-  std::map<std::vector<double>, std::size_t> seen;  // readings, measurement
+  std::map<std::vector<double>, std::size_t> seen;  // measurement by readings
   std::vector<Cells> cells(all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].size() == 0 || all[i].axes.empty()) continue;

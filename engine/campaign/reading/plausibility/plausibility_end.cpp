@@ -5,7 +5,8 @@
 
 namespace nonio::reading {
 
-/// The decimals of the last number against those of the same column in the lines before it.
+/// Compares the number of decimals of the last number with that of the same column in earlier
+/// lines.
 std::vector<Finding> implausible_end(std::string_view bytes, const std::string& file) {
   if (bytes.empty() || bytes.back() == '\n' || bytes.back() == '\r') return {};
   constexpr std::size_t window = 65536;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double micrometre = 1e-6, arc_second = 1.0 / arcsec_per_rad;
 
-/// A stated value and the ordinary range of such values. 0 is a statement too. Confidence of the
+/// A stated value with the usual range of such values; 0 is a statement too. Confidence of the
 /// bounds: inferred; see docs/dev/wrong-inputs.md.
 struct Statement {
   std::string key;
@@ -24,14 +24,16 @@ void axis_statements(const Axis& a, std::vector<Statement>& all) {
   const std::string key = "machine.axes." + a.name + ".";
   constexpr double mm = 1e-3, degree = 1.0 / deg_per_rad;
   all.push_back({key + "expansion_um_per_m_K", a.expansion, 3e-6, 3e-5, Quantity::expansion});
-  // The new value begins there: one in um would turn a motor by millimetres.
+  // The backlash value of a new table is based on the active one: an active value in um instead of
+  // mm would move a motor by millimetres.
   if (a.rotary)
     all.push_back({key + "active_backlash_deg", a.active_backlash, -0.5 * degree, 0.5 * degree,
                    Quantity::angle});
   else
     all.push_back(
         {key + "active_backlash_mm", a.active_backlash, -1 * mm, 1 * mm, Quantity::length});
-  // One that is too small is not met, and that is seen; one too large is met by everything.
+  // A tolerance that is too small is noticed because nothing conforms; one that is too large is
+  // not.
   for (const auto& [name, tolerance] : a.tolerance)
     if (a.rotary)
       all.push_back({key + "tolerance_arcsec." + name, tolerance, 0.1 * arc_second,
@@ -41,7 +43,7 @@ void axis_statements(const Axis& a, std::vector<Statement>& all) {
                      Quantity::deviation});
 }
 
-/// The same of one measurement: as widely as an angle or slope is a length over a metre.
+/// Adds the tolerances of one measurement: 0.1 to 600 arcsec, or 0.1 to 1000 um, um/m or urad.
 void tolerance_statements(const Measurement& m, std::vector<Statement>& all) {
   for (const Tolerance& t : m.tolerances) {
     const bool angle = t.quantity == Quantity::angular_deviation;
@@ -51,7 +53,7 @@ void tolerance_statements(const Measurement& m, std::vector<Statement>& all) {
   }
 }
 
-/// What a certificate prints of how a test was made.
+/// Adds the test conditions that a certificate prints: dwell, over-travel and feed.
 void test_statements(const Campaign& c, const Measurement& m, std::vector<Statement>& all) {
   const std::string key = "measurement." + m.id + ".";
   const Axis* axis = c.machine.axis(m.axis);
@@ -106,7 +108,7 @@ std::vector<Statement> statements(const Campaign& c) {
   return all;
 }
 
-/// A position of axes at rest, or an end of a diagonal, outside of the machine's travel.
+/// Reports positions of axes at rest, and ends of lines, that are outside of the machine's travel.
 void implausible_places(const Campaign& c, std::vector<Finding>& out) {
   for (const Measurement& m : c.measurements)
     for (const auto* places : {&m.at, &m.from, &m.to})
@@ -125,7 +127,7 @@ void implausible_places(const Campaign& c, std::vector<Finding>& out) {
       }
 }
 
-/// A name in small letters, up to its first blank or point.
+/// Returns a file name in small letters, without folders, up to its first blank or point.
 std::string short_name(std::string_view text) {
   const std::size_t folder = text.find_last_of('/');
   if (folder != text.npos) text.remove_prefix(folder + 1);
@@ -143,8 +145,8 @@ void push_name(std::string where, std::string found, std::string expected,
                            {"expected", std::move(expected)}}});
 }
 
-/// Two measurements whose files carry each the other's name; a line on the master's side of a
-/// gantry that is called as the slave is.
+/// Reports two measurements whose files have each other's name, and a measurement on the master
+/// side of a gantry that has the name of the slave.
 void exchanged_names(const Campaign& c, std::vector<Finding>& out) {
   const auto called = [](const Measurement& m, const std::string& file) {
     return file == short_name(m.id) || file == short_name(m.axis);
@@ -155,7 +157,7 @@ void exchanged_names(const Campaign& c, std::vector<Finding>& out) {
     for (std::size_t k = i + 1; k < c.measurements.size(); ++k) {
       const Measurement& other = c.measurements[k];
       const std::string its = short_name(other.file);
-      // A straightness may be called after its direction.
+      // a straightness may be named after its direction
       if (file != its && m.lateral.empty() && other.lateral.empty() && called(m, its) &&
           called(other, file) && !called(m, file) && !called(other, its))
         push_name(m.file, short_name(m.file), m.id, out);

@@ -10,9 +10,9 @@
 namespace nonio::reading {
 namespace {
 
-/// Strokes that go up and are called -, or down and are called +. A file that is sorted by target,
-/// with strokes mixed or all going one way, shows nothing of it; nor do targets that all were
-/// approached from one side, whichever came first.
+/// Reports strokes with rising targets and direction -, or with falling targets and direction +. It
+/// gives no finding if strokes are mixed or all go one way (a file sorted by target), or if all
+/// targets were approached from one side.
 void against_order(const std::vector<Stroke>& strokes, std::vector<Finding>& out) {
   bool up = false, down = false, plus = false, minus = false;
   std::size_t judged = 0;
@@ -32,13 +32,14 @@ void against_order(const std::vector<Stroke>& strokes, std::vector<Finding>& out
                  .texts = {{"which", name_of(*wrong.front())}}});
 }
 
-/// Of one run, by target.
+/// The reversal at each target of one run.
 struct Reversals {
   std::uint32_t run = 0;
   std::vector<double> target, value;
 };
 
-/// At the targets of both; of repeated readings the last one. Both are sorted by target.
+/// Returns the differences between both strokes at their common targets; of repeated readings the
+/// last one. Both strokes must be sorted by target.
 Reversals reversals_between(const Stroke& up, const Stroke& down) {
   Reversals out{up.run, {}, {}};
   const auto is_last = [](const Stroke& s, std::size_t i) {
@@ -67,7 +68,7 @@ std::vector<Reversals> reversals_of(const std::vector<Stroke>& strokes) {
   return out;
 }
 
-/// A run whose reversal is that of the others with the other sign, and not a little.
+/// Reports a run whose reversal is large and has the opposite sign of that of the other runs.
 void swapped(const Passes& passes, Quantity deviation, std::vector<Finding>& out) {
   const auto all = reversals_of(passes.strokes);
   const double step = passes.step;
@@ -93,7 +94,7 @@ void swapped(const Passes& passes, Quantity deviation, std::vector<Finding>& out
     mean /= n;
     own_mean /= n;
     const double s = std::max(std::sqrt(freedom > 0.0 ? scatter / freedom : turned / n), step);
-    // The whole run turned round agrees with the others as they agree among themselves.
+    // With its sign changed, the run agrees with the others as they agree with each other.
     if (step <= 0.0 || kept < 25.0 * turned || turned / n > 9.0 * s * s ||
         std::fabs(mean) < 5.0 * s / std::sqrt(n))
       continue;
@@ -106,7 +107,7 @@ void swapped(const Passes& passes, Quantity deviation, std::vector<Finding>& out
   }
 }
 
-/// Standard deviation about the median without the two readings farthest off it.
+/// Returns the standard deviation about the median, without the two readings farthest from it.
 double size_of(const Stroke& s) {
   std::vector<double> values = s.deviation;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -120,7 +121,7 @@ double size_of(const Stroke& s) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// A pass whose deviations are of another order of magnitude than those of the others.
+/// Reports a pass whose deviations differ from those of the others by an order of magnitude.
 void another_size(const Passes& passes, Quantity deviation, std::vector<Finding>& out) {
   constexpr std::size_t fewest_readings = 6, fewest_passes = 3;
   constexpr double ratio = 8.0, chance = 1e-7;
@@ -137,7 +138,7 @@ void another_size(const Passes& passes, Quantity deviation, std::vector<Finding>
   for (const auto& [size, s] : sizes) {
     const double larger = std::max(size, others), smaller = std::min(size, others);
     if (larger < 10.0 * step || larger < ratio * smaller) continue;
-    // As little scatter as that by chance: of so many readings without a curve of their own.
+    // probability that so many readings without a curve of their own scatter so little by chance
     const auto freedom = static_cast<double>(s->deviation.size()) - 3.0;
     if (std::pow(smaller / larger, freedom) * static_cast<double>(sizes.size()) > chance) continue;
     return out.push_back({.id = "plausibility.pass-of-another-size",

@@ -10,9 +10,10 @@
 namespace nonio::reading {
 namespace {
 
-constexpr double mm_per_inch = 25.4, most_in_inch = 2.0;  ///< mm: larger ones are pitches in mm
+constexpr double mm_per_inch = 25.4, most_in_inch = 2.0;  ///< mm: a larger pitch is in mm
 
-/// Share of the sum of squares about a line that a wave of this period explains.
+/// Returns the share (0 to 1) of the sum of squares about a line that a wave of this period
+/// explains.
 double share_of_wave(const std::vector<double>& at, const std::vector<double>& values,
                      double period) {
   std::vector<double> c, s;
@@ -62,7 +63,7 @@ void implausible_pitch(const Campaign& c, std::vector<Finding>& out) {
   }
 }
 
-/// Readings with a period 25.4 times the pitch, where the targets are dense enough to show
+/// Reports readings with a period of 25.4 times the pitch, if the targets are dense enough to show
 /// it.
 void period_against_pitch(const Axis& axis, const Observations& o, std::vector<Finding>& out) {
   constexpr std::size_t fewest_targets = 12, waves = 3;
@@ -87,7 +88,7 @@ void period_against_pitch(const Axis& axis, const Observations& o, std::vector<F
     return;
   take_line_out(at, values);
   const double share = share_of_wave(at, values, period);
-  // Of noise alone a wave takes more than this share with the chance (1 - share)^((n - 4) / 2).
+  // In noise alone a wave explains more than this share with probability (1 - share)^((n - 4) / 2).
   const double p =
       std::pow(1.0 - std::min(share, 1.0), (static_cast<double>(at.size()) - 4.0) / 2.0);
   if (share < least_share || p > chance || share_of_wave(at, values, pitch) > of_finer * share)

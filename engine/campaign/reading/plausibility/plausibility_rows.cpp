@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pass whose readings were copied one row too high or too low.
+// Finds a pass whose readings were copied one row too high or too low.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,15 +10,16 @@
 namespace nonio::reading {
 namespace {
 
-/// Mean of the other passes of a direction at each target of one pass, with the variance of a
+/// Mean of the other passes of a direction at each target of one pass, and the variance of a
 /// reading about that mean.
 struct OtherPasses {
-  std::vector<double> mean;  ///< NaN where no two others have this target
+  std::vector<double> mean;  ///< NaN if fewer than two others have this target
   double variance = 0.0;
 };
 
 using MeansByTarget = std::map<double, RunningMean>;
-using MeansByDirection = std::map<std::pair<std::uint32_t, int>, MeansByTarget>;  // and line
+// key: line and direction
+using MeansByDirection = std::map<std::pair<std::uint32_t, int>, MeansByTarget>;
 
 MeansByDirection means_of(const std::vector<Stroke>& strokes) {
   MeansByDirection means;
@@ -29,7 +30,8 @@ MeansByDirection means_of(const std::vector<Stroke>& strokes) {
   return means;
 }
 
-/// all: of the direction of `own`, which is a part of them.
+/// Returns mean and variance of the other passes. all: all passes of the direction, including
+/// `own`.
 OtherPasses other_passes_of(const Stroke& own, const MeansByTarget& all) {
   OtherPasses out;
   double squares = 0.0, freedom = 0.0, count = 0.0, places = 0.0;
@@ -48,8 +50,9 @@ OtherPasses other_passes_of(const Stroke& own, const MeansByTarget& all) {
   return out;
 }
 
-/// Variance of a pass about the others, its own zero taken out, where both its own and the moved
-/// row exist: as listed, and with each reading taken for the target `by` rows further.
+/// Returns the variances of a pass about the others, without its zero: as listed, and with each
+/// reading assigned to the target `by` rows further. Both use the rows that exist either way
+/// (`used`).
 std::pair<double, double> variances(const Stroke& own, const OtherPasses& others, int by,
                                     std::size_t& used) {
   std::vector<double> listed, moved;
@@ -72,7 +75,7 @@ std::pair<double, double> variances(const Stroke& own, const OtherPasses& others
 }  // namespace
 
 void shifted_rows(const Passes& passes, Quantity deviation, std::vector<Finding>& out) {
-  // Noise gives such a likelihood ratio once in e^9 passes at the most.
+  // Noise gives such a likelihood ratio in at most one of e^9 passes.
   constexpr double evidence = 9.0;
   constexpr std::size_t fewest = 7;
   const MeansByDirection means = means_of(passes.strokes);
@@ -82,7 +85,7 @@ void shifted_rows(const Passes& passes, Quantity deviation, std::vector<Finding>
     for (const int by : {1, -1}) {
       std::size_t used = 0;
       const auto [listed, moved] = variances(own, others, by, used);
-      // As listed it is not one of these passes; moved it is.
+      // As listed, the pass does not agree with the others; moved by a row, it does.
       if (used < fewest || !(listed > 2.0 * others.variance) || !(moved < 2.0 * others.variance))
         continue;
       const double ratio = listed / std::max(moved, 1e-3 * others.variance);

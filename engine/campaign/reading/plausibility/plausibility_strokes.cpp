@@ -9,7 +9,7 @@
 namespace nonio::reading {
 namespace {
 
-/// By the rows of the file.
+/// Returns the rows in their order in the file.
 std::vector<std::size_t> order_in_file(const Observations& o) {
   std::vector<std::size_t> order(o.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -20,7 +20,7 @@ std::vector<std::size_t> order_in_file(const Observations& o) {
   return order;
 }
 
-/// Rows in the order of measurement: by their times, if all have one, else as in the file.
+/// Returns the rows in the order of measurement: by time if all have one, otherwise as in the file.
 std::vector<std::size_t> order_in_time(const Observations& o) {
   auto order = order_in_file(o);
   const auto known = [](double t) { return std::isfinite(t); };
@@ -90,7 +90,7 @@ std::vector<Stroke> strokes_of(const Observations& o) {
     s.sense = sense_of_targets(s.target);
     count_backwards(s);
     s.as_taken = s.deviation;
-    // From here on by target: a copy is one in either direction.
+    // from here on sorted by target, so that a copy is found in either direction
     std::vector<std::pair<double, double>> rows;
     for (std::size_t i = 0; i < s.target.size(); ++i)
       rows.emplace_back(s.target[i], s.deviation[i]);
@@ -121,7 +121,7 @@ double step_of(const std::vector<Stroke>& strokes) {
     const double d = all[i] - all[i - 1];
     if (d > 1e-12 && (step == 0.0 || d < step)) step = d;
   }
-  // Few readings may all lie far apart: then the resolution follows from the decimals.
+  // A few readings may all differ by much: then the number of decimals gives the resolution.
   constexpr double finest = 1e-10;
   for (double grid = 1e-6; grid > finest; grid /= 10.0)
     if (std::all_of(all.begin(), all.end(),

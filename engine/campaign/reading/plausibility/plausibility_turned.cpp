@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A pass, or all passes of a direction, written with the other sign or from the other end.
-//   one pass      compared with the others of its direction; it fits them turned, and not as it is. Once
-//                 without the line of each (which drift changes), once without the mean of each only
-//                 (a pitch error is mostly a line), with the scatter of both directions
-//   a direction   u: half of the reversal, v: the mean of both directions, each without the shapes that
-//                 a drive that winds up gives the reversal. In a right file the pitch error is in v. A
-//                 wrong sign exchanges u and v; the other end exchanges their odd parts. So u (its odd
-//                 part) exceeds the scatter and three times v, whichever of the shapes is taken out
-// What only the shapes themselves show is a drive that winds up as well: information.
+// Finds a pass, or all passes of a direction, written with the other sign or in reverse order.
+//   one pass      agrees with the others of its direction only after it is turned. The comparison
+//                 is made without the line of each pass (which drift changes), and then without
+//                 the mean of each only (a pitch error is mostly a line), with the scatter of both
+//                 directions.
+//   a direction   u is half of the reversal, v the mean of both directions, both without the
+//                 shapes that elastic wind-up of a drive gives the reversal. In a correct file v
+//                 contains the pitch error. A wrong sign exchanges u and v; reverse order
+//                 exchanges their odd parts. So u (its odd part) must exceed the scatter and three
+//                 times v, whichever of the shapes is subtracted.
+// If only these shapes show it, wind-up may be the cause: then the finding is information.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -22,7 +24,7 @@
 namespace nonio::reading {
 namespace {
 
-/// Means over targets, and how the readings scatter about them.
+/// Means over the passes at each target, and the scatter of readings about them.
 class Curve {
  public:
   void add(const Stroke& s, double weight = 1.0) {
@@ -33,10 +35,11 @@ class Curve {
       cell.squares += weight * s.deviation[i] * s.deviation[i];
     }
   }
-  /// To be called after all passes were added.
+  /// Computes the sums over all targets. Call it after all passes were added.
   void sum_up() { all_ = sums(); }
 
-  /// At the targets of `s`, which is one of the passes; depth and scatter are those of all targets.
+  /// Returns the means without the pass `s`, at its targets. Depth and scatter still include all
+  /// targets.
   Curve without(const Stroke& s) const {
     Curve own;
     for (const double target : s.target) own.cells_[target] = cells_.at(target);
@@ -60,12 +63,12 @@ class Curve {
     if (at == cells_.end()) return std::nullopt;
     return at->second.sum / at->second.count;
   }
-  /// Readings behind a mean, at most targets.
+  /// Returns the mean number of readings per target.
   double depth() const {
     const Sums all = sums();
     return all.cells == 0.0 ? 1.0 : all.count / all.cells;
   }
-  /// Sum of squares about the means, and its degrees of freedom.
+  /// Returns the sum of squares about the means, and its degrees of freedom.
   std::pair<double, double> scatter() const {
     const Sums all = sums();
     return {all.squares, all.freedom};
@@ -92,14 +95,15 @@ class Curve {
   }
 
   std::map<double, Cell> cells_;
-  Sums elsewhere_;  ///< of targets that are not in `cells_`
+  Sums elsewhere_;  ///< sums over targets that are not in `cells_`
   Sums all_;
 };
 
-/// What makes `one` the same curve as `other`: nothing, its other end first, its other sign.
+/// How `one` must be turned to agree with `other`: not at all, by its order, or by its sign.
 enum class Turned { not_at_all, order, sign };
 
-/// Sums of squares of what is left between two curves: as they are, turned round, turned over.
+/// Sums of squares of the difference between two curves: unchanged, in reverse order, with the
+/// other sign.
 struct Likeness {
   double same = 0.0, order = 0.0, sign = 0.0;
 };
@@ -115,7 +119,7 @@ Likeness likeness(const std::vector<double>& a, const std::vector<double>& b,
   return out;
 }
 
-/// Squares about means and their degrees of freedom.
+/// A sum of squares about means, with its degrees of freedom.
 struct Scatter {
   double squares = 0.0, freedom = 0.0;
   void take(const std::pair<double, double>& one) { squares += one.first, freedom += one.second; }
@@ -127,7 +131,7 @@ void take_mean_out(std::vector<double>& values) {
   for (double& v : values) v -= mean;
 }
 
-/// Two curves at the targets that they have in common.
+/// The values of two curves at their common targets.
 struct Pair {
   std::vector<double> at, a, b;
 };
@@ -144,7 +148,8 @@ Pair in_common(const Curve& one, const Curve& other) {
   return p;
 }
 
-/// with_line: what is compared is without the line of each curve, else without its mean.
+/// Returns how the first curve must be turned to agree with the second. with_line: the line of each
+/// curve is subtracted, otherwise only its mean.
 Turned turned_as(Pair p, double noise, bool with_line) {
   std::vector<double> from_the_end(p.a.rbegin(), p.a.rend());
   const auto bare = [&](std::vector<double>& v) {
@@ -152,7 +157,8 @@ Turned turned_as(Pair p, double noise, bool with_line) {
   };
   bare(p.a), bare(p.b), bare(from_the_end);
   const Likeness whole = likeness(p.a, p.b, from_the_end);
-  // What the first reading of each pass alone has (a slide that sticks) is at both ends too.
+  // An error of only the first reading of each pass (stick-slip) appears at both ends, so the
+  // comparison is repeated without the ends.
   const auto n = static_cast<double>(p.at.size());
   const auto inner = [](std::vector<double>& v) { v.erase(v.begin()), v.pop_back(); };
   inner(p.at), inner(p.a), inner(p.b), inner(from_the_end);
@@ -163,14 +169,15 @@ Turned turned_as(Pair p, double noise, bool with_line) {
            whole.same > 20.0 * noise * n && within.same > 3.0 * sum_within;
   };
   const bool order = fits(whole.order, within.order), sign = fits(whole.sign, within.sign);
-  // A line from its other end has the other sign as well: the nearer one.
+  // A line in reverse order also has the other sign; the better fit is taken.
   if (order && !(sign && whole.sign < whole.order)) return Turned::order;
   return sign ? Turned::sign : Turned::not_at_all;
 }
 
 constexpr std::size_t fewest_compared = 7;
 
-/// scatter: of the readings about the means of their target, pass and direction alike.
+/// Returns how `one` must be turned to agree with `other`. scatter: of readings about the mean of
+/// their target and direction.
 Turned turned(const Curve& one, const Curve& other, const Scatter& scatter, double step,
               bool without_line_only) {
   const Pair pair = in_common(one, other);
@@ -189,7 +196,8 @@ void push_turned(Turned how, const std::string& which, std::vector<Finding>& out
                  .texts = {{"which", which}}});
 }
 
-/// What is left of the values without these shapes, each of which is made orthogonal to those before.
+/// Subtracts from the values their projection on these shapes, each of which is first made
+/// orthogonal to those before it.
 std::vector<double> without(std::vector<double> values, std::vector<std::vector<double>> shapes) {
   const auto product = [](const std::vector<double>& x, const std::vector<double>& y) {
     double sum = 0.0;
@@ -216,8 +224,9 @@ std::vector<double> without(std::vector<double> values, std::vector<std::vector<
 
 using Shapes = std::vector<std::vector<double>>;
 
-/// What a drive that winds up gives the reversal along the axis: a screw held at one end (a line) or at both
-/// (a parabola), a load that turns with the table or comes back once along the travel (a wave).
+/// Returns the shapes that elastic wind-up of a drive gives the reversal along the axis: of a screw
+/// held at one end (a line) or at both ends (a parabola), of a load that turns with the table or
+/// returns once along the travel (a wave).
 std::vector<Shapes> elastic_shapes(const std::vector<double>& at, bool rotary) {
   const double length = at.back() - at.front();
   Shapes powers(3), wave(3);
@@ -231,7 +240,8 @@ std::vector<Shapes> elastic_shapes(const std::vector<double>& at, bool rotary) {
   return {powers, wave};
 }
 
-/// The odd part about the middle of the targets, one value for each pair of them; of the same variance.
+/// Returns the odd part about the middle of the targets, with one value per pair of targets and the
+/// same variance.
 std::vector<double> odd(const std::vector<double>& values) {
   std::vector<double> out;
   for (std::size_t i = 0; i < values.size() / 2; ++i)
@@ -245,7 +255,7 @@ double square_sum(const std::vector<double>& values) {
   return sum;
 }
 
-/// All passes of one direction against those of the other.
+/// Returns how all passes of direction - must be turned to agree with those of direction +.
 Turned turned_direction(const Curve& minus, const Curve& plus, const Scatter& scatter, double step,
                         bool rotary) {
   constexpr double least_travel = 1e-3;  // m
@@ -253,7 +263,7 @@ Turned turned_direction(const Curve& minus, const Curve& plus, const Scatter& sc
   const Pair p = in_common(minus, plus);
   const std::size_t n = p.at.size();
   if (n < fewest_compared || scatter.freedom <= 0.0) return Turned::not_at_all;
-  // Over small steps the reversal is what the targets are made to show, not the pitch.
+  // Targets within a small travel are chosen to show the reversal, not the pitch error.
   if (!rotary && !(p.at.back() - p.at.front() > least_travel)) return Turned::not_at_all;
   const double s = std::max(std::sqrt(scatter.squares / scatter.freedom), step);
   const double variance = s * s * (1.0 / minus.depth() + 1.0 / plus.depth()) / 4.0;
@@ -279,7 +289,7 @@ Turned turned_direction(const Curve& minus, const Curve& plus, const Scatter& sc
   return sign ? Turned::sign : Turned::not_at_all;
 }
 
-/// The other one of two passes of a direction.
+/// Returns the curve of the other pass, if a direction has two passes.
 Curve the_other(const Stroke& own, const std::vector<Stroke>& strokes) {
   Curve other;
   for (const Stroke& s : strokes)
@@ -287,7 +297,8 @@ Curve the_other(const Stroke& own, const std::vector<Stroke>& strokes) {
   return other;
 }
 
-/// Of two passes of a direction that are opposed the one that is farther from the other direction.
+/// Whether `own`, of two passes of a direction that contradict each other, is the one that differs
+/// more from the opposite direction.
 bool the_farther(const Curve& own, const Curve& other, const Curve& opposite) {
   const auto apart = [&](const Curve& one) {
     Pair p = in_common(one, opposite);
@@ -299,7 +310,8 @@ bool the_farther(const Curve& own, const Curve& other, const Curve& opposite) {
   return apart(own) >= apart(other);
 }
 
-/// The curves of both directions are opposed, slope included: a slope in common refutes a mistake.
+/// Whether the curves of both directions are opposed including their slopes. A common slope shows
+/// that there was no mistake.
 bool opposed(const Pair& p, Turned how, double noise) {
   const auto n = static_cast<double>(p.a.size());
   double sum = 0.0, squares = 0.0;
@@ -324,7 +336,8 @@ void turned_passes(const Passes& passes, bool rotary, std::vector<Finding>& out)
     const Curve others = by_direction[own.direction].without(own);
     Scatter scatter;
     scatter.take(others.scatter());
-    // The other direction only where these passes do not show it: its own pass of this run may be wrong too.
+    // The scatter of the other direction is added only if these passes are too few, because the
+    // pass of the same run in the other direction may be wrong too.
     if (scatter.freedom < static_cast<double>(fewest_compared))
       for (const auto& [direction, curve] : by_direction)
         if (direction != own.direction) scatter.take(curve.scatter());

@@ -12,8 +12,8 @@
 namespace nonio::reading {
 namespace {
 
-/// Readings by run and target, as far as every run has them all: the mean of both directions, and
-/// their difference.
+/// Readings by run and target, for targets that every run contains: the mean of both directions,
+/// and their difference.
 struct Grid {
   std::vector<std::uint32_t> runs;            ///< in the order in which they were begun
   std::vector<double> targets;                ///< rising
@@ -21,7 +21,7 @@ struct Grid {
   std::vector<std::vector<double>> reversal;  ///< [run][target]; empty with one direction
 };
 
-/// The last reading at each of these targets, which the pass has all.
+/// Returns the last reading of a pass at each of these targets, all of which the pass must contain.
 std::vector<double> values_at(const Stroke& s, const std::vector<double>& targets) {
   std::vector<double> out;
   out.reserve(targets.size());
@@ -71,7 +71,7 @@ double square_mean(const std::vector<double>& values) {
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
-/// Mean over some runs, and the squares about it.
+/// Mean of some runs at each target, and the sum of squares about it.
 struct Group {
   std::vector<double> mean;
   double squares = 0.0, freedom = 0.0;
@@ -88,11 +88,11 @@ struct Group {
   }
 };
 
-/// What is computed from sums may differ from what is computed directly by this share at most: where
-/// the sums find something, it is computed directly.
+/// Running sums may differ from a direct computation by this share at most. If they indicate a
+/// finding, it is computed directly.
 constexpr double nearly = 1.0 - 1e-6;
 
-/// [k]: squares of the first k curves about their mean.
+/// Returns the sums of squares of the first k curves about their mean, for k = 0, 1, 2, ...
 template <class Iterator>
 std::vector<double> growing_squares(Iterator from, Iterator to) {
   std::vector<double> out{0.0};
@@ -106,7 +106,7 @@ std::vector<double> growing_squares(Iterator from, Iterator to) {
   return out;
 }
 
-/// For every place where the curves may be parted: whether both groups may be two curves.
+/// Tests for every division of the curves into two groups whether they may be two different curves.
 class Parted {
  public:
   explicit Parted(const std::vector<std::vector<double>>& curves)
@@ -117,10 +117,11 @@ class Parted {
     for (const auto& curve : curves) add(curve, all_);
   }
 
-  /// For k = 1, 2, ... in this order: takes curves[k - 1] into the first group.
+  /// Moves curves[k - 1] to the first group; call it for k = 1, 2, ... in this order.
   void take(const std::vector<double>& curve) { add(curve, first_), ++taken_; }
 
-  /// skipped: the curves that belong to neither group.
+  /// Whether the two groups may be different curves. skipped: curves between them that belong to
+  /// neither.
   bool may_be_two(std::span<const std::vector<double>> skipped, double least_scatter,
                   double squares, double of_curve) const {
     const std::size_t behind = before_.size() - 1 - taken_ - skipped.size();
@@ -148,9 +149,9 @@ class Parted {
   std::size_t taken_ = 0;
 };
 
-/// Runs after which the curve is another one: two groups that agree each within itself, and not
-/// with one another. What drifts along one line does not count, nor does what changes little by
-/// little: then the groups scatter too (12 is the most that even steps of change give).
+/// Reports runs from which on the curve differs: two groups of runs that agree within each group,
+/// but not with each other. Drift along a line is ignored. So is a gradual change, because the
+/// groups then scatter too (a ratio of at most 12 for changes in even steps).
 void two_curves(const Grid& grid, double step, Quantity deviation, std::vector<Finding>& out) {
   constexpr std::size_t fewest_targets = 6, fewest_runs = 4;
   constexpr double squares = 25.0, of_curve = 0.1;
@@ -158,7 +159,7 @@ void two_curves(const Grid& grid, double step, Quantity deviation, std::vector<F
   std::vector<std::vector<double>> curves = grid.mean;
   for (auto& curve : curves) take_line_out(grid.targets, curve);
   const std::size_t n = curves.size();
-  // A run whose rows are of both belongs to neither.
+  // a run whose rows are from both curves belongs to neither group
   for (const std::size_t gap : {0U, 1U}) {
     Parted parted(curves);
     parted.take(curves.front());
@@ -184,7 +185,7 @@ void two_curves(const Grid& grid, double step, Quantity deviation, std::vector<F
   }
 }
 
-/// Squares that are left of the values from..to about their mean.
+/// Returns the sum of squares of the values from..to (exclusive) about their mean.
 double about_mean(const std::vector<double>& values, std::size_t from, std::size_t to) {
   double mean = 0.0, sum = 0.0;
   for (std::size_t i = from; i < to; ++i) mean += values[i] / static_cast<double>(to - from);
@@ -198,7 +199,7 @@ double mean_of(const std::vector<double>& values, std::size_t from, std::size_t 
   return mean;
 }
 
-/// Jump of the curve between two targets, in addition to the slopes on both sides of it.
+/// Returns the jump of the curve between two targets in excess of the slopes on both sides.
 double jump(const Grid& grid, const std::vector<double>& curve, std::size_t at) {
   const auto slope = [&](std::size_t i) {
     return (curve[i] - curve[i - 1]) / (grid.targets[i] - grid.targets[i - 1]);
@@ -214,8 +215,8 @@ std::vector<double> largest_so_far(Iterator from, Iterator to) {
   return out;
 }
 
-/// A target from which on the reversal is another one, constant before it and behind it, and where
-/// the curve jumps as nowhere else.
+/// Reports a target from which on the reversal has another constant value, and where the curve
+/// jumps more than anywhere else.
 void two_reversals(const Grid& grid, double step, Quantity deviation, std::vector<Finding>& out) {
   constexpr std::size_t fewest_side = 3, fewest_targets = 8, fewest_runs = 3;
   constexpr double sigmas = 8.0, of_reversal = 0.15, jumps = 2.5, line = 3.0;
@@ -240,7 +241,7 @@ void two_reversals(const Grid& grid, double step, Quantity deviation, std::vecto
   const auto up_to = largest_so_far(jumping.begin(), jumping.end());
   const auto from_end = largest_so_far(jumping.rbegin(), jumping.rend());
   for (std::size_t at = fewest_side; at + fewest_side <= n; ++at) {
-    // First, because it excludes nearly all targets without a sum over the others.
+    // Tested first, because it excludes nearly all targets without a sum over the others.
     const double elsewhere = std::max(up_to[at - 2], from_end[n - at - 3]);
     if (jumping[at] < jumps * elsewhere) continue;
     const double before = mean_of(reversal, 0, at), behind = mean_of(reversal, at, n);

@@ -19,8 +19,9 @@ double middle_value(std::vector<double> values) {
   return *middle;
 }
 
-/// Mean of the other passes of a direction at the targets of one, and how these scatter about it,
-/// but for a shift of each. Nothing if they have not the same targets.
+/// Mean of the other passes of a direction at the targets of one pass, and the scatter of their
+/// readings about it after subtraction of a shift of each pass. Empty if fewer than two have the
+/// same targets.
 struct Others {
   std::vector<double> mean;
   double count = 0.0, scatter = 0.0;
@@ -51,8 +52,8 @@ Others others_of(const Stroke& own, const std::vector<Stroke>& strokes) {
   return others;
 }
 
-/// All passes of a direction that have the same targets: their sums, by which the mean of all but one
-/// of them and its scatter are known nearly.
+/// Sums over all passes of a direction with the same targets, from which the mean and scatter of
+/// all but one of them are computed approximately.
 class Alike {
  public:
   void add(const Stroke& s) {
@@ -60,10 +61,10 @@ class Alike {
     for (std::size_t i = 0; i < mean_.size(); ++i) mean_[i].add(s.deviation[i]);
   }
 
-  /// After all of them were added.
+  /// Adds the squares of a pass. Call it after all passes were added.
   void add_scatter(const Stroke& s) { squares_ += squares_of(s); }
 
-  /// Whether each reading of one of them may be the mean of those of the others within `tolerance`.
+  /// Whether each reading of `own` may equal the mean of the other passes within `tolerance`.
   bool may_be_mean(const Stroke& own, double tolerance) const {
     if (count() < 3.0) return false;
     for (std::size_t i = 0; i < mean_.size(); ++i)
@@ -72,7 +73,7 @@ class Alike {
     return true;
   }
 
-  /// As Others::scatter.
+  /// Returns the scatter of the other passes, as Others::scatter.
   double scatter_without(const Stroke& own) const {
     const double others = count() - 1.0, free = static_cast<double>(mean_.size()) - 1.0;
     const double squares = squares_ - squares_of(own) * (1.0 + 1.0 / others);
@@ -82,7 +83,7 @@ class Alike {
   double count() const { return mean_.front().count; }
 
  private:
-  /// About the means, but for the shift of the pass.
+  /// Returns the sum of squares of a pass about the means, after subtraction of its shift.
   double squares_of(const Stroke& s) const {
     double sum = 0.0, squares = 0.0;
     for (std::size_t i = 0; i < mean_.size(); ++i) {
@@ -105,8 +106,9 @@ ByTargets alike_of(const std::vector<Stroke>& strokes) {
   return alike;
 }
 
-/// A pass that is the mean of all others of its direction in every digit: the last block of a
-/// spreadsheet. Each mean is met by chance with step / (s sqrt(2 pi (1 + 1/k))).
+/// Reports a pass that equals the mean of all others of its direction in every digit, such as the
+/// last block of a spreadsheet. By chance a reading equals the mean with probability step / (s
+/// sqrt(2 pi (1 + 1/k))).
 void pass_of_means(const std::vector<Stroke>& strokes, double step, Quantity deviation,
                    std::vector<Finding>& out) {
   constexpr double chance = 1e-7, at_most = 1.0 + 1e-6;
@@ -120,7 +122,7 @@ void pass_of_means(const std::vector<Stroke>& strokes, double step, Quantity dev
   for (const Stroke& own : strokes) {
     const std::size_t n = own.target.size();
     if (n < fewest) continue;
-    // Directly only where the sums do not exclude it.
+    // computed directly only if the sums do not exclude it
     const Alike& all = alike.at({own.line, own.direction, own.target});
     if (!all.may_be_mean(own, at_most * 0.51 * step) ||
         by_chance(at_most * all.scatter_without(own), all.count() - 1.0, n) > chance)
@@ -141,8 +143,8 @@ void pass_of_means(const std::vector<Stroke>& strokes, double step, Quantity dev
   }
 }
 
-/// One value, at several targets, where nothing else that was read there is near it: 0 or 999 in
-/// the place of what was not read.
+/// Reports a value that occurs at several targets, far from all other readings there: 0 or 999 in
+/// place of a missing reading.
 void marks(const std::vector<Stroke>& strokes, double step, Quantity deviation,
            std::vector<Finding>& out) {
   constexpr double sigmas = 10.0, steps = 5.0, mostly = 0.8;
@@ -183,15 +185,16 @@ void marks(const std::vector<Stroke>& strokes, double step, Quantity deviation,
   }
 }
 
-/// One reading that is 30 times farther from the others of its target (of all, if its target has no
-/// others) than the range of all readings: a table of means would contain a tenth of that error.
+/// Reports a reading that is farther from the others of its target (from all, if the target has no
+/// others) than 30 times the range of the readings: a table of means would contain a tenth of that
+/// error.
 void far_off(const Observations& o, std::vector<Finding>& out) {
   constexpr double ranges = 30.0, length = 300e-6, angle = 600.0 / arcsec_per_rad;
   constexpr std::size_t fewest_readings = 8, fewest_here = 3;
   if (o.size() < fewest_readings) return;
   std::vector<double> all = o.deviation;
   std::sort(all.begin(), all.end());
-  const std::size_t tail = all.size() / 10;  // what may be misread at each end
+  const std::size_t tail = all.size() / 10;  // share that may be misread at each end
   const double range = all[all.size() - 1 - tail] - all[tail], middle = all[all.size() / 2];
   const auto& axis = o.axes.front();
   const auto at = [&](std::size_t i) {
@@ -217,8 +220,8 @@ void far_off(const Observations& o, std::vector<Finding>& out) {
   }
 }
 
-/// Passes that go one way but for two neighbours, where all others go one way, or turn at the same
-/// two: these targets were exchanged.
+/// Reports exchanged targets: passes in which one pair of neighbouring targets contradicts the
+/// direction of all other steps, if the pair is the same in all such passes.
 void targets_against_order(const std::vector<Stroke>& strokes, Quantity position,
                            std::vector<Finding>& out) {
   constexpr std::size_t fewest_targets = 5, fewest_passes = 3;

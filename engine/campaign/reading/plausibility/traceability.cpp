@@ -20,7 +20,7 @@ std::vector<Calibrated> all_of(const Campaign& c) {
   return all;
 }
 
-/// The same day so many years later; days are texts that sort as they follow one another.
+/// Returns the same day `years` later; days are texts YYYY-MM-DD, whose order is that of time.
 std::string later(const std::string& day, int years) {
   int year = 0;
   std::from_chars(day.data(), day.data() + 4, year);

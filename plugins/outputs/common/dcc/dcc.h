@@ -11,64 +11,65 @@
 /// A Digital Calibration Certificate (PTB's schema 3.3.0) as XML, to be signed by the host.
 namespace nonio::dcc {
 
-/// The same in each language, ISO 639-1; a name or a symbol has none ("").
+/// One text in each language, ISO 639-1; a name or a symbol has no language ("").
 using Text = std::vector<std::pair<std::string, std::string>>;
 
 struct Statement {
-  std::string ref_type;  ///< of the DCC practice; may be empty
+  std::string ref_type;  ///< refType of the DCC practice; may be empty
   Text says;
 };
 
-/// What influenced a measurement: lowest and highest as read.
+/// An influence quantity of a measurement: lowest and highest reading.
 struct Condition {
-  std::string ref_type, unit;  ///< D-SI
+  std::string ref_type, unit;  ///< refType, and unit in D-SI
   Text name;
   std::string low, high;  ///< numbers, as printed
 };
 
-/// A statement of conformity in words.
+/// A statement of conformity as text.
 struct Decided {
-  Text name;       ///< "A, X: limit 12 um"
-  Text says;       ///< "conforms"
-  std::string is;  ///< pass, fail; empty where the rule leaves it open
+  Text name;       ///< the requirement: "A, X: limit 12 um"
+  Text says;       ///< the result: "conforms"
+  std::string is;  ///< pass, fail; empty if indeterminate
 };
 
-/// What of one evaluation is stated in words.
+/// Texts about one evaluation.
 struct Words {
   Text title, method;
-  std::vector<Text> departures;  ///< from the method
-  Text test;                     ///< how it was made
+  std::vector<Text> departures;  ///< deviations from the method
+  Text test;                     ///< description of the test
   std::vector<Condition> conditions;
   std::string status;  ///< beforeAdjustment, afterAdjustment, or empty
 };
 
 struct About {
-  std::string number;                  ///< of the certificate
-  std::vector<std::string> languages;  ///< ISO 639-1
-  std::string location;           ///< where it was calibrated: "customer", as the schema states
-  std::string software, release;  ///< who writes
-  /// Values without U are left out, as they are on paper.
+  std::string number;                  ///< number of the certificate
+  std::vector<std::string> languages;  ///< languages of the certificate, ISO 639-1
+  std::string location;                ///< place of calibration: "customer", as in the schema
+  std::string software, release;       ///< name and version of the program
+  /// Omit values without U, as in the printed certificate.
   bool only_with_U = false;
-  std::map<std::string, Words> words{};           ///< by "plugin of measurement"
-  std::map<std::string, Text> meaning{};          ///< of values and curves, by their names
-  Text lowest{}, highest{}, equipment{}, item{};  ///< what else is stated about instrument and item
-  Text uncertainty{};                             ///< how it was determined
-  Text register_name{};                           ///< what the register's identity is called
-  Text released{};                                ///< how it was released, where no person did
+  std::map<std::string, Words> words{};           ///< keys are "plugin of measurement"
+  std::map<std::string, Text> meaning{};          ///< meaning of values and curves, by name
+  Text lowest{}, highest{}, equipment{}, item{};  ///< further statements about instrument and item
+  Text uncertainty{};                             ///< how the uncertainty was determined
+  Text register_name{};                           ///< name of the register's identity
+  Text released{};                                ///< how it was approved, if no person did
   std::vector<Statement> statements{};
-  Text rule{};         ///< by which was decided
-  std::string norm{};  ///< its name
+  Text rule{};         ///< decision rule
+  std::string norm{};  ///< name of the standard of the rule
   std::vector<Decided> decided{};
 };
 
-/// How an evaluation is called in a DCC, and where `nonio certificate verify` searches for it:
+/// Returns the name of an evaluation in a DCC, by which `nonio certificate verify` finds it:
 /// "iso230-2 of X".
 std::string name_of(const Results::Analysed&);
 
-/// What the schema requires must be there: laboratory, customer, item, dates, at least one result.
+/// Returns the XML. The input must contain what the schema requires: laboratory, customer, item,
+/// dates, at least one result.
 std::string write(const OutputInput&, const About&);
 
-/// ISO 3166-1: "IT".
+/// Whether the text is a country code of ISO 3166-1: "IT".
 bool is_country(std::string_view);
 
 }  // namespace nonio::dcc

@@ -11,13 +11,13 @@
 
 namespace nonio::dcc {
 
-/// XML written from front to back, elements indented by one. Text is escaped; characters that XML
-/// does not know are left out.
+/// Writes XML sequentially, elements indented by one blank per level. Text is escaped; characters
+/// that XML does not allow are omitted.
 class XmlWriter {
  public:
   XmlWriter() : out_("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n") {}
 
-  /// One without a value is left out.
+  /// Attributes without a value are omitted.
   using Attributes = std::initializer_list<std::pair<std::string_view, std::string_view>>;
 
   void open(std::string_view name, Attributes attributes = {}) {

@@ -9,12 +9,13 @@
 /// Values of several rules of one measurement, named "rule:symbol".
 namespace nonio::pages {
 
-/// The note that names the rules and their titles; null if the values are of one method.
+/// Returns the note that names the rules and their titles; null if the values belong to one method.
 const Remark* rules_of(const Results::Analysed&);
 
-/// A column for each rule, a row for each symbol; rules that give the same values share a column.
+/// Adds a table with one column per rule and one row per symbol; rules with equal values share a
+/// column.
 void add_rule_tables(const Source&, const Results::Analysed&, Blocks&);
-/// Decisions, what each rule does, and why they differ.
+/// Adds the decisions, a description of each rule, and the reasons why their values differ.
 void add_rule_notes(const Source&, const Results::Analysed&, Blocks&);
 
 }  // namespace nonio::pages

@@ -17,38 +17,38 @@ struct FileLine {
   std::string_view text;
 };
 
-/// The record ENVIRONMENT: values at the start and at the end, NaN where there is none.
+/// The record ENVIRONMENT: values at the start and at the end, NaN if missing.
 struct Environment {
   struct Pair {
     double start, end;
   };
   Pair air, pressure, humidity;  ///< degC, kPa, %
-  std::vector<Pair> material;    ///< degC, of the sensors that are connected
-  std::size_t unconnected = 0;   ///< sensors that read -10 twice
+  std::vector<Pair> material;    ///< degC, of the connected sensors
+  std::size_t unconnected = 0;   ///< number of sensors that read -10 twice
   Pair factor, expansion;        ///< um (effective half wavelength); ppm/K
   std::string_view times;        ///< bytes as in the file
 };
 
-/// A file with runs over targets, in its own units.
+/// The content of a file with runs over targets, in its own units.
 struct RunFile {
   struct Row {
-    std::uint32_t run = 0, target = 0;  ///< from 1
+    std::uint32_t run = 0, target = 0;  ///< counted from 1
     double value = 0.0;                 ///< NaN: not taken
     std::uint64_t line = 0;
   };
   std::string type, owner, version;
-  std::vector<double> targets;  ///< as listed
+  std::vector<double> targets;  ///< targets in the order of the file
   std::vector<std::int64_t> flags;
-  std::vector<FileLine> user;  ///< the seven lines of USER-TEXT; its keys are translated
+  std::vector<FileLine> user;  ///< the seven lines of USER-TEXT, whose keys depend on the language
   std::uint32_t run_count = 0;
-  std::vector<Row> rows;  ///< each run and target once
+  std::vector<Row> rows;  ///< each combination of run and target once
   std::optional<Environment> environment;
 };
 
-/// Whether a file begins with HEADER:: and states that it is of this type ("rtl"); any case.
+/// Whether a file begins with HEADER:: and states this type ("rtl"), in upper or lower case.
 bool is_type(std::string_view head, std::string_view type);
 
-/// A whole file, or what is wrong with it and where.
+/// Parses a whole file. The error states what is wrong, and its line.
 Expected<RunFile> parse_run_file(std::string_view bytes, std::string_view type,
                                  std::string_view owner);
 

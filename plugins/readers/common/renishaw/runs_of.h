@@ -11,14 +11,14 @@ struct Units {
   double target = 1e-3, value = 1e-6;
 };
 
-/// The runs as readings of one axis, and what a user would want to know of them. Directions are
-/// those in which the rows of each run go through the targets.
+/// Adds the runs as readings of one axis, and remarks for the user. The direction of a run is that
+/// in which its rows pass the targets.
 Expected<void> add_runs(const RunFile& file, const Units& units, readers::Runs& runs);
 
-/// Free text that an operator typed; the axis there must not contradict the manifest's.
+/// Adds the operator's free text. Error: it names another axis than the manifest.
 Expected<void> add_user_text(const RunFile& file, const ReadInput& input, Observations& obs);
 
-/// Option of both readers.
+/// Returns the option for the code page that both readers have.
 Option code_page_option();
 
 }  // namespace nonio::renishaw

@@ -6,15 +6,15 @@
 #include <string_view>
 #include <vector>
 
-/// Free text of instruments: in the code page of the computer that wrote it, which no file
-/// declares.
+/// Decoding of free text of instruments, which is in the code page of the computer that wrote it;
+/// no file declares it.
 namespace nonio::readers {
 
-/// The names that `decoded` knows.
+/// Returns the names of the code pages that `decoded` supports.
 const std::vector<std::string>& code_pages();
 
-/// As UTF-8, trimmed and without control characters; nothing if the bytes are not of that code
-/// page.
+/// Converts text to UTF-8, trimmed and without control characters; nothing if the bytes are not
+/// valid in that code page.
 std::optional<std::string> decoded(std::string_view bytes, std::string_view code_page);
 
 }  // namespace nonio::readers

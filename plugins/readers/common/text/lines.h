@@ -11,14 +11,16 @@ namespace nonio::readers {
 
 inline constexpr std::size_t longest_line = 65536;
 
-/// The lines of a file, without LF or CRLF; a CR at the very end of the file counts as CRLF.
+/// Iterates over the lines of a file, without LF or CRLF; a CR at the very end of the file counts
+/// as CRLF.
 class Lines {
  public:
   explicit Lines(std::string_view bytes);
   bool next(std::string_view& line);
-  std::uint64_t number() const { return number_; }  ///< of the line last given, from 1
+  /// line number of the last line returned, from 1
+  std::uint64_t number() const { return number_; }
   std::size_t offset() const;
-  /// What a first line "sep=;" states, if there is one.
+  /// Returns the separator that a first line "sep=;" states, if there is one.
   std::optional<char> separator() const;
 
  private:
@@ -30,19 +32,19 @@ class Lines {
 enum class Content { nothing, comment, fields };
 Content content_of(std::string_view line);
 
-/// Characters that no line of a text file may contain. Rows of numbers need no such check, because
-/// their fields would not be numbers. Comments are not interpreted and may be in any code page.
+/// Returns an error if the line contains characters that a text file must not contain. Rows of
+/// numbers need no such check, because their fields would not be numbers. Comments are not
+/// interpreted and may be in any code page.
 std::optional<Error> not_text(std::string_view line, bool comment = false);
 
-/// The separator of the fields as Excel states it in a first line "sep=;"; nothing of any other
-/// line.
+/// Returns the separator that Excel states in a first line "sep=;"; nothing for any other line.
 std::optional<char> stated_separator(std::string_view line);
 
-/// An error where a first line "sep=;" and the header row disagree.
+/// Returns an error if a first line "sep=;" and the header row disagree.
 std::optional<Error> other_separator(std::optional<char> stated, char found);
 
-/// The next line with fields on it, a first line "sep=;" passed over; false at the end of the file,
-/// or with `error` set.
+/// Reads the next line with fields, ignoring a first line "sep=;"; false at the end of the file, or
+/// if `error` is set.
 bool next_content(Lines& lines, std::string_view& line, std::optional<Error>& error);
 
 }  // namespace nonio::readers

@@ -9,28 +9,27 @@
 
 #include "nonio/model/measurements.h"
 
-/// A model compared with the measurements: how well it fits, and where it does not.
+/// Comparison of a model with the measurements: how well it fits, and where it does not.
 namespace nonio::model {
 
-/// Scatter of repeated readings of one target in one direction, after what a whole pass shares
-/// (its own zero, slope and curvature) is taken out: no model of the catalogue is in it. Not below
-/// what a display of coarse digits hides, digit/sqrt(12).
+/// Standard deviation of repeated readings of one target in one direction, after the terms of a
+/// whole pass (zero, slope and curvature) are subtracted; no model of the catalogue is used. At
+/// least digit/sqrt(12), the scatter that a coarse display can hide.
 struct NoiseFloor {
-  double s = 0.0;    ///< m or rad
-  double u = 0.0;    ///< its standard uncertainty, s / sqrt(2 dof)
+  double s = 0.0;    ///< standard deviation, m or rad
+  double u = 0.0;    ///< standard uncertainty of s, s / sqrt(2 dof)
   double dof = 0.0;  ///< degrees of freedom
 };
 
-/// F-test of the model against the cell means: of the weighted residuals e of a fit of redundancy
-/// dof1 + r, what exceeds the r degrees of freedom of the repeats and their floor s. Absent without
-/// repeats.
+/// F-test of the model against the cell means. e: weighted residuals of a fit of redundancy dof1 +
+/// r; r: degrees of freedom of the repeats; s: their floor. Absent without repeats.
 ///
 ///     F = (sum e^2 - r s^2)/(dof1 s^2)      dof2: that of s; F >= 0
 struct LackOfFit {
   double F = 0.0, p = 1.0, dof1 = 0.0, dof2 = 0.0;
 };
 
-/// What readings are split by.
+/// The properties of readings by which residuals are grouped.
 enum class Factor : char {
   direction,
   position,
@@ -52,57 +51,61 @@ struct Where {
   bool operator==(const Where&) const = default;
 };
 
-/// "direction", "screw-phase"; of a product "direction x time".
+/// Returns the name: "direction", "screw-phase", for a product "direction x time".
 std::string to_text(const Where& where);
 
-/// Where something is left.
+/// A structure that remains in the residuals, by the factor with which it varies.
 struct Place {
   Where where;
-  double share = 0.0;  ///< of the sum of squares of what is left, less what noise would give
-  double p = 1.0;      ///< F-test, corrected for the number of places looked at
-  double rms = 0.0;    ///< of that part, m or rad
-  /// Where it is largest, if it sits at one place: a target (m or rad), a run, an instant (s).
+  /// share of the residual sum of squares, minus the share expected from noise
+  double share = 0.0;
+  double p = 1.0;    ///< F-test, corrected for the number of places tested
+  double rms = 0.0;  ///< rms of this structure, m or rad
+  /// The position, if it occurs mainly at one: a target (m or rad), a run, an instant (s).
   std::optional<double> at{};
   Quantity at_quantity = Quantity::number;
-  std::string line{};     ///< in space: "position" along this one
-  bool together = false;  ///< of two factors: including the effect of each alone
+  std::string line{};     ///< line along which "position" is counted, in space
+  bool together = false;  ///< for two factors: including the effect of each alone
 };
 
-/// A reading that contradicts its neighbours; kept, with weight 0, until the user excludes it.
+/// A reading that contradicts other readings; it is kept, with weight 0, until the user excludes
+/// it.
 struct Suspect {
-  std::size_t row = 0;  ///< of the part's table
+  std::size_t row = 0;  ///< row in the part's table
   double residual = 0.0;
-  double t = 0.0;                   ///< studentised
-  double minimal_detectable = 0.0;  ///< an error here below this would not have been seen, m or rad
+  double t = 0.0;  ///< studentised residual
+  /// smallest error of this reading that would be detected, m or rad
+  double minimal_detectable = 0.0;
 };
 
 struct Comparison {
   Fit fit;
-  double largest = 0.0;  ///< largest residual in size, with its sign
+  double largest = 0.0;  ///< residual with the largest absolute value, with its sign
   std::size_t largest_row = 0;
-  std::optional<double> cv_rms{};     ///< of runs left out one at a time; absent with one run
-  std::vector<double> cv_residual{};  ///< of each reading, predicted without its run
+  std::optional<double> cv_rms{};  ///< RMS of cross-validation over runs; absent with one run
+  /// residual of each reading when its run is predicted from the others
+  std::vector<double> cv_residual{};
   std::optional<NoiseFloor> floor{};
   std::optional<LackOfFit> lack_of_fit{};
-  std::vector<Place> places{};  ///< all that were looked at, largest share first
-  /// Where something fails: the fewest places that hold what is left, each in addition to those before it,
-  /// so that nothing is counted twice; no share below 2 %.
+  std::vector<Place> places{};  ///< all tested places, largest share first
+  /// If the model fails: the smallest set of places that contains the residuals. Each share is in
+  /// addition to those of earlier ones, and at least 2 %.
   std::vector<Place> seats{};
-  std::size_t means = 0;  ///< long tables: number of means that the places are from; else 0
+  std::size_t means = 0;  ///< for long tables: number of means on which places were tested; else 0
   std::vector<Suspect> suspects{};
-  bool fails() const;  ///< something is left in some place
+  bool fails() const;  ///< whether a significant structure remains in some place
 };
 
-/// A place is regarded as failing below this p.
+/// A model fails in a place with p below this.
 /// docs/dev/constants.md, M1.
 inline constexpr double place_p = 0.01;
 
-/// Properties of the readings without any model: how they repeat each other, which are
-/// misread, how their noise is correlated. Kept where many models are compared with the same
-/// readings.
+/// Properties of the readings that do not depend on a model: which readings repeat each other,
+/// which are suspect, and the correlation of their noise. Reused if many models are compared with
+/// the same readings.
 class Groundwork {
  public:
-  /// Of `model` only the set-up counts.
+  /// Only the set-up terms of `model` are used.
   Groundwork(const Part& part, const std::vector<Term>& model);
   Groundwork(Groundwork&&) noexcept;
   ~Groundwork();
@@ -113,11 +116,11 @@ class Groundwork {
   std::unique_ptr<const Found> found_;
 };
 
-/// Called once the fit of a long table is there, with all but its places.
+/// Called when the fit of a long table is complete, except for its places.
 using Fitted = std::function<void(const Comparison&)>;
 
-/// Errors are those of `fit`: parameters that the readings do not separate. `known`: of this part,
-/// if it exists already.
+/// Fits a model and compares it with the readings. Errors are those of `fit`: parameters that the
+/// readings do not separate. `known`: the groundwork of this part, if it already exists.
 Expected<Comparison> compare(const Part& part, const std::vector<Term>& model,
                              const Groundwork* known = nullptr, const Fitted& fitted = {});
 

@@ -10,69 +10,74 @@
 
 #include "nonio/model/comparison.h"
 
-/// The model against the measurements: how well, where not, and which effect is missing.
-/// docs/model.md has the statistics. Everything here is SI and free of words: people read
-/// sentences made from it by templates/words.
+/// Explanation of the measurements by a model: how well it fits, where it does not, and which
+/// effect is missing. docs/model.md describes the statistics. All values are SI, and there are no
+/// texts: templates/words contains the sentences for the user.
 namespace nonio::model {
 
-/// Blocks of time that are left out of a course, one after the other.
+/// Number of blocks of time into which a course is divided for cross-validation.
 inline constexpr int course_blocks = 6;
 
-/// Gain of two metres of aluminium, m/K; docs/dev/constants.md, M40.
+/// Largest plausible gain, that of two metres of aluminium, m/K; docs/dev/constants.md, M40.
 inline constexpr double most_per_kelvin = 50e-6;
 
 struct Candidate {
-  Term term;            ///< with the shapes found
-  bool visible = true;  ///< false: these readings cannot show it
-  std::string why;      ///< if not: "aliased" with the model or the targets; "no-temperature", ...
-  double rms = 0.0;     ///< with it added to the model
+  Term term;            ///< the effect with the shapes found
+  bool visible = true;  ///< false: not identifiable from these readings
+  /// reason if not visible: "aliased" with the model or the targets; "no-temperature", ...
+  std::string why;
+  double rms = 0.0;  ///< rms of the residuals with it added to the model
   std::optional<double> cv_rms{};
-  double p = 1.0;  ///< chance that noise alone gives such a candidate anywhere in this search
-  /// 2 ln of the evidence for it; <= 0: none. By this they are ranked: where there is evidence both
-  /// alone and within the best set, that alone, because an effect that leaves less comes first.
+  double p = 1.0;  ///< probability that noise alone gives such a candidate anywhere in this search
+  /// 2 ln of the evidence for it; <= 0: none. Candidates are ranked by it. If there is evidence
+  /// both alone and within the best set, the score is that alone, so that an effect that leaves
+  /// smaller residuals comes first.
   double score = 0.0;
-  double alone = 0.0;   ///< the same of it as the only addition to the model
-  double within = 0.0;  ///< of one of the best set what is lost without it, else what it adds
+  double alone = 0.0;  ///< 2 ln of the evidence as the only addition to the model
+  /// 2 ln of the evidence lost without it, for a member of the best set; else that of adding it
+  double within = 0.0;
   std::vector<Parameter> parameters;
-  std::vector<std::string> aliases;  ///< these readings do not separate them from this one
-  /// RMS of the smallest one that would be found nine times in ten, m or rad.
+  std::vector<std::string> aliases;  ///< effects that these readings do not separate from it
+  /// RMS of the smallest effect that would be detected with probability 0.9, m or rad.
   double minimal_detectable = 0.0;
-  /// Found near that size: an effect this large is found only where the noise makes it look so many
-  /// times larger in the mean. 1 where that is nothing.
+  /// Mean ratio of found to true size for an effect near the limit of detection, which is found
+  /// only if noise enlarges it. 1 if there is no such bias.
   double bias = 1.0;
-  std::vector<std::uint32_t> rows{};  ///< not visible: rows of the part's table that prevent it
+  std::vector<std::uint32_t> rows{};  ///< if not visible: rows of the part's table that prevent it
   /// Descriptions of position with which its evidence was found; empty: with the model alone.
   std::vector<std::string> with_descriptions{};
 };
 
-/// Effects that concern a part and do not apply to its readings, with the reason: not visible.
+/// Returns effects that concern a part but are not identifiable from its readings, as candidates
+/// that are not visible, with the reason.
 std::vector<Candidate> not_applying(const Part& part, const std::vector<Effect>& effects);
 
-/// Rows of the table that have no temperature of their own, where it is interpolated in time.
+/// Returns the rows of the table whose temperature is interpolated in time.
 std::vector<std::uint32_t> interpolated_temperatures(const Part& part);
 
 /// A further measurement that would separate the effects of an alias group.
 struct Plan {
-  std::string id;            ///< "another-run", "run-after-a-pause", "other-targets", ...
-  std::size_t readings = 0;  ///< to be taken
+  /// kind of measurement: "another-run", "run-after-a-pause", "other-targets", ...
+  std::string id;
+  std::size_t readings = 0;  ///< number of planned readings
   double power = 0.0;        ///< distance of the two explanations in standard deviations
-  std::string one, other;    ///< the two effects
-  std::string of{};          ///< in space: the axes, or what is measured ("EYX")
+  std::string one, other;    ///< names of the two effects
+  std::string of{};          ///< axes of the plan, or what is measured ("EYX"), in space
 };
 
-/// What one more run would do to what is known if the noise stays as it is and the best explanation
-/// is true (docs/dev/model-search.md, "One more run").
+/// Predicted improvement by one more run, if the noise stays as it is and the best explanation is
+/// true (docs/dev/model-search.md, "One more run").
 struct Foresight {
-  struct Factor {  ///< by which the standard uncertainty of a parameter of the model is multiplied
+  struct Factor {  ///< ratio of the standard uncertainty of a parameter with and without the run
     std::string effect, parameter;
     double factor = 1.0;
   };
-  struct Evidence {  ///< `score` of an effect that the best explanation adds
+  struct Evidence {  ///< `score` of an effect of the best explanation, without and with the run
     std::string effect;
     double now = 0.0, then = 0.0;
   };
-  std::string id;            ///< as in Plan: "another-run", "another-run-reversed", ...
-  std::size_t readings = 0;  ///< to be taken
+  std::string id;  ///< kind of measurement as in Plan: "another-run", "another-run-reversed", ...
+  std::size_t readings = 0;  ///< number of planned readings
   std::vector<Factor> parameters;
   std::vector<Evidence> evidence;
 };
@@ -80,53 +85,59 @@ struct Foresight {
 struct Verdict {
   enum class Kind { missing, nothing, unknown, unrepeatable };
   Kind kind = Kind::nothing;
-  std::string effect;           ///< of missing
-  double false_alarms = 0.0;    ///< share of shuffles of the noise whose verdict is not `nothing`
-  std::size_t trials = 0;       ///< behind it
-  double suspects_share = 0.0;  ///< of the readings
-  /// unknown: less is left than the scatter of repeated readings allows.
+  std::string effect;           ///< for `missing`: the missing effect
+  double false_alarms = 0.0;    ///< share of simulated noise samples whose verdict is not `nothing`
+  std::size_t trials = 0;       ///< number of simulated noise samples
+  double suspects_share = 0.0;  ///< share of the readings that are suspect
+  /// For `unknown`: the residuals are smaller than the scatter of repeated readings allows.
   bool below_scatter = false;
 };
 
-/// A description added to the model, to what is certain and to those before it: what is left, not
-/// why.
+/// A description added to the model, the significant effects and earlier descriptions. It states
+/// the shape of the residuals, not their cause.
 struct Description {
   enum class What { value_at_targets, reversal_at_targets, course };
-  Term term;         ///< with the shapes found
-  double rms = 0.0;  ///< what is left with it, m or rad
+  Term term;         ///< the description with the shapes found
+  double rms = 0.0;  ///< rms of the residuals with it, m or rad
   What what = What::course;
-  /// Its values, m or rad: of each target (values less their mean), else of each reading.
+  /// Smallest, largest and mean value, m or rad: over targets (values minus their mean), else over
+  /// readings.
   double low = 0.0, high = 0.0, mean = 0.0;
 };
 
-/// What holds whatever repeats at each target from each side.
+/// A statement that holds whatever error repeats at each target from each side.
 struct Statement {
   enum class What {
-    drift,    ///< of the zero over the test, as a straight line
-    reversal  ///< of one sign at every target
+    drift,    ///< drift of the zero over the test, as a straight line
+    reversal  ///< reversal with the same sign at every target
   };
   What what = What::drift;
-  double value = 0.0, u = 0.0;   ///< of the whole drift; of the mean reversal, m or rad
-  double low = 0.0, high = 0.0;  ///< of the reversals of the targets
-  double p = 1.0;                ///< of reversals that of the least certain one, corrected
+  /// total drift or mean reversal, and its standard uncertainty, m or rad
+  double value = 0.0, u = 0.0;
+  double low = 0.0, high = 0.0;  ///< smallest and largest reversal of a target
+  /// for reversals that of the least significant target, corrected for their number
+  double p = 1.0;
 };
 
-/// What recorded channels are worth to the model of a displacement over time and its best explanation.
+/// Contribution of recorded channels to the model of a displacement over time and to its best
+/// explanation.
 struct Sensors {
   struct One {
     std::string channel;
-    double rms_without = 0.0;  ///< of blocks that are left out, without its effects, m
+    double rms_without = 0.0;  ///< RMS of cross-validation without the effects of this channel, m
   };
-  std::size_t recorded = 0;           ///< channels in the file
-  std::vector<One> used;              ///< the most needed first
-  std::vector<std::string> smallest;  ///< with these it loses less than a tenth
-  double rms = 0.0,
-         rms_smallest = 0.0;  ///< of blocks that are left out, with all and with these, m
-  /// A speed or load that acts through a part that no thermometer shows, and its time constant, s.
+  std::size_t recorded = 0;  ///< number of channels in the file
+  std::vector<One> used;     ///< channels used, the most needed first
+  /// smallest set of channels with which the RMS grows by less than a tenth
+  std::vector<std::string> smallest;
+  /// RMS of cross-validation with all channels, and with the smallest set, m
+  double rms = 0.0, rms_smallest = 0.0;
+  /// A speed or load that acts through a part without a temperature sensor, and its time constant,
+  /// s.
   std::string unseen{};
   double unseen_tau = 0.0;
-  /// The gain that is known worst: effect, u/|gain|, and the duration of a test as varied as this one
-  /// that would bring it to a tenth, s.
+  /// The gain with the largest relative uncertainty: its effect, u/|gain|, the duration of this
+  /// test, and the duration of an equally varied test that would reduce it to a tenth, s.
   std::string weakest{};
   double relative_u = 0.0, measured = 0.0, wanted = 0.0;
 };
@@ -134,37 +145,46 @@ struct Sensors {
 struct Explanation {
   Comparison comparison;
   std::vector<Candidate> candidates;  ///< best first
-  std::vector<std::string> together;  ///< what the best explanation adds to the model
-  bool explains_all = false;          ///< it leaves nothing in any place
-  double best_rms = 0.0;              ///< what the best explanation leaves, m or rad
-  /// Of these what is free of doubt, whatever the rest is; most evidence first.
+  std::vector<std::string> together;  ///< effects that the best explanation adds to the model
+  bool explains_all = false;  ///< the best explanation leaves no significant structure in any place
+  double best_rms = 0.0;      ///< rms of the residuals of the best explanation, m or rad
+  /// Effects of `together` that are significant whatever causes the residuals; most evidence first.
   std::vector<std::string> certain;
-  /// Pairs of effects of `together` that cancel each other: neither is shown by that.
+  /// Pairs of effects of `together` that cancel each other, so that neither is demonstrated.
   std::vector<std::pair<std::string, std::string>> cancelling;
-  /// Growth and drift of `together` that are as well one growth away from this place on the axis,
-  /// m.
+  /// Position on the axis, m, of the fixed point of a single growth that is equivalent to the
+  /// growth and drift in `together`.
   std::optional<double> one_growth{};
-  double significant_rms = 0.0;           ///< unknown: with them in the model, m or rad
-  std::vector<Description> descriptions;  ///< unknown: of what the significant effects leave
-  std::vector<Statement> statements;      ///< unknown, of an axis
-  std::vector<Place> fails;  ///< unknown: what the best explanation leaves; else the model's
-  std::vector<Plan> plans;   ///< cheapest first; for the alias group of the verdict
-  std::shared_ptr<const void> keeps{};  ///< effects that terms point into, beyond the catalogue's
-  std::optional<Sensors> sensors{};     ///< over time, where effects of channels are in it
+  /// for `unknown`: rms with the significant effects in the model, m or rad
+  double significant_rms = 0.0;
+  /// for `unknown`: descriptions of the residuals that the significant effects leave
+  std::vector<Description> descriptions;
+  /// for `unknown` of an axis: statements that hold whatever repeats at each target
+  std::vector<Statement> statements;
+  /// places of the residuals: for `unknown` of the best explanation, else of the model
+  std::vector<Place> fails;
+  /// measurements that separate the aliases of the verdict, cheapest first
+  std::vector<Plan> plans;
+  /// owner of effects that are not in the catalogue but are referenced by terms
+  std::shared_ptr<const void> keeps{};
+  /// for a course, if effects of channels are in the best explanation
+  std::optional<Sensors> sensors{};
   Verdict verdict;
 };
 
-/// Of `terms` those that may replace an effect of the best explanation: what differs between
-/// repeats does not replace what is the same in all of them, and the other way round.
+/// Returns the terms that could replace an effect of the best explanation: an effect that differs
+/// between repeats cannot replace one that is the same in all of them, nor the reverse.
 std::vector<Term> replacing(const Part& part, const Explanation& e, std::vector<Term> terms);
 
-/// `seed` is for the shuffles behind the false-alarm rate.
+/// Searches the effects that the model lacks, and gives a verdict. `seed`: for the simulated noise
+/// that determines the false-alarm rate; `known`: as in `compare`.
 Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
                               const std::vector<Term>& catalogue, std::uint64_t seed = 1,
                               const Groundwork* known = nullptr);
 
-/// One more run of an axis, in each direction order. Empty for other parts, and where nothing can
-/// be stated: no uncertainty, effects whose columns depend on all readings, too many readings.
+/// Predicts the effect of one more run of an axis, for each order of directions. Empty for other
+/// parts, and if no prediction is possible: no uncertainty, effects whose columns depend on all
+/// readings, too many readings.
 std::vector<Foresight> foresee(const Part& part, const Explanation& e);
 
 }  // namespace nonio::model

@@ -10,26 +10,27 @@
 #include "nonio/model/fit.h"
 #include "nonio/sdk/campaign.h"
 
-/// What of a campaign is explained together, and the effects that can be in its model.
+/// Which measurements of a campaign are explained together, and which effects a model of them can
+/// contain.
 namespace nonio::model {
 
-/// Time constant with which a linear axis grows while it is exercised: of the thermal tests of the
-/// campaign. Of first-order heating it is all that such a test and runs of the axis share: not the
-/// amplitude and not the state of warmth (docs/model.md).
+/// Time constant of the growth of a linear axis while it moves, from the thermal tests of the
+/// campaign. In first-order heating, such a test and the runs of the axis have only this in common,
+/// not the amplitude nor the initial temperature (docs/model.md).
 struct TimeConstant {
   enum class State {
     known,
-    none,          ///< no test gives one
-    contradictory  ///< two tests give different ones
+    none,          ///< no test determines one
+    contradictory  ///< two tests give significantly different ones
   };
   std::string axis;
-  std::vector<std::string> measurements;  ///< that give it; of `none` all
+  std::vector<std::string> measurements;  ///< tests that determine it; for `none` all tests
   State state = State::none;
   double tau = 0.0, u = 0.0;  ///< s
 };
 
-/// Time constants differ from so many standard uncertainties of the difference of their logarithms
-/// on (docs/dev/constants.md, M34).
+/// Two time constants are contradictory if their logarithms differ by at least this multiple of the
+/// standard uncertainty of the difference (docs/dev/constants.md, M34).
 inline constexpr double time_constants_apart = 2.6;
 
 /// Measurements that are explained together: they sense the same axes in the same unit.
@@ -38,40 +39,41 @@ struct Part {
     axis,   ///< runs of one axis, sensed along it
     space,  ///< several linear axes: their runs, straightness, diagonals, step diagonals
     balls,  ///< centres of a ball that turns with a rotary axis: radial and axial, m
-    course  ///< a displacement over time, with channels that were recorded next to it
+    course  ///< a displacement over time, with recorded channels
   };
   std::string name;                       ///< "X", "XY", "EYX", "C centres", "warm/x1"
-  std::vector<std::string> measurements;  ///< ids
-  std::vector<Axis> axes;                 ///< one of an axis or balls; else the linear ones
+  std::vector<std::string> measurements;  ///< ids of the measurements
+  std::vector<Axis> axes;                 ///< one for `axis` and `balls`; else the linear axes
   Observations table;                     ///< lines named by their measurements
   Kind kind = Kind::axis;
-  std::vector<std::uint32_t> measurement{};  ///< of each reading: index into `measurements`
-  std::vector<std::uint32_t> row{};          ///< of each reading: row of its measurement's table
-  std::vector<double> along{};               ///< of each reading: its place on its line, m or rad
-  std::vector<std::int8_t> way{};            ///< of each reading: +1 or -1 along its line
-  /// Measurements of an axis whose file cannot be in the order in which it was measured: the cycle
-  /// of ISO 230-2 is assumed.
+  std::vector<std::uint32_t> measurement{};  ///< index into `measurements` of each reading
+  std::vector<std::uint32_t> row{};          ///< row of each reading in its measurement's table
+  std::vector<double> along{};               ///< place of each reading on its line, m or rad
+  std::vector<std::int8_t> way{};  ///< direction of motion of each reading along its line, +1 or -1
+  /// Measurements of an axis for which the cycle of ISO 230-2 is assumed, because the order of the
+  /// file is impossible.
   std::vector<std::string> order_assumed{};
-  std::vector<TimeConstant> time_constants{};  ///< of its axes
-  /// By what the lines of an axis differ; none of a single measurement.
+  std::vector<TimeConstant> time_constants{};  ///< time constants of its axes
+  /// Groupings of the lines of an axis; empty for a single measurement.
   std::vector<std::shared_ptr<const Grouping>> groupings{};
 
-  // Of a course.
-  std::string displacement{};   ///< its name
-  std::size_t displacements{};  ///< how many the measurement has
-  /// Displacements of the same measurement that move with this one, at the same times: m. Their
-  /// effects are searched together; each has sizes of its own.
+  // The members below apply to a course.
+  std::string displacement{};   ///< name of the displacement
+  std::size_t displacements{};  ///< number of displacements of the measurement
+  /// Displacements of the same measurement that move together with this one, at the same times, m.
+  /// Their effects are searched together, but each displacement has parameters of its own.
   std::vector<std::vector<double>> companions{};
   std::vector<std::string> companion_names{};
 };
 
-/// Which shape of an effect is the time constant of a growth: continuous, named "tau", a time, next to
-/// one growth per length.
+/// Returns the index of the shape that is the time constant of a growth: continuous, named "tau", a
+/// time, in an effect with one linear parameter, a growth per length. None if the effect has no
+/// such shape.
 std::optional<std::size_t> time_constant_shape(const Effect& effect);
-/// Whether a term has the value that another measurement states.
+/// Whether the term uses the value of a shape that another measurement states.
 bool has_stated(const Term& term);
 
-/// A reading for which the manifest does not state the position of the other axes.
+/// Whether a reading has an axis position that the manifest does not state (NaN).
 inline bool has_unstated_position(const Part& part) {
   for (const auto& axis : part.table.axes)
     for (const double x : axis.position)
@@ -79,28 +81,28 @@ inline bool has_unstated_position(const Part& part) {
   return false;
 }
 
-/// What can be explained together, in the order of the measurements: runs of one axis; where
-/// something is sensed across the axes or in several at once, all linear axes and their
-/// measurements in one table; ball centres of a rotary axis. Others are left out, and so are
-/// readings that `check` (sdk/check.h) refuses.
+/// Returns the parts of a campaign, in the order of the measurements: runs of one axis; all linear
+/// axes and their measurements in one table, if some reading is sensed across the motion or in
+/// several axes; ball centres of a rotary axis; displacements over time. Other measurements are
+/// omitted, and so are readings that `check` (sdk/check.h) rejects.
 std::vector<Part> parts_of(const Campaign& campaign, const std::vector<Observations>& read);
 
-/// All effects that apply to a part, without those that are always in a model; then those whose
-/// values can differ between groups of lines.
+/// Returns all effects that apply to a part, except nuisances, followed by the grouped terms of
+/// effects whose values can differ between groups of lines.
 std::vector<Term> catalogue(const Part& part, const std::vector<Effect>& effects);
 
-/// The names that an effect has in this part: "backlash:X", "straightness:EYX".
+/// Returns the names of an effect in this part: "backlash:X", "straightness:EYX".
 std::vector<std::string> names_of(const Part& part, const Effect& effect);
 
-/// An effect of the model as it is written for this part: of a course that is one of several
-/// displacements "heat:t4/x1" or "heat:t4/x1+x2" ("only of these"), else its name.
+/// Returns an effect of the model as the manifest writes it for this part: for a course that is one
+/// of several displacements "heat:t4/x1" or "heat:t4/x1+x2" (only for these), else its name.
 std::string written_for(const Part& part, const std::string& effect);
-/// Whether an effect as it is written is for this part, as far as it lists displacements.
+/// Whether an effect, as the manifest writes it, applies to this part by its list of displacements.
 bool is_for(const Part& part, const std::string& effect);
 
-/// The effects that a model names, then those that are always there, then its descriptions; an
-/// unknown kind, axis or grouping is an error. Effects of axes that other parts hold are left out,
-/// and so is an effect that is also there with groups, which contain it.
+/// Returns the terms of the effects that a model names, then the nuisances, then the model's
+/// descriptions. Error: an unknown kind, axis or grouping. Effects of axes of other parts are
+/// omitted, and so is an effect that the model also has with groups, because these include it.
 Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
                                      const std::vector<std::string>& names,
                                      const std::vector<Effect>& effects);

@@ -12,8 +12,9 @@
 #include "nonio/sdk/observations.h"
 #include "nonio/sdk/plugin.h"
 
-/// What effects on one axis are made of. With theta the commanded position, [a, b] the stretch that
-/// was measured, and the readings i that moved the axis:
+/// Quantities of the readings of one axis, from which effects compute their columns. theta is the
+/// commanded position, [a, b] the measured stretch, and i runs over the readings that moved the
+/// axis:
 ///
 ///     length   L = b - a                        m, rad
 ///     middle   m = (a + b) / 2                  m, rad
@@ -22,70 +23,76 @@
 ///     t_i      = time since the first reading of its line, s
 ///     K_i      = material temperature - its mean over the readings, K
 ///
-///            a               m               b
-///     -------|---------------+---------------|------> coordinate of the axis
-///                     p < 0  |  p > 0
-///                  d = +1  ----->   <-----  d = -1
+///       a              m              b
+///     -------|---------------+---------------|------>  coordinate of the axis
+///            p < 0   |   p > 0
+///            d = +1  ----->    <-----  d = -1
 ///
-/// docs/conventions.md has the signs of deviations.
+/// The signs of deviations are defined in docs/conventions.md.
 namespace nonio {
 
-/// Each column has observations.size() entries, 0 in rows in which the axis did not move.
+/// The readings of one axis. Each vector, except `interpolated`, has observations.size() entries
+/// and is 0 in rows in which the axis did not move.
 struct AxisReadings {
   std::vector<char> moved;    ///< 1 where the axis moved
   std::vector<double> p;      ///< position from the middle of the measured stretch, m or rad
   std::vector<double> theta;  ///< position as commanded, m or rad
   std::vector<double> d;      ///< direction of approach: +1, -1
-  std::vector<double> t;      ///< since the first reading of its line, s
-  std::vector<double> K;  ///< material temperature less its mean, K; 0 everywhere if not measured
-  double length = 0.0;    ///< of the measured stretch, m or rad
-  double duration = 0.0;  ///< of the longest line, s
-  /// False: one reading counts as one second, in the order of the rows; where that is not known
-  /// either, `t` is 0 everywhere.
+  std::vector<double> t;      ///< time since the first reading of its line, s
+  /// material temperature minus its mean, K; 0 everywhere if it was not measured
+  std::vector<double> K;
+  double length = 0.0;    ///< length of the measured stretch, m or rad
+  double duration = 0.0;  ///< time from first to last reading of the longest line, s
+  /// Whether `t` comes from measured times. If false, `t` counts the readings of a line in the
+  /// order of the rows (one reading is one second); if that order is not known either, `t` is 0
+  /// everywhere.
   bool timed = false;
-  double middle = 0.0;  ///< of the measured stretch, as commanded, m or rad
-  /// Every reading has a material temperature; of those in `interpolated` it is interpolated
-  /// linearly in time between their neighbours.
+  double middle = 0.0;  ///< commanded position of the middle of the measured stretch, m or rad
+  /// Whether every reading has a material temperature. In the rows `interpolated` the temperature
+  /// is interpolated linearly in time between neighboring readings.
   bool temperature = false;
-  std::vector<std::uint32_t> interpolated;  ///< rows
+  std::vector<std::uint32_t> interpolated;  ///< rows with an interpolated temperature
 };
 
 namespace detail {
 
-/// Fill `t`, `timed`, `duration`; and `K`, `temperature`, `interpolated`. A gap of temperatures is
-/// filled where it is at most a quarter of its line long, and an end at most an eighth away.
+/// `fill_times` fills `t`, `timed` and `duration`; `fill_temperatures` fills `K`, `temperature` and
+/// `interpolated`. A gap of temperatures is interpolated if it is at most a quarter of its line
+/// long; a missing end takes the nearest temperature if that is at most an eighth of the line away.
 void fill_times(const Observations& o, AxisReadings& r);
 void fill_temperatures(const Observations& o, AxisReadings& r);
 
 }  // namespace detail
 
-/// An error if the readings do not move this axis in a known direction. Range: finite positions;
-/// times and temperatures may be NaN.
+/// Returns the readings of one axis. Error: the readings do not move this axis, or do not state the
+/// direction of approach. Positions must be finite; times and temperatures may be NaN.
 Expected<AxisReadings> readings_of(const Observations& o, const Axis& axis);
 
-/// Some were reached from below, some from above.
+/// Whether some positions were reached from below and some from above.
 bool from_both_directions(const AxisReadings& r);
 
-/// Where to look for the point of a screw or scale that stays where it is, from the middle of the
-/// stretch, m: known from the manifest, else the middle (rotary axes, several axes), else also
-/// a bearing at an end or anywhere between. Steps of about 20 deg of the angle between what moves
-/// all readings alike and what fans them out.
+/// Candidate positions of the fixed point of a screw or scale, in m from the middle of the measured
+/// stretch. The manifest's value if it is stated; else the middle alone (rotary axes, several
+/// axes); else seven positions, the middle and positions inside and outside of the stretch, chosen
+/// about 20 deg apart in the angle between the common and the fanning part of the expansion.
 std::vector<double> fixed_points(const Observations& o, const Axis& axis);
 
 Effect::Shape fixed_point_shape();
 
-/// Why an effect that requests the course of time does not apply.
+/// Returns the reason "no-order" if the readings do not state their order in time, else an empty
+/// id. For effects that depend on time.
 WhyNot no_order(const Observations& o, const Axis& axis);
 
-/// Why an effect that requests both directions of approach does not apply.
+/// Returns the reason "one-direction" if all positions were approached from one side, else an empty
+/// id. For effects that need both directions.
 WhyNot one_direction(const Observations& o, const Axis& axis);
 
-/// The positions that were measured, each once, ascending, from the middle of the stretch.
-/// Positions nearer than 1e-9 of the length are one target.
+/// The distinct measured positions, ascending, relative to the middle of the stretch, m or rad.
+/// Positions closer than 1e-9 of the length are one target.
 std::vector<double> targets_of(const AxisReadings& r);
 
-/// A column for each of `values`, which are called as value(readings, row) for the rows in which
-/// the axis moved; the others are 0.
+/// Computes one column for each function in `values`, called as value(readings, row) for the rows
+/// in which the axis moved; other rows are 0. Error: as of `readings_of`.
 template <class... Values>
 Expected<Effect::Columns> columns_of(const Observations& o, const Axis& axis, Values... values) {
   const auto r = readings_of(o, axis);

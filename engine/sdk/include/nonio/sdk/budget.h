@@ -11,47 +11,47 @@
 
 namespace nonio {
 
-/// How the errors of one input quantity in the readings are correlated.
+/// How the errors of one input quantity are correlated between readings.
 enum class Correlation {
-  readings,  ///< each reading (mean) has its own
-  walk,      ///< grows from reading to reading along each line, by steps of its own
-  lines,     ///< one for all readings of a line, other lines have their own
-  device,    ///< one for all readings of the instrument: fully correlated
+  readings,  ///< independent in each reading (mean)
+  walk,      ///< a random walk along each line, independent between lines
+  lines,     ///< the same for all readings of a line, independent between lines
+  device,    ///< the same for all readings of the instrument: fully correlated
 };
 
 enum class Distribution { normal, rectangular, student };
 
-/// One input quantity of an uncertainty budget (JCGM 100:2008, 3.3 and 8), with what it does to a
+/// One input quantity of an uncertainty budget (JCGM 100:2008, 3.3 and 8), and its effect on a
 /// reading.
 struct Contribution {
-  std::string id;  ///< its words are `budget.<id>` of templates/words
-  double u = 0.0;  ///< standard uncertainty of a reading, at most; SI
+  std::string id;  ///< name of its text, `budget.<id>` of templates/words
+  double u = 0.0;  ///< largest standard uncertainty that it causes in a reading; SI
   Quantity quantity = Quantity::deviation;
-  bool with_length = false;  ///< proportional to the length; `u` is that of the longest one
+  bool with_length = false;  ///< proportional to the length; `u` is then that of the longest length
   Distribution distribution = Distribution::normal;
   Correlation correlation = Correlation::readings;
-  std::optional<double> dof{};  ///< degrees of freedom; none: known as stated
-  std::string source;           ///< keys of the manifest, or "readings"
+  std::optional<double> dof{};  ///< degrees of freedom; none: `u` is taken as exactly known
+  std::string source;           ///< keys of the manifest that state it, or "readings"
 };
 
-/// How an uncertainty came about: the inputs of an analysis, and their share in each result. U = k
-/// sqrt(sum u^2), but where the laboratory's floor (its CMC) is larger; u and k of each result
-/// below. Sources: JCGM 100:2008, 5.2 (correlated inputs), G.4 (degrees of freedom);
-/// docs/uncertainty.md. Range: u >= 0, k > 0, dof > 0 or infinite; `check` (sdk/check.h) refuses
-/// what is not finite.
+/// The uncertainty budget of an analysis: its input quantities and their contribution to each
+/// result. U = k sqrt(sum u^2), unless the laboratory's smallest uncertainty (its CMC) is larger.
+/// Sources: JCGM 100:2008, 5.2 (correlated inputs), G.4 (degrees of freedom); docs/uncertainty.md.
+/// Range: u >= 0, k > 0, dof > 0 or infinite; `check` (sdk/check.h) rejects values that are not
+/// finite.
 struct UncertaintyBudget {
   struct Result {
-    std::string name;  ///< of a value
+    std::string name;  ///< name of the value (`Value::name`)
     Quantity quantity = Quantity::number;
-    std::vector<double> u;  ///< standard uncertainty in it, of each contribution
+    std::vector<double> u;  ///< standard uncertainty of the result caused by each contribution, SI
     double k = 2.0;         ///< coverage factor
     double dof = INFINITY;  ///< effective degrees of freedom (Welch-Satterthwaite)
   };
-  double length = 0.0;  ///< of the longest reading, m; 0 of angles
+  double length = 0.0;  ///< length of the longest reading, m; 0 for angles
   std::vector<Contribution> contributions;
   std::vector<Result> results;
-  /// Keys of contributions that are not stated. Then no result has an uncertainty, only the
-  /// repeatability of its fit.
+  /// Keys of contributions that the manifest does not state. If there are any, no result has an
+  /// uncertainty, only the repeatability of its fit.
   std::vector<std::string> missing;
 };
 

@@ -13,31 +13,33 @@
 
 namespace nonio {
 
-/// One axis of the machine. Lengths in m, angles in rad. Ranges of all values of a campaign are
-/// those of its keys, which the host checks (docs/manifest.md).
+/// One axis of the machine. Lengths in m, angles in rad. The ranges of all members of a campaign
+/// are those of its keys, which the host checks (docs/manifest.md).
 struct Axis {
   std::string name;
   bool rotary = false;
   std::optional<std::pair<double, double>> travel{};
-  std::optional<double> screw_pitch{};  ///< m; period of the drive or scale
+  std::optional<double> screw_pitch{};  ///< period of the drive or scale, m
   std::optional<int> teeth{};           ///< periods per revolution of a rotary axis
-  std::optional<double> expansion{};    ///< 1/K
-  /// Where screw or scale is held and does not move when it grows: m.
+  std::optional<double> expansion{};    ///< expansion coefficient of screw or scale, 1/K
+  /// Position at which screw or scale is fixed, so that it does not move when the part expands, m.
   std::optional<double> fixed_point{};
   std::map<std::string, double> tolerance{};  ///< upper limit of a result, by its name: m or rad
-  std::string slave{};  ///< of a gantry: name of the control's axis that drives the second side
-  /// The compensation that was active in the control while the axis was measured; none: not stated.
-  std::optional<std::string> active_table{};  ///< files of the table; empty: there was none
-  std::optional<double> active_backlash{};    ///< m or rad; 0: there was none
+  std::string slave{};  ///< for a gantry: name of the control's axis that drives the second side
+  /// Compensation that was active in the control while the axis was measured; none: not stated.
+  /// files of the active table; empty: no table was active
+  std::optional<std::string> active_table{};
+  std::optional<double> active_backlash{};  ///< active backlash value, m or rad; 0: none was active
 };
 
 struct Machine {
   std::string maker, model, serial;
-  std::string description, condition;  ///< "gantry milling machine"; its state at the calibration
+  /// kind of machine, such as "gantry milling machine"; its condition at the calibration
+  std::string description, condition;
   std::string structure;  ///< gantry, single-column, bridge, other; empty if not stated
-  std::string control;    ///< name of the output plugin that writes its tables; empty: any
+  std::string control;    ///< name of the controller plugin that writes its tables; empty: any
   std::vector<Axis> axes;
-  std::string asset{};  ///< the machine's own number in the house; empty if not stated
+  std::string asset{};  ///< the owner's inventory number; empty if not stated
 
   const Axis* axis(std::string_view name) const {
     for (const Axis& a : axes)
@@ -46,53 +48,61 @@ struct Machine {
   }
 };
 
-/// The measuring instrument; U are expanded uncertainties (k = 2) of its certificate.
+/// The measuring instrument. U_* are expanded uncertainties (k = 2) of its certificate.
 struct Instrument {
   std::string maker, model, serial, calibrated, certificate;
-  std::optional<double> U_fixed;       ///< m
-  std::optional<double> U_per_length;  ///< m/m
-  std::optional<double> U_angle;       ///< rad
-  /// Of a probe: full ranges of the form of its ball, and of what the probe itself adds, m.
+  std::optional<double> U_fixed;       ///< part of U that does not depend on length, m
+  std::optional<double> U_per_length;  ///< part of U proportional to length, m/m
+  std::optional<double> U_angle;       ///< U of an angle, rad
+  /// For a probe: full range of the form error of its ball, and of the error of the probe itself,
+  /// m.
   std::optional<double> sphere{}, probe{};
-  /// Of a device that has a length of its own (a scale, a step gauge); none: its length does not
-  /// depend on its temperature, or that is in U_per_length. 1/K, K and 1/K, the latter full ranges.
+  /// For a device with a length of its own (a scale, a step gauge): its expansion coefficient, 1/K,
+  /// and the full ranges of its temperature, K, and of that coefficient, 1/K. None: its length does
+  /// not depend on temperature, or U_per_length includes this.
   std::optional<double> expansion{}, temperature_range{}, expansion_range{};
-  std::string issuer{}, valid_until{};  ///< of its certificate: who issued it, its last day
+  /// issuer of its certificate; last day on which it is valid
+  std::string issuer{}, valid_until{};
 };
 
-/// A sensor of what the instrument is compensated by or the machine was held at.
+/// A sensor whose readings compensate the instrument, or that measured the machine's temperature.
 struct Sensor {
-  std::string measures{};  ///< material, air, pressure, humidity
+  std::string measures{};  ///< what it measures: material, air, pressure, humidity
   std::string maker{}, model{}, serial{}, calibrated{}, valid_until{}, certificate{}, issuer{};
 };
 
-/// A square against whose faces two axes are read.
+/// A reference square, against whose faces the motions of two axes are measured.
 struct Square {
   std::string name;
-  std::optional<double> error{};  ///< rad, of the angle between its faces: positive is over 90 deg
-  std::optional<double> U{};      ///< rad, of `error`, k = 2
+  /// deviation of the angle between its faces, rad: positive is more than 90 deg
+  std::optional<double> error{};
+  std::optional<double> U{};  ///< expanded uncertainty (k = 2) of `error`, rad
 };
 
 /// What the uncertainty budget needs in addition to the instrument (ISO/TR 230-9:2005 Annex C);
 /// each is the full range of the quantity.
 struct Environment {
-  std::optional<double> misalignment;            ///< m, beam against axis over the travel
-  std::optional<double> temperature_range;       ///< K, of the material temperature's reading
-  std::optional<double> temperature_difference;  ///< K, largest distance from 20 degC
-  std::optional<double> expansion_range;         ///< 1/K, of the expansion coefficient
-  std::optional<double> drift;                   ///< m, range of the drift test (E_VE)
-  std::optional<double> drift_angle;             ///< rad, the same of a rotary axis
-  std::string warm_up{};                         ///< what the machine did before the test
-  std::string sensors{};                         ///< where the temperature sensors were
-  std::optional<bool> normalised{};              ///< whether the readings were corrected to 20 degC
-  std::optional<double> drift_time{};            ///< s, how long the drift test took
+  /// misalignment of beam and axis, as lateral distance over the travel, m
+  std::optional<double> misalignment;
+  /// uncertainty range of the measured material temperature, K
+  std::optional<double> temperature_range;
+  /// largest distance of the material temperature from 20 degC, K
+  std::optional<double> temperature_difference;
+  std::optional<double> expansion_range;  ///< range of the expansion coefficient, 1/K
+  std::optional<double> drift;            ///< m, range of the drift test (E_VE)
+  std::optional<double> drift_angle;      ///< range of the drift test of a rotary axis, rad
+  std::string warm_up{};                  ///< how the machine was warmed up before the test
+  std::string sensors{};                  ///< where the temperature sensors were
+  std::optional<bool> normalised{};       ///< whether the readings were corrected to 20 degC
+  std::optional<double> drift_time{};     ///< duration of the drift test, s
 };
 
-/// The smallest expanded uncertainty that an accreditation covers (CMC): a + b L for lengths.
+/// The smallest expanded uncertainty in the scope of an accreditation (CMC): fixed + per_length * L
+/// for lengths.
 struct Cmc {
-  std::optional<double> fixed{};       ///< m
-  std::optional<double> per_length{};  ///< m/m
-  std::optional<double> angle{};       ///< rad, of angles and directions
+  std::optional<double> fixed{};       ///< part that does not depend on length, m
+  std::optional<double> per_length{};  ///< part proportional to length, m/m
+  std::optional<double> angle{};       ///< smallest U of angles and directions, rad
   bool stated() const { return fixed || per_length || angle; }
 };
 
@@ -101,78 +111,89 @@ struct Laboratory {
   Cmc cmc{};
 };
 
-/// What a certificate states in addition to the results (ISO/IEC 17025:2017, 7.8): from site.toml,
-/// unless the campaign states it.
+/// Texts that a certificate contains in addition to the results (ISO/IEC 17025:2017, 7.8). They
+/// come from site.toml, unless the campaign states them.
 struct CertificateTexts {
-  std::vector<std::string> languages;        ///< one or two, of templates/words
-  std::map<std::string, std::string> title;  ///< by language; none: the words' own
-  std::string form;                          ///< name of a file in templates/, without .toml
-  std::string location;                      ///< as a DCC names it: customer, laboratory, ...
-  std::string procedure;                     ///< the laboratory's own, in addition to the standards
-  std::string deviations;                    ///< additions to the method, deviations, exclusions
-  std::string conditions;                    ///< influences on the results that no reading contains
-  std::string opinions;                      ///< opinions and interpretations, marked as such
-  std::string amendment;                     ///< why an earlier certificate is replaced
-  std::vector<std::string> customer_data;    ///< keys of the manifest that the customer stated
-  std::string no_other_deviations_by{};  ///< who states that nothing else was changed in the method
-  std::string decision_rule{};           ///< iso14253-1, ilac-g8-simple, ilac-g8-guarded
+  std::vector<std::string> languages;        ///< one or two languages of templates/words
+  std::map<std::string, std::string> title;  ///< title by language; none: that of templates/words
+  std::string form;        ///< layout: name of a file in templates/, without .toml
+  std::string location;    ///< place of calibration, as a DCC names it: customer, laboratory, ...
+  std::string procedure;   ///< the laboratory's own procedure, in addition to the standards
+  std::string deviations;  ///< additions to, deviations from and exclusions from the method
+  /// conditions with influence on the results that the readings do not contain
+  std::string conditions;
+  std::string opinions;                    ///< opinions and interpretations, marked as such
+  std::string amendment;                   ///< reason why an earlier certificate is replaced
+  std::vector<std::string> customer_data;  ///< keys of the manifest that the customer stated
+  /// person who states that the method was not changed in any other way
+  std::string no_other_deviations_by{};
+  std::string decision_rule{};  ///< name of the rule: iso14253-1, ilac-g8-simple, ilac-g8-guarded
 };
 
-/// An upper limit of the magnitude of a result.
+/// An upper tolerance limit of the magnitude of one result.
 struct Tolerance {
-  std::string result;  ///< its name
-  double limit = 0.0;  ///< SI
+  std::string result;  ///< name of the result
+  double limit = 0.0;  ///< the limit, SI
   Quantity quantity = Quantity::deviation;
 };
 
-/// The key of the manifest that gives it.
+/// Returns the manifest key that states a tolerance of this quantity: "tolerance_um".
 inline std::string tolerance_key(Quantity q) {
   return "tolerance" + std::string(unit_of(q).suffix);
 }
 
-/// One [[measurement]]. The members from `axis` on that belong to keys of a method (axis, lateral,
-/// from, to, order, side, reversal_of, square, foot) are empty where its method has no such key.
+/// One [[measurement]] of the manifest. The members from `axis` on that belong to keys of a method
+/// (axis, lateral, from, to, order, side, reversal_of, square, foot) are empty if its method has no
+/// such key.
 struct Measurement {
   std::string id;
-  std::string kind;  ///< what was observed: name of the method, or its `Method::observed_as`
+  std::string kind;  ///< what was measured: name of the method, or its `Method::observed_as`
   std::string axis;
-  std::string lateral;  ///< direction of a straightness; axis about which an angle turns (`about`)
+  /// direction of a straightness; for an angle, the axis about which it turns (`about`)
+  std::string lateral;
   std::string file;
-  std::string reader;                      ///< empty: chosen by content
+  std::string reader;  ///< name of the reader plugin; empty: chosen by the file's content
   std::map<std::string, double> from, to;  ///< ends of a diagonal, m
-  std::vector<std::uint32_t> exclude{};    ///< lines of the file whose readings do not count
-  std::string exclude_reason{};            ///< why they do not; a certificate needs it
-  /// What the manifest states about a recorded channel; role: "air", "structure", "source",
+  std::vector<std::uint32_t> exclude{};    ///< lines of the file whose readings are not used
+  std::string exclude_reason{};            ///< reason for the exclusion; a certificate requires it
+  /// The manifest's statements about a recorded channel; role: "air", "structure", "source",
   /// "coolant".
   struct Channel {
     std::string name, place, role;
   };
   std::vector<Channel> channels{};
-  std::map<std::string, double> at{};  ///< positions of the axes that did not move, m
-  std::string adjustment{};            ///< "before" or "after" one; empty: not stated
-  /// Of the rows, where they have no times: "pendulum", "as-listed", "unknown"; empty: not stated.
+  /// positions of the axes that did not move during the measurement, m
+  std::map<std::string, double> at{};
+  /// "before" or "after" an adjustment of the machine; empty: not stated
+  std::string adjustment{};
+  /// Order of the targets of rows without times: "pendulum", "as-listed", "unknown"; empty: not
+  /// stated.
   std::string order{};
 
-  /// How the test was made, as ISO 230-2 requires it reported; what is empty was not stated.
-  std::optional<double> feed{};                      ///< m/s, rad/s
-  std::optional<double> dwell{};                     ///< s, at a target before it is read
-  std::optional<double> over_travel{};               ///< m or rad, beyond the last target
-  std::map<std::string, double> tool_offset{};       ///< m, from the spindle nose to the probe
-  std::map<std::string, double> workpiece_offset{};  ///< m, from the table to the place measured
-  std::string compensation{};                        ///< "on" or "off": the control's tables
-  std::string side{};  ///< of a gantry axis: "master" or "slave"; empty: not stated
+  /// Test conditions that ISO 230-2 requires in the report; empty members were not stated.
+  std::optional<double> feed{};                 ///< feed rate, m/s or rad/s
+  std::optional<double> dwell{};                ///< time at rest at a target before it is read, s
+  std::optional<double> over_travel{};          ///< distance moved beyond the last target, m or rad
+  std::map<std::string, double> tool_offset{};  ///< vector from the spindle nose to the probe, m
+  /// vector from the table to the measured point, m
+  std::map<std::string, double> workpiece_offset{};
+  std::string compensation{};  ///< "on" or "off": whether the control's tables were active
+  std::string side{};          ///< for a gantry axis: "master" or "slave"; empty: not stated
   std::optional<std::string>
-      state{};  ///< of the machine, as the manifest states it; see `state_of`
-  /// Of a straightness: id of the same line's measurement before the straightedge was turned over.
+      state{};  ///< state of the machine as the manifest gives it; see `state_of`
+  /// For a straightness: id of the measurement of the same line before the straightedge was turned
+  /// over.
   std::string reversal_of{};
-  std::optional<double> foot{};  ///< m, of a level or mirror that was moved by its own length
-  std::string square{};          ///< of a straightness: the square on whose face it was read
-  bool square_turned = false;    ///< after the square was turned over about one of its faces
-  /// Of this measurement's results. They hold in place of those of its axis with the same name.
+  /// length of the base of a level or mirror that was moved step by step by this length, m
+  std::optional<double> foot{};
+  std::string square{};  ///< for a straightness: name of the square on whose face it was measured
+  bool square_turned = false;  ///< measured after the square was turned over about one of its faces
+  /// Tolerances of this measurement's results. They replace those of its axis with the same name.
   std::vector<Tolerance> tolerances{};
-  /// The keys that the method declares, in the unit of the file, each with its value or its default.
+  /// Values of the keys that the method declares, in the unit of the manifest; defaults are filled
+  /// in.
   Settings settings{};
-  std::string method{};  ///< its name, the key `kind`; empty: `kind` is the name
+  std::string method{};  ///< name of the method, the key `kind`; empty: it is `kind`
   /// What its readings follow: which of them repeat at targets, and whether effects of a model apply.
   enum class Motion {
     targets,     ///< stops at targets, which the runs share
@@ -188,38 +209,41 @@ inline const std::string& method_name(const Measurement& m) {
   return m.method.empty() ? m.kind : m.method;
 }
 
-/// State of the machine in which something was measured: "final". Empty: it holds for every state.
-/// A manifest without key `state` has it after the first space of the id ("D1 final").
+/// Returns the state of the machine in which a measurement was made: "final". Empty: valid for
+/// every state. Without the key `state` it is the text after the first space of the id ("D1
+/// final").
 inline std::string state_of(const Measurement& m) {
   if (m.state) return *m.state;
   const std::size_t space = m.id.find(' ');
   return space == std::string::npos ? std::string() : m.id.substr(space + 1);
 }
 
-/// The axis of the control whose scale a measurement of an axis was made on: on the second side of
-/// a gantry the slave, else the axis itself.
+/// Name of the control's axis whose scale was measured: on the second side of a gantry the slave
+/// axis, otherwise the axis itself.
 inline std::string control_axis(const Machine& machine, const Measurement& m) {
   const Axis* axis = machine.axis(m.axis);
   return m.side == "slave" && axis != nullptr ? axis->slave : m.axis;
 }
 
-/// An effect of the user's own, without compiling.
+/// An effect that the user defines by an expression in the manifest, without compiling a plugin.
 struct Formula {
   struct Parameter {
     std::string name;
     Quantity quantity = Quantity::number;
-    double start = 0.0;                                ///< SI
-    std::optional<std::pair<double, double>> range{};  ///< SI; absent: it enters linearly
+    double start = 0.0;  ///< initial value of the fit, SI
+    /// range that is searched, SI; absent: the parameter is linear
+    std::optional<std::pair<double, double>> range{};
   };
   std::string name, axis, expression;
   std::vector<Parameter> parameters;
-  std::uint64_t line = 0;  ///< of the manifest, with the expression
+  std::uint64_t line = 0;  ///< line of the manifest that contains the expression
 };
 
 struct Campaign {
   std::string id, customer, site, operator_name, date;  ///< date as YYYY-MM-DD, or empty
   std::string customer_address;
-  std::string end_date, received;  ///< of the last measurement; of the item; YYYY-MM-DD, or empty
+  /// day of the last measurement; day on which the item was received; YYYY-MM-DD, or empty
+  std::string end_date, received;
   Machine machine;
   Instrument instrument;
   std::vector<Sensor> sensors{};
@@ -228,8 +252,9 @@ struct Campaign {
   Laboratory laboratory;
   CertificateTexts certificate;
   std::vector<Measurement> measurements;
-  std::vector<std::string> model;  ///< effects, `kind:axis`
-  bool compensate_model = false;   ///< tables take what the model predicts, not the readings' means
+  std::vector<std::string> model;  ///< effects of the model, as `kind:axis`
+  /// tables compensate the model's prediction instead of the mean readings
+  bool compensate_model = false;
   std::vector<Formula> formulas;
 };
 

@@ -7,22 +7,22 @@
 #include "nonio/sdk/observations.h"
 #include "nonio/sdk/results.h"
 
-/// What every later stage relies on, whatever a plugin did. Called by the nightly run, `nonio
-/// import`, the model and `nonio plugin check`. The error states what was found: "columns of
-/// different lengths".
+/// Checks of what plugins return, so that every later stage can rely on it. Called by the nightly
+/// run, `nonio import`, the model and `nonio plugin check`. The error states what was found:
+/// "columns of different lengths".
 namespace nonio {
 
-/// Of readings: columns of one length; deviations, positions and directions of sensing finite;
-/// approaches -1, 0 or +1; uncertainties above 0; at least one line, and no reading of another;
-/// doubts that are findings `plausibility.*` of attention.
+/// Checks readings: columns have one length; deviations, positions and directions of sensing are
+/// finite; approaches are -1, 0 or +1; uncertainties are above 0; there is at least one line, and
+/// each reading belongs to a line; `doubts` are findings `plausibility.*` with attention set.
 Expected<void> check(const Observations& o);
 
-/// Of results: values, uncertainties and evidence finite, coverage factors finite, columns of a
-/// table or series as long as the others, a budget with one entry for each contribution. NaN stays
-/// allowed in a table, where it states that there is no value.
+/// Checks results: values, uncertainties, coverage factors and evidence are finite, the columns of
+/// a table or series have one length, and a budget has one entry for each contribution. NaN is
+/// allowed in a table, where it means that there is no value.
 Expected<void> check(const Evaluation& e);
 
-/// Of what an output or controller made: predictions and evidence finite.
+/// Checks the result of an output or controller: predictions and evidence are finite.
 Expected<void> check(const OutputResult& r);
 
 }  // namespace nonio

@@ -11,18 +11,19 @@
 
 #include "nonio/sdk/plugin.h"
 
-/// Description of a table that does not describe itself: units, sign, separator, and where its rows
-/// are. Nothing of it is guessed.
+/// Options that describe a table whose format is not known: units, sign, separator, and the lines
+/// of its rows. None of these is guessed.
 namespace nonio {
 
-/// An error of an option: "option unit: expected ..., found ...".
+/// Returns an error about an option: "option unit: expected ..., found ...".
 inline Error of_option(std::string_view option, std::string message) {
   Error error{"option " + std::string(option) + ": " + std::move(message)};
   error.key = option;
   return error;
 }
 
-/// How the axis went. `plus` is towards larger coordinates; `forward` as the targets are listed.
+/// Direction of travel of the rows. `plus` is towards larger coordinates; `forward` is the order in
+/// which the targets are listed.
 enum class Way : std::uint8_t { none, plus, minus, forward, reverse };
 
 inline Way direction_of_word(std::string_view word) {
@@ -32,7 +33,8 @@ inline Way direction_of_word(std::string_view word) {
   return word == "reverse" || word == "backward" ? Way::reverse : Way::none;
 }
 
-/// +1 or -1; `listed` is +1 where the targets are listed rising, -1 where they fall.
+/// Returns the direction of approach, +1 or -1; `listed` is +1 if the targets are listed in rising
+/// order, -1 if in falling order.
 inline std::int8_t direction_of(Way way, int listed) {
   const int sign = way == Way::plus      ? 1
                    : way == Way::minus   ? -1
@@ -41,7 +43,8 @@ inline std::int8_t direction_of(Way way, int listed) {
   return static_cast<std::int8_t>(sign);
 }
 
-/// The m (rad) of 1 in a unit of length (of an angle); nothing if it is none.
+/// Returns the SI value (m, rad) of one unit of length (of angle); nothing if the name is not a
+/// unit.
 inline std::optional<double> unit_named(std::string_view name, bool angle) {
   constexpr std::pair<std::string_view, double> lengths[] = {
       {"inch", 0.0254}, {"m", 1.0}, {"mm", 1e-3}, {"nm", 1e-9}, {"um", 1e-6}};
@@ -58,7 +61,8 @@ constexpr const char* units_known(bool angle) {
   return angle ? "arcsec, deg, mrad, rad, urad" : "inch, m, mm, nm, um";
 }
 
-/// The character of a separator's name; blank stands for any number of blanks and tabs.
+/// Returns the character of a separator's name; ' ' means any number of blanks and tabs. Nothing if
+/// the name is unknown.
 inline std::optional<char> separator_named(std::string_view name) {
   if (name == "tab") return '\t';
   if (name == "blank") return ' ';
@@ -66,13 +70,14 @@ inline std::optional<char> separator_named(std::string_view name) {
   return std::nullopt;
 }
 
-/// Lines of a file that are one table, from 1; last 0: to the end of the file.
+/// The lines of a file that form one table, counted from 1; last = 0: to the end of the file.
 struct RowRange {
   std::uint64_t first = 1, last = 0;
-  Way way = Way::none;  ///< of all its rows
+  Way way = Way::none;  ///< direction of travel of all its rows
 };
 
-/// "12-36 forward", "41- reverse" (to the end of the file), "5-9".
+/// Parses a range of lines: "12-36 forward", "41- reverse" (to the end of the file), "5-9". Nothing
+/// if the text is malformed.
 inline std::optional<RowRange> row_range_of(std::string_view text) {
   RowRange range;
   const std::size_t blank = text.find(' ');
@@ -94,16 +99,16 @@ inline std::optional<RowRange> row_range_of(std::string_view text) {
   return range;
 }
 
-/// The values of the options of `table_map_options`.
+/// The parsed options of `table_map_options`.
 struct TableMap {
   char separator = ' ';
-  double target_unit = 0.0, value_unit = 0.0;  ///< SI value of 1
-  bool positions = false;                      ///< values are positions, else deviations
-  double sign = 1.0;                           ///< of deviations
-  double factor = 1.0, offset = 0.0;           ///< of each value; the offset in SI
-  std::vector<RowRange> tables;                ///< one at least, in the order of the file
+  double target_unit = 0.0, value_unit = 0.0;  ///< SI value of one unit
+  bool positions = false;                      ///< values are actual positions, else deviations
+  double sign = 1.0;                           ///< sign of the deviations: +1 or -1
+  double factor = 1.0, offset = 0.0;  ///< value = factor * number + offset; the offset in SI
+  std::vector<RowRange> tables;       ///< at least one range, in the order of the file
 
-  /// Deviation of a value as in the file from a target in SI.
+  /// Returns the deviation, SI, of a number as in the file, at a target in SI.
   double deviation(double read, double target) const {
     const double value = factor * read * value_unit + offset;
     return positions ? value - target : sign * value;
@@ -151,7 +156,7 @@ inline std::vector<Option> table_map_options() {
        "all of it: \"12-36 forward\", \"41-65 reverse\" (or +, -)."}};
 }
 
-/// The lines of each table; an error where they overlap or are not in order.
+/// Returns the lines of each table. Error: the tables overlap, or are not in the order of the file.
 inline Expected<std::vector<RowRange>> tables_of(const Settings& options) {
   std::vector<RowRange> tables;
   const RowRange all{static_cast<std::uint64_t>(options.integer("first_line", 1)),
@@ -178,7 +183,7 @@ inline Expected<std::vector<RowRange>> tables_of(const Settings& options) {
   return tables;
 }
 
-/// An error names an option that is empty or invalid.
+/// Parses the options. The error names an option that is empty or invalid.
 inline Expected<TableMap> table_map_of(const Settings& options, bool rotary) {
   TableMap map;
   for (const auto& [name, unit] :

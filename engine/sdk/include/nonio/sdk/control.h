@@ -14,79 +14,88 @@
 #include "nonio/sdk/results.h"
 #include "nonio/sdk/settings.h"
 
-/// What a controller plugin reports of its tables, and what a control makes of them. With e =
-/// actual - nominal, and c = what the control adds to a position, a table is right if c = -e.
+/// What a controller plugin declares about the tables of its control, and how the control applies
+/// them. With e = actual - nominal and c = what the control adds to a position, a table is correct
+/// if c = -e.
 namespace nonio {
 
-/// The tables of one control. A unit is the m (rad) that 1 in the file stands for; a step is the
-/// smallest difference of two numbers in it. 0: no such limit is known.
+/// Format of the tables of one control. A unit is the SI value (m, rad) of 1 in the file; a step is
+/// the smallest difference of two numbers in the file. A limit of 0 is not known.
 struct ControlTable {
   enum class Sign { error, correction };               ///< entries are +e, or -e
   enum class Entry { absolute, increment, position };  ///< position: nominal plus the entry
   enum class Grid { even, listed };
-  /// Where an entry has to be 0: nowhere (it is 0 at the reference point nevertheless); at the
-  /// reference point, at any position; at the first point, the zero of the axis, from which the
-  /// control counts its points.
+  /// Position at which the entry must be 0. `free`: none is required (the compensation is 0 at the
+  /// reference point nevertheless). `reference`: the reference point, at any position. `first`: the
+  /// first point, which is the zero of the axis, from which the control counts its points.
   enum class Zero { free, reference, first };
   struct Scale {
     double linear = 1e-3, rotary = std::numbers::pi / 180.0;
     double of(bool is_rotary) const { return is_rotary ? rotary : linear; }
   };
-  /// How well something is known: of the maker's manual or source code, of a run of the control
-  /// itself; following from that; general knowledge of the trade.
+  /// Source of a statement: the maker's manual or source code; a run of the control itself; a
+  /// conclusion from these; general knowledge of the trade.
   enum class Confidence { documented, run, inferred, unsure };
   struct Fact {
-    std::string id;  ///< "sign"; where it is not documented, tables come with a note <plugin>.<id>
+    /// name of the property, "sign"; if it is not documented, tables have a note <plugin>.<id>
+    std::string id;
     Confidence confidence = Confidence::documented;
     std::string description;  ///< one sentence, English
   };
 
-  std::string name;  ///< as the maker calls it: "kw.ssfk"
+  std::string name;  ///< name of the format as its maker gives it: "kw.ssfk"
   Sign sign = Sign::error;
   Entry entry = Entry::absolute;
   Grid grid = Grid::even;
   Zero zero = Zero::free;
   Scale position_unit{}, position_step{1e-7, std::numbers::pi / 180e3};
   Scale value_unit{}, value_step{1e-9, std::numbers::pi / 180e6};
-  std::size_t points = 0;  ///< of one table
-  double largest = 0.0;    ///< size of an entry, in file units
-  std::optional<std::pair<std::int64_t, std::int64_t>> increment{};  ///< range of one, in steps
-  bool rotary = true;          ///< takes tables of rotary axes
-  bool bidirectional = false;  ///< takes tables for each direction
-  bool straightness = false;   ///< an axis by the position of another
+  std::size_t points = 0;  ///< largest number of points of one table
+  double largest = 0.0;    ///< largest absolute value of an entry, in file units
+  /// range of one increment, in steps
+  std::optional<std::pair<std::int64_t, std::int64_t>> increment{};
+  bool rotary = true;          ///< supports tables of rotary axes
+  bool bidirectional = false;  ///< supports separate tables for each direction
+  bool straightness = false;   ///< supports compensation of one axis by the position of another
   bool squareness = false;
-  bool volumetric = false;  ///< by the positions of several axes at once, or all errors in one file
-  bool runs_gcode = true;   ///< takes part programs in G-code
-  std::string backlash;     ///< the parameter of lost motion; empty: none with these tables
+  /// supports tables over the positions of several axes, or all errors in one file
+  bool volumetric = false;
+  bool runs_gcode = true;  ///< runs part programs in G-code
+  /// the parameter for the backlash value; empty: none exists with these tables
+  std::string backlash;
   std::vector<Fact> facts{};
 };
 
-/// A table as its control reads it: c, what it adds to the position of `output`. SI. Range: what
-/// `validate_table` (math/loaded_table.h) accepts.
+/// A table as its control applies it: c, which the control adds to the position of `output`. SI.
+/// Range: what `validate_table` (math/loaded_table.h) accepts.
 struct LoadedTable {
   enum class Outside { holds, zero, repeats, continues };
-  std::string output;                         ///< axis; as the file names it if it is not known
-  std::vector<std::string> input;             ///< by the positions of these; one, or two
-  std::vector<std::vector<double>> position;  ///< of each input, ascending
-  std::vector<double> plus;                   ///< c; of two inputs the last one runs fastest
-  std::vector<double> minus;                  ///< moving towards minus; empty: as `plus`
+  std::string output;  ///< compensated axis; the name in the file if the axis is not known
+  std::vector<std::string> input;             ///< one or two axes whose positions select the value
+  std::vector<std::vector<double>> position;  ///< grid positions of each input, ascending, m or rad
+  /// c for motion towards plus, at the grid points, m or rad; for two inputs the last one varies
+  /// fastest
+  std::vector<double> plus;
+  std::vector<double> minus;  ///< c for motion towards minus; empty: the same as `plus`
   Outside outside = Outside::holds;
-  std::optional<double> backlash{};  ///< what the file sets: m or rad, lost motion is positive
-  bool rotary = false;               ///< of the output axis
+  /// backlash value that the file sets, m or rad; lost motion is positive
+  std::optional<double> backlash{};
+  bool rotary = false;  ///< whether the output axis is rotary
 };
 
-/// The files of one table, and what is known of the machine: its axes, with their numbers in the
-/// options, state what the files' names mean.
+/// The files of one table, and the known facts about the machine: the axes of the campaign and
+/// their numbers in the options identify the axes in the files.
 struct TableInput {
   const std::vector<Artifact>& files;
   const Campaign& campaign;
   const Settings& options;
 };
 
-/// A control's backup, and the files of a new table: what `Controller::merge` puts together.
+/// Input of `Controller::merge`: a control's backup, and the files of a new table.
 struct MergeInput {
-  const std::vector<Artifact>& backup;  ///< as it was saved, all files that hold tables
-  const std::vector<Artifact>& table;   ///< of this axis, as `Controller::write` made them
+  /// the backup as it was saved: all files that contain tables
+  const std::vector<Artifact>& backup;
+  const std::vector<Artifact>& table;  ///< the files of this axis, as `Controller::write` made them
   const std::string& axis;
   const Campaign& campaign;
   const Settings& options;

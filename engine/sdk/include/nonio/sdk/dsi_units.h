@@ -34,7 +34,7 @@ inline constexpr std::array<std::pair<std::string_view, std::string_view>, 23> d
     {"arcsec/(deg reading)", "\\arcsecond\\per\\degree"},
 }};
 
-/// Empty if there is none.
+/// Returns the D-SI name of a printed unit; empty if there is none.
 constexpr std::string_view dsi_of(std::string_view unit) {
   for (const auto& [ours, theirs] : dsi_units)
     if (ours == unit) return theirs;

@@ -8,15 +8,16 @@
 
 namespace nonio {
 
-/// What went wrong, in words for the user: what was wanted, what was found. The place (file,
-/// line, column) grows outward: the innermost function that knows a part of it fills it in.
+/// An error, in words for the user: what was expected, what was found. Each function adds the part
+/// of the place (file, line, column) that it knows, from the innermost outward.
 struct Error {
   std::string message;
-  std::string file{};      ///< relative to the campaign's directory; empty if no file is to blame
-  std::uint64_t line = 0;  ///< 1-based; 0 if no line is to blame
+  /// relative to the campaign's directory; empty if the error is not in a file
+  std::string file{};
+  std::uint64_t line = 0;  ///< 1-based; 0 if the error is not in a line
   std::string column{};    ///< name of the column, empty if none
-  /// The plugin's own option (`axes`) or the key of the manifest (`campaign.customer`) that is to
-  /// blame: the host knows its file and line. Empty if none.
+  /// The plugin option (`axes`) or manifest key (`campaign.customer`) that caused the error; the
+  /// host adds its file and line. Empty if none.
   std::string key{};
 };
 
@@ -29,8 +30,8 @@ inline tl::unexpected<Error> fail(std::string message) {
 
 inline tl::unexpected<Error> fail(Error error) { return tl::unexpected<Error>(std::move(error)); }
 
-/// Declares a variable with the value of an Expected; where there is none, returns its error:
-/// NONIO_TRY(const auto axis, axis_of(input));
+/// Declares a variable with the value of an Expected, or returns its error from the enclosing
+/// function: NONIO_TRY(const auto axis, axis_of(input));
 #define NONIO_TRY(declaration, ...) \
   NONIO_TRY_NAMED_(NONIO_JOINED_(tried_in_line_, __LINE__), declaration, __VA_ARGS__)
 #define NONIO_TRY_NAMED_(tried, declaration, ...)             \

@@ -16,8 +16,8 @@
 #include "nonio/sdk/powers_of_10.h"
 #include "nonio/sdk/text.h"
 
-/// The lowest floor of readers of text: lines to fields, fields to numbers, text to words for a
-/// user.
+/// Basic functions of readers of text files: split lines into fields, parse numbers, quote text in
+/// messages.
 namespace nonio::readers {
 
 enum class DecimalMark : std::uint8_t { none, point, comma };
@@ -26,7 +26,7 @@ struct Field {
   enum class Kind : std::uint8_t {
     taken,      ///< a finite number below 1e19 in size
     not_taken,  ///< blank, nan, n/a, #N/A (#N/D, #NV), infinite, or 1e19 and more in size
-    bad,        ///< anything else
+    bad,        ///< any other text
   };
   Kind kind = Kind::bad;
   DecimalMark mark = DecimalMark::none;
@@ -44,7 +44,7 @@ bool missing_in_spreadsheet(std::string_view text);
 
 namespace detail {
 
-/// From here on a number is a mark of the instrument that no reading was taken.
+/// Numbers of at least this size mark a reading that the instrument did not take.
 inline constexpr double sentinel = 1e19;
 
 inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -64,22 +64,23 @@ inline bool means_not_taken(std::string_view text) {
   return false;
 }
 
-/// A number taken apart; value = digits * 10^exponent.
+/// A parsed decimal number: value = digits * 10^exponent.
 struct Decimal {
   bool negative = false;
-  std::uint64_t digits = 0;  ///< wrong if there are more than 19
-  long count = 0;            ///< of all digits, leading zeros too
-  long exponent = 0;         ///< of the last digit
+  std::uint64_t digits = 0;  ///< invalid if there are more than 19 digits
+  long count = 0;            ///< number of digits, including leading zeros
+  long exponent = 0;         ///< power of ten of the last digit
   DecimalMark mark = DecimalMark::none;
 };
 
-/// Adds the digits at `p`, and gives where they end.
+/// Appends the digits at `p` to `digits`; returns the end of the digits.
 inline const char* take_digits(const char* p, const char* end, std::uint64_t& digits) {
   for (; p != end && is_digit(*p); ++p) digits = digits * 10 + static_cast<std::uint64_t>(*p - '0');
   return p;
 }
 
-/// [eE][+-]digits at `p`; false if there is something else.
+/// Parses an exponent [eE][+-]digits at `p`, which must extend to the end; false if there is other
+/// text.
 inline bool take_exponent(const char* p, const char* end, Decimal& d) {
   if (p == end) return true;
   if (*p != 'e' && *p != 'E') return false;
@@ -112,7 +113,8 @@ inline bool parse_decimal(std::string_view text, bool comma_allowed, Decimal& d)
   return d.count > 0 && take_exponent(p, end, d);
 }
 
-/// Every digit counts here, so the library does it; the text is known to be well formed.
+/// Converts the text exactly with the standard library, for numbers whose digits do not fit into a
+/// double. The text is known to be well formed.
 inline double slow_value(std::string_view text, const Decimal& d) {
   std::string plain(text.front() == '+' ? text.substr(1) : text);
   std::replace(plain.begin(), plain.end(), ',', '.');
@@ -120,7 +122,7 @@ inline double slow_value(std::string_view text, const Decimal& d) {
   const auto [ptr, error] =
       std::from_chars(plain.data(), plain.data() + plain.size(), value, std::chars_format::general);
   if (error == std::errc{}) return value;
-  // Too large or too small for a double: the place of the first significant digit decides.
+  // Too large or too small for a double: the position of the first significant digit decides which.
   long zeros = 0;
   for (const char c : plain) {
     if (c >= '1' && c <= '9') break;
@@ -132,14 +134,15 @@ inline double slow_value(std::string_view text, const Decimal& d) {
 
 }  // namespace detail
 
-/// What a spreadsheet writes for a value that is missing: #N/A, in other languages #N/D, #NV.
+/// Whether the text is a spreadsheet's mark for a missing value: #N/A, in other languages #N/D,
+/// #NV.
 inline bool missing_in_spreadsheet(std::string_view text) {
   return detail::same_word(text, "#n/a") || detail::same_word(text, "#n/d") ||
          detail::same_word(text, "#nv");
 }
 
-/// A decimal number as written in a file: sign, digits, one decimal mark, exponent; no thousands
-/// separator, no hexadecimal, nothing after it. The value is the double nearest to the text.
+/// Parses a decimal number: sign, digits, one decimal mark, exponent; no thousands separator, no
+/// hexadecimal, no text after it. The value is the double nearest to the text.
 inline Field parse_number(std::string_view text, bool comma_allowed) {
   detail::Decimal d;
   if (!detail::parse_decimal(text, comma_allowed, d)) {
@@ -163,7 +166,7 @@ inline Field parse_number(std::string_view text, bool comma_allowed) {
   return {kind, d.mark, value + 0.0};  // + 0.0: no negative zero
 }
 
-/// 1..4294967295, digits only; 0 if it is anything else.
+/// Parses a number of a run, 1 to 4294967295, digits only; 0 if the text is anything else.
 inline std::uint32_t parse_run(std::string_view text) {
   std::uint64_t run = 0;
   if (text.empty()) return 0;
@@ -177,7 +180,8 @@ inline std::uint32_t parse_run(std::string_view text) {
 
 namespace detail {
 
-/// A field in quotes that open at `open`; gives where it ends, npos if it is not well formed.
+/// Extracts the quoted field whose quote opens at `open`; returns the position after it, or npos if
+/// it is malformed.
 inline std::size_t quoted_end(std::string_view line, std::size_t open, char separator,
                               std::string_view& field) {
   std::size_t close = line.find('"', open + 1);
@@ -215,13 +219,13 @@ inline bool split(std::string_view line, char separator, std::vector<std::string
   }
 }
 
-/// Text of a file, quoted for a message: shortened, and control characters and bytes that are not
-/// UTF-8 as \xHH.
+/// Quotes text of a file for a message: shortened to 40 bytes; control characters, and bytes that
+/// are not UTF-8, are written as \xHH.
 inline std::string shown(std::string_view text) {
   constexpr std::size_t most = 40;
   constexpr std::string_view hex = "0123456789ABCDEF";
   std::string_view part = text.substr(0, most);
-  // A cut must not leave half a character.
+  // Do not cut within a UTF-8 character.
   while (part.size() < text.size() && !part.empty() &&
          (static_cast<unsigned char>(text[part.size()]) & 0xC0U) == 0x80)
     part.remove_suffix(1);
@@ -246,7 +250,7 @@ inline std::string shown(std::string_view text) {
   return out + (part.size() < text.size() ? "...\"" : "\"");
 }
 
-/// How many letters differ, are missing or are too many (Levenshtein), bytes as letters.
+/// Levenshtein distance: the number of bytes to replace, insert or delete.
 inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -262,14 +266,16 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// The name of `names` nearest to `name` by edit distance; names must not be empty.
+/// Returns the element of `names` with the smallest edit distance to `name`; names must not be
+/// empty.
 inline std::string_view nearest(std::string_view name, const std::vector<std::string_view>& names) {
-  name = name.substr(0, 24);  // longer than any name of a column
+  name = name.substr(0, 24);  // longer than any column name
   std::string_view best = names.front();
   std::size_t least = edit_distance(name, best);
   for (const std::string_view candidate : names) {
     const std::size_t a = name.size(), b = candidate.size();
-    if ((a > b ? a - b : b - a) >= least) continue;  // the distance is at least that
+    // the distance is at least the difference of the lengths
+    if ((a > b ? a - b : b - a) >= least) continue;
     const std::size_t distance = edit_distance(name, candidate);
     if (distance >= least) continue;
     least = distance;
@@ -282,9 +288,9 @@ inline std::string_view nearest(std::string_view name, const std::vector<std::st
 
 namespace nonio {
 
-/// Text as a field of a CSV file: quoted where RFC 4180 requests it. A spreadsheet takes text that
-/// starts with one of = + - @ (or with a tab or CR before it) for a formula; an apostrophe stops
-/// that.
+/// Writes text as a field of a CSV file: quoted if RFC 4180 requires it. A spreadsheet interprets
+/// text that starts with one of = + - @ (or with a tab or CR before it) as a formula; a leading
+/// apostrophe prevents this.
 inline std::string csv_text(std::string_view words) {
   std::string field(words);
   if (!field.empty() && std::string_view("=+-@\t\r").find(field.front()) != std::string_view::npos)

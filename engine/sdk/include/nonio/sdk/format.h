@@ -13,7 +13,7 @@
 #include "nonio/sdk/settings.h"
 #include "nonio/sdk/units.h"
 
-/// Numbers and words as people and programs read them; the locale of the process has no part in it.
+/// Formats numbers and texts for people and programs, independently of the locale of the process.
 namespace nonio {
 
 /// digits * 10^-places, exactly; places is 0 to 22.
@@ -23,28 +23,30 @@ struct Decimal {
   double value() const;
 };
 
-/// digits * 10^-places with all its places, "-" before it if it is negative and not zero.
+/// Writes digits * 10^-places with all its places, preceded by "-" if it is negative and not zero.
 std::string decimal_text(std::int64_t digits, int places, bool negative);
 
-/// Round half away from zero, to `decimals` digits after the point:
+/// Writes a number with `decimals` digits after the point, rounded half away from zero:
 ///
 ///     r = sign(x) floor(|x| 10^decimals + 1/2) 10^-decimals
 ///
-/// of the 15 significant digits that a double holds: 0.15 is a tie, although its binary value is a
-/// little less (IEEE 754-2019, 5.12.2: 15 digits survive). Never "-0.0". Empty if it is not finite.
+/// Rounding uses the 15 significant digits that a double preserves: 0.15 is a tie, although its
+/// binary value is slightly less (IEEE 754-2019, 5.12.2). Never "-0.0". Empty if the value is not
+/// finite.
 std::string fixed_text(double value, int decimals);
 
-/// The number that `fixed_text` shows.
+/// Returns the number that `fixed_text` prints.
 double rounded_to_places(double value, int decimals);
 
-/// What `fixed_text` gives, without its quick way, for every finite value.
+/// The same result as `fixed_text` for every finite value, always by decimal digits: a reference
+/// for its faster method.
 std::string fixed_text_by_digits(double value, int decimals);
 
-/// The place (power of ten) of the second significant digit, after rounding to it: 0.0996 gives
-/// 0.10 and so -2.
+/// Returns the power of ten of the second significant digit, after rounding to two digits: 0.0996
+/// rounds to 0.10, which gives -2.
 int place_of_second_digit(double size);
 
-/// To a multiple of 10^place.
+/// Writes the value rounded to a multiple of 10^place.
 std::string rounded_text(double value, int place);
 
 /// A result in the printed unit, with a decimal point.
@@ -52,56 +54,58 @@ struct RoundedResult {
   std::string value, U;
 };
 
-/// U to two significant digits (GUM, JCGM 100:2008, 7.2.6), the value to the same place, at most 9
-/// places behind the point. Nothing where U is not above 0, or either is no finite number.
+/// Rounds U to two significant digits (GUM, JCGM 100:2008, 7.2.6) and the value to the same place,
+/// at most 9 places after the point. Nothing if U is not above 0, or if either is not finite.
 std::optional<RoundedResult> rounded_result(double value, double U);
 
-/// With about `significant` digits, without an exponent from 1e-4 to 1e9. Empty if it is not
-/// finite.
+/// Writes a number with about `significant` digits, without an exponent from 1e-4 to 1e9. Empty if
+/// it is not finite.
 std::string short_text(double value, int significant = 3);
-/// Positions of axes, in m, as "X=400 Y=300" in mm.
+/// Writes positions of axes, given in m, in mm: "X=400 Y=300".
 std::string positions_text(const std::map<std::string, double>& at);
 
-/// To 12 significant digits, half to even of its exact binary value; never -0.
+/// Rounds to 12 significant digits, ties of the exact binary value to even; never -0.
 double rounded_by_digits(double value);
 
-/// The value that programs get: SI converted to its printed unit, rounded to 12 significant digits,
-/// so that 0.0252 m gives 25.2 mm and not its neighbour. Never -0; what is not finite stays so.
+/// Returns the value in output files: SI converted to its printed unit and rounded to 12
+/// significant digits, so that 0.0252 m gives exactly 25.2 mm. Never -0; values that are not finite
+/// are unchanged.
 double printed(double si, Quantity quantity);
 
-/// The digits of the shortest text that reads back the same, for 1e-11 <= size < 1e12; nothing
-/// where they are not found quickly. Then `append_shortest` finds them.
+/// Returns the digits of the shortest text that parses to the same double, for 1e-11 <= size <
+/// 1e12; nothing if the fast method does not find them. `append_shortest` handles every value.
 std::optional<Decimal> shortest_decimal(double size);
 
-/// The shortest text that reads back the same, as std::to_chars writes it.
+/// Appends the shortest text that parses to the same double, as std::to_chars writes it.
 void append_shortest(std::string& out, double value);
 
-/// Decimal comma for languages that use one.
+/// Replaces the decimal point by a comma for languages that use one.
 std::string localised(std::string number, std::string_view language);
 
-/// A text of templates/words/<language>/*.toml by its flattened name; empty if there is none.
+/// Returns a text of templates/words/<language>/*.toml by its flattened name; empty if there is
+/// none.
 std::string words(const Templates& templates, std::string_view language, std::string_view name);
 
-/// The number of a finding in a sentence: counts are whole, positions keep their digits, and a
-/// probability is "p = 0.0021", or "p < ..." below a smallest printed value.
+/// Writes a number of a finding for a sentence: counts as integers, positions with all their
+/// digits, and a probability as "p = 0.0021", or "p < ..." below the smallest printed value.
 std::string evidence_text(const Number& n);
 
-/// `text` with each `{name}` replaced by the finding's evidence of that name (numbers carry their
-/// unit in the name: {mean_um}; by the bare name, {mean}, a number comes with its unit, whatever
-/// that is). A placeholder without evidence stays as it is, to be seen.
+/// Replaces each `{name}` in `text` by the finding's evidence of that name. A number whose
+/// placeholder names a unit, {mean_um}, is written without unit; with the bare name, {mean}, its
+/// unit is added. A placeholder without evidence is kept, so that the error is visible.
 std::string filled(std::string_view text, const Finding& finding, std::string_view language);
 
-/// Texts of a finding that are names out of a list, in words where the language has some:
+/// Translates texts of a finding that are names of a list, if the language has the text
 /// `term.<key>.<text>` of templates/words.
 std::vector<std::pair<std::string, std::string>> said(
     const Templates& templates, std::string_view language,
     std::vector<std::pair<std::string, std::string>> texts);
 
-/// The words for a finding: part is "title", "says" or "advice".
+/// Returns a text of a finding; `part` is "title", "says" or "advice".
 std::string finding_text(const Templates& templates, std::string_view language,
                          const Finding& finding, std::string_view part);
 
-/// The words for a remark; `english` where there are none.
+/// Returns the text of a remark; `english` if the language has none.
 std::string remark_text(const Templates& templates, std::string_view language,
                         const Remark& remark);
 

@@ -5,9 +5,9 @@
 
 namespace nonio {
 
-/// Collects the texts that `words` (format.h) looks up most - findings, notes, terms - from all
-/// files of a language into one table, the first file first, so that it searches one table instead
-/// of twenty. To be called after templates are read; the texts stay the same.
+/// Collects the texts that `words` (format.h) looks up most often (findings, notes, terms) from all
+/// files of a language into one table, so that it searches one table instead of twenty. Earlier
+/// files have priority. Call it after templates are read; it changes no text.
 void gather_words(Templates& templates);
 
 }  // namespace nonio

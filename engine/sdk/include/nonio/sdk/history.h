@@ -8,7 +8,7 @@
 
 #include "nonio/sdk/units.h"
 
-/// A machine over its campaigns, as it was computed. Numbers are SI, days "YYYY-MM-DD",
+/// The history of a machine over its campaigns, as computed. Numbers are SI, days "YYYY-MM-DD",
 /// uncertainties standard (k = 1).
 namespace nonio {
 
@@ -18,26 +18,27 @@ struct HistoryPoint {
   State state = State::as_found;
   double value = 0.0, u = 0.0;
   bool joined = true;
-  std::string why_not{};  ///< it is not joined
-  double u_common = 0.0;  ///< of what it shares with other campaigns: the instrument, the expansion
+  std::string why_not{};  ///< reason why the point is not joined to the series
+  /// part of u shared with other campaigns: instrument, expansion coefficient
+  double u_common = 0.0;
 };
 
-/// The model of a series between two days.
+/// The fitted model of a series between two days.
 struct HistorySegment {
   std::string from, to;
-  double first = 0.0, last = 0.0;      ///< at `from`, at `to`
-  double u_first = 0.0, u_last = 0.0;  ///< of these
-  double slope = 0.0, u_slope = 0.0;   ///< per year
+  double first = 0.0, last = 0.0;      ///< fitted values at `from` and at `to`
+  double u_first = 0.0, u_last = 0.0;  ///< standard uncertainties of `first` and `last`
+  double slope = 0.0, u_slope = 0.0;   ///< change per year
   std::string from_campaign{}, to_campaign{};
 };
 
 struct HistoryChange {
-  std::string after, before;            ///< days of the last campaign before it, the first after it
+  std::string after, before;  ///< day of the last campaign before the change; of the first after it
   double size = 0.0, u = 0.0, p = 1.0;  ///< p: adjusted for all tests of the run
   std::string cause;                    ///< undeclared, event, instrument, table
   std::string event{};
   std::string after_campaign{}, before_campaign{};
-  double p_alone = 1.0;  ///< of this test alone
+  double p_alone = 1.0;  ///< p-value of this test without adjustment
   bool mailed = true;    ///< significant enough for a mail
 };
 
@@ -46,21 +47,21 @@ struct HistoryForecast {
   double value = 0.0, u = 0.0;
   double p_out = 0.0;
   std::string leaves{};  ///< day on which the 95 % bound meets the limit; empty: never
-  std::string answer;    ///< keep, watch, act, overdue, cannot-say
+  std::string answer;    ///< recommendation: keep, watch, act, overdue, cannot-say
 };
 
 struct HistorySeries {
   std::string axis, quantity;
   Quantity unit = Quantity::deviation;
   std::vector<HistoryPoint> points;
-  std::string model;  ///< none, level, drift, step, walk; empty of a largest deviation
+  std::string model;  ///< none, level, drift, step, walk; empty for a largest deviation
   std::vector<HistorySegment> segments{};
   std::vector<HistoryChange> changes{};
   std::optional<double> smallest_change{}, limit{};
   std::optional<HistoryForecast> forecast{};
-  bool ended = false;  ///< later campaigns measure it otherwise, in a series of their own
-  /// Stretch of the axis over which its model compares campaigns that have other targets; the points
-  /// are values of their own targets. None: as they are.
+  bool ended = false;  ///< later campaigns use another method, in a series of their own
+  /// Range of the axis over which the model compares campaigns with different targets; the points
+  /// themselves are evaluated at their own targets. None: points are compared directly.
   struct Over {
     double from = 0.0, to = 0.0;
   };
@@ -71,32 +72,31 @@ struct MachineEvent {
   std::string date, axis, kind, text;
 };
 
-/// A value of one campaign less the one before it in its series. What both have in common (one
-/// instrument under one certificate) is not in `u`.
+/// Difference between the value of one campaign and the previous value of its series. Contributions
+/// shared by both (one instrument under one certificate) are not part of `u`.
 struct HistoryStep {
   std::string axis, quantity;
   std::size_t series = 0;           ///< index into HistorySoFar::series
-  std::string campaign;             ///< of the value
-  std::string before, before_date;  ///< campaign and day of the one before it
-  std::size_t point = 0;            ///< index into that series' points
+  std::string campaign;             ///< campaign of the later value
+  std::string before, before_date;  ///< campaign and day of the previous value
+  std::size_t point = 0;            ///< index of the later value into the points of that series
   double size = 0.0, u = 0.0;
 };
 
-/// The history of a machine up to the day of a campaign, for its documents. It depends on nothing
-/// later, on no other machine and on no run.
+/// The history of a machine up to the day of a campaign, for that campaign's documents. It does not
+/// depend on later campaigns, on other machines or on the run.
 struct HistorySoFar {
-  std::string machine;               ///< its name; empty: the campaign names none
-  std::string day;                   ///< of the campaign; empty: it has none
+  std::string machine;               ///< name of the machine; empty: the campaign states none
+  std::string day;                   ///< day of the campaign; empty: not stated
   std::vector<std::string> aliases;  ///< other names of the machine
-  /// The other campaigns that it is made from, by day: id, and digest of what the history has of
-  /// their results.
+  /// Id of each other campaign used, by day, with the digest of its results that the history uses.
   std::vector<std::pair<std::string, std::string>> campaigns;
-  std::string sha256;  ///< of all that it is made from
+  std::string sha256;  ///< digest of all inputs of this history
   std::vector<MachineEvent> events;
-  std::vector<HistorySeries> series;  ///< those that the campaign has a point of
-  std::vector<HistoryStep> steps;     ///< of the campaign's own points
-  std::string due;                    ///< next calibration by a rule; empty: there is no rule
-  int months = 0;                     ///< that rule's
+  std::vector<HistorySeries> series;  ///< series that contain a point of the campaign
+  std::vector<HistoryStep> steps;     ///< steps to the campaign's own points
+  std::string due;  ///< day of the next calibration by a rule; empty: there is no rule
+  int months = 0;   ///< interval of that rule in months
 };
 
 }  // namespace nonio

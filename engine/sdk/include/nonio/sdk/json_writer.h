@@ -10,13 +10,13 @@
 
 namespace nonio {
 
-/// JSON (RFC 8259) written straight into a text. Text that is not UTF-8 gets replacement
-/// characters; a number that is not finite is null.
+/// Writes JSON (RFC 8259) to a text. Bytes that are not UTF-8 become replacement characters; a
+/// number that is not finite becomes null.
 class JsonWriter {
  public:
-  /// A line for each value, indented by one, so that a difference of two files reads well; or one
-  /// line for all; or one line that may be within a <script> of a page: nothing in it ends the
-  /// element.
+  /// lines: one line per value, indented by one blank, so that two files can be compared line by
+  /// line. one_line: everything on one line. in_script: one line that may be embedded in a <script>
+  /// of a page, because no text in it can end the element.
   enum class Layout { lines, one_line, in_script };
   explicit JsonWriter(Layout layout = Layout::lines) : layout_(layout) {}
 
@@ -34,7 +34,7 @@ class JsonWriter {
   void value(bool yes);
   void value(const std::vector<std::string>& texts);
   void null() { item("null"); }
-  void raw(std::string_view json) { item(json); }  ///< a value that is JSON already
+  void raw(std::string_view json) { item(json); }  ///< writes a value that is JSON already
   template <class T>
   void member(std::string_view name, const T& of) {
     key(name);
@@ -59,7 +59,7 @@ class JsonWriter {
     });
   }
 
-  /// What was written; in lines, with a newline at its end.
+  /// Returns what was written; with Layout::lines it ends with a newline.
   std::string take();
 
  private:
@@ -73,7 +73,7 @@ class JsonWriter {
   Layout layout_;
   std::string out_;
   std::size_t depth_ = 0;
-  bool empty_ = true;  // the innermost object or array
+  bool empty_ = true;  // whether the innermost open object or array is empty
   bool after_key_ = false;
 };
 

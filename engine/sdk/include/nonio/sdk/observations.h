@@ -11,21 +11,21 @@
 
 namespace nonio {
 
-/// Component of vectors in space along which a linear axis moves: 0, 1, 2 for X, Y, Z (and X1, Y2,
-/// ...); 3 if the name does not state it.
+/// Index of the coordinate along which a linear axis moves: 0, 1, 2 for X, Y, Z (and X1, Y2, ...);
+/// 3 if the name does not state it.
 inline std::size_t coordinate_of(std::string_view axis) {
   const std::size_t at =
       axis.empty() ? std::string_view::npos : std::string_view("XYZ").find(axis[0]);
   return at == std::string_view::npos ? 3 : at;
 }
 
-/// Commanded positions that lie nearer together are one target: 0.0001 mm, 0.02 arcsec. m or rad.
+/// Commanded positions closer than this are one target: 0.0001 mm, 0.02 arcsec. m or rad.
 inline constexpr double grid_tolerance = 1e-7;
 
-/// The one table that all measurements reduce to: a row is one reading that was taken. Columns have
-/// `size()` entries, or none where the file did not have them. SI: m, rad, s, degC. Signs:
-/// deviation = actual - target (ISO 230-2), drawn in docs/conventions.md. The conditions for its
-/// values are those of `check` (sdk/check.h).
+/// The table to which all measurements are converted: one row per reading that was taken. Columns
+/// have `size()` entries, or none if the file does not contain them. SI: m, rad, s, degC. Signs:
+/// deviation = actual - target (ISO 230-2), see docs/conventions.md. `check` (sdk/check.h) defines
+/// the valid values.
 struct Observations {
   /// Commanded position of one axis, and the direction from which it was reached.
   struct AxisColumn {
@@ -37,53 +37,56 @@ struct Observations {
   /// Readings of one line share one unknown zero and one direction of sensing.
   struct Line {
     std::string name;
-    std::array<double, 3> sense{};  ///< unit vector; all 0 on a rotary axis (deviation is an angle)
-    /// Lines of one rigid body whose place and turn in the machine are unknown have its name.
+    /// direction of sensing, unit vector; all 0 for a rotary axis (deviation is an angle)
+    std::array<double, 3> sense{};
+    /// Name shared by the lines of one rigid body whose position and orientation in the machine are
+    /// unknown.
     std::string body{};
-    bool body_size_known = true;  ///< false: its temperature is unknown, too
+    bool body_size_known = true;  ///< false: its size is unknown, because its temperature is
   };
 
-  /// What was recorded next to the deviations: a temperature at some place, a speed, a load. With
-  /// times of its own: it may begin before the first reading and end after the last one.
+  /// A quantity recorded next to the deviations: a temperature at some place, a speed, a load. It
+  /// has times of its own, and may begin before the first reading and end after the last one.
   struct Channel {
-    std::string name;             ///< of its column without the unit: "t4", "speed"
-    std::string unit;             ///< "degC", "rpm", "%", "kW", "A"
-    std::vector<double> time;     ///< s, ascending
-    std::vector<double> value;    ///< in this unit; finite
-    std::string place{}, role{};  ///< of the manifest (`Measurement::Channel`)
+    std::string name;           ///< name of its column without the unit: "t4", "speed"
+    std::string unit;           ///< "degC", "rpm", "%", "kW", "A"
+    std::vector<double> time;   ///< s, ascending
+    std::vector<double> value;  ///< finite, in `unit`
+    /// place and role that the manifest states (`Measurement::Channel`)
+    std::string place{}, role{};
 
     bool is_temperature() const { return unit == "degC"; }
   };
 
-  std::string measurement;  ///< its id in the manifest
+  std::string measurement;  ///< id of the measurement in the manifest
   bool angular = false;     ///< deviation is an angle (rad), else a length (m)
   std::vector<AxisColumn> axes;
   std::vector<Line> lines;
 
   std::vector<double> deviation;           ///< actual - target, m or rad; always finite
   std::vector<double> u;                   ///< standard uncertainty of the deviation
-  std::vector<std::uint32_t> run;          ///< as numbered in the file, from 1
+  std::vector<std::uint32_t> run;          ///< number of the run in the file, from 1
   std::vector<std::uint32_t> line;         ///< index into `lines`; empty: all in lines[0]
   std::vector<std::uint32_t> source_line;  ///< line of the file, 1-based
   std::vector<double> time;                ///< s; NaN where blank
   std::vector<double> material, air;       ///< degC; NaN where blank
   std::vector<double> pressure, humidity;  ///< hPa, % ; NaN where blank
 
-  std::vector<Channel> channels{};  ///< of a measurement over time
+  std::vector<Channel> channels{};  ///< recorded channels of a measurement over time
 
-  /// Direction of sensing of each reading, where it differs within a line; else empty.
+  /// Direction of sensing of each reading, if it differs within a line; else empty.
   std::vector<std::array<double, 3>> sense{};
 
-  /// Of the machine (manifest), for effects that depend on it.
+  /// Structure of the machine (manifest), for effects that depend on it.
   std::string structure{};
 
   /// False: the order in which the rows were taken is not known (manifest, `order = "unknown"`).
   bool order_known = true;
 
   std::uint64_t missing = 0;  ///< readings that were not taken
-  std::vector<Remark> notes;  ///< what the reader did that a user would want to know
-  /// Contradictions between file and manifest: findings `plausibility.*`, for which no table is
-  /// written before a person states why.
+  std::vector<Remark> notes;  ///< remarks of the reader that concern the user
+  /// Contradictions between file and manifest: findings `plausibility.*`. While they exist, no
+  /// table is written until a person states a reason to accept them.
   std::vector<Finding> doubts{};
 
   std::size_t size() const { return deviation.size(); }
@@ -97,7 +100,7 @@ struct Observations {
       if (a.axis == name) return &a;
     return nullptr;
   }
-  /// Of a reading, also if the file does not contain it.
+  /// Values of a reading with their defaults, if the file does not contain the column.
   std::uint32_t line_of(std::size_t i) const { return line.empty() ? 0 : line[i]; }
   std::uint32_t run_of(std::size_t i) const { return run.empty() ? 1 : run[i]; }
   std::uint32_t source_line_of(std::size_t i) const {
@@ -108,8 +111,8 @@ struct Observations {
   }
 };
 
-/// Calls f(column...) for each column that was measured in addition to the deviation, with that of
-/// each table: u, run, source_line, time, material, air, pressure, humidity.
+/// Calls f(column...) for each column measured in addition to the deviation (u, run, source_line,
+/// time, material, air, pressure, humidity), with one argument per table.
 template <class F, class... Tables>
 void for_each_measured_column(F f, Tables&... tables) {
   f(tables.u...);
@@ -122,10 +125,10 @@ void for_each_measured_column(F f, Tables&... tables) {
   f(tables.humidity...);
 }
 
-/// Calls f(column) for each column that has an entry for each reading, those of the axes first.
+/// Calls f(column) for each column with one entry per reading, those of the axes first.
 template <class Table, class F>
 void for_each_column(Table& o, F f) {
-  // A new member of Observations stops the compiler here: is it a column?
+  // A new member of Observations fails to compile here: decide whether it is a column.
   [[maybe_unused]] const auto& [measurement, angular, axes, lines, deviation, u, run, line,
                                 source_line, time, material, air, pressure, humidity, channels,
                                 sense, structure, order_known, missing, notes, doubts] = o;
@@ -139,13 +142,13 @@ void for_each_column(Table& o, F f) {
   for_each_measured_column(f, o);
 }
 
-/// Appends the readings of `more` to those of `to`: the deviations, and what was measured with
-/// them. In a column that only one of the two has, the rows of the other are NaN; run 1, source
-/// line 0. Axes, lines and channels are the caller's.
+/// Appends the readings of `more` to those of `to`: the deviations and the columns measured with
+/// them. If only one of both has a column, the rows of the other are NaN, run 1, or source line 0.
+/// The caller appends axes, lines and channels.
 void append_measured(Observations& to, const Observations& more);
-/// The rows that `kept` has something at, in their order, and nothing of the others.
+/// Keeps the rows i with kept[i] != 0, in their order, and removes all others.
 void keep_rows(Observations& o, const std::vector<char>& kept);
-/// Row `order[i]` as row i; lines and their names stay.
+/// Returns the observations with row `order[i]` as row i; the lines and their names do not change.
 Observations rearranged(const Observations& o, const std::vector<std::uint32_t>& order);
 
 }  // namespace nonio

@@ -18,10 +18,9 @@ using NumberTables = std::map<std::string, NumberTable, std::less<>>;
 using Setting = std::variant<bool, std::int64_t, double, std::string, std::vector<double>,
                              std::vector<std::string>, NumberTables, NumberTable>;
 
-/// Names and values: the options of one plugin, or one file of templates/ with its tables
-/// flattened ("finding.drift.parallel.advice"). An accessor gives `otherwise` where the name is
-/// absent or of another kind; options are complete and of the declared kind when a plugin sees
-/// them.
+/// Named values: the options of one plugin, or one file of templates/ with its tables flattened
+/// ("finding.drift.parallel.advice"). An accessor returns `otherwise` if the name is absent or has
+/// another type; the options that a plugin receives are complete and have the declared types.
 class Settings {
  public:
   std::map<std::string, Setting, std::less<>> values;
@@ -63,7 +62,7 @@ class Settings {
 };
 
 /// The files of templates/, read by the host: `*.toml` as settings under their path without the
-/// ending ("words/en"), everything else (logo, fonts) as bytes under the whole path.
+/// extension ("words/en"), all others (logo, fonts) as bytes under the whole path.
 struct Templates {
   std::map<std::string, Settings, std::less<>> tables;
   std::map<std::string, std::string, std::less<>> files;

@@ -14,63 +14,67 @@
 #include "nonio/sdk/observations.h"
 #include "nonio/sdk/plugin.h"
 
-/// What effects in space are made of. An effect gives the error vector e of the tool point at
-/// (x, y, z), in m from the corner of the measured volume; a reading senses n . e, n the unit
-/// vector of its line, so that a column is
+/// Quantities of readings in space, from which effects compute their columns. An effect defines the
+/// error vector e of the tool point at (x, y, z), in m from the corner of the measured volume; a
+/// reading senses n . e, with n the unit vector of its line, so that a column is
 ///
 ///     column_i = sum over k of n_k(i) de_k/dparameter (x_i, y_i, z_i)
 ///
-/// Chain bed - X - Y - Z - tool, right-handed; docs/conventions.md draws it:
+/// Chain bed - X - Y - Z - tool, right-handed; see docs/conventions.md:
 ///
-///              Z   Y
-///              |  /       corner: the lowest measured position of each axis
-///              | /        lever of an angle about k: the coordinates across k, from the corner
-///       corner +------ X
+///          Z   Y
+///          |  /    corner: the lowest measured position of each axis
+///          | /     lever of an angle about k: the coordinates across k, from the corner
+///   corner +------ X
 namespace nonio {
 
-/// Where the tool point was. The corner is the lowest measured position of each axis.
+/// Positions of the tool point relative to the corner, which is the lowest measured position of
+/// each axis.
 struct SpaceReadings {
-  /// x, y, z of each reading from the corner of the measured volume, m; NaN where the position of
-  /// the axis is not stated. A coordinate that no axis has is empty. k is 0, 1, 2 for x, y, z.
+  /// x, y, z of each reading from the corner of the measured volume, m; NaN if the position of the
+  /// axis is not stated. A coordinate that no axis has is empty. k is 0, 1, 2 for x, y, z.
   std::array<std::vector<double>, 3> r;
-  std::array<double, 3> length{};  ///< of the measured volume, m
+  std::array<double, 3> length{};  ///< size of the measured volume along x, y, z, m
 
   bool moves(std::size_t k) const { return length[k] > 0.0; }
-  /// Distance of a point from the corner: 0 where it is not stated.
+  /// Returns coordinate k of reading i from the corner, m: 0 if it is not stated.
   double lever(std::size_t k, std::size_t i) const {
     return r[k].empty() || !std::isfinite(r[k][i]) ? 0.0 : r[k][i];
   }
 };
 
-/// From commanded positions of the readings. No errors: coordinates that are not stated are NaN.
+/// Computes positions from the commanded positions of the readings. There are no errors:
+/// coordinates that are not stated are NaN.
 SpaceReadings space_of(const Observations& o);
 
-/// Centres of a ball that turns with a rotary axis: lengths over an angle.
+/// Whether the readings are centres of a ball that turns with a rotary axis: lengths over an angle.
 bool of_ball_centres(const Observations& o);
 
-/// Whether coordinate k changes within a line whose readings sense direction `error`: else its zero
-/// takes whatever depends on k. `away`: looks only at readings that are away from the corner along
-/// this coordinate.
+/// Whether coordinate k varies within a line whose readings sense direction `error`. If it does
+/// not, the zero of each line absorbs everything that depends on k. `away`: considers only readings
+/// away from the corner along this coordinate.
 bool varies_where_sensed(const Observations& o, const SpaceReadings& s, std::size_t k,
                          std::size_t error, std::optional<std::size_t> away = std::nullopt);
 
-/// The measured positions of coordinate k, each once, ascending, m from the corner. Positions
-/// nearer than 1e-9 of the length are one.
+/// The distinct measured positions of coordinate k, ascending, m from the corner. Positions closer
+/// than 1e-9 of the length are one.
 std::vector<double> places_of(const SpaceReadings& s, std::size_t k);
 
-/// Numbers of knots for a smooth curve: at most 10, and at least two places for each free value, so
-/// that it cannot follow single places.
+/// Returns numbers of knots to try for a smooth curve: at most 10, and at least two places for each
+/// free value, so that the curve cannot follow single places.
 std::vector<double> knots_over(const std::vector<double>& places);
 
-/// The readings of one line, as it goes through space; without those that do not know where an axis
-/// was that the first one knows.
+/// The readings of one line in space, except those without a position of an axis that the first
+/// reading has.
 struct SpaceLine {
   using Vector = std::array<double, 3>;
   std::vector<std::size_t> rows;
-  std::vector<Vector> way;     ///< of each row from the first one, m
-  Vector sense{}, farthest{};  ///< of the first row; the longest way
-  double length = 0.0;         ///< of that
-  bool straight = true;        ///< all on one straight, but for what files round
+  std::vector<Vector> way;  ///< vector from the first row to each row, m
+  /// direction of sensing of the first row; the longest vector of `way`, m
+  Vector sense{}, farthest{};
+  double length = 0.0;  ///< length of `farthest`, m
+  /// whether all points are on one straight line, up to the rounding of files
+  bool straight = true;
 
   static double dot(const Vector& a, const Vector& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -78,17 +82,18 @@ struct SpaceLine {
   static Vector cross(const Vector& a, const Vector& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   }
-  /// A step diagonal: aside from the direction of sensing, where a flat mirror is, and along it.
+  /// Whether it is a step diagonal: it moves both perpendicular to the direction of sensing (along
+  /// the flat mirror) and along it.
   bool is_stepwise() const { return !straight && std::fabs(dot(farthest, sense)) > 0.5 * length; }
 };
 
-/// Of line `line`, an index into Observations::lines.
+/// Returns the line with index `line` into Observations::lines.
 SpaceLine space_line(const Observations& o, const SpaceReadings& s, std::size_t line);
 
-/// What is not finite becomes 0.
+/// Replaces values that are not finite by 0.
 std::vector<double> finite_or_zero(std::vector<double> x);
 
-/// Letter of a coordinate, and back: 3 if it is none.
+/// Convert a coordinate index to its letter, and a letter to its index (3 if it is no coordinate).
 inline char letter_of(std::size_t k) { return "XYZ"[k]; }
 inline std::size_t coordinate_of(char letter) {
   return coordinate_of(std::string_view(&letter, 1));

@@ -5,12 +5,12 @@
 
 namespace nonio {
 
-/// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): the same numbers on every machine.
+/// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): generates the same numbers on every machine.
 class SplitMix64 {
  public:
   explicit constexpr SplitMix64(std::uint64_t seed) : state_(seed) {}
 
-  /// What follows the state z: all 64 bits of z count in each of its bits.
+  /// Returns the output for state z; each bit of z influences all 64 bits of it.
   static constexpr std::uint64_t mixed(std::uint64_t z) {
     z += step;
     z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
@@ -24,7 +24,7 @@ class SplitMix64 {
     return number;
   }
 
-  /// Even in [0, 1): the first 53 bits.
+  /// Returns a uniform number in [0, 1), from the upper 53 bits.
   constexpr double uniform() { return static_cast<double>((*this)() >> 11U) * 0x1p-53; }
 
  private:

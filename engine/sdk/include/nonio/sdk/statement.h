@@ -6,10 +6,10 @@
 
 namespace nonio {
 
-/// Whether a name, number or reason has a letter or digit of some script: "", "  ", "-", "—" and
-/// "?" state nothing. `text` is UTF-8.
+/// Whether a name, number or reason contains a letter or digit of any script: "", "  ", "-", "—"
+/// and "?" do not. `text` is UTF-8.
 inline bool has_content(std::string_view text) {
-  // Latin-1 A0 to BF, general punctuation, minus, CJK punctuation, full-width hyphen.
+  // Punctuation: Latin-1 A0 to BF, general punctuation, minus, CJK punctuation, full-width hyphen.
   const auto is_mark = [](std::string_view c) {
     return c[0] == '\xC2' || c.starts_with("\xE2\x80") || c.starts_with("\xE2\x81") ||
            c == "\xE2\x88\x92" || c.starts_with("\xE3\x80") || c.starts_with("\xEF\xBC\x8D");

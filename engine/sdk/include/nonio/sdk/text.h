@@ -9,12 +9,12 @@
 
 #include "nonio/sdk/error.h"
 
-/// Text of files: UTF-8, and what Windows writes in its place.
+/// Conversion of the text of files: UTF-8, and the encodings that Windows writes instead.
 namespace nonio {
 
 inline constexpr std::string_view utf8_mark = "\xEF\xBB\xBF";  ///< byte-order mark
 
-/// Without the byte-order mark in front.
+/// Returns the text without its leading byte-order mark.
 inline std::string_view without_mark(std::string_view text) {
   if (text.starts_with(utf8_mark)) text.remove_prefix(utf8_mark.size());
   return text;
@@ -43,7 +43,7 @@ inline bool is_utf8(std::string_view text) {
   return true;
 }
 
-/// Adds a character, at most U+10FFFF and no surrogate, to a text in UTF-8.
+/// Appends code point `c`, at most U+10FFFF and not a surrogate, in UTF-8.
 inline void append_utf8(std::string& out, std::uint32_t c) {
   const auto add = [&](std::uint32_t byte) { out += static_cast<char>(byte); };
   if (c < 0x80) return add(c);
@@ -61,10 +61,10 @@ inline void append_utf8(std::string& out, std::uint32_t c) {
   add(0x80U | (c & 0x3FU));
 }
 
-/// The place of a text in XML or HTML: between tags, or between the quotes of an attribute.
+/// Position of a text in XML or HTML: between tags, or in a quoted attribute.
 enum class Markup { element, attribute };
 
-/// Text as XML and HTML write it; control characters that XML does not know are left out.
+/// Escapes text for XML and HTML; control characters that XML does not allow are omitted.
 inline std::string escaped_markup(std::string_view text, Markup where = Markup::element) {
   std::string out;
   for (const char c : text) {
@@ -84,8 +84,8 @@ inline std::string escaped_markup(std::string_view text, Markup where = Markup::
   return out;
 }
 
-/// Text with the byte-order mark of UTF-16 (Excel's "Unicode text") as UTF-8; nothing if it has no
-/// such mark. An error, with its line, where the bytes are no UTF-16.
+/// Converts text with the byte-order mark of UTF-16 (Excel's "Unicode text") to UTF-8; nothing if
+/// it has no such mark. The error, with its line, states that the bytes are not UTF-16.
 inline Expected<std::optional<std::string>> utf8_of_utf16(std::string_view bytes) {
   const bool little = bytes.starts_with("\xFF\xFE"), big = bytes.starts_with("\xFE\xFF");
   if (!little && !big) return std::nullopt;

@@ -6,9 +6,9 @@
 
 namespace nonio {
 
-/// What a number is. Inside the program every number is SI (m, rad, s; temperatures in degC); a
-/// formatter multiplies by `unit_of(q).per_si` and prints `unit_of(q).symbol`. Factors are exact
-/// (1 um = 1e-6 m, 1 h = 3600 s) but for 180/pi, which is rounded once.
+/// The kind of a number. Inside the program every number is SI (m, rad, s; temperatures in degC); a
+/// formatter multiplies by `unit_of(q).per_si` and prints `unit_of(q).symbol`. Factors are exact (1
+/// um = 1e-6 m, 1 h = 3600 s) except for 180/pi, which is rounded once.
 enum class Quantity {
   number,                  ///< dimensionless
   count,                   ///< dimensionless, integral
@@ -27,21 +27,21 @@ enum class Quantity {
   time,                    ///< s
   deviation_per_time,      ///< m/s, printed in um/h
   angle_per_time,          ///< rad/s, printed in arcsec/h
-  growth,                  ///< 1/s, printed in um/(m h)
-  angular_growth,          ///< 1/s, printed in arcsec/(deg h)
+  growth,                  ///< expansion rate: 1/s, printed in um/(m h)
+  angular_growth,          ///< expansion rate of an angle: 1/s, printed in arcsec/(deg h)
   angular_expansion,       ///< 1/K, printed in arcsec/(deg K)
   // If times were not measured, the number of the reading replaces the time.
-  readings,                    ///< how many readings later
+  readings,                    ///< number of readings in place of a time
   deviation_per_reading,       ///< m, printed in um/reading
   angle_per_reading,           ///< rad, printed in arcsec/reading
   growth_per_reading,          ///< m/m, printed in um/(m reading)
   angular_growth_per_reading,  ///< rad/rad, printed in arcsec/(deg reading)
-  // Of a zero that moves with temperature.
+  // Quantities of a zero that moves with temperature.
   deviation_per_kelvin,  ///< m/K, printed in um/K
   angle_per_kelvin,      ///< rad/K, printed in arcsec/K
 };
 
-/// Of the same, counted in readings.
+/// Returns the quantity that replaces `q` if time is counted in readings.
 constexpr Quantity by_readings(Quantity q) {
   switch (q) {
     case Quantity::time:
@@ -60,8 +60,8 @@ constexpr Quantity by_readings(Quantity q) {
 }
 
 struct Unit {
-  std::string_view symbol;  ///< as printed: "um"
-  std::string_view suffix;  ///< as part of a JSON or column name: "_um"
+  std::string_view symbol;  ///< symbol as printed: "um"
+  std::string_view suffix;  ///< part of a JSON or column name: "_um"
   double per_si;            ///< printed value = SI value * per_si
 };
 
@@ -126,7 +126,7 @@ constexpr Unit unit_of(Quantity q) {
   return {"", "", 1.0};
 }
 
-/// Position of an axis and its deviation, by kind of axis.
+/// Quantities of an axis by its kind: position, deviation, and slope (deviation per position).
 constexpr Quantity position_of(bool rotary) { return rotary ? Quantity::angle : Quantity::length; }
 constexpr Quantity deviation_of(bool rotary) {
   return rotary ? Quantity::angular_deviation : Quantity::deviation;

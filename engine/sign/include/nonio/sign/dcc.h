@@ -12,16 +12,17 @@ namespace nonio::sign {
 
 /// One value of a digital calibration certificate, in the units of results.json.
 struct DccValue {
-  std::string analysis;  ///< "iso230-2 of X"
-  std::string name;      ///< "R+"
-  std::string unit;      ///< "um"
+  std::string analysis;  ///< for example "iso230-2 of X"
+  std::string name;      ///< for example "R+"
+  std::string unit;      ///< for example "um"
   double value = 0.0;
   std::optional<double> U{};
   double k = 2.0;  ///< coverage factor of U
 };
 
-/// The single values of a DCC 3.3.0 as Nonio writes it. What the schema lets pass is checked here:
-/// every unit is one of D-SI's that are used, and all lists of a table have one length.
+/// Reads the single values of a DCC 3.3.0 as Nonio writes it. In addition to the schema, it checks
+/// that every unit is one of the used D-SI units, and that all lists of a table have the same
+/// length.
 Expected<std::vector<DccValue>> read_dcc(std::string_view xml);
 
 }  // namespace nonio::sign

@@ -7,26 +7,26 @@
 
 #include "nonio/sign/verify.h"
 
-/// A signed PDF stays provable when keys and time servers have run out: what was revoked is put
-/// into it while authorities still confirm it (PAdES B-LT), and a time stamp over all of it
-/// (B-LTA). Needs no key.
+/// Extends the validity of a signed PDF, so that it can be verified after keys and time servers
+/// have expired: adds revocation data while authorities still confirm them (PAdES B-LT), and a time
+/// stamp over the complete file (B-LTA). No key is needed.
 namespace nonio::sign {
 
 struct Prolonging {
-  Verifier verifier{};  ///< whom to trust and expect; revocation lists that are at hand
-  std::vector<std::string> answers{};  ///< by OCSP, DER, that are at hand
+  Verifier verifier{};  ///< trusted roots and expected signers; available revocation lists
+  std::vector<std::string> answers{};  ///< available OCSP answers, DER
   TimeStamping stamping{};             ///< no time stamp if the address is empty
   bool fetch = true;  ///< request missing data from the addresses in the certificates
-  int seconds = 10;   ///< to wait for an answer
+  int seconds = 10;   ///< time limit for an answer
 };
 
 struct Prolonged {
   std::string bytes;
-  std::vector<std::string> added;  ///< in words, a line each
+  std::vector<std::string> added;  ///< one text for each addition
 };
 
-/// The file with one update more. Only of a file that `verify_pdf` accepts, and only what it
-/// accepts again: an error names the certificate whose revocation status is unknown.
+/// Returns the file with one more update. The file must be accepted by `verify_pdf` before and
+/// after the update; otherwise an error names the certificate whose revocation status is unknown.
 Expected<Prolonged> prolong(std::string_view signed_pdf, const Prolonging& how);
 
 }  // namespace nonio::sign

@@ -8,79 +8,82 @@
 
 #include "nonio/sign/sign.h"
 
-/// Whether a signed file is what its signer signed. No network, no clock, no system-wide list of
-/// trusted roots: whom to trust is given.
+/// Verifies signed files, without network, clock or a system-wide list of trusted roots: trust is
+/// given as an argument.
 namespace nonio::sign {
 
-/// What is larger is refused unread; it is not signed either.
+/// Larger files are refused unread; they are not signed either.
 inline constexpr std::size_t max_bytes = pdf::max_file;
 
 struct Check {
   enum class State { holds, fails, not_checked };
-  std::string id;  ///< "signature.digest"
+  std::string id;  ///< for example "signature.digest"
   State state = State::not_checked;
   std::string says;
-  /// Without it the file proves nothing, so that "not checked" is as bad as "fails".
+  /// Whether the file proves nothing without this check, so that "not checked" is as bad as
+  /// "fails".
   bool essential = true;
 };
 
-/// Who may have signed, and when.
+/// A signer who is accepted, and the period.
 struct ExpectedSigner {
-  std::string who;               ///< the subject of the certificate, or its SHA-256
+  std::string who;               ///< subject of the certificate, or its SHA-256
   Time from = 0;                 ///< 0: from the beginning of the certificate's validity
-  std::optional<Time> before{};  ///< none: to its end
+  std::optional<Time> before{};  ///< none: until its end
 };
 
 struct Verifier {
-  /// PEM: the roots that the certificates of signers must lead to, and those of time servers. They
-  /// are apart: who may state a time may not sign certificates.
+  /// PEM: trusted roots of signers, and trusted roots of time servers. They are separate, because a
+  /// time server must not be able to certify signers.
   std::string signer_roots{}, time_stamp_roots{};
   std::optional<std::string> revocation{};  ///< PEM: revocation lists
   std::vector<ExpectedSigner> signers{};
-  /// The register that contains this very file as issued; empty: none. Then its signer need
-  /// not be among `signers`.
+  /// Statement that a register contains this very file as issued; empty: none does. With it, the
+  /// signer need not be among `signers`.
   std::string issued_by{};
   Time now = 0;
-  /// Of what is inside a file with time stamps of its own: `Verified::existed` of that file.
+  /// For a file inside another one with time stamps: `Verified::existed` of the outer file.
   Time existed = 0;
 };
 
 struct Verified {
   std::vector<Check> checks;
-  std::string certificate;  ///< of the signer, DER; empty if there is none
+  std::string certificate;  ///< signer's certificate, DER; empty if there is none
   std::string subject;
-  /// When it was signed, as a time stamp proves; else `Verifier::now`.
+  /// Time of the signature as proved by a time stamp; without one, `Verifier::now`.
   Time at = 0;
-  /// When a time stamp over the whole file proves it to have existed; 0 without one.
+  /// Time at which a time stamp over the complete file proves that it existed; 0 without one.
   Time existed = 0;
-  /// Bytes of a PDF as it was signed; they are followed by what was added for long-term validation.
+  /// Size of the signed part of a PDF in bytes; updates for long-term validation follow.
   std::size_t issued = 0;
-  std::vector<pdf::Attachment> attachments;  ///< of a PDF, if it could be read
+  std::vector<pdf::Attachment> attachments;  ///< attachments of a PDF, if it could be read
 
-  bool holds() const;  ///< every check, and no essential one was left out
+  bool holds() const;  ///< whether no check failed and every essential one was made
 };
 
-/// An error if the roots or the revocation lists are none: a file of 0 bytes, such as a download
-/// that failed, is not an empty list.
+/// Returns an error if the roots or the revocation lists contain none: a file of 0 bytes, such as a
+/// failed download, is not an empty list.
 Expected<void> check_verifier(const Verifier& verifier);
 
-/// The certificates in a PEM file of roots.
+/// Returns the number of certificates in a PEM file of roots.
 Expected<std::size_t> number_of_roots(const std::string& pem);
 
-/// The signature comes first, found by its place at the end of the file. Only where it holds and is
-/// of the expected signer is the rest read: what a stranger sends costs no more than its digest.
+/// Verifies a PDF. The signature is checked first, found by its position at the end of the file.
+/// The rest is read only if the signature is valid and from an expected signer, so that a foreign
+/// file costs no more than its digest.
 Verified verify_pdf(std::string_view bytes, const Verifier& verifier);
-/// Of a PDF that is known to be our own, such as one from the register; nothing is checked.
+/// Returns the attachments of a PDF that is known to be authentic, such as one from the register;
+/// nothing is checked.
 Expected<std::vector<pdf::Attachment>> unverified_attachments(std::string_view pdf);
-/// Of a PDF without the updates behind it; other files as they are.
+/// Returns a PDF without the updates after its signed part; other files are returned unchanged.
 std::string_view issued_part(std::string_view file);
 Expected<Identity> unverified_signer(std::string_view signed_pdf);
-/// An XML document as `Key::sign` writes one: in its canonical form, with one enveloped signature
-/// over all of it. `certificate` (DER): only that signer will do, and its chain is not looked at
-/// again.
+/// Verifies an XML document as written by `Key::sign`: in its canonical form, with one enveloped
+/// signature over all of it. `certificate` (DER): only this signer is accepted, and its chain is
+/// not checked again.
 Verified verify_xml(std::string_view bytes, const Verifier& verifier,
                     std::string_view certificate = {});
-/// Whether a signed document, its signature taken out, has the canonical form of `written`.
+/// Checks that a signed document without its signature has the canonical form of `written`.
 Expected<void> same_document(std::string_view signed_document, std::string_view written);
 
 }  // namespace nonio::sign

@@ -7,15 +7,16 @@
 
 #include "nonio/math/axis_test.h"
 
-/// What every rule of positioning is made from.
+/// Statistics of the readings at each target, from which every rule of positioning is computed.
 ///
-///     xm_i+-  = sum_j x_ij/n                           m or rad, one direction
+///     xm_i+-  = sum_j x_ij/n                              m or rad, one direction
 ///     xm_i    = (xm_i+ + xm_i-)/2;  B_i = xm_i+ - xm_i-
 ///     s_i+-   = sqrt(sum_j (x_ij - xm_i)^2/(n - 1))
 ///     low, high: smallest and largest x_ij; first: of the earliest run
 ///
-/// Source: ISO 230-2:2014 clause 2 (symbols). Range: any test; no errors: what the readings do not
-/// give is NaN (s with one reading, all of a direction that a target was not reached from).
+/// Source: ISO 230-2:2014 clause 2 (symbols). Range: any test. No errors: a value that the readings
+/// do not determine is NaN (s with one reading; all values of a direction from which a target was
+/// not approached).
 namespace nonio::math {
 
 struct AxisStatistics {
@@ -23,21 +24,22 @@ struct AxisStatistics {
     std::size_t n = 0;
     double mean, s;
     double low, high;
-    double first;           ///< x of the earliest run
-    std::uint32_t run = 0;  ///< which that is
+    double first;           ///< deviation in the earliest run
+    std::uint32_t run = 0;  ///< number of that run
   };
   struct Target {
     double target;
     Side plus, minus;
-    double mean;  ///< xm_i
-    double B;     ///< B_i
+    double mean;  ///< mean of both directions, xm_i
+    double B;     ///< reversal, B_i = xm_i+ - xm_i-
   };
-  std::vector<Target> targets;  ///< ascending
+  std::vector<Target> targets;  ///< sorted by position, ascending
 };
 
 AxisStatistics axis_statistics(const AxisTest&);
 
-/// Largest and smallest of what was put in; one NaN makes the whole NaN.
+/// Tracks the largest and smallest of the values put in; if one of them is NaN, the results are
+/// NaN.
 class Extent {
  public:
   void put(double value);
@@ -51,9 +53,9 @@ class Extent {
   double low_ = INFINITY, high_ = -INFINITY;
 };
 
-/// Slopes of the bidirectional means (of the means of the one direction that there is) over the
-/// targets, m/m or rad/rad: of the least-squares line, and from the first target to the last. NaN
-/// with fewer than two targets.
+/// Slopes over the targets of the bidirectional means (of the means of one direction, if only one
+/// was measured), m/m or rad/rad: of the least-squares line, and from the first target to the last.
+/// NaN with fewer than two targets.
 struct Slopes {
   double least_squares, end_points;
 };

@@ -10,7 +10,8 @@
 namespace nonio::math {
 
 /// The readings of one axis, arranged by target and direction of approach. Targets are matched by
-/// value, never by index: one that was reached from one side only has readings on that side only.
+/// value, never by index: one that was approached from one side only has readings on that side
+/// only.
 ///
 /// x_ij = P_ij - P_i: deviation of approach j = 1..n at target i = 1..m, m or rad; + and -:
 /// direction of approach. Source: ISO 230-2 (docs/formulas.md). Range: any number of targets and
@@ -20,7 +21,7 @@ class AxisTest {
   struct Reading {
     double deviation;  ///< m or rad
     std::uint32_t run;
-    std::uint32_t row;  ///< of the observations
+    std::uint32_t row;  ///< row in the observations
   };
 
   bool rotary = false;
@@ -33,7 +34,7 @@ class AxisTest {
   bool has_plus() const { return has_plus_; }
   bool has_minus() const { return has_minus_; }
   bool bidirectional() const { return has_plus_ && has_minus_; }
-  /// Every target has readings from every direction that occurs.
+  /// Whether every target has readings from every direction that occurs.
   bool complete() const;
   /// Smallest and largest number of readings at a target from one direction, over the directions
   /// that occur; least is 0 if some target was not reached from one of them.
@@ -42,24 +43,24 @@ class AxisTest {
   /// Distance from the first target to the last, m or rad.
   double length() const { return targets.empty() ? 0.0 : targets.back() - targets.front(); }
 
-  /// The same test with only these targets (ascending indices, each below targets.size()).
+  /// Returns the test with these targets only (ascending indices, each below targets.size()).
   AxisTest only(std::span<const std::size_t> kept) const;
 
-  /// From observations whose first axis column is the measured axis; rows without a direction of
-  /// approach do not occur. Readings at a target come in the order of their runs. Empty, not an
-  /// error, if there is no axis column or it has no directions of approach.
+  /// Arranges observations by their first axis column; rows without a direction of approach are
+  /// omitted. Readings at a target are in the order of their runs. The test is empty, which is not
+  /// an error, if there is no axis column or it has no directions of approach.
   static AxisTest arrange(const Observations&);
 
  private:
   std::span<const Reading> part(std::size_t k) const {
     return std::span(readings_).subspan(starts_[k], starts_[k + 1] - starts_[k]);
   }
-  std::vector<Reading> readings_;    // by target, direction (+ first), run
+  std::vector<Reading> readings_;    // sorted by target, direction (+ first), run
   std::vector<std::size_t> starts_;  // 2 * targets + 1 entries
   bool has_plus_ = false, has_minus_ = false;
 };
 
-/// Deviations of the readings, m or rad, in their order.
+/// Returns the deviations of the readings, m or rad, in their order.
 std::vector<double> deviations(std::span<const AxisTest::Reading>);
 
 }  // namespace nonio::math

@@ -8,7 +8,7 @@
 #include <vector>
 
 /// Motion of an axis over less than one turn of its screw: the periodic error of a dense run, and
-/// single small steps.
+/// the errors of single small steps.
 namespace nonio::math {
 
 /// One pass in one direction.
@@ -19,12 +19,12 @@ struct Pass {
 
 /// Periodic error over a declared period p, of passes in one direction:
 ///
-///     d(x) = a_q + b_q x + sum_(k=1,2) [C_k cos(2 pi k x/p) + S_k sin(2 pi k x/p)]     of pass q
+///     d(x) = a_q + b_q x + sum_(k=1,2) [C_k cos(2 pi k x/p) + S_k sin(2 pi k x/p)]   of pass q
 ///     folded(j) = mean of d(x) - a_q - b_q x over the readings whose phase is j/n, j = 0..n-1
 ///     range = max folded - min folded;  c_k = sqrt(C_k^2 + S_k^2), peak to valley 2 c_k
 ///
-/// By least squares of all passes at once, so that a line does not take its part of a wave. Noise
-/// of c_k: white with a slow part, from what the fit leaves, higher harmonics included; of the
+/// By least squares of all passes together, so that a line does not absorb a part of a wave. Noise
+/// of c_k: white with a slow part, from the residuals, including higher harmonics; noise of the
 /// folded means: the scatter about them. Source: ASME B5.54 and the annex of ISO 230-2 on dense
 /// runs, as interpreted in docs/formulas.md. Range: every pass over two periods with steps of p/20
 /// at most.
@@ -32,56 +32,61 @@ struct PeriodicError {
   enum class Answer { given, no_pass, too_short, too_coarse };
   struct Harmonic {
     double amplitude = 0.0;  ///< c_k, m or rad
-    double phase = 0.0;      ///< rad, 0..2 pi: position of its first maximum is phase p/(2 pi k)
-    double u = 0.0;          ///< of the amplitude
+    double phase = 0.0;      ///< rad, 0..2 pi: the first maximum is at phase p/(2 pi k)
+    double u = 0.0;          ///< standard uncertainty of the amplitude
   };
   Answer answer = Answer::no_pass;
-  double periods = 0.0;  ///< of the shortest pass
-  double step = 0.0;     ///< the widest of all passes, m or rad
+  double periods = 0.0;  ///< number of periods in the shortest pass
+  double step = 0.0;     ///< widest step of all passes, m or rad
   std::array<Harmonic, 2> harmonics{};
   std::vector<double> folded;  ///< m or rad, n values over one period
   double range = 0.0;
-  double s = 0.0;         ///< of a reading about the folded mean; NaN with dof 0
-  double u_folded = 0.0;  ///< of a folded mean
+  double s = 0.0;         ///< standard deviation of a reading about the folded mean; NaN with dof 0
+  double u_folded = 0.0;  ///< standard uncertainty of a folded mean
   double dof = 0.0;
 };
 PeriodicError periodic_error(std::span<const Pass>, double period);
 
-/// Single steps of one commanded size, there and back. With x the commanded position and d the
-/// deviation of neighbouring readings of one run in one direction:
+/// Single steps of one commanded size, in both directions. With x the commanded position and d the
+/// deviation of adjacent readings of one run in one direction:
 ///
-///     step_j = d_(j+1) - d_j, in the direction of motion     deviation of the step, m
-///     first  = the same of the step in which the direction turns: from the last target of one
+///     step_j = d_(j+1) - d_j, in the direction of motion   deviation of the step, m
+///     first  = deviation of the step in which the direction reverses: from the last target of one
 ///              direction to the next one of the other, where only one of them has that last target
 ///
-/// Not followed: the way of the step is less than half of the commanded one. The order of the
-/// readings has no meaning: passes go in their direction. Source: ours; the tests of the rules for
-/// small steps were not available (docs/formulas.md).
+/// A step is not followed if the axis moves less than half of the commanded distance. The order of
+/// the readings is ignored: passes run in their direction. Source: laboratory method; the tests of
+/// the standards for small steps were not available (docs/formulas.md).
 struct SmallSteps {
   enum class Answer { given, too_few, several_sizes };
   struct One {
     double error = 0.0;  ///< deviation of the step, m: positive if it is too long
-    bool first = false;  ///< after a reversal
+    bool first = false;  ///< whether it is the first step after a reversal
     std::uint32_t run = 0;
-    double position = 0.0;        ///< at its end
-    int direction = 0;            ///< 1, -1
-    double from = 0.0, to = 0.0;  ///< deviations of its readings
+    double position = 0.0;        ///< position at its end, m
+    int direction = 0;            ///< direction of motion: 1, -1
+    double from = 0.0, to = 0.0;  ///< deviations at its start and end
   };
   Answer answer = Answer::too_few;
-  double commanded = 0.0;  ///< size of a step
+  double commanded = 0.0;  ///< commanded size of a step, m
   std::vector<One> steps;
-  std::size_t largest = 0, least = 0;  ///< of the steps that are not the first after a reversal
-  std::size_t least_first = 0;         ///< of those that are; steps.size() if there is none
-  std::size_t not_followed = 0;        ///< of the steps that are not the first after a reversal
-  double s = 0.0;                      ///< of one step, about the mean of its place
-  double dof = 0.0;                    ///< 0: no place was stepped over twice the same way
+  /// indices of the largest and smallest error among steps not directly after a reversal
+  std::size_t largest = 0, least = 0;
+  /// index of the smallest error among first steps after a reversal; steps.size() if there is none
+  std::size_t least_first = 0;
+  /// number of steps not followed, without those directly after a reversal
+  std::size_t not_followed = 0;
+  double s = 0.0;  ///< standard deviation of one step about the mean of its place
+  /// degrees of freedom of s; 0: no step was repeated at the same place and direction
+  double dof = 0.0;
 };
 struct SteppedReading {
   double position = 0.0, deviation = 0.0;
   std::uint32_t run = 0;
   int direction = 0;
 };
-/// In any order. Several readings of one target, run and direction count with their mean.
+/// Evaluates steps from readings in any order. Several readings of one target, run and direction
+/// are averaged.
 SmallSteps small_steps(std::span<const SteppedReading>);
 
 }  // namespace nonio::math

@@ -5,15 +5,15 @@
 
 namespace nonio::math {
 
-/// What the reversal error of an axis is like, by tests and not by rules of thumb.
+/// Classification of the reversal error of an axis by statistical tests.
 ///
-///     B_i = xm_i+ - xm_i-                            m or rad; B_mean over the m targets
-///     F   = [sum (B_i - B_mean)^2/(m - 1)] / [s+^2/n+ + s-^2/n-]        does it vary?
-///     t   = B_mean/u(B_mean)                                            does it exist?
+///     B_i = xm_i+ - xm_i-                               m or rad; B_mean over the m targets
+///     F   = [sum (B_i - B_mean)^2/(m - 1)] / [s+^2/n+ + s-^2/n-]    does it vary?
+///     t   = B_mean/u(B_mean)                            does it exist?
 ///
-/// Level of both 1 %. u from the differences of the runs, pooled with the scatter of single
-/// readings where the runs show no more than that. Sources: B_i of ISO 230-2; pooling of
-/// T. A. Bancroft, Biometrics 20 (1964) 427; the decisions are ours (docs/formulas.md,
+/// Both at the 1 % level. u is estimated from the differences between runs, pooled with the scatter
+/// of single readings unless the runs scatter more. Sources: B_i of ISO 230-2; pooling of T. A.
+/// Bancroft, Biometrics 20 (1964) 427; the decisions are a laboratory method (docs/formulas.md,
 /// docs/dev/constants.md A3 to A5).
 struct Reversal {
   enum class Kind {
@@ -25,13 +25,13 @@ struct Reversal {
   };
   Kind kind = Kind::unknown;
   double mean = 0.0;          ///< B_mean, m or rad, signed
-  double u_mean = 0.0;        ///< its standard uncertainty from the scatter of the readings
-  double largest = 0.0;       ///< max |B_i|
-  double largest_left = 0.0;  ///< max |B_i - B_mean|: what a single value cannot remove
+  double u_mean = 0.0;        ///< standard uncertainty of `mean` from the scatter of the readings
+  double largest = 0.0;       ///< largest reversal, max |B_i|
+  double largest_left = 0.0;  ///< max |B_i - B_mean|: remains after compensation by a single value
   double p_varies = 1.0;      ///< F test: B_i differ more than the scatter explains
   double p_mean = 1.0;        ///< t test: B_mean differs from zero
 
-  /// Rotary axes: sinusoids in the two directions. NaN if the targets do not cover the turn.
+  /// For rotary axes: sinusoids in the two directions. NaN if the targets do not cover the turn.
   double opposed_amplitude = 0.0;  ///< amplitude of B_i / 2 over the angle: elasticity
   double p_opposed = 1.0;
   double concordant_amplitude = 0.0;  ///< amplitude common to both directions: eccentricity
@@ -39,8 +39,8 @@ struct Reversal {
   bool opposed = false, concordant = false;
 };
 
-/// Range: both directions at every target, else `kind` is unknown and the lengths are NaN; waves of
-/// rotary axes need 5 angles and no gap above 120 deg. No errors.
+/// Assesses the reversal. Range: both directions at every target, otherwise `kind` is unknown and
+/// the lengths are NaN; sinusoids of rotary axes need 5 angles and no gap above 120 deg. No errors.
 Reversal assess_reversal(const AxisTest& test);
 
 }  // namespace nonio::math

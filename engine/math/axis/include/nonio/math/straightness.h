@@ -13,32 +13,33 @@
 ///     rest             d_i = e_i - r(x_i)
 ///     straightness     W = max d_i - min d_i
 ///
-/// The three reference straight lines of ISO 230-1:2012, 3.4: mean minimum zone (the line of which W
-/// is smallest), least squares (sum d_i^2 smallest), end points (through the first and the last
-/// point). W of the minimum zone is never larger than W of the others.
-/// Sources: ISO 230-1 by its terms (the standard's text was not available, docs/formulas.md); the
-/// minimum zone is the best approximation by a straight line in the sense of Chebyshev: three points
-/// with the largest distance, on alternate sides.
+/// The three reference straight lines of ISO 230-1:2012, 3.4: mean minimum zone (the line with the
+/// smallest W), least squares (smallest sum d_i^2), end points (through the first and the last
+/// point). W of the minimum zone is never larger than W of the others. Sources: ISO 230-1 by its
+/// terms (the standard's text was not available, docs/formulas.md); the minimum zone is the best
+/// approximation by a straight line in the sense of Chebyshev: three points have the largest
+/// distance, on alternate sides.
 namespace nonio::math {
 
 enum class StraightLine { least_squares, minimum_zone, end_points };
 
 struct Straightness {
-  double a = 0.0;            ///< m
-  double b = 0.0;            ///< rad
-  std::vector<double> rest;  ///< d_i, m
-  double width = 0.0;        ///< W, m
-  /// dW/de_i and db/de_i: with the points of contact that these readings have.
+  double a = 0.0;            ///< reference line at the first point, m
+  double b = 0.0;            ///< slope of the reference line, rad
+  std::vector<double> rest;  ///< deviations from the reference line, d_i, m
+  double width = 0.0;        ///< straightness W, m
+  /// Derivatives dW/de_i and db/de_i for the points of contact of these readings.
   std::vector<double> width_by, slope_by;
 };
 
-/// x ascending, at least three; as many e. Errors: fewer, not ascending, not finite.
+/// Computes straightness. x: ascending, at least three; e: as many. Errors: fewer, not ascending,
+/// not finite.
 Expected<Straightness> straightness_about(StraightLine, std::span<const double> x,
                                           std::span<const double> e);
 
-/// From the angles of a level or autocollimator on a foot of this length, m, that is moved by its
-/// own length along the line: e_0 = 0, e_(k+1) = e_k + foot * angle_k (rad). One more value than
-/// angles. Source: ISO 230-1 (measurement of straightness by angles).
+/// Integrates the angles of a level or autocollimator on a base of length `foot`, m, that is moved
+/// by its own length along the line: e_0 = 0, e_(k+1) = e_k + foot * angle_k (rad). Returns one
+/// more value than angles, m. Source: ISO 230-1 (measurement of straightness by angles).
 std::vector<double> integrated(std::span<const double> angles, double foot);
 
 }  // namespace nonio::math

@@ -8,30 +8,33 @@
 #include "nonio/sdk/campaign.h"
 #include "nonio/sdk/results.h"
 
-/// Budgets of what is a difference of two readings of one instrument that stays where it is: ranges
-/// over time or angle.
+/// Budgets of values that are differences of two readings of one stationary instrument: ranges over
+/// time or angle.
 ///
-/// What the instrument has in common for both readings drops out. Its U_fixed is an error of its gain
-/// that reaches U_fixed at the largest deviation, so that a value has it by its own share; of a beam,
-/// U_per_length is a change of its scale between both readings. Drift is what is measured. The form of
-/// a ball, of full range r, changes a range by at most r: u = r/sqrt 3.
+/// Errors of the instrument that both readings share cancel. U_fixed is treated as an error of its
+/// gain that reaches U_fixed at the largest deviation, so that it contributes to a value in
+/// proportion; for a beam, U_per_length is a change of its scale between both readings. Drift is
+/// the measurand itself. The form error of a ball, of full range r, changes a range by at most r: u
+/// = r/sqrt 3.
 ///
-/// Source: JCGM 100:2008; which errors the instrument has in common is ours (docs/uncertainty.md).
+/// Source: JCGM 100:2008; which errors the readings share is a laboratory method
+/// (docs/uncertainty.md).
 namespace nonio::math {
 
 struct Difference {
   std::string name;
   double value = 0.0;
   Quantity quantity = Quantity::deviation;
-  double u = 0.0, dof = INFINITY;  ///< of the repetition; dof 0: not known, and no U
-  double from = 0.0, to = 0.0;     ///< deviations whose difference it is, m
-  double scale = 0.0;      ///< of the value by that difference; 0: the instrument's gain drops out
-  double length = 0.0;     ///< measured by a beam, m
-  bool with_ball = false;  ///< it holds the form of the ball
+  /// standard uncertainty by repetition; dof 0: not known, so U is not given
+  double u = 0.0, dof = INFINITY;
+  double from = 0.0, to = 0.0;  ///< the two deviations whose difference is the value, m
+  double scale = 0.0;   ///< ratio of the value to that difference; 0: the gain does not affect it
+  double length = 0.0;  ///< length measured by a beam, m
+  bool with_ball = false;  ///< the value contains the form error of the ball
 };
 
-/// Values with U, the budget, and the finding of what was not stated. A value that includes the
-/// form of a ball that is not stated (instrument.sphere_um) has its repeatability only.
+/// Adds the values with U, the budget, and a finding about missing data. A value that contains the
+/// form error of a ball which is not stated (instrument.sphere_um) gets its repeatability only.
 void put_differences(const Campaign&, const std::vector<Difference>&, Evaluation& out);
 
 }  // namespace nonio::math

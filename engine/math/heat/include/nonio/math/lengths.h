@@ -11,29 +11,30 @@
 
 #include "nonio/sdk/results.h"
 
-/// Length measuring errors of a machine that measures with a probe, in the manner of ISO 10360-2.
+/// Length measuring errors of a machine that measures with a probe, according to ISO 10360-2.
 ///
-///     E = measured - calibrated length, with its sign        E0 without, EL with an offset of the stylus
-///     MPE(L) = min(A + L/K, B)                               L the calibrated length
+///     E = measured - calibrated length, with its sign  E0 without, EL with an offset of the stylus
+///     MPE(L) = min(A + L/K, B)                         L the calibrated length
 ///     R0 = largest range of the repeats of one length
-///     P = largest - least radial distance of the points from the centre of the least-squares sphere
+///     P = largest - smallest radial distance of the points from the centre of the least-squares
+///         sphere
 ///
 /// Decision (decision.h) for each error with its U(L), guard band g of the rule (ISO 14253-1:2017:
-/// 1.65 u): conforms where abs(E) <= MPE - g for all; does not where abs(E) > MPE + g for one; else
-/// indeterminate. Each repeat is an error of its own: their scatter is in E, not in U (ISO/TS
-/// 23165, from general knowledge).
+/// 1.65 u): conforms if abs(E) <= MPE - g for all errors; does not conform if abs(E) > MPE + g for
+/// one; otherwise indeterminate. Each repeat is an error of its own: the scatter of repeats is part
+/// of E, not of U (ISO/TS 23165, from general knowledge).
 ///
-/// Edition 2001: of at most five lengths one of the three repeats may be outside; each of these
+/// Edition 2001: for at most five lengths, one of the three repeats may be outside; each of these
 /// lengths is then measured ten more times (repeats 4 to 13), all of which must be inside.
 ///
-/// Symbols: E, L, MPE, U in m. Sources: ISO 10360-2:2001 and 2009 (names and procedure after public
+/// Symbols: E, L, MPE, U in m. Sources: ISO 10360-2:2001 and 2009 (names and procedure from public
 /// guides; the text was not available). Range: L > 0, all finite.
 namespace nonio::math {
 
 struct LengthLimit {
   double A = 0.0;  ///< m
-  double K = 0.0;  ///< L/K: m of length for each m of error; 0: no such part
-  double B = 0.0;  ///< m; 0: none
+  double K = 0.0;  ///< in L/K: length for each m of error; 0: no such term
+  double B = 0.0;  ///< upper bound, m; 0: none
   bool stated() const { return A > 0.0 || K > 0.0 || B > 0.0; }
   double at(double L) const;
 };
@@ -41,42 +42,47 @@ struct LengthLimit {
 struct LengthError {
   double L = 0.0, E = 0.0;
   std::uint32_t repeat = 1;
-  std::size_t line = 0;  ///< position in the volume
+  std::size_t line = 0;  ///< index of the position in the volume
 };
 
 struct LengthAnswer {
   Decision decision = Decision::cannot_be_decided;
-  std::size_t worst = 0;      ///< error that is nearest to its limit, or farthest beyond
-  std::size_t outside = 0;    ///< errors beyond MPE + g
-  std::size_t undecided = 0;  ///< errors nearer to MPE than g
-  std::size_t to_repeat = 0;  ///< edition 2001: lengths that have to be measured ten times more
+  std::size_t worst = 0;      ///< index of the error closest to its limit, or farthest beyond it
+  std::size_t outside = 0;    ///< number of errors beyond MPE + g
+  std::size_t undecided = 0;  ///< number of errors closer to MPE than g
+  /// edition 2001: number of lengths that must be measured ten more times
+  std::size_t to_repeat = 0;
 };
 
-/// U: of each error. by_2001: with its five lengths. rule: of the certificate.
+/// Decides conformity of all errors. U: expanded uncertainty of each error, m; by_2001: allow five
+/// lengths with an error outside, as in the edition of 2001; rule: decision rule of the
+/// certificate.
 LengthAnswer judge_lengths(const std::vector<LengthError>& all, const LengthLimit& limit,
                            const std::vector<double>& U, bool by_2001,
                            std::string_view rule = "iso14253-1");
 
-/// Largest range of the first three repeats; none where no length has two.
+/// Returns the largest range of the first three repeats of a length, m; none if no length has two.
 struct RepeatRange {
   double range = 0.0;
   std::size_t low = 0, high = 0;
 };
 std::optional<RepeatRange> repeat_range(const std::vector<LengthError>& all);
 
-/// What the plan lacks of five lengths, three repeats, seven positions.
+/// Number of positions, lengths and repeats of a test, compared with the required seven, five and
+/// three.
 struct LengthPlan {
-  std::size_t positions = 0, lengths = 0, repeats = 0;  ///< of the position that has least of them
+  /// lengths and repeats: smallest number of any position
+  std::size_t positions = 0, lengths = 0, repeats = 0;
   bool whole() const { return positions >= 7 && lengths >= 5 && repeats >= 3; }
 };
 LengthPlan length_plan(const std::vector<LengthError>& all);
 
-/// Least-squares sphere (Gauss-Newton on radial distances); none of fewer than five points or points
-/// that lie in a plane.
+/// Fits a least-squares sphere (Gauss-Newton on radial distances); none for fewer than five points
+/// or points in a plane.
 struct FormOfSphere {
   std::array<double, 3> centre{};
   double radius = 0.0, P = 0.0;
-  double s = 0.0;  ///< of the radial distances
+  double s = 0.0;  ///< standard deviation of the radial distances
   std::size_t outermost = 0, innermost = 0;
 };
 std::optional<FormOfSphere> form_of_sphere(const std::vector<std::array<double, 3>>& points);

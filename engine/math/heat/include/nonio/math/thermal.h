@@ -22,7 +22,7 @@
 /// surface (Newton's law of cooling). Range: times ascending, all finite.
 namespace nonio::math {
 
-/// Readings of one sensor: the times ascend.
+/// Readings of one sensor, in ascending order of time.
 struct Track {
   std::vector<double> time;  ///< s
   std::vector<double> d;     ///< m
@@ -31,87 +31,93 @@ struct Track {
 
 struct RangeOf {
   double range = 0.0;
-  std::size_t low = 0, high = 0;  ///< readings that make it
-  double from = 0.0, to = 0.0;    ///< of the window, s
+  std::size_t low = 0, high = 0;  ///< indices of the smallest and largest reading
+  double from = 0.0, to = 0.0;    ///< start and end of the window, s
 };
 
-/// Of all readings; none of an empty track.
+/// Returns the range of all readings; none for an empty track.
 std::optional<RangeOf> whole_range(const Track&);
-/// Of those up to w after the first one; none if the test is shorter than w.
+/// Returns the range of the readings up to w, s, after the first one; none if the test is shorter
+/// than w.
 std::optional<RangeOf> first_range(const Track&, double w);
-/// Largest in any window of w; none if the test is shorter than w.
+/// Returns the largest range in any window of w, s; none if the test is shorter than w.
 std::optional<RangeOf> largest_range(const Track&, double w);
 
-/// Scatter of a reading by second differences, s^2 = sum (d_(i-1) - 2 d_i + d_(i+1))^2/(6 (n - 2)):
-/// what is smooth over three readings drops out. Uneven steps in time are allowed for.
+/// Standard deviation of a reading from second differences, s^2 = sum (d_(i-1) - 2 d_i +
+/// d_(i+1))^2/(6 (n - 2)): a course that is smooth over three readings cancels. Uneven time steps
+/// are taken into account.
 struct ReadingNoise {
   double s = 0.0;
-  double dof = 0.0;  ///< 18/35 (n - 2), of the variance of second differences; 0: too few
+  double dof = 0.0;  ///< 18/35 (n - 2), for the variance of second differences; 0: too few
 };
 ReadingNoise reading_noise(const Track&);
 
-/// By how much noise of s, added once more, makes a range larger. What is in it already has made it
-/// larger by up to 1/(sqrt 2 - 1) of that: the largest of many grows as their scatter does. Always the
-/// same for the same values.
+/// Returns by how much a range grows if noise of standard deviation s is added once more. The noise
+/// already present has increased the range by up to 1/(sqrt 2 - 1) times this result, because the
+/// extreme of many readings grows with their scatter. Deterministic.
 double range_excess(std::span<const double> d, double s);
 
 struct TimeConstants {
   enum class Answer {
     resolved,
     too_few,     ///< fewer than twelve readings
-    none,        ///< the displacement does not level off by an exponential: c is not significant
-    too_short,   ///< a time constant above half of the test
-    unresolved,  ///< u of a time constant above a quarter of it
+    none,        ///< the displacement is not exponential: c is not significant
+    too_short,   ///< a time constant is above half of the test
+    unresolved,  ///< u of a time constant is above a quarter of it
   };
   struct Part {
     double c = 0.0, tau = 0.0, u_c = 0.0, u_tau = 0.0;
   };
   Answer answer = Answer::too_few;
   std::vector<Part>
-      parts;  ///< one or two, the longest first; also of an answer too_short, unresolved
+      parts;  ///< one or two, the longest first; also for the answers too_short and unresolved
   double d0 = 0.0;
-  double s = 0.0;        ///< of a mean over an interval, about the curve
-  double dof = 0.0;      ///< effective: neighbours are correlated
-  double largest = 0.0;  ///< time constant that this test could have resolved, s
-  /// Covariance of d0, then c and ln tau of each part.
+  double s = 0.0;        ///< standard deviation of a mean over an interval, about the curve
+  double dof = 0.0;      ///< effective degrees of freedom, reduced by correlation
+  double largest = 0.0;  ///< longest time constant that this test can resolve, s
+  /// Covariance matrix of d0, then c and ln tau of each part.
   std::vector<std::vector<double>> covariance;
 
   double at(double t) const;
-  /// Distance from the end: sum c exp(-t/tau).
+  /// Returns the distance from the final value: sum c exp(-t/tau), m.
   double rest(double t) const;
-  /// When abs(rest) falls to `limit` and stays there, with its standard uncertainty; 0 if at once.
+  /// Returns the time after which abs(rest) remains below `limit`, with its standard uncertainty; 0
+  /// if from the start.
   struct Time {
     double t = 0.0, u = 0.0;
   };
   Time settled(double limit) const;
 };
 
-/// Time from the first reading on. The noise of neighbours is estimated with the curve (REML).
+/// Fits time constants; times count from the first reading. The correlation of the noise is
+/// estimated together with the curve (REML).
 TimeConstants time_constants(const Track&);
 
-/// An axis that is exercised: one target from one side, over its cycles.
+/// Readings of an axis that moves in cycles: one target from one side, over the cycles.
 struct Visits {
   double position = 0.0;  ///< m
   int direction = 1;
   Track track;
 };
 
-/// Rows of a table by time, each time once: of readings at one time the first row stands for where
-/// the machine was, and the mean of their deviations counts. Every row has a time.
+/// Rows of a table sorted by time, each time once. Of several readings at one time, the first row
+/// gives the position, and their deviations are averaged. Every row must have a time.
 struct InTime {
   std::vector<std::size_t> rows;
   Track track;
 };
 InTime in_time(const Observations&, std::vector<std::size_t> rows);
 
-/// What the readings of an exercised axis state about each target from each side, ascending; times
-/// from the first reading on. Places that were read once only are left out.
+/// Returns the readings of an axis that moves in cycles, for each target and side, ascending; times
+/// count from the first reading. Targets that were read only once are omitted.
 std::vector<Visits> visits_of(const Observations&);
 
-/// Slope of the change since the first cycle over the targets, against time: each cycle a reading, at
-/// the mean of its times. With two targets: difference of the changes over their distance.
+/// Returns the growth over time: for each cycle, the slope over the targets of the change since the
+/// first cycle, at the mean time of the cycle. With two targets, it is the difference of their
+/// changes divided by their distance.
 Track growth(const std::vector<Visits>&);
-/// Mean over the targets of (+) less (-), less the same of the first cycle.
+/// Returns the change of the reversal since the first cycle: mean over the targets of (+) minus
+/// (-), for each cycle.
 Track reversal_change(const std::vector<Visits>&);
 
 }  // namespace nonio::math

@@ -7,39 +7,39 @@
 
 #include "nonio/sdk/error.h"
 
-/// Where a machine stops to be measured, in which order, and where it reverses: the content of a
-/// part program of a measurement, for any control. Lengths in m, angles in rad.
+/// Path of a measurement: the stops of the machine, their order, and the points of reversal, for
+/// the part program of any control. Lengths in m, angles in rad.
 namespace nonio::math {
 
 struct MeasuringMove {
-  std::vector<double> to;  ///< one position for each axis of the path
-  double dwell = 0.0;      ///< s at rest, in which the instrument reads; 0: a point of turning
-  bool stop = false;       ///< after that the program waits for the operator
+  std::vector<double> to;  ///< target position of each axis of the path
+  double dwell = 0.0;  ///< time at rest, s, in which the instrument reads; 0: a point of reversal
+  bool stop = false;   ///< whether the program then waits for the operator
 };
 
 struct MeasuringPath {
-  std::string name;  ///< "X", "D1", "PPP"
+  std::string name;  ///< name of the path: "X", "D1", "PPP"
   std::vector<std::string> axes;
-  std::vector<bool> rotary;  ///< by axis
+  std::vector<bool> rotary;  ///< whether each axis is rotary
   std::vector<MeasuringMove> moves;
 };
 
 struct MeasuringRequest {
   int runs = 5;
-  double dwell = 5.0;        ///< s
-  double over_travel = 0.0;  ///< beyond both ends, so that every target is reached from one side
+  double dwell = 5.0;  ///< time at each target, s
+  /// motion beyond both ends, so that every target is approached from one side
+  double over_travel = 0.0;
   bool both_directions = true;
-  double resolution = 1e-6;  ///< the over-travel is a whole multiple of it
+  double resolution = 1e-6;  ///< the over-travel is an integer multiple of it
 };
 
-/// Targets of an axis test: P_i = first + (i - 1) p + r_i for `points` targets, p = even interval.
-/// With `scatter`, r_i is random, uniform within +- min(period, 0.3 p), at the ends only inwards:
-/// even steps would not see an error with the period of the screw or of the scale. Multiples of
-/// `resolution` between first and last; the same seed gives the same targets on every computer.
-/// Those of `among` that lie in the range take the place of the nearest target.
-/// Source: ISO 230-2:2014, test plan; the 30 % where no period is known is common practice. Range:
-/// points >= 2, last > first, resolution > 0. An error if two targets would lie closer than twice
-/// the resolution.
+/// Targets of an axis test: P_i = first + (i - 1) p + r_i for `points` targets, with p the even
+/// interval. With `scatter`, r_i is random, uniform within +- min(period, 0.3 p), at the ends only
+/// inwards, because evenly spaced targets would not detect an error with the period of the screw or
+/// scale. All are multiples of `resolution` between first and last; the same seed gives the same
+/// targets on every computer. Values of `among` in the range replace the nearest target. Source:
+/// ISO 230-2:2014, test plan; the 30 % for an unknown period is common practice. Range: points >=
+/// 2, last > first, resolution > 0. Error: two targets would be closer than twice the resolution.
 struct AxisTargets {
   double first = 0.0, last = 0.0;
   int points = 5;
@@ -51,37 +51,43 @@ struct AxisTargets {
 };
 Expected<std::vector<double>> axis_targets(const AxisTargets& wish);
 
-/// How many targets ISO 230-2 requires for a linear axis: five a metre up to 2 m and five at least,
-/// then one every 250 mm. length: m, above 0. Source: its test plan (docs/formulas.md, M).
+/// Returns the number of targets that ISO 230-2 requires for a linear axis: five per metre up to 2
+/// m and at least five, above 2 m one every 250 mm. length: m, above 0. Source: its test plan
+/// (docs/formulas.md, M).
 int axis_points(double length);
-/// The same of a rotary axis: 3, 5, 8 for up to 90, 180, 360 deg; 8 a turn beyond. angle: rad.
+/// Returns the number of targets that ISO 230-2 requires for a rotary axis: 3, 5, 8 for up to 90,
+/// 180, 360 deg; 8 per turn above. angle: rad.
 int rotary_points(double angle);
-/// Angles that it requires among the targets: 0, 90, 180, 270 deg in every turn of the range, rad.
+/// Returns the angles that ISO 230-2 requires among the targets: 0, 90, 180, 270 deg in every turn
+/// of the range, rad.
 std::vector<double> cardinal_angles(double first, double last);
 
-/// Each run: all targets upwards, and downwards if both directions are requested.
+/// Returns the path of an axis test; each run: all targets upwards, and downwards if both
+/// directions are requested.
 MeasuringPath axis_path(const std::string& axis, bool rotary, const std::vector<double>& targets,
                         const MeasuringRequest& wish);
 
-/// Two stops of an axis at which a person reads the instrument, both reached from `start`'s side.
+/// Returns the path of two stops of an axis at which a person reads the instrument, both approached
+/// from the side of `start`.
 MeasuringPath probe_path(const std::string& axis, bool rotary, double start, double from, double to,
                          const MeasuringRequest& wish);
 
-/// A rectangle with n equal steps.
+/// A rectangle whose diagonals are measured in n equal steps.
 struct Rectangle {
   std::string x = "X", y = "Y";
   double from_x = 0.0, from_y = 0.0, step_x = 0.0, step_y = 0.0;
   int n = 0;
 };
-/// D1: both axes upwards; D2: X upwards while Y goes down. The over-travel is that of the axis
-/// which goes further, on the diagonal itself.
+/// Returns the paths D1 (both axes upwards) and D2 (X upwards, Y downwards). The over-travel is
+/// that of the axis that moves further, and is on the diagonal itself.
 std::vector<MeasuringPath> diagonal_paths(const Rectangle& r, const MeasuringRequest& wish);
-/// D3, from the start of D1 to half of Y at the end of X, with every second stop along X. n even.
+/// Returns the path D3, from the start of D1 to half of Y at the end of X, with every second stop
+/// along X. n even.
 MeasuringPath half_diagonal_path(const Rectangle& r, const MeasuringRequest& wish);
 
-/// Step diagonals: X, then Y, then Z, a reading after each, n times; PPP NPP PNP PPN (P: the axis
-/// goes upwards, N: downwards). Three axes in the order of the steps. Always from the start to the
-/// end, which it comes back from without a reading.
+/// Step diagonals PPP NPP PNP PPN (P: the axis moves upwards, N: downwards): step in X, then Y,
+/// then Z, a reading after each, n times. Three axes in the order of the steps. Readings are taken
+/// only from the start to the end of a diagonal, not on the way back.
 struct Volume {
   std::vector<std::string> axes;
   std::vector<double> from, step;

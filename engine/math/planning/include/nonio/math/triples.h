@@ -10,21 +10,21 @@
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/results.h"
 
-/// Stops for two axes and both diagonals of their rectangle such that the steps of all three are
-/// whole multiples of the control's resolution.
+/// Plans stops for two axes and both diagonals of their rectangle such that the steps of all three
+/// are integer multiples of the control's resolution.
 ///
 /// Euclid: every primitive Pythagorean triple is (m^2 - k^2, 2 m k, m^2 + k^2) with m > k > 0
 /// coprime and of opposite parity; both orders of the legs are plans. The legs are coprime, so the
-/// three steps are multiples of the resolution r exactly if step = q (a, b, c) r with q integer.
-/// Where X and Y have resolutions (scale factors) of their own, r is the largest common divisor of
-/// all, k = rx/r, ry/r, rd/r, and q is a multiple of each k / gcd(k, leg).
+/// three steps are multiples of the resolution r exactly if step = q (a, b, c) r with q integer. If
+/// X and Y have resolutions (scale factors) of their own, r is the greatest common divisor of all,
+/// k = rx/r, ry/r, rd/r, and q is a multiple of each k / gcd(k, leg).
 ///
-///     U = travel - 2 over-travel          usable length of an axis, m
-///     n = steps; n + 1 stops              n q a r <= Ux, n q b r <= Uy
-///     length = n step                     coverage = length / U, by axis
+///     U = travel - 2 over-travel    usable length of an axis, m
+///     n = steps; n + 1 stops        n q a r <= Ux, n q b r <= Uy
+///     length = n step               coverage = length / U, by axis
 ///     Lx, Ly, L = lengths, c = Lx / L, s = Ly / L
 ///
-/// What a scatter u of one reading of the diagonals does to the straightness computed from them:
+/// A scatter u of one reading of the diagonals gives the computed straightness the scatter
 ///
 ///     EXY = (D1 + D2) / (2 c)   u L / (2 Lx), and of the even part, zero at both ends, 0.61 u / c
 ///     EYX = (D1 - D2) / (2 s)   u L / (2 Ly), likewise 0.61 u / s;   0.61 = sqrt(6) / 4
@@ -36,53 +36,59 @@ struct Triple {
   std::int64_t a = 0, b = 0, c = 0;  ///< a^2 + b^2 = c^2
 };
 
-/// All primitive triples with a < b and c <= `hypotenuse`, by c, then a.
+/// Returns all primitive triples with a < b and c <= `hypotenuse`, sorted by c, then a.
 std::vector<Triple> primitive_triples(std::int64_t hypotenuse);
 
-/// An even number of steps has a stop at mid-travel; only then can every second stop along X make
-/// the third diagonal, to half of Y, which separates what two diagonals leave together.
+/// Preference for an even number of steps, which has a stop at mid-travel. Only then can every
+/// second stop along X form the third diagonal, to half of Y, which separates errors that two
+/// diagonals cannot separate.
 enum class EvenSteps : std::uint8_t {
   any,
-  prefer,  ///< an odd plan must cover 0.01 more of the worse axis to precede an even one
+  prefer,  ///< an odd plan ranks before an even one only if it covers 0.01 more of the worse axis
   require,
 };
 
 struct TripleRequest {
-  double x = 0.0, y = 0.0;   ///< travel, m
-  double over_travel = 0.0;  ///< kept free at each end of both axes, m
+  double x = 0.0, y = 0.0;   ///< travel of each axis, m
+  double over_travel = 0.0;  ///< reserve at each end of both axes, m
   double resolution = 1e-3;  ///< r, m; steps are whole multiples of it
-  /// Of the steps of one axis, m; 0: as `resolution`, of which then the diagonal's are multiples.
+  /// Resolution of the steps of each axis, m; 0: `resolution`, which otherwise applies to the
+  /// diagonal.
   double resolution_x = 0.0, resolution_y = 0.0;
-  double largest_step = 0.0;  ///< of either axis, m; 0: any
+  double largest_step = 0.0;  ///< largest step of either axis, m; 0: no limit
   std::int64_t max_points = 1500;
-  std::vector<double> pitch_x{}, pitch_y{};  ///< of screw, rack, scale: no step is a multiple, m
-  /// ISO 230-2 sampling: on an axis of up to 2 m five targets a metre, above 250 mm between them.
+  /// periods of screw, rack, scale, m: no step may be a multiple of them
+  std::vector<double> pitch_x{}, pitch_y{};
+  /// Require the sampling of ISO 230-2: five targets per metre on an axis of up to 2 m, above at
+  /// most 250 mm between targets.
   bool density = false;
   EvenSteps even = EvenSteps::any;
   std::int64_t hypotenuse = 5000;
-  std::size_t count = 5;  ///< plans to give
+  std::size_t count = 5;  ///< number of plans to return
 };
 
 enum class TripleReason : std::uint8_t {
-  best,           ///< the worse axis is covered furthest; then area, fewest stops, smallest c
+  best,           ///< largest coverage of the worse axis; then area, fewest stops, smallest c
   area,           ///< the largest measured rectangle
-  even,           ///< the best with an even number of steps
-  dense,          ///< the best whose stops are an ISO 230-2 sampling
-  fewest_stops,   ///< of plans near the best
-  small_numbers,  ///< the smallest c of plans near the best
-  next,           ///< the next triple in the order
+  even,           ///< the best plan with an even number of steps
+  dense,          ///< the best plan with the sampling of ISO 230-2
+  fewest_stops,   ///< fewest stops among plans near the best
+  small_numbers,  ///< smallest c among plans near the best
+  next,           ///< next triple in the order of preference
 };
-/// How near: share of the best plan's coverage of the worse axis.
-// docs/dev/constants.md, A10.
+/// A plan is near the best if it covers at least this fraction of the best plan's coverage of the
+/// worse axis.
+/// docs/dev/constants.md, A10.
 inline constexpr double near_best = 0.95;
 
 struct TriplePlan {
-  std::int64_t a = 0, b = 0, c = 0;  ///< along X, along Y, along the diagonal
+  std::int64_t a = 0, b = 0, c = 0;  ///< legs along X and Y, hypotenuse along the diagonal
   std::int64_t q = 0, n = 0;
-  double step_x = 0.0, step_y = 0.0, step_d = 0.0;        ///< m
-  double length_x = 0.0, length_y = 0.0, length_d = 0.0;  ///< m
-  double cover_x = 0.0, cover_y = 0.0;                    ///< of the usable length
-  bool dense = false;                                     ///< an ISO 230-2 sampling
+  double step_x = 0.0, step_y = 0.0, step_d = 0.0;  ///< steps along X, Y and the diagonal, m
+  /// measured lengths along X, Y and the diagonal, m
+  double length_x = 0.0, length_y = 0.0, length_d = 0.0;
+  double cover_x = 0.0, cover_y = 0.0;  ///< fraction of the usable length
+  bool dense = false;                   ///< whether it is a sampling of ISO 230-2
   std::vector<TripleReason> reasons;
 
   bool even() const { return n % 2 == 0; }
@@ -92,12 +98,12 @@ struct TriplePlan {
   double gain_EXY() const { return length_d / (2.0 * length_x); }
   double gain_EYX_even() const;
   double gain_EXY_even() const;
-  /// A straightness that comes out with more than three times the scatter of a reading.
+  /// Whether a straightness would have more than three times the scatter of a reading.
   bool flat() const { return gain_EYX() > 3.0 || gain_EXY() > 3.0; }
 };
 
 enum class TripleLimit : std::uint8_t {
-  travel,  ///< shorter than five points of the smallest triple
+  travel,  ///< the travel is shorter than five points of the smallest triple
   largest_step,
   max_points,
   pitch,
@@ -107,36 +113,37 @@ enum class TripleLimit : std::uint8_t {
 };
 
 struct TriplePlans {
-  std::vector<TriplePlan> plans;  ///< the best first; empty if nothing fits
-  /// Why nothing fits: each limit without which, alone, something would. If there is none,
-  /// `together` holds the limits that only together leave nothing.
+  std::vector<TriplePlan> plans;  ///< the best first; empty if no plan fits
+  /// Reason if no plan fits: each limit whose removal alone would allow a plan. If there is none,
+  /// `together` contains the limits that only in combination exclude all plans.
   std::vector<TripleLimit> blocked_by, together;
-  std::int64_t tried = 0;  ///< plans that were looked at
+  std::int64_t tried = 0;  ///< number of plans that were examined
 };
 
-/// A search of more than this many plans is refused, before it begins.
+/// A search with more plans than this is rejected before it begins.
 inline constexpr std::int64_t most_tried = 20'000'000;
 
 Expected<TriplePlans> plan_triples(const TripleRequest& wish);
 
-/// What the time of a measurement depends on.
+/// Parameters of the duration of a measurement.
 struct MeasuringCost {
-  std::int64_t runs = 5;   ///< there and back
+  std::int64_t runs = 5;   ///< runs in both directions
   double feed = 2.0 / 60;  ///< m/s
-  double dwell = 5.0;      ///< at each stop, s
+  double dwell = 5.0;      ///< time at each stop, s
 };
-/// Of X, Y and both diagonals, there and back in each run, s.
+/// Returns the duration of measuring X, Y and both diagonals, forward and back in each run, s.
 double measuring_time(const TriplePlan&, const MeasuringCost&);
 
-/// The cheapest plan of each triple and order of its legs that covers so much of both axes, each
-/// number of steps with the largest step that fits. Empty: none does.
+/// Returns, for each triple and order of its legs, the cheapest plan that covers at least
+/// `least_cover` of both axes; for each number of steps the largest step that fits is tried. Empty
+/// if there is none.
 Expected<std::vector<TriplePlan>> cheapest_plans(const TripleRequest& wish, double least_cover,
                                                  const MeasuringCost&);
 
-/// A row a plan, with the names of the contract and the noise gains.
+/// Returns a table with one row per plan, with the documented column names and the noise gains.
 PointTable triple_table(const std::vector<TriplePlan>& plans);
 
-/// The order of preference.
+/// Whether `one` ranks before `other` in the order of preference.
 bool comes_before(const TriplePlan& one, const TriplePlan& other, EvenSteps even);
 
 }  // namespace nonio::math

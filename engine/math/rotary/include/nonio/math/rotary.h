@@ -16,34 +16,34 @@
 ///              value of sqrt(w)(P - m); u, v, h: coordinates along e1, e2, n
 ///     circle   start: [2u 2v 1][a b r0]' = u^2 + v^2 (Kasa); Gauss-Newton on rho_i - r with
 ///              J = [-cos t, -sin t, -1], rho_i and t_i: polar coordinates of point i about (a, b)
-///     angles   instead, if the encoder is trusted: (u, v)_i = (a, b) + R(phi_i)(c, d), linear
+///     angles   alternative, if the encoder is trusted: (u, v)_i = (a, b) + R(phi_i)(c, d), linear
 ///     cov      circle s^2 (J'WJ)^-1; plane s^2 (G'WG)^-1, G = [u v 1]; along n at the centre
 ///              g'(G'WG)^-1 g, g = (a, b, 1). Plane and circle decouple to first order.
 ///     s^2      sum w(h^2 + r^2)/(2N - 6); with angles sum w(h^2 + r^2 + t^2)/(3N - 7)
 ///
 /// Symbols: P_i centre of the ball, m; phi_i angle of the axis, rad; w_i weight (1 = one reading);
-/// h, r, t: residuals along the axis, radial, tangential, m; N places.
-/// Sources: Chernov, Circular and Linear Regression (2010), 5 and 6 (Kasa, Gauss-Newton,
-/// covariance); the rest is derived in docs/formulas.md. Range: coordinates up to 1e6 m; equal
-/// accuracy of x, y, z; sigma much smaller than the radius. On arcs below about 60 deg the linear
-/// covariance is too small: look at it against a tolerance.
+/// h, r, t: residuals along the axis, radial, tangential, m; N places. Sources: Chernov, Circular
+/// and Linear Regression (2010), 5 and 6 (Kasa, Gauss-Newton, covariance); the rest is derived in
+/// docs/formulas.md. Range: coordinates up to 1e6 m; equal accuracy of x, y, z; sigma much smaller
+/// than the radius. On arcs below about 60 deg the linear covariance is too small; compare its size
+/// with the tolerance.
 namespace nonio::math {
 
 using Vector3 = std::array<double, 3>;
 
 struct BallCentre {
   Vector3 at{};         ///< m
-  double angle = 0.0;   ///< of the axis, rad
-  double weight = 1.0;  ///< readings behind it, above 0
+  double angle = 0.0;   ///< angle of the rotary axis, rad
+  double weight = 1.0;  ///< number of readings in the mean, above 0
 };
 
 enum class RotaryRefusal {
-  not_finite,       ///< a coordinate or angle that is none, or beyond 1e6 m
-  weight,           ///< not positive
-  repeated_angles,  ///< two centres at one position of the axis: to be averaged before
-  too_few,          ///< fewer than three
-  collinear,        ///< in one place or on one line: no plane
-  not_converging,   ///< Gauss-Newton does not end
+  not_finite,       ///< a coordinate or angle is not finite, or beyond 1e6 m
+  weight,           ///< a weight is not positive
+  repeated_angles,  ///< two centres have the same angle of the axis; average them first
+  too_few,          ///< fewer than three centres
+  collinear,        ///< the centres are at one point or on one line, so that no plane is determined
+  not_converging,   ///< Gauss-Newton does not converge
   angles_disagree,  ///< the points do not follow the encoder: wrong order, sign or measurement
 };
 
@@ -53,54 +53,55 @@ struct RotaryFit {
   /// Covariance of centre (0..2) and direction (3..5) for a standard uncertainty of 1 m.
   std::array<std::array<double, 6>, 6> cofactor{};
   double cofactor_radius = 0.0;
-  double s = 0.0;  ///< from the residuals; 0 if dof is 0
+  double s = 0.0;  ///< standard deviation of a coordinate from the residuals; 0 if dof is 0
   int dof = 0;
-  std::vector<double> radial, axial, tangential;  ///< residuals
+  std::vector<double> radial, axial, tangential;  ///< residuals, m
   std::vector<double> around;                     ///< angle of each point about the direction, rad
-  double gap = 0.0;  ///< largest angle between neighbours: 2 pi - gap is the arc
-  /// Shift of the centre by a squareness or scale error of the linear axes that read it, m per
-  /// (m/m) of shear, at its worst orientation; 0 for N > 3 equal steps of a full turn.
+  double gap = 0.0;  ///< largest angle between adjacent points: 2 pi - gap is the arc
+  /// Shift of the centre by a squareness or scale error of the linear axes that measure it, m per
+  /// (m/m) of shear, for the worst orientation; 0 for N > 3 equal steps of a full turn.
   double shear_shift = 0.0;
 };
 
 tl::expected<RotaryFit, RotaryRefusal> fit_rotary(std::span<const BallCentre> centres,
                                                   bool use_angles);
 
-/// A wave of twice the angle in residuals: amplitude from a cos 2t + b sin 2t, fitted together with
-/// what the circle (or plane) takes: constant, cos t, sin t.
+/// A wave with two periods per turn in the residuals: a cos 2t + b sin 2t, fitted together with the
+/// terms that the circle (or plane) absorbs: constant, cos t, sin t.
 struct DoubleWave {
   double amplitude = 0.0;
   double phase = 0.0;  ///< angle of a maximum, rad
-  double p = 1.0;      ///< of no wave; F with 2 and dof - 2
-  double left = 0.0;   ///< standard deviation of what remains of all residuals
+  double p = 1.0;      ///< p of the hypothesis that there is no wave; F with 2 and dof - 2
+  double left = 0.0;   ///< standard deviation of the remaining residuals, all directions
 };
-/// `residual`: radial or axial of `fit`. Needs five places or more and no gap of more than 120 deg;
-/// else p stays 1.
+/// Fits the wave. `residual`: radial or axial of `fit`. It requires at least five places and no gap
+/// of more than 120 deg; otherwise p is 1.
 DoubleWave double_wave(const RotaryFit& fit, std::span<const BallCentre> centres,
                        const std::vector<double>& residual);
 
-/// Of ball centres: a second rotary axis that moved; empty if none.
+/// Returns the name of a second rotary axis that moved while ball centres were measured; empty if
+/// there is none.
 std::string other_turning_axis(const Observations&);
 
-/// Position of a rotary axis within a turn as a whole number of microradians: positions that differ
-/// by less are one.
+/// Returns the position of a rotary axis within a turn as an integer number of microradians; closer
+/// positions are the same place.
 long long place_in_turn(double angle);
 
-/// Factor that expands a standard uncertainty to 95.45 %: 2 for many degrees of freedom (dof < 0:
-/// known sigma), Student's t for few; NaN for 0.
+/// Returns the factor that expands a standard uncertainty to 95.45 %: 2 for many degrees of freedom
+/// (dof < 0: known sigma), Student's t for few; NaN for 0.
 double expansion_factor(int dof);
 
-/// Two lines in one frame, through p and q along m and n: how far apart they pass, and the angle
-/// between their directions. Derived (docs/formulas.md).
+/// Relation of two lines in one frame, through p and q along m and n: their shortest distance, and
+/// the angle between their directions. Derived (docs/formulas.md).
 ///
-///     distance = |(q - p).(m x n)| / |m x n|        angle = atan2(|m x n|, m.n)
+///     distance = |(q - p).(m x n)| / |m x n|     angle = atan2(|m x n|, m.n)
 struct LineRelation {
   double distance = 0.0, u_distance = 0.0;  ///< m
   double angle = 0.0, u_angle = 0.0;        ///< rad
   /// Derivatives by centre (0..2) and direction (3..5) of each line.
   std::array<double, 6> distance_by_a{}, distance_by_b{}, angle_by_a{}, angle_by_b{};
 };
-/// sigma_a, sigma_b: standard uncertainty of a coordinate in each of them.
+/// Computes the relation. sigma_a, sigma_b: standard uncertainty of a coordinate in each fit.
 LineRelation relation_of(const RotaryFit& a, double sigma_a, const RotaryFit& b, double sigma_b);
 
 }  // namespace nonio::math

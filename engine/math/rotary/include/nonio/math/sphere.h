@@ -8,29 +8,30 @@
 
 #include "nonio/sdk/error.h"
 
-/// The centre of a ball from touches of a probe.
+/// The centre of a ball from points touched by a probe.
 ///
-///     start    2 c.P + (r^2 - |c|^2) = |P|^2, linear least squares in c and the bracket
-///     fit      Gauss-Newton on e_i = |P_i - c| - r with J = [-(P_i - c)/|P_i - c|, -1]; with a
-///              stated radius without the last column
-///     cov      s^2 (J'J)^-1, s^2 = sum e^2 / dof, dof = N - 4, or N - 3 with a stated radius
+///     start   2 c.P + (r^2 - |c|^2) = |P|^2, linear least squares in c and the bracket
+///     fit     Gauss-Newton on e_i = |P_i - c| - r with J = [-(P_i - c)/|P_i - c|, -1]; with a
+///             stated radius without the last column
+///     cov     s^2 (J'J)^-1, s^2 = sum e^2 / dof, dof = N - 4, or N - 3 with a stated radius
 ///
-/// Symbols: P_i touch (centre of the stylus), c centre, m; r radius of ball and stylus together, m.
-/// Source: A. B. Forbes, Least-squares best-fit geometric elements, NPL Report DITC 140/89 (1991).
-/// Range: coordinates up to 1e6 m; touches of equal accuracy, scatter much smaller than the radius.
+/// Symbols: P_i touched point (centre of the stylus), c centre, m; r radius of ball and stylus
+/// together, m. Source: A. B. Forbes, Least-squares best-fit geometric elements, NPL Report DITC
+/// 140/89 (1991). Range: coordinates up to 1e6 m; points of equal accuracy, scatter much smaller
+/// than the radius.
 namespace nonio::math {
 
 struct SphereFit {
   std::array<double, 3> centre{};
   double radius = 0.0;
   std::array<double, 3> cofactor{};  ///< variance of a coordinate for s = 1 m
-  double rss = 0.0;                  ///< sum of squares of the residuals, m^2
+  double rss = 0.0;                  ///< residual sum of squares, m^2
   int dof = 0;
-  std::vector<double> residual;  ///< m, of each touch
+  std::vector<double> residual;  ///< residual of each point, m
 };
 
-/// An error where the touches do not fix a sphere: too few, in one plane, on too small a cap, or
-/// numbers that are none.
+/// Fits a sphere; `radius`: its stated value, m. Error: the points do not determine a sphere,
+/// because they are too few, in one plane or on too small a cap, or coordinates are not finite.
 Expected<SphereFit> fit_sphere(std::span<const std::array<double, 3>> touches,
                                std::optional<double> radius = std::nullopt);
 

@@ -3,28 +3,30 @@
 
 namespace nonio::math {
 
-/// P(F > f) of Fisher's distribution; 1 if a degree of freedom is not positive: nothing was tested.
-/// NaN where f or a degree of freedom is not a number.
+/// Returns P(F > f) of Fisher's distribution; 1 if a degree of freedom is not positive (nothing was
+/// tested). NaN if f or a degree of freedom is NaN.
 double f_upper(double f, double dof1, double dof2);
-/// P(|T| > |t|) of Student's distribution; 1 if the degree of freedom is not positive, NaN as
-/// above.
+/// Returns P(|T| > |t|) of Student's distribution; 1 if the degree of freedom is not positive, NaN
+/// if an argument is NaN.
 double t_two_sided(double t, double dof);
-/// P(chi-square > chi2); 1 if the degree of freedom is not positive.
+/// Returns P(chi-square > chi2); 1 if the degree of freedom is not positive.
 double chi2_upper(double chi2, double dof);
-/// z with P(N < z) = p
+/// Returns z with P(N < z) = p, N standard normal.
 double normal_quantile(double p);
-/// P(count or fewer) of so many trials that succeed with probability p.
+/// Returns the probability of at most `count` successes in `trials` trials with probability p each.
 double binomial_lower(int count, int trials, double p);
-/// What a test divides by: 0 where there is nothing of either (readings without scatter that do not
-/// differ), so that only what is really unknown is NaN.
+/// Returns found/scatter for a test; 0 if both are 0 (readings without scatter that do not differ),
+/// so that NaN only results from unknown values.
 double test_ratio(double found, double scatter);
-/// p < level. What is not a number was not judged, so it is not passed over either: it counts as
-/// significant, and evidence that is not a number stops its campaign.
+/// Whether p < level. NaN counts as significant: the test was not possible, and must not be
+/// ignored; evidence that is NaN then stops its campaign.
 inline bool significant(double p, double level) { return !(p >= level); }
-/// k with P(|T| > k) = 4.55 %, so 2 for many degrees of freedom; NaN if they are not positive.
+/// Returns k with P(|T| > k) = 4.55 %, so 2 for many degrees of freedom; NaN if they are not
+/// positive.
 double coverage_factor(double dof);
-/// What 95.45 % of a normal and one rectangular part need of 2 standard deviations, for the excess
-/// (kurtosis less 3) that both have together: 1 at 0, 0.827 at -1.2, the rectangle alone.
+/// Returns the factor, relative to 2 standard deviations, of the 95.45 % interval of a sum of a
+/// normal and one rectangular quantity. excess: kurtosis minus 3 of the sum. 1 at 0; 0.827 at -1.2,
+/// the rectangle alone.
 double shape_factor(double excess);
 
 }  // namespace nonio::math

@@ -3,15 +3,16 @@
 
 namespace nonio::math {
 
-/// The interval that contains the minimum, and the function at the two points within.
+/// An interval that contains the minimum, and the values of the function at its two inner points.
 struct Bracket {
   double low, high;
-  double at_a, at_b;  ///< at high - g (high - low) and low + g (high - low), g = (sqrt(5) - 1)/2
+  /// values at high - g (high - low) and low + g (high - low), g = (sqrt(5) - 1)/2
+  double at_a, at_b;
 };
 
-/// Golden section (Kiefer, Proc. AMS 4 (1953) 502): narrows low..high about a minimum of f until it
-/// is not wider than `fine`, at most in so many steps of one value of f each. A f with one minimum
-/// keeps it inside; of several it keeps one.
+/// Golden section search (Kiefer, Proc. AMS 4 (1953) 502): narrows low..high about a minimum of f
+/// until the width is at most `fine`, in at most `steps` evaluations after the first two. If f has
+/// several minima, the interval keeps one of them.
 template <class Function>
 Bracket golden_section(Function&& f, double low, double high, int steps, double fine = 0.0) {
   constexpr double golden = 0.6180339887498949;

@@ -7,18 +7,18 @@
 
 namespace nonio::math {
 
-/// Smooth curves without constant and slope, for what a straight line leaves (pitch curve,
-/// straightness): values at `x` of `knots` basis functions, one vector for each.
+/// Basis of smooth curves without constant and slope, for the remainder of a straight-line fit
+/// (pitch curve, straightness): values at `x` of `knots` basis functions, one vector for each.
 ///
 /// Cubic splines on `knots` equally spaced knots, the first and the last at the ends of `targets`,
-/// have knots + 2 free values; taking out constant and slope leaves `knots`. Over the targets (each
+/// have knots + 2 free values; removing constant and slope leaves `knots`. Over the targets (each
 /// once, ascending) the functions sum to zero, are orthogonal to x and to each other and have an
-/// rms of 1: the rms of a curve is the root of the sum of squares of its coefficients. Outside the
-/// targets the last polynomial goes on.
+/// rms of 1: the rms of a curve is the root of the sum of squares of its coefficients. Outside of
+/// the targets the last polynomial continues.
 ///
-/// Fails if there are fewer than 2 knots, or if the targets lie so that they do not determine
-/// every function (a gap over several knots).
-/// Source: de Boor, A Practical Guide to Splines (2001), IX (B-splines), XIII (Schoenberg-Whitney).
+/// Error: fewer than 2 knots, or targets that do not determine every function (a gap over several
+/// knots). Source: de Boor, A Practical Guide to Splines (2001), IX (B-splines), XIII
+/// (Schoenberg-Whitney).
 Expected<std::vector<std::vector<double>>> smooth_basis(const std::vector<double>& x,
                                                         const std::vector<double>& targets,
                                                         int knots);

@@ -7,15 +7,16 @@
 #include "nonio/sdk/campaign.h"
 #include "nonio/sdk/observations.h"
 
-/// A diagonal as one line: where its stops lie between its corners `from` and `to`.
+/// Treats a diagonal between the corners `from` and `to` as one line.
 namespace nonio::math {
 
-/// Axes whose ends differ, in the order of their names; of a face in a volume the third one does
+/// Returns the axes whose ends differ, sorted by name; for a face of a volume the third axis does
 /// not move.
 std::vector<std::string> moving_axes(const Measurement&);
-/// From corner to corner: share of each moving axis; the sum of their squares is 1.
+/// Returns the unit vector from corner to corner, by moving axis.
 std::vector<double> direction_along(const Measurement&);
-/// The readings as those of one axis along the diagonal, + from its first corner to its second.
+/// Converts the readings to those of one axis along the diagonal; + is from its first corner to its
+/// second.
 Observations along_diagonal(const Observations&, const Measurement&);
 
 }  // namespace nonio::math

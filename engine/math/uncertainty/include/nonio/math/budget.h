@@ -12,166 +12,179 @@
 #include "nonio/sdk/observations.h"
 #include "nonio/sdk/results.h"
 
-/// The uncertainty of whatever is fitted to readings: every analysis of several lines fills its
-/// budget here.
+/// The uncertainty of any result that is fitted to readings: every analysis of several lines fills
+/// its budget here.
 ///
 /// A result f depends on the readings y_i with J_i = df/dy_i. An input quantity of standard
-/// uncertainty u makes errors in the readings, and with them the error of f:
+/// uncertainty u causes errors in the readings, and thereby the error of f:
 ///
-///     each reading its own      u_f^2 = u^2 sum_i J_i^2
-///     a walk along a line       u_f^2 = u^2/(m - 1) sum_lines sum_k (sum_(i >= k) J_i)^2
-///     one for a line            u_f^2 = u^2 sum_lines (sum_i J_i)^2,  or with J_i d_i
-///     one for the instrument    u_f^2 = u^2 (sum_i J_i)^2,            or with J_i d_i
+///     independent per reading    u_f^2 = u^2 sum_i J_i^2
+///     random walk along a line   u_f^2 = u^2/(m - 1) sum_lines sum_k (sum_(i >= k) J_i)^2
+///     common to a line           u_f^2 = u^2 sum_lines (sum_i J_i)^2,  or with J_i d_i
+///     common to the instrument   u_f^2 = u^2 (sum_i J_i)^2,            or with J_i d_i
 ///
-/// d_i: distance of reading i from the zero of its line, where the error grows with the length; m:
-/// readings of a line (a mean of several visits: the walk goes through the visits). This is J V J'
-/// with the covariance V of the readings; what one instrument has in common for all of them (its
-/// scale) drops out of what does not depend on the scale. Where it is not known whether lines share
-/// an error (a sensor that stays, a shop that is as warm for all lines) the larger one applies: one
-/// for each line, or one for all.
+/// d_i: distance of reading i from the zero of its line, if the error grows with the length; m:
+/// readings of a line (for means of several visits the random walk follows the visits). This is J V
+/// J' with the covariance V of the readings; an error that the instrument has in common for all of
+/// them (its scale) cancels in results that do not depend on the scale. If it is not known whether
+/// lines share an error (a sensor that stays in place, a shop with the same temperature for all
+/// lines) the larger value applies: independent per line, or common to all.
 ///
-/// Expanded: U = k u. k: the factor of 95.45 % of a normal and one rectangular part that have the
-/// excess -1.2 sum c^4/u^4 of all rectangular parts c (2 without them, 1.65 of one alone), times
-/// what Student's t needs more than 2 for the effective degrees of freedom
-/// nu = u^4/sum(u_k^4/nu_k); only the repetition has finite ones.
+/// Expanded: U = k u. k: the factor for 95.45 % of a sum of a normal and one rectangular part with
+/// the excess -1.2 sum c^4/u^4 of all rectangular parts c (2 without them, 1.65 for one alone),
+/// multiplied by the ratio of Student's t to 2 for the effective degrees of freedom nu =
+/// u^4/sum(u_k^4/nu_k); only the repetition has finite ones.
 ///
 /// Sources: JCGM 100:2008, 5.2 (correlated inputs), G.4 (Welch-Satterthwaite); the excess: the
 /// fourth cumulants of independent parts add (derived); the inputs are those of uncertainty.h;
-/// their correlations are ours (docs/uncertainty.md), checked by Monte Carlo according to JCGM 101
-/// (bench/coverage.cpp).
+/// their correlations are a laboratory method (docs/uncertainty.md), checked by Monte Carlo
+/// according to JCGM 101 (bench/coverage.cpp).
 namespace nonio::math {
 
-/// Readings that share a zero, in the order of the walk.
+/// Readings that share a zero, in the order of the random walk.
 struct BudgetLine {
   enum class Kind {
-    length,      ///< of a beam: deviations along its line
-    lateral,     ///< across it: straightness
-    angle,       ///< rad
-    coordinate,  ///< of the machine's own axis, probed
+    length,      ///< lengths measured by a beam, along the line
+    lateral,     ///< deviations across the line: straightness
+    angle,       ///< angles, rad
+    coordinate,  ///< coordinates of the machine's own axis, probed
   };
   Kind kind = Kind::length;
-  std::vector<double> length;         ///< of each reading, from the zero; m
-  bool zeroed = false;                ///< its first reading is 0 by definition
-  std::optional<double> expansion{};  ///< coefficient along the line, 1/K
-  std::string expansion_keys{};       ///< that give it
-  std::size_t group = 0;              ///< lines of one measurement have what a line has in common
-  /// Of a fit whose residuals give the repetition: this line's readings are among them.
+  std::vector<double> length;         ///< distance of each reading from the zero; m
+  bool zeroed = false;                ///< whether its first reading is 0 by definition
+  std::optional<double> expansion{};  ///< expansion coefficient of the machine along the line, 1/K
+  std::string expansion_keys{};       ///< manifest keys that state it
+  std::size_t group = 0;  ///< lines of one measurement share errors that are common to a line
+  /// For a fit whose residuals give the repetition: whether this line's readings are among them.
   bool in_residuals = true;
-  /// Repetition of one reading, and its degrees of freedom, where lines differ in them.
+  /// Repetition of one reading, and its degrees of freedom, if they differ between lines.
   double u = 0.0, dof = INFINITY;
-  /// Where readings are means: when the machine stopped there, and which part of the time counts.
+  /// For readings that are means: one stop of the machine that contributes to a reading.
   struct Visit {
     double time = 0.0;        ///< 0 at the first reading of the line, 1 at the last
-    std::size_t reading = 0;  ///< of this line
-    double weight = 1.0;      ///< in its mean
+    std::size_t reading = 0;  ///< index of the reading in this line
+    double weight = 1.0;      ///< weight in the mean of that reading
   };
-  std::vector<Visit> visits{};  ///< by time; none: each reading once, one after the other
-  /// Variance of one reading that a walk of variance 1 along the line shows in what the repetition
-  /// was taken from.
+  std::vector<Visit> visits{};  ///< sorted by time; empty: each reading once, one after the other
+  /// Contribution to the variance of one reading of a random walk with variance 1 along the line,
+  /// in the readings from which the repetition was estimated.
   double walk_seen = 0.0;
 };
 
-/// Standard uncertainty in a result, of each input in the order of `inputs`.
+/// Standard uncertainty in a result by each input, in the order of `inputs`.
 struct Shares {
   std::vector<double> u;
-  /// What the repetition shows of it: where each reading has its own, the part of it from lines
-  /// that are in the residuals.
+  /// The part of `u` that is already contained in the repetition: for inputs that are independent
+  /// per reading, the part from lines whose readings are in the residuals.
   std::vector<double> in_residuals;
-  /// Fourth root of the sum of c^4 over its independent rectangular parts; none where normal.
+  /// Fourth root of the sum of c^4 over the independent rectangular parts of each input; 0 for
+  /// normal ones.
   std::vector<double> rectangular{};
-  double dof = 0.0;  ///< of the repetition, where the lines have one each; 0: as the budget states
+  /// degrees of freedom of the repetition, if lines differ; 0: those of the budget
+  double dof = 0.0;
 };
 
-/// What is known of the errors of readings, apart from their repeatability.
+/// Errors of readings that are known apart from their repeatability.
 struct ReadingModel {
   struct Input {
     Contribution is;
-    std::vector<double> of_line;  ///< standard uncertainty by line: m or rad, or for each m
-    /// Of what is one for a line: the share of its variance that all lines have together; absent if
-    /// it is not known.
+    std::vector<double> of_line;  ///< standard uncertainty by line: m or rad, or per m of length
+    /// For an input that is common to a line: the fraction of its variance that is common to all
+    /// lines; absent if it is not known.
     std::optional<double> together = 0.0;
-    /// Standard uncertainty of one reading that shows in the residuals of a fit (see_residuals).
+    /// Standard uncertainty of one reading that this input contributes to the residuals of a fit
+    /// (see_residuals).
     double seen = 0.0;
-    /// A length or coordinate that each reading has an error of its own of.
+    /// Returns whether the input is an error of a length or coordinate that is independent per
+    /// reading.
     bool of_each_reading() const;
-    /// In place of these: independent errors of all readings, each a row of standard uncertainties.
+    /// If not empty, replaces the correlation: independent errors, each as the standard
+    /// uncertainties that it causes in all readings.
     std::vector<std::vector<double>> patterns{};
   };
   std::vector<BudgetLine> lines;
   std::vector<Input> inputs;
-  std::vector<std::string> missing;  ///< keys that are not stated
+  std::vector<std::string> missing;  ///< manifest keys that are not stated
 
   std::size_t readings() const;
-  /// row: derivative of a result by each reading, in the order of the lines.
+  /// Returns the uncertainty of a result by each input. row: derivative of the result by each
+  /// reading, in the order of the lines.
   Shares shares(std::span<const double> row) const;
-  /// Derivatives of the residuals of a fit by the readings, and their degrees of freedom: what the
-  /// inputs make there is in the repetition that is taken from them.
+  /// Computes `Input::seen`, the part of each input that the repetition estimated from residuals
+  /// already contains. rows: derivatives of the residuals of a fit by the readings; dof: their
+  /// degrees of freedom.
   void see_residuals(std::span<const std::vector<double>> rows, double dof);
 };
 
-/// When each reading was taken, 0 to 1 over all of them: by their times, or else run by run, up and
-/// then down. The order of the rows does not matter.
+/// Returns when each reading was taken, 0 to 1 over all of them: by their times, or if there are
+/// none, run by run, up and then down. The order of the rows is ignored.
 std::vector<double> reading_times(const Observations&);
 
-/// The inputs as the manifest states them. Nothing is assumed for what it does not state.
+/// Returns the inputs that the manifest states. Nothing is assumed for missing keys.
 ReadingModel reading_model(const Campaign&, const Environment&, std::vector<BudgetLine>);
 
-/// Expansion of the machine along a direction: sum of c^2 alpha over the axes.
+/// Sets the expansion coefficient of the machine along a direction: sum of c^2 alpha over the axes.
 void put_expansion(BudgetLine&, const Campaign&, std::span<const std::string> axes,
                    std::span<const double> direction);
 
-/// One result with its whole uncertainty.
+/// One result with its complete uncertainty.
 struct Expanded {
-  double u = 0.0;              ///< combined
-  double k = 2.0;              ///< of U, or where that is not known of the repeatability
-  double dof = INFINITY;       ///< effective
-  std::optional<double> U;     ///< absent if a contribution was not stated
-  double repeatability = 0.0;  ///< expanded, of the repetition alone
+  double u = 0.0;              ///< combined standard uncertainty
+  double k = 2.0;              ///< coverage factor of U, or of the repeatability if U is absent
+  double dof = INFINITY;       ///< effective degrees of freedom
+  std::optional<double> U;     ///< expanded uncertainty; absent if a contribution was not stated
+  double repeatability = 0.0;  ///< expanded uncertainty by repetition alone
 };
 
-/// The budget of one evaluation while it is filled.
+/// Builds the budget of one evaluation.
 class BudgetOf {
  public:
-  /// repetition: standard uncertainty of one reading, at most; dof: of it, infinite if stated;
-  /// source: "readings", or the option that states it. Where it comes from the residuals of a fit
-  /// (finite dof, and no line has a repetition of its own), they show what each reading has for
-  /// itself: of inputs of that kind only the rest counts that the residuals do not show, the root
-  /// of u^2 - repetition^2 of all of them. What else the scatter shows (drift, shapes that the fit
-  /// does not take) counts once too: of these inputs only what is more than it.
+  /// repetition: largest standard uncertainty of one reading; dof: its degrees of freedom, infinite
+  /// if stated; source: "readings", or the option that states it. A repetition from the residuals
+  /// of a fit (finite dof, and no line has a repetition of its own) already contains errors that
+  /// are independent per reading: of inputs of that kind, only the part that the residuals do not
+  /// contain is added, the root of u^2 - repetition^2 of all of them. Other errors that contribute
+  /// to the scatter (drift, shapes that the fit does not model) are not counted twice either: of
+  /// these inputs, only the excess over their contribution to the scatter is added.
   BudgetOf(const ReadingModel&, double repetition, double dof, Quantity quantity,
            std::string source = "readings");
 
-  /// u_repetition: of this result.
+  /// Combines the uncertainty of a result. u_repetition: standard uncertainty of this result by
+  /// repetition.
   Expanded expand(double u_repetition, const Shares&) const;
-  /// The same, as a value with U and k, or with its repeatability; noted in the budget.
+  /// Returns a value with U and k, or with its repeatability if U is not known, and records it in
+  /// the budget.
   Value value(std::string name, double v, Quantity, double u_repetition, const Shares&);
-  /// Uncertainty of a curve: one k for all of it, the largest.
+  /// Sets the uncertainty of a curve with one k for all points, the largest.
   void put(Series&, std::span<const double> u_repetition, std::span<const Shares>) const;
 
   const UncertaintyBudget& budget() const { return budget_; }
 
  private:
-  /// Of the inputs that count, in the order of the budget.
+  /// Returns the contributions of the inputs that are used, in the order of the budget.
   std::vector<double> counted(double u_repetition, const Shares&) const;
 
   UncertaintyBudget budget_;
-  std::vector<double> factor_;  ///< of each input, as far as it is in the residuals
-  std::vector<bool> counts_;    ///< of each input: whether something of it is left
-  std::vector<bool> each_;      ///< of each input: whether each reading has its own
-  double unexplained_ = 0.0;    ///< of the variance of the repetition: not of such inputs
+  std::vector<double> factor_;  ///< for each input: the fraction that the residuals do not contain
+  std::vector<bool> counts_;    ///< for each input: whether it contributes
+  std::vector<bool> each_;      ///< for each input: whether it is independent per reading
+  /// fraction of the repetition's variance that inputs independent per reading do not explain
+  double unexplained_ = 0.0;
 };
 
-/// What the readings themselves show of limits that the manifest states: the larger one counts.
+/// Limits that the manifest states, replaced by the values found in the readings if these are
+/// larger.
 struct HeldLimits {
   Environment environment;
-  std::vector<Finding> findings;  ///< one for each limit that the readings go beyond
+  std::vector<Finding> findings;  ///< one for each limit that the readings exceed
 };
 HeldLimits limits_held(const Campaign&, std::span<const Observations* const>);
 
-/// `uncertainty.no-data` with these keys.
+/// Returns the finding `uncertainty.no-data` with these keys.
 Finding missing_finding(const std::vector<std::string>& keys);
 
-/// Whether the instrument is stated to be exact, which none is; the key to state that.
+/// Returns the manifest key if the instrument is stated to have no uncertainty, which is not
+/// possible; nothing otherwise.
 std::optional<std::string> exact_instrument(const Instrument&, bool angular);
 
 }  // namespace nonio::math

@@ -8,19 +8,20 @@
 
 #include "nonio/math/budget.h"
 
-/// Places in space that the linear axes of a machine read: centres of a ball under a probe.
+/// Positions in space that the linear axes of a machine measure: centres of a ball under a probe.
 namespace nonio::math {
 
 struct ProbedPlaces {
   std::vector<std::array<double, 3>> at;  ///< m, in the order in which they were read
-  std::array<double, 3> middle{};         ///< from which squareness and scale count
-  double radius = 0.0;                    ///< how far they lie from it at most
-  /// Bound of squareness and scale difference of the linear axes, rad, if it is known; its key.
+  std::array<double, 3> middle{};         ///< point from which squareness and scale errors grow
+  double radius = 0.0;                    ///< largest distance of a place from it
+  /// Bound of the squareness and scale differences of the linear axes, rad, if it is known; its
+  /// manifest key.
   std::optional<double> linear_axes{};
   std::string linear_axes_key{};
 };
 
-/// The errors of the coordinates: the lines are x, y and z of all places.
+/// Returns the model of the errors of the coordinates: three lines, x, y and z of all places.
 ReadingModel probed_model(const Campaign&, const Environment&, const ProbedPlaces&);
 
 }  // namespace nonio::math

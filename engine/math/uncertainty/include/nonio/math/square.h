@@ -9,47 +9,51 @@
 #include "nonio/math/measured_line.h"
 #include "nonio/sdk/campaign.h"
 
-/// Squareness of two axes from two lines of straightness against the faces of one square.
+/// Squareness of two axes from two lines of straightness measured against the faces of one square.
 ///
 /// Axis 1 moves along one face, and b1 is the least-squares slope of its deviations towards axis 2;
 /// b2 is that of axis 2 towards axis 1. The faces enclose 90 degrees + g in the quadrant between
 /// both positive directions. Then b1 + b2 = t + g with the sum t of the slopes of both axes towards
-/// each other; the set-up of the square turns b1 and b2 by opposite amounts and drops out:
+/// each other; the set-up of the square changes b1 and b2 by opposite amounts and cancels:
 ///
-///     C0Y = -t    B0Z = +t    A0Z = -t
+///     C0Y = -t     B0Z = +t     A0Z = -t
 ///
-/// Turned over about one of its faces the square shows -g: t is the mean of both positions, g half
-/// their difference. Derived; tests compare it with exact transforms. As the slopes are of least
-/// squares, so is the squareness (C0Y_LSQ of diagonals).
+/// After the square is turned over about one of its faces it has the error -g: t is the mean of
+/// both positions, g half their difference. Derived; tests compare it with exact transforms. As the
+/// slopes are least-squares slopes, so is the squareness (C0Y_LSQ of diagonals).
 namespace nonio::math {
 
-/// The lines of one square in one plane and one state of the machine.
+/// The lines measured against one square in one plane and one state of the machine.
 struct SquareLines {
   std::string square, state;
-  std::string name;                   ///< C0Y, B0Z, A0Z
-  std::string first, second;          ///< names of the axes
-  std::vector<std::size_t> unturned;  ///< measurements: of `first`, of `second`
-  std::vector<std::size_t> turned;    ///< the same after it was turned over
+  std::string name;           ///< name of the squareness: C0Y, B0Z, A0Z
+  std::string first, second;  ///< names of the axes
+  /// indices of the measurements: of axis `first`, of axis `second`
+  std::vector<std::size_t> unturned;
+  /// indices of the measurements after the square was turned over
+  std::vector<std::size_t> turned;
   bool whole() const { return unturned.size() == 2 && (turned.empty() || turned.size() == 2); }
-  /// Every measurement, in the order of the manifest.
+  /// Returns all measurements, in the order of the manifest.
   std::vector<std::size_t> all() const;
 };
 
-/// In the order of the manifest.
+/// Returns the sets of lines, in the order of the manifest.
 std::vector<SquareLines> squares_of(const Campaign&);
 
 struct Squareness {
-  double value = 0.0;                 ///< of the machine, rad
+  double value = 0.0;                 ///< squareness of the machine, rad
   std::optional<double> of_square{};  ///< g, if it was turned over; its u is that of `value`
-  double u = 0.0;                     ///< by repetition; 0: no repetition
+  double u = 0.0;                     ///< standard uncertainty by repetition; 0: no repetition
   Shares shares;
   ReadingModel model;
-  double largest_u = 0.0, dof = 0.0;  ///< of a reading, for the budget
-  std::vector<Finding> findings;      ///< limits that the readings go beyond
+  /// largest standard uncertainty of a reading, and its degrees of freedom, for the budget
+  double largest_u = 0.0, dof = 0.0;
+  std::vector<Finding> findings;  ///< limits of the manifest that the readings exceed
 };
 
-/// What hinders is an id and a measurement: `one-line`, `unknown` (neither turned
-/// over nor its error stated), `too-few`, `incomplete`. `all`: of the campaign's measurements.
+/// Reason why there is no squareness, and the measurement: `one-line`, `unknown` (neither turned
+/// over nor its error stated), `too-few`, `incomplete`. `all` (below): observations of all
+/// measurements of the campaign.
 struct NoSquareness {
   std::string why;
   std::string which;
@@ -58,12 +62,12 @@ tl::expected<Squareness, NoSquareness> squareness_of(const Campaign&,
                                                      const std::vector<Observations>& all,
                                                      const SquareLines&);
 
-/// Two results for one quantity, by readings that share nothing.
+/// Two independent results for one quantity, combined and compared.
 struct OneQuantity {
-  double value = 0.0, u = 0.0;  ///< weighted by 1/u^2
-  double dof = INFINITY;        ///< of u
+  double value = 0.0, u = 0.0;  ///< mean weighted by 1/u^2, and its standard uncertainty
+  double dof = INFINITY;        ///< degrees of freedom of u
   double difference = 0.0, u_difference = 0.0;
-  double p = 1.0;  ///< of a difference as large, by chance
+  double p = 1.0;  ///< probability of a difference this large by chance
 };
 OneQuantity one_quantity(double a, const Expanded& of_a, double b, const Expanded& of_b);
 

@@ -14,68 +14,73 @@
 namespace nonio::math {
 
 /// Contributions to the uncertainty of a positioning test, expanded (k = 2), m or rad. A quantity
-/// known to lie within a full range r counts with 0.6 r (2/(2 sqrt 3) = 0.577, rounded up):
+/// known to be within a full range r contributes 0.6 r (2/(2 sqrt 3) = 0.577, rounded up):
 ///
-///     U_DEV = U_fixed + U_per_length L                 L: first target to last, m
-///     U_MIS = 0.6 R_mis^2/(2 L)                        R_mis: misalignment, m
-///     U_M   = 0.6 alpha L R(theta)                     alpha: expansion, 1/K; R(theta): K
-///     U_E   = 0.6 dT L R(alpha)                        dT: largest distance from 20 degC, K
-///     U_EVE = 0.6 E_VE                                 E_VE: range of the drift test, m or rad
+///     U_DEV = U_fixed + U_per_length L         L: first target to last, m
+///     U_MIS = 0.6 R_mis^2/(2 L)                R_mis: misalignment, m
+///     U_M   = 0.6 alpha L R(theta)             alpha: expansion, 1/K; R(theta): K
+///     U_E   = 0.6 dT L R(alpha)                dT: largest distance from 20 degC, K
+///     U_EVE = 0.6 E_VE                         E_VE: range of the drift test, m or rad
 ///     U_MD, U_ED: U_M and U_E of a device with a length of its own
 ///
 /// Source: names of ISO/TR 230-9:2005 Annex C and ISO 230-2:2006 Annex A, whose texts were not
 /// available (docs/uncertainty.md, M).
 struct Budget {
-  double U_DEV = 0.0;   ///< measuring instrument
-  double U_MIS = 0.0;   ///< its misalignment to the axis
-  double U_M = 0.0;     ///< temperature of the machine as it was read
-  double U_E = 0.0;     ///< expansion coefficient of the machine
-  double U_MD = 0.0;    ///< temperature of a device with a length of its own
-  double U_ED = 0.0;    ///< its expansion coefficient
-  double U_EVE = 0.0;   ///< environmental variation, the drift test
-  double length = 0.0;  ///< measured length for which they hold
-  bool rotary = false;  ///< then only U_DEV and U_EVE
-  DriftShare seen;      ///< what drift that these readings do not exclude makes of their values
-  /// What does not average out over the approaches: S, root of the sum of squares of all but U_EVE.
+  double U_DEV = 0.0;   ///< contribution of the measuring instrument
+  double U_MIS = 0.0;   ///< contribution of its misalignment to the axis
+  double U_M = 0.0;     ///< contribution of the temperature measurement of the machine
+  double U_E = 0.0;     ///< contribution of the machine's expansion coefficient
+  double U_MD = 0.0;    ///< contribution of the temperature of a device with a length of its own
+  double U_ED = 0.0;    ///< contribution of the expansion coefficient of such a device
+  double U_EVE = 0.0;   ///< contribution of environmental variation, the drift test
+  double length = 0.0;  ///< measured length to which they apply
+  bool rotary = false;  ///< if true, only U_DEV and U_EVE exist
+  DriftShare seen;      ///< possible contribution of drift that these readings do not exclude
+  /// Returns S, the contributions that do not average out over the approaches: root of the sum of
+  /// squares of all except U_EVE.
   double systematic() const;
 };
 
 struct BudgetOrGap {
   std::optional<Budget> budget;
-  std::vector<std::string> missing;  ///< manifest keys without which there is no budget
+  std::vector<std::string> missing;  ///< manifest keys that are required for the budget but missing
 };
 
-/// From the manifest; nothing is assumed for what it does not state. environment: the
-/// campaign's, or what the readings make of it (limits_held).
+/// Returns the budget stated by the manifest; nothing is assumed for missing keys. environment:
+/// that of the campaign, or as extended by the readings (limits_held).
 BudgetOrGap uncertainty_budget(const Campaign&, const Environment&, const std::string& axis,
                                const AxisTest&);
 
-/// The contributions as every analysis has them, without results.
+/// Returns the contributions in the form common to all analyses, without results.
 UncertaintyBudget contributions_of(const Budget&, const std::string& axis, bool rotary);
-/// Standard uncertainty of each of them in a result of expanded uncertainty U. systematic: the
-/// parts that do not average out are in it (A, E, M, P, Pa); else the environment alone.
+/// Returns the standard uncertainty of each contribution in a result of expanded uncertainty U.
+/// systematic: the result contains the contributions that do not average out (A, E, M, P, Pa);
+/// otherwise only the environment contributes.
 std::vector<double> shares_of(const Budget&, double U, bool systematic);
 
-/// Fewest readings behind a mean: the least n over targets and directions that have readings.
+/// Returns the smallest number of readings in a mean, over targets and directions that have
+/// readings.
 std::size_t approaches_per_mean(const AxisTest&);
 
-/// Expanded uncertainties (k = 2) of the results of ISO 230-2; m or rad. n: approaches behind each
-/// mean, 1 or more; k: coverage factor of R and A in the edition.
+/// Expanded uncertainties (k = 2) of the results of ISO 230-2; m or rad. n: approaches in each
+/// mean, at least 1; k: coverage factor of R and A in the edition.
 ///
-///     U(B)^2 = 2 U_EVE^2/n + D_B^2              U(R+)^2 = U(R-)^2 = (k U_EVE)^2 + (2 k D_s)^2
-///     U(B_mean)^2 = 2 U_EVE^2/n + D_mean^2      U(R)^2 = U(R+)^2 + U(B)^2
-///     U(M) = sqrt(S^2 + U_EVE^2/n)              U(A) = sqrt(U(E)^2 + (k U_EVE)^2); + and - alike
+///     U(B)^2 = 2 U_EVE^2/n + D_B^2          U(R+)^2 = U(R-)^2 = (k U_EVE)^2 + (2 k D_s)^2
+///     U(B_mean)^2 = 2 U_EVE^2/n + D_mean^2  U(R)^2 = U(R+)^2 + U(B)^2
+///     U(M) = sqrt(S^2 + U_EVE^2/n)          U(A) = sqrt(U(E)^2 + (k U_EVE)^2); + and - alike
 ///     U(E) = sqrt(S^2 + 2 U_EVE^2/n)
 ///
-/// D_B, D_mean, D_s: of the drift that the readings do not exclude (drift.h).
+/// D_B, D_mean, D_s: contributions of drift that the readings do not exclude (drift.h).
 ///
-/// Derived by the GUM (docs/uncertainty.md, L): compare with the standard before claiming it.
+/// Derived by the GUM (docs/uncertainty.md, L): compare with the standard before claiming
+/// conformity to it.
 struct Iso230Uncertainty {
   double A, A_plus, A_minus, E, E_plus, E_minus, M, R, R_plus, R_minus, B, B_mean;
 };
 Iso230Uncertainty iso230_2_uncertainty(const Budget&, std::size_t n, double k);
 
-/// The same for VDI/DGQ 3441, which has no such clause: derived by the rules of the GUM.
+/// Expanded uncertainties of the results of VDI/DGQ 3441, which has no such clause: derived by the
+/// rules of the GUM.
 ///
 ///     U(Pa) = U(M)    U(U_max) = U(U_mean) = U(B)    U(Ps_max) = U(Ps_mean) = 3 U_EVE
 ///     U(P) = sqrt(S^2 + 2 U_EVE^2/n + (3 U_EVE)^2)
@@ -84,18 +89,22 @@ struct VdiUncertainty {
 };
 VdiUncertainty vdi3441_uncertainty(const Budget&, std::size_t n);
 
-/// The same for a value of any rule of positioning (positioning.h): derived by the rules of the GUM.
+/// Returns the expanded uncertainty of a value of any rule of positioning (positioning.h): derived
+/// by the rules of the GUM.
 ///
 ///     U^2 = S^2 (where systematic) + means U_EVE^2/n + (scatter U_EVE)^2 + band E_VE^2
 ///           + D^2 of the reversal and the scatter (where not systematic)
 ///
-/// A difference of two readings is wrong by the range of the environment E_VE = U_EVE/0.6 at most.
+/// The error of a difference of two readings is at most the range of the environment E_VE =
+/// U_EVE/0.6.
 double rule_uncertainty(const Budget&, std::size_t n, const RuleShare&);
 
-/// Of a slope of means over the length: U(M)/L of `slope_budget`, an upper bound for least squares.
+/// Returns U of a slope of means over the length: U(M)/L of `slope_budget`, an upper bound for a
+/// least-squares slope.
 double slope_uncertainty(const Budget& of_slope, std::size_t n);
-/// A misaligned beam makes every distance too short: in a slope its limit applies from one side,
-/// 2/sqrt 3 of it in place of 0.6. A range is affected less than a slope.
+/// Returns the budget of a slope. A misaligned beam makes every distance too short: in a slope its
+/// limit acts from one side, so it contributes 2/sqrt 3 of the limit instead of 0.6. A range is
+/// affected less than a slope.
 Budget slope_budget(const Budget&);
 
 }  // namespace nonio::math

@@ -7,7 +7,8 @@
 #include <utility>
 #include <vector>
 
-/// Which of the 21 errors of three linear axes straight lines through a volume do not determine.
+/// Determines which of the 21 errors of three linear axes straight lines through a volume do not
+/// determine.
 ///
 /// Chain bed - X - Y - Z - tool, no tool offset, small errors (ISO 230-1 names); y, z from the
 /// middle of the volume:
@@ -16,10 +17,11 @@
 ///     e_y = EYX + EYY + EYZ - z (EAX + EAY + A0Z)
 ///     e_z = EZX + EZY + EZZ + y EAX
 ///
-/// Each error counts with its simplest shape: positioning grows evenly, a straightness is a bow (0
-/// at both ends), an angle turns evenly through 0 at mid-travel; the constant angles are the
-/// squarenesses. A size of 1 makes at most 1 somewhere in the volume. The null space of the
-/// readings is what stays unseen. Derived; tests move exact transforms by every combination.
+/// Each error is represented by its simplest shape: positioning grows linearly, a straightness is
+/// an arc (0 at both ends), an angle changes linearly through 0 at mid-travel; the constant angles
+/// are the squarenesses. A coefficient of 1 causes an error of at most 1 in the volume. The null
+/// space of the readings contains the errors that are not determined. Derived; tests move exact
+/// transforms by every combination.
 namespace nonio::math {
 
 using Corner = std::array<double, 3>;  ///< m
@@ -30,12 +32,13 @@ struct ThroughVolume {
 
 struct Blindness {
   std::size_t errors = 0, rank = 0;
-  std::vector<std::string> unseen;  ///< errors that no line shows at all
-  /// Sizes of errors that together change no reading, the first one 1.
+  std::vector<std::string> unseen;  ///< errors that affect no line
+  /// Coefficients of errors that together change no reading, the first one 1.
   std::vector<std::vector<std::pair<std::string, double>>> combinations;
 };
 
-/// The volume is the box that holds all lines; an axis that does not move has no errors.
+/// Returns the result for these lines. The volume is the box that contains all lines; an axis that
+/// does not move has no errors.
 Blindness blind_to(const std::vector<ThroughVolume>& lines);
 
 }  // namespace nonio::math

@@ -13,45 +13,45 @@
 /// Sequential step diagonals: along each of the four body diagonals of a volume the axes move one
 /// after the other, n times each, and a flat mirror in the spindle is read after every move.
 ///
-///     travel X, Y, Z; L = sqrt(X^2 + Y^2 + Z^2)      m
-///     a = X/L, b = Y/L, c = Z/L                       direction cosines
-///     e = (ex, ey, ez), each +1 or -1                 direction of a pass; u = (ex a, ey b, ez c)
-///     E_a(i) = (EXa, EYa, EZa)                        errors of axis a at its position i = 0..n, m
-///     p                                               nominal displacement so far, m
-///     nu                                              set-up angle of a pass, rad: nu.u = 0
-///     R = u.sum_a [E_a(j_a) - E_a(start)] + nu.p      reading minus the nominal one, m
+///     travel X, Y, Z; L = sqrt(X^2 + Y^2 + Z^2)   m
+///     a = X/L, b = Y/L, c = Z/L                   direction cosines
+///     e = (ex, ey, ez), each +1 or -1             direction of a pass; u = (ex a, ey b, ez c)
+///     E_a(i) = (EXa, EYa, EZa)                    errors of axis a at position i = 0..n, m
+///     p                                           nominal displacement so far, m
+///     nu                                          set-up angle of a pass, rad: nu.u = 0
+///     R = u.sum_a [E_a(j_a) - E_a(start)] + nu.p  reading minus the nominal one, m
 ///
 /// Least squares: 9n function values, two set-up angles per pass, the zero of each pass, and the
-/// zero of each axis series d(x) = E_aa(x) + zero. A rotation of the frame moves no reading: EYX,
-/// EZX and EZY are 0 at the far end while it is solved (three gauge rows, if the set-up is open).
-/// The rank is found numerically; without axis series the set-up leaves two scales unknown, and
-/// what depends on them is not given. Where the mirror is square to a beam that does not run along
-/// the diagonal, the path is short by |nu|^2/2 of u.p: subtracted, with nu.E, and solved again,
-/// twice.
+/// zero of each axis series d(x) = E_aa(x) + zero. A rotation of the frame changes no reading: EYX,
+/// EZX and EZY are set to 0 at the far end while it is solved (three gauge rows, if the set-up is
+/// unknown). The rank is determined numerically; without axis series the set-up leaves two scales
+/// undetermined, and results that depend on them are not given. If the mirror is square to a beam
+/// that is not parallel to the diagonal, the path is shorter by |nu|^2/2 of u.p: this is
+/// subtracted, with nu.E, and the problem is solved again, twice.
 ///
 /// Averaging (perfect set-up only), r = increment of a reading over interval i of axis a:
-///     dE_aa = mean of r / u_a,   dE_ba = mean of (e_a e_b r) / u_b    over the four diagonals
-///     check = sum of (product of the other two signs) r = 0           three a step
-///     slope EYX + slope EXY = L (sum of ex ey D) / (4 X Y)            D: totals of the diagonals
+///     dE_aa = mean of r / u_a,   dE_ba = mean of (e_a e_b r) / u_b   over the four diagonals
+///     check = sum of (product of the other two signs) r = 0         three per step
+///     slope EYX + slope EXY = L (sum of ex ey D) / (4 X Y)           D: totals of the diagonals
 ///
-/// The functions are those on lines through the middle of the volume: angular errors of an axis
-/// that is measured on another line make the axis series disagree.
+/// The functions are those on lines through the middle of the volume: for an axis that is measured
+/// on another line, its angular errors cause a difference to the axis series.
 ///
-/// Given: straightness less its least-squares line (ISO 230-1), and with it
+/// Given: straightness minus its least-squares line (ISO 230-1), and relative to it
 ///     C0Y = -(slope EYX + slope EXY), B0Z = slope EZX + slope EXZ, A0Z = -(slope EZY + slope EYZ)
-/// which no set-up error moves to first order: the slopes of the straightness lines, two by two,
-/// are in the totals D of the diagonals. Positioning with its scale where that is known, else
-/// less its end line.
+/// which no set-up error changes to first order: the sums of two slopes of straightness lines are
+/// determined by the totals D of the diagonals. Positioning is given with its scale if that is
+/// known, otherwise minus its end-point line.
 ///
-/// Uncertainty: white noise u of single readings. A function is a sum of increments whose noises do
-/// not cancel: a random walk, sd E_ba(i) = sqrt(2i) u / (2 u_b) for averaging.
+/// Uncertainty: white noise u of single readings. A function is a sum of increments whose noise
+/// does not cancel: a random walk, sd E_ba(i) = sqrt(2i) u / (2 u_b) for averaging.
 ///
 /// Source: derived; the averaging is that of C. Wang, "Laser vector measurement technique for the
 /// determination and compensation of volumetric positioning errors", Rev. Sci. Instrum. 71 (2000)
-/// 3933 (text not at hand). Checked against exact transforms.
+/// 3933 (text not available). Checked with exact transforms.
 namespace nonio::math {
 
-/// Largest number of steps: the fit is dense.
+/// Largest number of steps, because the fit uses dense matrices.
 inline constexpr std::size_t most_diagonal_steps = 100;
 
 struct StepDiagonals {
@@ -60,7 +60,7 @@ struct StepDiagonals {
     std::vector<double> reading;  ///< after each of the 3n moves, m; NaN: not taken
   };
   std::array<double, 3> low{}, travel{};      ///< m, travel > 0
-  std::array<std::size_t, 3> order{0, 1, 2};  ///< in which the axes move
+  std::array<std::size_t, 3> order{0, 1, 2};  ///< order in which the axes move
   std::size_t n = 0;
   std::vector<Pass> passes;
 
@@ -68,82 +68,87 @@ struct StepDiagonals {
   double position(std::size_t axis, std::size_t i) const {
     return low[axis] + travel[axis] * static_cast<double>(i) / static_cast<double>(n);
   }
-  /// Moves of each axis after the first t of all.
+  /// Returns how many of the first t moves each axis has made.
   std::array<std::size_t, 3> counts(std::size_t t) const;
 };
 
-/// Positioning of one axis as measured for itself, on a line through the volume's middle.
+/// Positioning of one axis measured separately, on a line through the middle of the volume.
 struct AxisSeries {
   std::size_t axis = 0;
   std::vector<double> position, deviation;  ///< m
-  double u = 0.0;  ///< standard uncertainty of one deviation; 0: as readings
-  std::vector<BudgetLine::Visit> visits{};  ///< what the deviations were made of, by time; or none
+  double u = 0.0;  ///< standard uncertainty of one deviation; 0: that of the diagonal's readings
+  /// visits that contribute to the deviations, sorted by time; may be empty
+  std::vector<BudgetLine::Visit> visits{};
 };
 
 struct StepChoices {
-  /// The mirror is known to be square to the diagonals within u over a step.
+  /// Whether the mirror is known to be square to the diagonals, to within u over a step.
   bool set_up_known = false;
-  /// The mirror was set square to the beam (the usual way); else the beam runs along the diagonal.
+  /// true: the mirror was set square to the beam (the usual way); false: the beam was aligned with
+  /// the diagonal.
   bool mirror_to_beam = true;
-  /// Standard uncertainty of a reading, m; 0: from the residuals.
+  /// Standard uncertainty of a reading, m; 0: estimated from the residuals.
   double u_reading = 0.0;
 };
 
 struct Estimated {
   double value = 0.0;
-  double u = 0.0;  ///< standard uncertainty of the noise
-  Shares shares;   ///< and of the inputs of a ReadingModel, if there was one
+  double u = 0.0;  ///< standard uncertainty by noise
+  Shares shares;   ///< contributions of the inputs of a ReadingModel, if there was one
 };
 
 struct StepCurve {
-  std::string name;  ///< EYX
+  std::string name;  ///< ISO 230-1 name: EYX
   std::size_t axis = 0;
-  bool known = true;  ///< positioning: false if less its end line, as the scale is not known
+  /// for positioning: false if it is given minus its end-point line, because the scale is not known
+  bool known = true;
   std::vector<double> position, value, u;  ///< m
   std::vector<Shares> shares;
 };
 
-/// An axis series against the positioning that the diagonals alone give, both less a line.
+/// Difference between an axis series and the positioning from the diagonals alone, both minus a
+/// line.
 struct ShapeContrast {
   std::size_t axis = 0;
-  double rms = 0.0, largest = 0.0, at = 0.0;  ///< m
+  double rms = 0.0, largest = 0.0, at = 0.0;  ///< rms and largest value, and its position, m
   double p = 1.0;
 };
 
 struct StepSolution {
   std::array<StepCurve, 9> curves;      ///< EXX EYX EZX EXY EYY EZY EXZ EYZ EZZ
   std::array<Estimated, 3> squareness;  ///< C0Y, B0Z, A0Z, rad
-  std::size_t unknowns = 0, rank = 0;   ///< function values and set-up angles; 9n + 8 at most known
-  double u_reading = 0.0;               ///< m, as used
-  double dof = 0.0;                     ///< of u_reading from the residuals
+  /// unknowns: function values and set-up angles; rank at most 9n + 8
+  std::size_t unknowns = 0, rank = 0;
+  double u_reading = 0.0;  ///< standard uncertainty of a reading that was used, m
+  double dof = 0.0;        ///< degrees of freedom of u_reading, if from the residuals
   /// Set-up angle of each pass, rad; empty if it is not separable from the scales.
   std::vector<double> set_up;
-  std::vector<ShapeContrast> shapes;  ///< of each series
+  std::vector<ShapeContrast> shapes;  ///< one per axis series
   bool scales_known() const { return curves[0].known && curves[4].known && curves[8].known; }
 };
 
-/// An error if a function cannot be known, as too many readings are missing. The lines of the
-/// model, if there is one, are the passes, each with its zero before the 3n readings, and the
-/// series.
+/// Solves by least squares. Error: too many readings are missing to determine a function. The lines
+/// of the model, if there is one, are the passes, each with its zero before the 3n readings, and
+/// then the series.
 Expected<StepSolution> solve_step_diagonals(const StepDiagonals&, const std::vector<AxisSeries>&,
                                             const StepChoices&, const ReadingModel* = nullptr);
-/// Needs every reading. The lines of the model are the passes.
+/// Solves by averaging; every reading must exist. The lines of the model are the passes.
 Expected<StepSolution> average_step_diagonals(const StepDiagonals&, const StepChoices&,
                                               const ReadingModel* = nullptr);
 
-/// What the check sums show.
+/// Results of the check sums.
 struct StepChecks {
   std::array<double, 3> constant{};  ///< mean check sum of the moves of X, Y, Z, m
-  double p_constant = 1.0;           ///< of the most significant one, times 3
-  double trend = 0.0;                ///< from step to step, m
+  double p_constant = 1.0;           ///< p of the most significant one, times 3
+  double trend = 0.0;                ///< change per step, m
   double p_trend = 1.0;
-  double u_reading = 0.0;  ///< from their scatter, m
+  double u_reading = 0.0;  ///< standard deviation of a reading, from their scatter, m
   std::size_t count = 0;
 };
 StepChecks check_step_diagonals(const StepDiagonals&);
 
-/// Mean total of the diagonals less the prediction of three axis series (ascending), m: mean D -
-/// sum of (T_a/L) E_aa(T_a). Nothing if an axis or a total is missing.
+/// Returns the mean total of the diagonals minus its prediction from three axis series (ascending),
+/// m: mean D - sum of (T_a/L) E_aa(T_a). Nothing if an axis or a total is missing.
 std::optional<Estimated> close_lengths(const StepDiagonals&, const std::vector<AxisSeries>&,
                                        double u_reading);
 

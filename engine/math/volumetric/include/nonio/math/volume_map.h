@@ -13,29 +13,30 @@
 ///     e(p) - e(middle of the volume)
 ///     size = |e|,  u(size)^2 = n' V n with n = e/|e| and the covariance V of e
 ///
-/// The largest size is that of the largest node. Noise makes it larger by about u^2/(2 size) of each
-/// direction across e; where size < 5 u that is a tenth of u and more, and it is not given.
+/// The largest size is that of the largest node. Noise increases it by about u^2/(2 size) for each
+/// direction perpendicular to e; if size < 5 u this bias is at least a tenth of u, and the size is
+/// not given.
 namespace nonio::math {
 
 struct VolumeNode {
-  Corner at{}, error{};       ///< m
-  std::array<double, 3> u{};  ///< of the components: of the repetition
+  Corner at{}, error{};       ///< position and error of the node, m
+  std::array<double, 3> u{};  ///< standard uncertainty of the components by repetition
   std::array<Shares, 3> shares{};
 };
 
 struct VolumeMap {
-  std::vector<VolumeNode> nodes;  ///< X slowest, Z fastest; none: not known everywhere
-  std::size_t parts = 0;          ///< between the nodes of each axis that moves
-  std::size_t largest = 0;        ///< index of a node
+  std::vector<VolumeNode> nodes;  ///< X slowest, Z fastest; empty: not determined everywhere
+  std::size_t parts = 0;          ///< number of intervals of each axis that moves
+  std::size_t largest = 0;        ///< index of the node with the largest error
   double size = 0.0, u_size = 0.0;
   Shares shares_size;
   bool known() const { return !nodes.empty(); }
 };
 
-/// Nodes of the lattice; an axis that does not move has one.
+/// Returns the nodes of the lattice; an axis that does not move has one.
 std::vector<Corner> lattice(const Corner& low, const Corner& high, std::size_t parts);
 
-/// Error between the nodes of a map, linear in each coordinate: as a control does it.
+/// Interpolates the error between the nodes of a map, linearly in each coordinate, as controls do.
 Corner interpolated(const VolumeMap&, const Corner& at);
 
 }  // namespace nonio::math

@@ -9,39 +9,41 @@
 
 #include "nonio/sdk/control.h"
 
-/// The axes of the machine as a control knows them: option `axes` holds what each has of its own.
+/// The axes of the machine with their settings in the control: option `axes` contains those of each
+/// axis.
 namespace nonio::controllers {
 
 using AxisSettings = NumberTable;
 
 struct KnownAxis {
   std::string name;
-  std::size_t number = 0;  ///< setting `number`; 0: not stated, and not guessed
+  std::size_t number = 0;  ///< setting `number`; 0: not stated, and not assumed
   bool rotary = false;
   AxisSettings settings;
 
   std::optional<double> setting(std::string_view key) const;
-  /// A length or angle in SI: "first" reads first_mm or first_deg.
+  /// Returns a setting that is a length or angle, in SI: "first" reads first_mm or first_deg.
   std::optional<double> position_setting(std::string_view key) const;
   double per_si() const { return rotary ? deg_per_rad : 1e3; }
 };
 
-/// Tables of option `axes`, by axis. `keys`: "reference" is reference_mm and
-/// reference_deg, a name with ':' at its end for a plain number; none: any. What the record of a
-/// machine may state is always taken: number, reference, from, to, backlash, resolution, largest,
-/// slope.
+/// Returns the tables of option `axes`, by axis. Error: an unknown key. `keys`: allowed keys;
+/// "reference" is reference_mm and reference_deg, a name that ends with ':' is a plain number;
+/// empty: any key. Settings from the record of a machine are always allowed: number, reference,
+/// from, to, backlash, resolution, largest, slope.
 Expected<NumberTables> settings_of_axes(const Settings& options,
                                         const std::vector<std::string_view>& keys = {});
 
-/// Error of option `axes`: of a key in it ("X.number"), or of the whole.
+/// Returns an error of option `axes`: of a key in it ("X.number"), or of the whole.
 tl::unexpected<Error> wrong_axes(std::string message, const std::string& key = {});
 
-/// The axes of the manifest with their settings.
+/// Returns the axes of the manifest with their settings.
 Expected<std::vector<KnownAxis>> known_axes(const TableInput&);
-/// A linear axis with that name if it is not known.
+/// Returns the axis with this number; a linear axis named by the number if it is not known.
 KnownAxis axis_numbered(const std::vector<KnownAxis>&, std::size_t number);
-/// By the name of its file, "linuxcnc-X-before.comp" after this prefix: the axis in it, or the only
-/// axis of the machine if the file has another name.
+/// `axis_of_file` finds the axis by the name of its file after a prefix: "linuxcnc-X-before.comp";
+/// if the file has another name, it returns the only axis of the machine. `axis_named` finds it by
+/// its name.
 KnownAxis axis_of_file(const std::vector<KnownAxis>&, std::string_view file,
                        std::string_view prefix);
 KnownAxis axis_named(const std::vector<KnownAxis>&, std::string_view name);

@@ -14,143 +14,150 @@
 #include "nonio/math/loaded_table.h"
 #include "nonio/sdk/plugin.h"
 
-/// A controller plugin is a declaration (ControlTable), a format and a parser; the steps from the
-/// readings to the numbers of a table, and from a table to its effect, are here.
+/// Framework of controller plugins. A plugin is a declaration (ControlTable), a format and a
+/// parser; the steps from the readings to the numbers of a table, and from a table to its effect,
+/// are here.
 namespace nonio::controllers {
 
-/// "points in this table: 17", among the words: text without an end shows then where it was cut.
+/// Prefix of the line "points in this table: 17" in text files, by which a truncated text can be
+/// detected.
 inline constexpr const char* points_said = "points in this table: ";
 
 inline constexpr double full_turn = 2.0 * std::numbers::pi;  // rad
 
-/// A table of one axis before it is text.
+/// A table of one axis before it is formatted.
 struct Sheet {
   const AxisJob& job;
-  const ControlTable& table;  ///< as declared, with what the options change
+  const ControlTable& table;  ///< the declaration, modified by the options
   const ControllerInput& input;
-  bool directions = false;  ///< there is a table for each direction
+  bool directions = false;  ///< whether there is a table for each direction
   Columns columns() const { return directions ? Columns::both : Columns::mean; }
-  math::Grid grid{};             ///< where evenly spaced
-  double reference = 0.0;        ///< where an entry is 0; of two columns, their mean; SI
-  std::vector<double> position;  ///< SI
-  /// What an entry states (+e or -e, less what it is at the reference), SI, not yet rounded;
-  /// `minus` is empty unless there are `directions`.
+  math::Grid grid{};       ///< the grid, if evenly spaced
+  double reference = 0.0;  ///< position at which an entry (with two columns, their mean) is 0; SI
+  std::vector<double> position;  ///< positions of the points, SI
+  /// Values of the entries (+e or -e, minus the value at the reference), SI, not rounded; `minus`
+  /// is empty unless there are `directions`.
   std::vector<double> plus, minus;
-  /// The same in steps of the table: rounded as absolute values, then differences of these where
-  /// the entries are increments. So their sum is never off by more than half a step.
+  /// Entries in steps of the table: rounded as absolute values, and converted to differences if the
+  /// entries are increments, so that their sum is never wrong by more than half a step.
   std::vector<std::int64_t> plus_steps, minus_steps;
-  bool holds_documented = false;  ///< see Writer
-  /// Of increments: what `minus_steps` begin with, minus less plus at the reference, in steps.
+  /// whether the maker documents which value applies outside of the table
+  bool holds_documented = false;
+  /// For increments: returns the initial value of `minus_steps`, minus relative to plus at the
+  /// reference, in steps.
   std::int64_t minus_start() const;
   std::vector<std::string> warning{};
 
   double position_unit() const { return table.position_unit.of(job.rotary); }
   double value_unit() const { return table.value_unit.of(job.rotary); }
   double value_step() const { return table.value_step.of(job.rotary); }
-  /// For the backlash parameter; SI.
+  /// Returns the value for the backlash parameter; SI.
   double backlash() const { return directions ? job.present_backlash() : job.backlash(); }
-  /// In units of the file, with as many decimals as its steps have: the position of a point, and
-  /// an entry.
+  /// Format the position of a point, and an entry, in units of the file, with as many decimals as
+  /// its steps have.
   std::string at(std::size_t i) const;
   std::string entry(double si) const;
-  /// Where the table is zero, what the control does outside of it, and how large and steep it is:
-  /// lines that every file has; the last one is the size.
+  /// Returns the lines that every file contains: where the table is zero, the behavior of the
+  /// control outside of it, and, last, its size and steepness.
   std::vector<std::string> zero_and_size() const;
-  /// What the control does outside of the table.
+  /// Returns a sentence about the behavior of the control outside of the table.
   std::string outside_words() const;
-  /// Machine, axis, date, warnings, sign and reversal, for comments or a file of their own.
+  /// Returns machine, axis, date, warnings, sign and reversal, for comments or a separate file.
   std::vector<std::string> words() const;
 };
 
-/// How a control takes the two directions of travel.
+/// How a control compensates the two directions of travel.
 enum class Directions {
-  by_option,                   ///< a table of the mean; of each direction where option `directions`
-                               ///< states that, and the backlash parameter goes on to count
-  by_option_without_backlash,  ///< the same, but with direction tables the parameter has no effect
-  always_without_backlash,     ///< two columns in any case, no backlash parameter with them
+  /// a table of the mean; with option `directions`, one for each direction, and the backlash
+  /// parameter stays active
+  by_option,
+  /// as by_option, but with direction tables the parameter has no effect
+  by_option_without_backlash,
+  always_without_backlash,  ///< always two columns, without a backlash parameter
 };
 
-/// How a table of a whole turn ends.
+/// End of a table over a whole turn.
 enum class TurnEnd {
-  repeats,  ///< the control goes on at its beginning
+  repeats,  ///< the control continues at its beginning
   closed,   ///< an entry at the end repeats the first one
 };
 
-/// Of tables for each direction: which of them is 0 at the reference.
+/// For tables of each direction: which value is 0 at the reference.
 enum class ZeroOf { mean, plus, minus };
 
-/// The parts of a plugin other than its Info; made for each run, as its options require.
+/// The parts of a plugin except its Info; created for each run, because the options modify it.
 struct Writer {
-  std::string name;  ///< of the plugin: files begin with it, ids of notes too
+  std::string name;  ///< name of the plugin; start of file names and of ids of notes
   ControlTable table;
-  std::vector<std::string_view> keys;  ///< of option `axes`, as `axis_jobs` takes them
+  std::vector<std::string_view> keys;  ///< keys of option `axes`, as in `axis_jobs`
   std::function<Expected<std::vector<Artifact>>(const Sheet&)> files;
   Expected<std::vector<LoadedTable>> (*parse)(const TableInput&) = nullptr;
 
   Directions directions = Directions::by_option;
   TurnEnd turn_end = TurnEnd::repeats;
   ZeroOf zero_of = ZeroOf::mean;
-  bool power_of_two = false;  ///< the step of linear axes
-  double fixed_step = 0.0;    ///< of a control whose points cannot be chosen
-  /// Whether the maker states that the value of an end applies outside of the table; else the file
-  /// calls it an assumption.
+  bool power_of_two = false;  ///< the step of linear axes must be a power of two
+  double fixed_step = 0.0;    ///< step of a control whose points cannot be chosen, SI; 0: free
+  /// Whether the maker states that the end value applies outside of the table; if not, the file
+  /// states that this is an assumption.
   bool holds_documented = false;
-  /// The declaration for one axis, where its units are of the axis.
+  /// Returns the declaration for one axis, if its units depend on the axis.
   std::function<Expected<ControlTable>(const AxisJob&, ControlTable)> of_axis{};
-  /// Where the points are required; else at the targets.
+  /// Returns the required points; if empty, points are at the targets.
   std::function<std::vector<double>(const AxisJob&)> wanted{};
-  /// An option that makes a step of the table coarser, its present and its largest value.
+  /// An option that makes the step of the entries coarser, its present and its largest value.
   struct Coarser {
     std::string option;
     std::int64_t now = 1, most = 1;
-    std::string or_else;  ///< another way out, in words
+    std::string or_else;  ///< an alternative, as text
   } coarser{};
 };
 
-/// The options that follow from a declaration: step, directions, max_points, sign where it is not
-/// known, `axes` with these keys in its help.
+/// Returns the options that follow from a declaration: step, directions, max_points, sign if it is
+/// not known, and `axes` with these keys in its help.
 std::vector<Option> table_options(const ControlTable&, std::string keys_of_axes,
                                   std::vector<Option> more = {});
 
-/// As declared, with what the options state. An error where the sign is not known and not stated.
+/// Returns the declaration modified by the options. Error: the sign is neither known nor stated.
 Expected<ControlTable> chosen(ControlTable, const Settings&);
 
-/// A sheet of each axis, its files, and what is left when the control has read them back. The jobs
-/// that were written have `loaded`.
+/// Write a sheet and the files of each axis, and predict the deviations after the control has read
+/// them back. `loaded` is set in jobs whose table was written.
 Expected<std::vector<AxisJob>> write_axes(const ControllerInput&, const Writer&, OutputResult&);
 Expected<OutputResult> write_tables(const ControllerInput&, const Writer&);
 
-/// Entries as a file has them, in its units; one for each position. An increment is the change over
-/// the interval that ends at its position, so that of the first position is 0: there is no interval
-/// before it. The sums are 0 at the point `reference` (docs/howto-plugin.md has a drawing).
+/// Entries as in a file, in its units; one for each position. An increment is the change over the
+/// interval that ends at its position, so that of the first position is 0. The sums are 0 at the
+/// point `reference` (docs/howto-plugin.md contains a figure).
 struct RawTable {
   KnownAxis axis;
   std::vector<double> position;
   std::vector<double> plus, minus{};
-  std::size_t reference = 0;  ///< of increments: the point whose sum is 0; Zero::first: the first
-  /// Of increments: the sum of `minus` at that point, where a number of its own states it (Fanuc
-  /// 3627).
+  /// for increments: index of the point whose sum is 0; Zero::first: the first
+  std::size_t reference = 0;
+  /// For increments: sum of `minus` at that point, if a separate number states it (Fanuc 3627).
   double minus_start = 0.0;
   LoadedTable::Outside outside = LoadedTable::Outside::holds;
-  std::optional<double> backlash{};  ///< SI
+  std::optional<double> backlash{};  ///< backlash value, SI
 };
 
-/// What the control makes of such entries, as its plugin declares them.
+/// Converts the entries of a file to the table that the control applies, as its plugin declares it.
 Expected<LoadedTable> loaded(const ControlTable&, const RawTable&);
 
-/// Notes of all that is not documented.
+/// Adds a note for each property of the control that is not documented.
 void note_facts(const Writer&, OutputResult&);
 
-/// Whether a controller is among all that apply, or only where the manifest names it.
+/// Whether a controller always runs if it applies, or only if the manifest names it.
 enum class Offered { by_name, always };
 
-/// A controller of pitch tables.
+/// Returns the declaration of a controller for pitch tables.
 Controller controller(Info, const ControlTable&,
                       Expected<OutputResult> (*write)(const ControllerInput&),
                       Expected<std::vector<LoadedTable>> (*parse)(const TableInput&),
                       Offered offered = Offered::by_name);
 
-/// The axes of the manifest, and those that are only in readings, as a parser needs them.
+/// Returns the campaign with the axes of the manifest and those that only readings contain, as a
+/// parser requires it.
 Campaign with_axes_of(const ControllerInput&, const std::vector<AxisJob>&);
 
 }  // namespace nonio::controllers

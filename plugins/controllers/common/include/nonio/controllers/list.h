@@ -3,30 +3,31 @@
 
 #include "nonio/controllers/kit.h"
 
-/// Tables of one axis a file; and tables that have no file: a list to be typed in, a point a line,
-/// words behind '#'.
+/// Files with the table of one axis each; and lists for controls without a table file, to be
+/// entered by hand, one point per line, text after '#'.
 namespace nonio::controllers {
 
-/// "NAME-X.txt": number of the point, its position, the entry, and that towards minus where there
-/// are columns of both directions (0 without a table for each direction).
+/// Returns the list "NAME-X.txt": number of the point, its position, the entry, and the one towards
+/// minus if there are columns of both directions (0 without a table for each direction).
 std::vector<Artifact> list_file(const Sheet&, std::string_view name,
                                 Columns columns = Columns::mean);
 
-/// Such lists read back, as the control takes them once they are typed in.
+/// Parses lists that `list_file` has written, as the control applies them once they are entered.
 Expected<std::vector<LoadedTable>> parse_list(const TableInput&, const ControlTable&,
                                               std::string_view name,
                                               Columns columns = Columns::mean);
 
-/// Files that hold a table of one axis each, "NAME-X-...": `take` puts a line into the table, or
-/// states false where it is none of its points. A file without a point is passed over; none with
-/// one is an error. A rotary table from 0 to 360 deg with equal ends repeats itself.
+/// Parses files that contain the table of one axis each, "NAME-X-...". `take` adds a line to the
+/// table, or returns false if it is not a point. A file without a point is ignored; error if no
+/// file has one. A rotary table from 0 to 360 deg with equal ends repeats.
 using Take = std::function<Expected<bool>(std::string_view line, RawTable&)>;
 Expected<std::vector<LoadedTable>> parse_files(const TableInput&, const ControlTable&,
                                                std::string_view name, const Take& take);
-/// That the line is not a point as it should be.
+/// Returns the error that a line is not a valid point.
 tl::unexpected<Error> no_point(std::string_view line);
 
-/// The line "PARAMETER = 0.008 mm" in the text that goes with a table; SI.
+/// Returns the value of the line "PARAMETER = 0.008 mm" in the text of a table, SI; nothing if
+/// there is none.
 std::optional<double> parameter_in(std::string_view bytes, std::string_view parameter);
 
 }  // namespace nonio::controllers
