@@ -28,9 +28,9 @@ struct Restamped {
   std::vector<std::string> added;  ///< what was added, in words
 };
 
-/// Writes the file with its revocation data and a time stamp to `out`, or over itself if that is
-/// empty; completely or not at all. Refuses the output folder of a run, because the next run would
-/// restore the issued file. A file that the register has issued is accepted with the signer of that
+/// Writes the file with its revocation data and, if `how` contains a server for it, a time stamp to
+/// `out`, or over itself if that is empty; completely or not at all. Refuses the output folder of a
+/// run, because the next run would restore the issued file. A file that the register has issued is accepted with the signer of that
 /// time.
 Expected<Restamped> restamp(const std::filesystem::path& file, const sign::Prolonging& how,
                             const RegisterRows& rows, const std::filesystem::path& out);

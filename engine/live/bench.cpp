@@ -105,8 +105,8 @@ std::string words_of(const Error& e) {
          e.message;
 }
 
-/// First byte of what a child sends: an answer, or the reason for a refusal. A first part of the
-/// answer may precede it, with its length.
+/// First byte of what a child sends: `answers` before an answer, `refuses` before the reason of a
+/// refusal. A first part of the answer may precede it: `begins`, its length, and its text.
 constexpr char begins = '1', answers = '+', refuses = '-';
 constexpr std::size_t before_first = 1 + sizeof(std::uint64_t);
 

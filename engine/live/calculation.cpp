@@ -301,8 +301,8 @@ Json column(const std::vector<double>& values, const std::vector<std::size_t>& r
   return list;
 }
 
-/// Returns, for each candidate, its contribution to the fit at the page's readings if it is added
-/// to the model. At most 40 candidates.
+/// Returns, for each of the first 40 ranked candidates, its contribution to the fit if it is added
+/// to the model, at the readings that the page shows.
 Json fingerprints_of(const PartModel& part, const model::Explanation& e) {
   constexpr std::size_t most = 40;
   const std::vector<std::size_t> rows = kept_of(part).rows;

@@ -16,7 +16,7 @@ struct SiteWalk {
   };
   std::vector<std::string> campaigns;  ///< folders with a manifest
   std::vector<Unlisted> unlisted;      ///< folders that could not be listed
-  std::vector<std::string> notes;      ///< names that look like a campaign and are skipped
+  std::vector<std::string> notes;      ///< messages about what is skipped: links, wrong file names
 };
 
 /// Finds all folders below a site. Links are not followed, because a campaign is a folder inside

@@ -13,7 +13,8 @@ namespace nonio::batch {
 /// are moved out. Takes one sort, however many files are shared.
 void find_twins(std::vector<CampaignState>& campaigns);
 
-/// Returns the twins of a campaign by id, sorted, as the evaluation requires them.
+/// Returns the shortened digest of each file of readings that another campaign contains too, with
+/// the id of that campaign. The list is sorted by digest, as the evaluation requires.
 reading::Twins twins_of(const CampaignState& campaign, const std::vector<CampaignState>& all);
 
 /// Returns the twins that a record states.

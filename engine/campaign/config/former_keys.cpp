@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renames keys of campaign.toml and site.toml that have their names of an earlier version.
+// Replaces names from earlier versions in campaign.toml and site.toml: names of keys, and ids of
+// findings.
 #include <algorithm>
 
 #include "campaign/config/toml_reader.h"
@@ -46,7 +47,7 @@ class Renaming {
     if (old == in.end() || in.contains(key.name)) return;
     const std::uint64_t line = old->first.source().begin.line;
     note(key, place, line);
-    // In a list, each further [[header]] contains the former name too and gets a line.
+    // Each further [[header]] of a list also contains the former name, so its line is reported too.
     if (const toml::array* list = old->second.as_array())
       for (const toml::node& one : *list)
         if (const toml::table* headed = one.as_table();

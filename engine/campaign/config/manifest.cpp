@@ -54,7 +54,8 @@ void fill_circle(TableReader& reader, Measurement& m) {
     if (!m.from.contains(axis)) m.at[axis] = position;
 }
 
-/// Fills the members of a measurement that keys of any method fill. SI units.
+/// Sets the members of a measurement from keys that a method may declare, for example `lateral` and
+/// `foot_mm`. SI units.
 void fill_members(TableReader& reader, Measurement& m) {
   const Settings& s = m.settings;
   m.axis = s.text("axis");

@@ -139,7 +139,7 @@ struct Mail {
   std::string base_url;        ///< of the output folder, for links; empty: they are relative
   std::string sendmail, smtp;  ///< exactly one: a program, the name of a server
   Tls tls = Tls::starttls;
-  int port = 0;       ///< never 0 when read
+  int port = 0;       ///< without the key `port`, the reader sets the usual port of `tls`
   std::string trust;  ///< PEM file with roots, relative to the site; empty: those of the system
   std::string user;
   std::string password_file, password_env, password_credential;  ///< exactly one with `user`

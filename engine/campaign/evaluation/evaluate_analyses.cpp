@@ -90,8 +90,8 @@ double measured_length(const reading::ReadCampaign& read, const Evaluation& e,
   return most;
 }
 
-/// Marks all values of an analysis that does not state which of its values are followed. Only
-/// values in its uncertainty budget are used.
+/// Marks all values of an analysis that does not state which of its values are followed over the
+/// campaigns of a machine. Of these, only values with an uncertainty budget are followed later.
 void follow_all(const std::string& plugin, const Measurement* m, Evaluation& e) {
   for (Value& v : e.values) {
     v.followed = {plugin + ':' + v.name, m == nullptr ? std::string() : m->axis};

@@ -92,7 +92,9 @@ Expected<std::optional<LastRecord>> last_record(const std::filesystem::path& cam
 /// Reads the record of results that still have temporary names.
 Expected<std::optional<Record>> staged_record(const std::filesystem::path& campaign_output);
 
-/// Returns the findings of all analyses and outputs, each once, with their English titles.
+/// Returns the findings of all analyses and outputs, and a finding for each value that does not
+/// conform or is indeterminate. Each occurs once, with its title in English and, if it is another,
+/// in `language`.
 std::vector<KnownFinding> known_findings(const Results& results, const Templates& templates,
                                          const std::string& language = "en");
 

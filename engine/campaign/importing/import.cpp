@@ -177,7 +177,8 @@ class Importer {
           artifacts.push_back({campaign.files[i].name, std::move(found[i].bytes)});
       artifacts.push_back(
           {config::manifest_name,
-           manifest_of(campaign, found.front().places)});  // last: it shows the rest
+           // last, because a process that sees the manifest relies on the other files
+           manifest_of(campaign, found.front().places)});
       if (auto ok = storage::publish(folder, artifacts); !ok) return ok;
       campaign.written = true;
     }

@@ -55,7 +55,8 @@ struct ImportedCampaign {
   std::vector<std::string> lacks;  ///< of the campaign as a whole
   bool written = false;
   std::string asset{}, maker{}, serial{};  ///< of its machine
-  bool there = false;  ///< imported before: its folder has these files, and measurements of them
+  /// Imported before: its folder contains these files, and its manifest a measurement for each.
+  bool there = false;
 
   bool whole() const;
 };

@@ -46,8 +46,8 @@ struct FollowedLimit {
   double limit = 0.0;
   nonio::statistics::Beyond beyond{};
 };
-/// Returns the limit; none if no quantity of the axis has one, or no campaign of the series has
-/// both B and B_mean.
+/// Returns the limit of the quantity of `series`. For B_mean it is that of B, if B has one and was
+/// measured together with B_mean since the last significant change. None if neither exists.
 std::optional<FollowedLimit> limit_of(const AssessedMachine& machine, const FollowedSeries& series);
 
 /// Whether a change of a quantity of this axis is between the same campaigns as the loaded table.

@@ -13,7 +13,8 @@ namespace {
 constexpr double least_p = 1e-3;  // smallest p of a rest that counts as noise
 // Largest rms of a rest that counts as noise, as fraction of the change.
 constexpr double most_noise = 0.4;
-// Largest rms of a rest, as fraction of h, if the shape of the table is significant.
+// If the shape of the table is significant, a rest that is not noise is accepted up to this
+// fraction of the rms of h (table_change.h).
 constexpr double most_left = 0.1;
 // Required difference of chi2 from a change without a table.
 constexpr double clear = 25.0;

@@ -26,7 +26,7 @@ struct RunComponents {
   double independent = 1.0;
   /// offset that both passes of a run share, and half difference; m^2
   Part shared_offset, own_offset;
-  /// shared and own slopes of a run, about the middle of the targets
+  /// slope, about the middle of the targets, that both passes of a run share, and half difference
   Part shared_slope, own_slope;
 };
 

@@ -22,7 +22,8 @@ bool has_both(const AxisTest& test, std::size_t i) {
 
 double share(const AxisTest& test, std::size_t i) { return has_both(test, i) ? 0.5 : 1.0; }
 
-/// Returns the weights of sum t_i m_i, or of sum t_i B_i, over targets.
+/// Returns the weights of the readings in sum t_i m_i, or with `reversal` in sum t_i B_i; m_i and
+/// B_i are defined in followed.h.
 TargetWeights spread_over(const AxisTest& test, const VectorXd& t, bool reversal) {
   TargetWeights out(2 * test.targets.size(), 0.0);
   for (std::size_t i = 0; i < test.targets.size(); ++i)

@@ -135,7 +135,8 @@ class System {
   const Vector& y() const { return y_; }
   /// Standard uncertainties of the readings by repetition; 1 for all lines if it is not known.
   const std::vector<double>& sigma() const { return sigma_; }
-  /// Returns the index of the first reading of a direct straightness: EYX, or (second) EXY.
+  /// Returns the index of the first reading of the directly measured straightness EYX, or if
+  /// `second` of EXY.
   std::size_t first_of_direct(bool second) const {
     const std::size_t last = r_.EXY ? r_.EXY->readings() : 0;
     return sigma_.size() - last - (!second && r_.EYX ? r_.EYX->readings() : 0);

@@ -104,7 +104,8 @@ class AlikePasses {
   std::map<std::pair<Index, Index>, double> share_;
 };
 
-/// Sums over a table of products of adjacent residuals in a pass, and of squares.
+/// Sum of the products of residuals that are adjacent in a pass, and sum of the squares of all
+/// residuals.
 struct Products {
   double lagged = 0.0, squares = 0.0;
 };

@@ -98,7 +98,8 @@ class Parts {
 
   void add_balls(std::size_t m) {
     const Axis* axis = campaign_.machine.axis(measurement(m).axis);
-    if (axis == nullptr || !math::other_turning_axis(read_[m]).empty()) return;  // no circle
+    // If a second rotary axis turns, the centres are not on a circle.
+    if (axis == nullptr || !math::other_turning_axis(read_[m]).empty()) return;
     if (auto part = balls_of(read_[m], *axis, measurement(m).id))
       parts_.push_back(std::move(*part));
   }

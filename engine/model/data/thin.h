@@ -5,8 +5,8 @@
 
 namespace nonio::model {
 
-/// Tables with more readings are searched, and the places of their residuals tested, on means of
-/// readings.
+/// Number of readings above which means of readings (`thinned`) replace the readings of a table in
+/// the search for effects and in the test that locates the residuals.
 inline constexpr std::size_t thin_beyond = 6000;
 
 /// Averages readings that are close together: of one line and direction, of adjacent runs and

@@ -284,7 +284,7 @@ std::string label(std::string text) {
   return text;
 }
 
-/// What is not one gives none.
+/// Converts a date in the form 2026-03-02; none if the text is not a valid date.
 std::optional<HPDF_Date> date_of(const std::string& text) {
   HPDF_Date date{};
   date.ind = 'Z';

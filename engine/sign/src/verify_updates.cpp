@@ -19,7 +19,8 @@ class FileDigest {
     EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr);
   }
 
-  /// `to` must not decrease from call to call.
+  /// Returns the SHA-256 of the first `to` bytes of the file followed by `after`. `to` must not
+  /// decrease from call to call.
   std::string of(std::size_t to, std::string_view after) {
     const std::string_view more = bytes_.substr(done_, to - done_);
     EVP_DigestUpdate(context_.get(), more.data(), more.size());

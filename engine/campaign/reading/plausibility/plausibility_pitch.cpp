@@ -10,7 +10,8 @@
 namespace nonio::reading {
 namespace {
 
-constexpr double mm_per_inch = 25.4, most_in_inch = 2.0;  ///< mm: a larger pitch is in mm
+constexpr double mm_per_inch = 25.4, most_in_inch = 2.0;
+// most_in_inch: from this number on, a stated pitch is taken to be in mm.
 
 /// Returns the share (0 to 1) of the sum of squares about a line that a wave of this period
 /// explains.

@@ -22,7 +22,8 @@ class Lexer {
   void skip(std::size_t n) { at_ += n; }
   void skip_space();
   bool take(std::string_view word);
-  /// Up to `most` digits, at least one, without superfluous zeros in front.
+  /// Reads a number of 1 to `most` digits without superfluous leading zeros; false if there is
+  /// none.
   bool take_number(std::size_t& number, std::size_t most);
   /// Exactly `count` digits.
   bool take_digits(std::size_t& number, std::size_t count);

@@ -38,8 +38,8 @@ struct PdfSignature {
   std::size_t room() const { return contents.size() / 2; }
 };
 
-/// By its place near the end of a file and the form that `reserve` gives it. Nothing else of the
-/// file is read: that comes when the signature holds.
+/// Finds the signature near the end of a file by the form that `reserve` gives it. The rest of the
+/// file is parsed only after the signature was verified.
 Expected<PdfSignature> signature_at_end(std::string_view bytes);
 /// When a signed PDF states that it was signed (/M); an error if it states it in another way than
 /// `reserve` does.

@@ -92,7 +92,7 @@ struct CircleModel {
   std::array<bool, cause_count> wanted{};  ///< causes to be fitted; set by `all_causes`
   /// readings within this angle on both sides of a reversal are omitted, rad
   double leave_out = 0.0;
-  bool correlated = true;  ///< false: the means are treated as independent
+  bool correlated = true;  ///< false: noise at adjacent angles is treated as independent
   /// Whether a reading at this angle is too close to a reversal for the fit.
   bool leaves_out(double angle) const;
 };

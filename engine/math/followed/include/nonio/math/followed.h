@@ -17,8 +17,8 @@
 /// direction minus that from the - direction, and z = 2 (x - middle)/length:
 ///
 ///     scale        slope of the line through (x_i, m_i)
-///     curve_2, _3  coefficients of the Legendre polynomials P2(z), P3(z), fitted with 1 and z: the
-///                  part of the deviation at the axis' ends
+///     curve_2, _3  coefficients of the Legendre polynomials P2(z), P3(z), fitted with 1 and z:
+///                  each is the value of its term at the end z = 1
 ///     cyclic_cos,  coefficients of cos and sin of 2 pi x/period, fitted with those four (two
 ///     cyclic_sin   numbers, not an amplitude, which scatter would increase)
 ///     turn_cos,    coefficients of one sinusoid per turn of a rotary axis
@@ -31,7 +31,8 @@
 /// that are new in each campaign. From the readings: with e the error of a single reading, and for
 /// each run the offset and slope that its two passes share (s) and that they do not (d),
 ///
-///     u^2 = sum_dir v_dir sum J_k^2 + sum_runs (v_s (G+ + G-)^2 + v_d (G+ - G-)^2 + slopes alike)
+///     u^2 = sum_dir v_dir sum J_k^2 + sum_runs (v_s (G+ + G-)^2 + v_d (G+ - G-)^2 + two more terms
+///           of this form for the slopes)
 ///
 /// If readings of adjacent targets are correlated (their correlation r is estimated), the first sum
 /// includes r^|k - l| between the readings of a pass. G: sum of J_k over a pass, of J_k (x_k -

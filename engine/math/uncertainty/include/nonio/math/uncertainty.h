@@ -79,11 +79,11 @@ struct Iso230Uncertainty {
 };
 Iso230Uncertainty iso230_2_uncertainty(const Budget&, std::size_t n, double k);
 
-/// Expanded uncertainties of the results of VDI/DGQ 3441, which has no such clause: derived by the
-/// rules of the GUM.
+/// Expanded uncertainties of the results of VDI/DGQ 3441, which contains no rule for them. They are
+/// derived according to the GUM from those of ISO 230-2 with k = 3.
 ///
-///     U(Pa) = U(M)    U(U_max) = U(U_mean) = U(B)    U(Ps_max) = U(Ps_mean) = 3 U_EVE
-///     U(P) = sqrt(S^2 + 2 U_EVE^2/n + (3 U_EVE)^2)
+///     U(Pa) = U(M)    U(U_max) = U(U_mean) = U(B)    U(Ps_max) = U(Ps_mean) = U(R+)
+///     U(P) = U(A) = sqrt(S^2 + 2 U_EVE^2/n + (3 U_EVE)^2)
 struct VdiUncertainty {
   double P, Pa, Ps_max, Ps_mean, U_max, U_mean;
 };

@@ -136,7 +136,7 @@ Expected<StepSolution> solve_step_diagonals(const StepDiagonals&, const std::vec
 Expected<StepSolution> average_step_diagonals(const StepDiagonals&, const StepChoices&,
                                               const ReadingModel* = nullptr);
 
-/// Results of the check sums.
+/// Tests whether the check sums (`check` above) are 0 and do not change over the steps.
 struct StepChecks {
   std::array<double, 3> constant{};  ///< mean check sum of the moves of X, Y, Z, m
   double p_constant = 1.0;           ///< p of the most significant one, times 3
