@@ -430,7 +430,7 @@ Verb history_verb(Common& common) {
           "changes cannot be detected; the detection limit is given below each chart. A, E and R "
           "are shown without a fitted line. The scatter (ln_s) is shown as the standard deviation "
           "of a reading with its interval (k = 2), its changes as factors.\n\n--json writes schema "
-          "nonio-history/1 (docs/history.md).",
+          "nonio-history/1 (docs/dev/json-records.md).",
       .examples = {"nonio machine history out S-0042 --axis X --quantity B_mean"},
       .run = [wish, &common] { return history(*wish, common); }};
 }

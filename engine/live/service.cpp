@@ -76,11 +76,10 @@ std::vector<Route> shell_routes() {
 Answer shell_file(const Request& request, const std::string& shell) {
   const std::string& path = request.route.path;
   Answer out;
-  const std::pair<const char*, std::string_view> files[] = {
-      {"/app.js", workbench::app_js()},
-      {"/app.css", workbench::app_css()},
-      {"/site.js", workbench::site_js()},
-      {"/site.css", workbench::site_css()}};
+  const std::pair<const char*, std::string_view> files[] = {{"/app.js", workbench::app_js()},
+                                                            {"/app.css", workbench::app_css()},
+                                                            {"/site.js", workbench::site_js()},
+                                                            {"/site.css", workbench::site_css()}};
   const auto file = std::find_if(std::begin(files), std::end(files),
                                  [&](const auto& one) { return path == one.first; });
   if (file != std::end(files)) {

@@ -3,8 +3,8 @@
 
 #include "nonio/reports/number.h"
 #include "nonio/reports/text.h"
-#include "nonio/sdk/withheld.h"
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/withheld.h"
 #include "report.h"
 
 namespace nonio::pdf_report {
