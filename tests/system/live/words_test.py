@@ -17,7 +17,7 @@ class Words(unittest.TestCase):
         "event.kind_": ("engine/campaign/config/keys/logs.cpp", r"event_kinds\[\] = (.*?);", {}),
         "run.stage_": ("engine/batch/run.cpp", r"tell_stage\(events, (\"\w+\")\)", {"begin"}),
         "run.status_": ("engine/campaign/evaluation/status.cpp", r"to_text\(Status status\) \{(.*?)\n\}", {"none"}),
-        "release.as_": ("engine/app/release_verb.cpp", r"one_of\((\{.*?\})", {"site"}),
+        "release.as_": ("engine/app/release_verb.cpp", r"one_of\(\s*(\{.*?\})", {"site"}),
         "verify.is_": ("engine/app/verify_verb.cpp", r"to_text\(sign::Check::State state\) \{(.*?)\n\}", {}),
         "space.is_": ("engine/campaign/config/keys/machine_of_campaign.h", r"structures\[\] = (.*?);", {}), "space.": None, "more.is_": ("engine/model/diagnosis/foresight.cpp", r"wanted\{(.*?)\}", {}), 
         "check.": ("engine/sign/src/*.cpp engine/certificates/content_check.cpp engine/certificates/verify.cpp engine/certificates/register_check.cpp", r"(?:add\(|Check check\{|State state\) \{|push_back\(\{|sign::Check\{)\s*(\"(?:signature|file|updates|signer|certificate|xml|register|content|attachments)[a-z.-]*\")", {"dcc", "dcc_none", "dcc_values", "signature_form", "signature_time", "xml_time"}),
