@@ -22,7 +22,7 @@ std::string_view trimmed(std::string_view s) {
 
 /// A table of the manifest: its header, and its lines with line ends.
 struct Section {
-  std::string head;  ///< "[campaign]"; empty: lines before the first table
+  std::string head;  ///< header, for example "[campaign]"; empty: lines before the first table
   std::vector<std::string> lines{};
 
   bool is_part_of(std::string_view name) const {

@@ -11,7 +11,7 @@ namespace nonio::app {
 
 /// A campaign that checks a loaded table, based on the campaign that the table was computed from.
 struct CheckCampaign {
-  std::string axis, date;            ///< measured axis; YYYY-MM-DD
+  std::string axis, date;            ///< measured axis, and day of the check as YYYY-MM-DD
   std::string measurement;           ///< id of the measurement in the original campaign
   Artifact readings;                 ///< file of the new readings
   std::vector<Artifact> loaded;      ///< files of the loaded table

@@ -128,7 +128,7 @@ class FileCheck {
     if (read) {
       const Observations& o = read->readings;
       json["reader"] = read->reader->info.name;
-      // Any axis other than X and A is stated by the file.
+      // X and A are only assumed; any other axis is stated by the file.
       if (read->axis != "X" && read->axis != "A") json["axis"] = read->axis;
       json["rotary"] = o.axes.front().rotary;
       json["readings"] = o.size();

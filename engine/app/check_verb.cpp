@@ -129,7 +129,7 @@ class Check {
   const Common& common_;
   SiteWords words_;
   std::unique_ptr<reading::Workplace> place_{};
-  std::map<std::string, fs::path> folders_{};  ///< by id of the campaign
+  std::map<std::string, fs::path> folders_{};  ///< folders of the campaigns, by id
   Json errors_ = Json::array(), warnings_ = Json::array();
   std::size_t campaigns_ = 0, invalid_ = 0, count_ = 0;
 };

@@ -27,7 +27,8 @@ struct Argument {
   /// accordingly.
   enum class Takes { anything, folder, file, path };
 
-  std::string name;  ///< "--out", or in capital letters, "SITE": a positional argument
+  std::string name;  ///< name of an option, "--out", or of a positional argument in capital
+                     ///< letters, "SITE"
   Target target;
   std::string help;
   bool required = false;
@@ -41,8 +42,9 @@ struct Argument {
                                ///< required
   bool shows_default = false;  ///< whether the help states the default value
   std::string brief{};         ///< short form, for example "-v"
-  std::string old{};           ///< former name, still accepted
-  bool hidden = false;         ///< accepted and not listed, since it belongs to a former command
+  std::string old{};           ///< former name of the argument, which is still accepted
+  bool hidden = false;         ///< whether the argument is accepted but not listed, since it
+                               ///< belongs to a former command
 
   bool is_positional() const { return !name.starts_with('-'); }
   bool is_flag() const { return std::holds_alternative<bool*>(target); }
@@ -128,7 +130,7 @@ std::string synopsis(const std::string& path, const Verb& verb);
 void write_man_page(const Program& program, std::ostream& out);
 /// Writes the completion for "bash" or "zsh".
 void write_completion(const Program& program, const std::string& shell, std::ostream& out);
-/// Writes the whole table as JSON, schema nonio-commands/1.
+/// Writes the table of commands as JSON, schema nonio-commands/1.
 void write_table(const Program& program, std::ostream& out);
 
 }  // namespace nonio::app

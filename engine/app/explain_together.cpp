@@ -84,7 +84,8 @@ class ExplainTogether {
     if (!common_.quiet) complain(text);
   }
 
-  /// Opens a campaign; campaigns of one folder share their plugins and templates.
+  /// Opens a campaign; campaigns of one folder share their plugins and templates. Returns an exit
+  /// status other than 0 if the command cannot continue.
   int open(const fs::path& folder) {
     const fs::path whole = fs::weakly_canonical(folder);
     if (!seen_.insert(whole.string()).second) return exit_done;
@@ -170,7 +171,7 @@ class ExplainTogether {
                                                               ///< use
   fs::path parent_;
   std::set<std::string> seen_;
-  std::map<std::string, std::string> folder_of_;  ///< folder by id
+  std::map<std::string, std::string> folder_of_;  ///< folder of each campaign, by the campaign's id
   std::vector<std::unique_ptr<reading::ReadCampaign>> read_;
   std::vector<Error> errors_;
   std::size_t passed_over_ = 0;

@@ -12,8 +12,9 @@ namespace nonio::app {
 /// Campaigns that `model explain` fits together.
 struct TogetherOptions {
   std::vector<std::string> folders;  ///< folders of campaigns, or folders that contain campaigns
-  std::string machine;               ///< asset, serial number or model; empty: all
-  std::string since, until;          ///< YYYY-MM-DD; empty: no limit
+  std::string machine;               ///< asset, serial number or model of the machine; empty: all
+  std::string since, until;          ///< first and last day of the campaigns, YYYY-MM-DD; empty: no
+                                     ///< limit
 };
 
 /// Whether only one campaign is given, without further conditions.

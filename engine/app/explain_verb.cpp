@@ -14,7 +14,7 @@ namespace nonio::app {
 
 namespace {
 
-constexpr std::size_t most_steps = 24;  // added effects per part
+constexpr std::size_t most_steps = 24;  // largest number of added effects per part
 
 struct ExplainOptions {
   TogetherOptions together;

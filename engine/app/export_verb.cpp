@@ -30,7 +30,8 @@ struct GetWish {
   bool all = false, list = false;
 };
 
-/// Results that programs which read files don't find.
+/// Returns whether the results in `folder` are stored in a pack, in which programs that read files
+/// do not find them.
 bool is_packed(const fs::path& folder) { return storage::stored_in(folder) != folder; }
 
 Expected<std::vector<std::string>> ids_of(const GetWish& wish) {
@@ -82,7 +83,7 @@ void print_list(const std::string& id, const fs::path& folder,
 }
 
 /// Writes all files into a folder, or none. An existing file must have the same bytes; it is never
-/// replaced.
+/// replaced. Returns the number of files written.
 Expected<std::size_t> write_out(const fs::path& from, const fs::path& to,
                                 const std::vector<evaluation::RecordedFile>& files) {
   const std::string below = std::string(evaluation::last_good_name) + "/";

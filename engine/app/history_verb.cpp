@@ -219,8 +219,8 @@ class SeriesChart {
     return out + "\n" + wrapped(campaign, before_state, width_);
   }
 
-  /// Whether the change is printed after this point, if readings as found and as left of one
-  /// campaign follow each other.
+  /// Returns whether the change is printed after point `i`: a change within a campaign if the next
+  /// point is of the same campaign, a change between campaigns otherwise.
   bool is_last_of(std::size_t i, const HistoryChange& c) const {
     const bool left_follows = i + 1 < points_.size() && points_[i + 1].campaign == c.after_campaign;
     return (c.before_campaign == c.after_campaign) == left_follows;
@@ -289,7 +289,8 @@ class SeriesChart {
   Numbers numbers_;
   std::vector<HistoryPoint> points_;
   double low_ = 0.0, high_ = 0.0;
-  std::size_t states_ = 0, values_ = 0, bar_ = most_bar;  // widths in columns
+  std::size_t states_ = 0, values_ = 0, bar_ = most_bar;  // widths of states, values and bars in
+                                                          // columns
 };
 
 std::size_t count_changes(const reports::MachineHistory& m, bool undeclared) {

@@ -12,7 +12,8 @@ namespace nonio::app {
 /// Returns the given axis, or the only one that was measured.
 Expected<std::string> merged_axis(const std::string& axis, const Campaign& campaign);
 
-/// Returns an error if the day of loading is before that of the measurement.
+/// Returns an error if the day of loading is before that of the measurement, or if the day of the
+/// measurement is unknown. Without a day of loading there is no error.
 Expected<void> check_day(const std::string& loaded, const std::string& day);
 
 /// Enters into the record of the machine the state of the control during the measurement, if only

@@ -45,8 +45,8 @@ void block_pipe_signal() {
 
 using namespace nonio::app;
 
-/// Former names of commands. Those that the contract lists are accepted without a message, because
-/// scripts use them.
+/// Former names of commands. Those with `false` are accepted without a message, because scripts use
+/// them; for all others a message states the new name.
 std::vector<Alias> former_names() {
   return {{"compare", "model compare", false},
           {"explain", "model explain", false},

@@ -12,8 +12,8 @@ namespace nonio::app {
 
 struct NewAxis {
   Axis axis;
-  std::string file;   ///< name in the campaign's folder
-  std::string bytes;  ///< content; empty: example readings are made
+  std::string file;   ///< name of the file in the campaign's folder
+  std::string bytes;  ///< content of the file; empty: example readings are made
   bool example() const { return bytes.empty(); }
 };
 

@@ -174,7 +174,8 @@ Expected<void> set_all(const Values& values, std::string& text) {
   return {};
 }
 
-/// Returns the last campaign of a site by date; its values are the defaults of the questions.
+/// Returns the campaign with the latest date in the folders directly below the site's folder; its
+/// values are the defaults of the questions.
 std::optional<Campaign> last_campaign(const fs::path& site) {
   std::optional<Campaign> last;
   std::error_code error;
@@ -332,7 +333,7 @@ std::vector<Artifact> files_of(const NewCampaign& c, std::string manifest) {
   std::vector<Artifact> files;
   for (const NewAxis& a : c.axes)
     files.push_back({a.file, a.example() ? example_readings(a.axis, c.id) : a.bytes});
-  // Last, because its presence makes the folder a campaign.
+  // The manifest is the last file, because its presence makes the folder a campaign.
   files.push_back({config::manifest_name, std::move(manifest)});
   return files;
 }
@@ -427,7 +428,8 @@ Expected<void> settle_certificates(const fs::path& folder, Values& values, Quest
     if (auto done = ask_for(one, "", values, ask); !done) return done;
     std::string& file = values[one.key];
     if (file.empty()) return {};
-    // A typed path is relative to the current folder, in the file it is relative to the site.
+    // A typed path is relative to the current folder, but a path in the file is relative to the
+    // site.
     const fs::path path = fs::absolute(file).lexically_normal(),
                    below = path.lexically_relative(folder);
     file = below.empty() || below.string().starts_with("..") ? path.string() : below.string();
@@ -475,7 +477,7 @@ int new_campaign(const NewWish& wish, const fs::path& folder, const Common& comm
   return write_new({*campaign}, wish, "campaign", example, common);
 }
 
-/// Writes the record SITE/machines/<asset>.toml.
+/// Writes the record SITE/machines/<asset>.toml. Returns the exit status.
 int new_machine(const NewWish& wish, const fs::path& path, const Common& common) {
   NewMachine machine{path.stem().string(), wish.maker, wish.machine, wish.serial, wish.control, {}};
   if (path.extension() != ".toml" || path.parent_path().filename() != config::machines_folder)

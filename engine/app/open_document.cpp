@@ -100,6 +100,7 @@ std::string no_desktop() {
 }
 
 /// Starts xdg-open in a session of its own, so that it outlives this program and its terminal.
+/// Returns whether it was started.
 bool open_in_background(const std::string& path) {
   posix_spawn_file_actions_t files;
   posix_spawnattr_t attributes;

@@ -14,7 +14,7 @@ namespace nonio::app {
 struct ProbeWish {
   std::string folder, axis, out, control;
   std::vector<std::string> settings;
-  double feed = 1000.0;  ///< mm/min or deg/min
+  double feed = 1000.0;  ///< feed of the probe, mm/min or deg/min
 };
 
 /// Returns the readings without the effect of the active tables. An error if it is unknown whether

@@ -18,7 +18,7 @@ class Progress {
   batch::RunEvents events();
   /// Returns the words for output, in English until the run has read site.toml.
   const config::TerminalWords& words() const { return words_.get(); }
-  /// Ends the line of the bar.
+  /// Ends the line of the progress bar on stderr.
   void end();
   /// Prints the campaigns that failed earlier and were not evaluated again.
   void still_failed(const batch::RunResult& run);

@@ -117,8 +117,8 @@ std::pair<std::string, std::string> shown_result(const Point& p) {
   return {short_text(value), ""};
 }
 
-/// U for comparing campaigns (2 u_repeat), rounded to two digits; empty for values that are not
-/// followed.
+/// Returns U for comparing campaigns (2 u_repeat), rounded to two digits; empty for values that are
+/// not followed.
 std::string shown_comparison(const Point& p) {
   const double u = std::strtod(p.u_repeat.c_str(), nullptr);
   const auto rounded = rounded_result(0.0, 2.0 * u);

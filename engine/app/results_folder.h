@@ -14,7 +14,8 @@ Holds what_holds(const std::filesystem::path& folder);
 
 /// Returns the folder of results OUT/ID, or the path inside the pack that contains them.
 std::filesystem::path results_at(const std::filesystem::path& folder);
-/// Error message for a folder that contains neither results.json, summary.json nor campaign.toml.
+/// Returns the error message for a folder that contains neither results.json, summary.json nor
+/// campaign.toml.
 std::string holds_nothing(const std::filesystem::path& folder);
 
 /// Returns the id that a run would give to a campaign, even if other parts of the manifest have

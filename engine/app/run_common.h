@@ -11,7 +11,7 @@
 namespace nonio::app {
 
 /// Sets folders, plugins, templates and version according to the command line, catches signals, and
-/// warns root.
+/// prints a warning if the user is root.
 void prepare_run(batch::RunOptions& options, const std::string& site, const std::string& out,
                  const Common& common);
 /// Returns the exit status of a run, or of a part of it, that did not complete; none if it did.

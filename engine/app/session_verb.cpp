@@ -35,7 +35,8 @@ struct SessionWish {
 };
 
 struct Step {
-  std::string name, state;  ///< state: done, missing, refused; for the verdict also failed, open
+  std::string name, state;  ///< name of the step, and its state: done, missing, refused; for the
+                            ///< verdict also failed, open
   std::string text;
 };
 
@@ -92,7 +93,7 @@ class Session {
     steps_.push_back({step, "done", std::move(text)});
   }
   /// Adds a step that is missing, with the text that tells the person what to do and the command to
-  /// continue with.
+  /// continue with. Returns false, because the session ends at this step.
   bool missing(const char* step, std::string text, std::string todo, const std::string& argument) {
     steps_.push_back({step, "missing", std::move(text)});
     todo_ = std::move(todo);
@@ -125,7 +126,7 @@ class Session {
   }
 
   /// Reads the files saved from the control; without them, those that the record states for the day
-  /// of the measurement.
+  /// of the measurement. Returns false if the session ends at this step.
   bool backup() {
     std::vector<Artifact> files;
     if (!w_.backup.empty()) {
@@ -165,7 +166,7 @@ class Session {
                    {{"files", merged_.with.files}}));
     tell_findings(*open_, merged_.findings);
     if (merged_.files.empty()) return refused("table", Error{say("session.table.refused")});
-    // The probe and the verdict use this state, too.
+    // The probe and the verdict also use this state.
     Settings settled = options();
     std::vector<Finding> repeated;
     if (auto stated = tables::state_by_backup(open_->read, *present_.control, present_.files,
@@ -215,8 +216,9 @@ class Session {
     return std::nullopt;
   }
 
-  /// Adds the sign probe. It is only a recommendation: if the error of the axis is too small for
-  /// it, the table is written nevertheless.
+  /// Adds the sign probe and writes its part program. The probe is only a recommendation: if the
+  /// error of the axis is too small for it, the session continues without it. Returns false if the
+  /// session ends at this step.
   bool probe() {
     const auto raw = raw_readings(*open_, axis_);
     if (!raw) return refused("probe", raw.error());
@@ -259,7 +261,7 @@ class Session {
 
   /// Determines the campaign that checks the table. With --check it is made from that file;
   /// otherwise it is the last campaign with purpose check from the day of loading on, or else the
-  /// first campaign from that day on.
+  /// first campaign from that day on. Returns false if the session ends at this step.
   bool check() {
     if (!w_.check.empty()) {
       auto bytes = storage::read_file(w_.check);

@@ -416,8 +416,8 @@ class Page {
       out_ << "\n";
   }
 
-  static constexpr std::size_t most_values = 8;  ///< values of one analysis that are shown without
-                                                 ///< --all
+  static constexpr std::size_t most_values = 8;  ///< largest number of values of one analysis that
+                                                 ///< are shown without --all
 
   config::TerminalWords say_;
   bool all_;

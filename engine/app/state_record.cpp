@@ -14,7 +14,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t largest_file = 1'000'000;  // bytes of a table file that a record names
+constexpr std::size_t largest_file = 1'000'000;  // largest size of a table file that a record
+                                                 // names, bytes
 
 /// Replaces the characters of a file name that are not safe in a list of files.
 std::string safe(const std::string& name) {

@@ -11,9 +11,10 @@ namespace nonio::app {
 
 /// A state of the control to be entered into the record of a machine.
 struct NewState {
-  std::string since, source;         ///< as in [[axes.X.state]] of the record
+  std::string since, source;         ///< day and source of the state, as in [[axes.X.state]] of the
+                                     ///< record
   std::vector<Artifact> files;       ///< files of the table; empty: there is no table
-  std::optional<double> backlash{};  ///< m or rad
+  std::optional<double> backlash{};  ///< backlash value, m or rad
   std::vector<LoadedTable> tables{};
   std::optional<double> reference{};  ///< position at which the table is zero, mm or deg
 };

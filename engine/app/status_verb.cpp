@@ -21,7 +21,7 @@ namespace {
 
 struct StatusWish {
   std::string out;
-  double max_age = 36.0;  ///< h; 0: no limit
+  double max_age = 36.0;  ///< largest accepted age of the last complete run in h; 0: no limit
   WorklistWish list{};
 };
 

@@ -19,7 +19,8 @@ using Texts = std::map<std::string, std::string>;
 /// Puts a number in its printed unit, with the unit appended to the name: "largest_um".
 void put(TableJson& json, const std::string& name, double si, Quantity q);
 TableJson difference_json(const tables::TableDifference& d);
-/// Prints a difference. `compared`: false if the argument describes a single file.
+/// Prints a difference. `compared` is false if the argument describes a single file, not a
+/// comparison of two.
 void print_difference(const tables::TableDifference& d, bool compared = true);
 
 TableJson forecast_json(const tables::TableForecast& f);
@@ -36,7 +37,7 @@ Expected<Loaded> load(const loader::Plugins& plugins, const std::string& files,
                       const std::string& control, const Campaign& campaign, const Texts& settings,
                       const std::function<config::Checked<Settings>(const Info&)>& options_of);
 
-/// Does the same for files that were read already.
+/// Does the same as `load` for files that were read already.
 Expected<Loaded> understood(
     const loader::Plugins& plugins, std::vector<Artifact> files, const std::string& control,
     const Campaign& campaign, const Texts& settings,

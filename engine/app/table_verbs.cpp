@@ -116,7 +116,7 @@ struct AxisPairs {
   }
 
   /// Keeps only the tables of the pairs that depend on their own position, and names them by the
-  /// pair.
+  /// pair. An error if a pair has no such table.
   Expected<void> join(std::vector<LoadedTable>& was, std::vector<LoadedTable>& will) const {
     if (pairs.empty()) return {};
     std::vector<LoadedTable> of[2];
@@ -204,7 +204,7 @@ int tell(const Applied& a, const std::string& control, const OpenCampaign& open,
 
 /// A value of --active-backlash: "0.012", "none", "X=0.012"; mm or deg.
 struct BacklashWas {
-  std::string axis;  ///< empty: the only axis
+  std::string axis;  ///< name of the axis; empty: the only axis
   double value = 0.0;
 };
 

@@ -224,8 +224,8 @@ void print_candidates(std::ostream& out, const modelling::Explained& e, bool all
   if (left > 0) out << "  " << say("show.more", {{"count", std::to_string(left)}}) << " (--all)\n";
 }
 
-/// Prints the effects that the best explanation adds; if there is none, those that are not
-/// significant.
+/// Prints the effects that the best explanation adds, if they are several. If the verdict is that
+/// the cause is unknown, prints those of them that are not significant.
 void print_together(std::ostream& out, const model::Explanation& x,
                     const config::TerminalWords& say) {
   const bool unknown = x.verdict.kind == model::Verdict::Kind::unknown;

@@ -10,7 +10,7 @@ namespace nonio::app {
 
 /// Returns a value with its unit, for example "0.71 um".
 std::string with_unit(double value, Quantity quantity);
-/// Returns the same with the decimal sign of the language.
+/// Returns a value with its unit and with the decimal sign of the language.
 std::string with_unit(double value, Quantity quantity, const config::TerminalWords&);
 /// Prints a name and its value, or a sentence, wrapped to the width of the terminal.
 void line(std::ostream& out, const std::string& name, const std::string& value);
@@ -18,8 +18,8 @@ void sentence(std::ostream& out, std::size_t indent, const std::string& text);
 
 void print_comparison(std::ostream& out, const modelling::Compared& compared,
                       const Campaign& campaign, const modelling::ModelWords& words);
-/// Prints an explanation. `folder`: of the campaign, for the command to continue with. `all`: every
-/// candidate, and why effects could not be tested.
+/// Prints an explanation. `folder` is that of the campaign, for the command to continue with. If
+/// `all`, every candidate is printed, and why effects could not be tested.
 void print_explanation(std::ostream& out, const modelling::Explained& explained,
                        const Campaign& campaign, const std::string& folder, bool all,
                        const modelling::ModelWords& words);
@@ -32,7 +32,8 @@ void print_model(std::ostream& out, const modelling::Compared& compared,
 /// Prints how one more run would change the uncertainties of the model and the evidence.
 void print_foresight(std::ostream& out, const modelling::Explained& e,
                      const config::TerminalWords& say);
-/// Prints a step of the model's history in one line: excluded readings, or a period.
+/// Prints a step of the model's history in one line, for example excluded readings or a changed
+/// period.
 void print_step(std::ostream& out, const modelling::ModelStep& step,
                 const config::TerminalWords& say);
 void print_history(std::ostream& out, const std::vector<modelling::ModelStep>& history,

@@ -16,8 +16,8 @@ std::string padded_left(const std::string& text, std::size_t width);
 /// Returns the columns of the terminal of a file descriptor, at least 60 and at most 100; 100 if it
 /// is not a terminal.
 std::size_t line_width(int descriptor);
-/// Returns the same width for sentences; unlimited if it is not a terminal, so that other programs
-/// get each sentence on one line.
+/// Returns the same width as `line_width` for sentences. It is unlimited if the descriptor is not a
+/// terminal, so that other programs get each sentence on one line.
 std::size_t sentence_width(int descriptor);
 
 /// Returns the lines of `text`, broken at spaces to at most `width` columns and indented by

@@ -46,7 +46,8 @@ Verb upgrade_verb(Common& common);
 Verb backup_verb(Common& common);
 Verb restore_verb(Common& common);
 Verb version_verb(Common& common);
-/// These commands print from the whole table, so the program must outlive them.
+/// Return the commands `help` and `completion`. They print from the table of commands in `program`,
+/// which must outlive them.
 Verb help_verb(const Program& program);
 Verb completion_verb(const Program& program);
 

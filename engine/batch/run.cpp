@@ -40,8 +40,8 @@ using Action = CampaignState::Action;
 
 bool is_todo(const CampaignState& c) { return c.action == Action::todo; }
 
-/// Why `out` cannot be the output folder: it is the site, or inside a campaign, whose files results
-/// could replace. Empty if it can.
+/// Returns why `out` cannot be the output folder: it is the site itself, or it is inside a
+/// campaign, whose files could be replaced by results. Returns an empty text if `out` can be used.
 std::string unfit_output(const fs::path& site, const fs::path& out) {
   std::error_code error;
   const fs::path root = fs::weakly_canonical(site, error);
@@ -348,8 +348,8 @@ Expected<void> do_planned(const RunOptions& options, const RunEvents& events, Se
   return fail("");
 }
 
-/// Prepares the output folder before results are looked up in it: layout of folders, catalogue of
-/// packs, and packs of a plan that is given up.
+/// Prepares the output folder before results are looked up in it: checks the layout of its folders
+/// and the catalogue of packs, and accepts the packs of a plan that is replaced by a new one.
 Expected<void> make_ready(const RunOptions& options, const reading::Context& context) {
   auto ready = settle_folders(options.out, context.site.hashed_folders, options.dry_run);
   if (ready) ready = storage::check_catalogue(options.out);

@@ -19,8 +19,8 @@ inline constexpr std::size_t most_changes = 40;
 /// Tables of a list are named by their `id`: "measurement.X.file". Empty if the text is not TOML.
 std::map<std::string, std::string> flat_toml(std::string_view text);
 
-/// Key for the reason why an earlier certificate is replaced; a change of this key alone is not a
-/// change.
+/// Key for the reason why an earlier certificate is replaced. If only this key has changed, the
+/// file is reported as unchanged.
 inline constexpr const char* amendment_key = "certificate.amendment";
 
 }  // namespace nonio::certificates

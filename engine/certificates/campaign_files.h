@@ -19,8 +19,8 @@ class CampaignFiles {
   /// `folder` must outlive this object.
   explicit CampaignFiles(const std::filesystem::path& folder) : folder_(folder) {}
 
-  /// Returns the bytes of a file. `name`: as in the manifest; `digest`: of the evaluated file.
-  /// Valid during the lifetime of this object.
+  /// Returns the bytes of the file `name`, as the manifest names it; an error if its digest is not
+  /// `digest`, that of the evaluated file. The bytes are valid during the lifetime of this object.
   Expected<std::string_view> bytes(const std::string& name, const std::string& digest);
   /// Returns the SHA-256 of the concatenated files of readings.
   Expected<std::string> readings_sha256(const reading::Inputs& inputs);

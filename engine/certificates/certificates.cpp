@@ -217,8 +217,8 @@ void remove_unsigned(evaluation::Evaluated& evaluated) {
 
 namespace {
 
-/// Keeps only the pages of a draft, under a name that marks them as a draft. Signed files come with
-/// the number.
+/// Keeps only the pages of a draft, under a name that marks them as a draft. Signed files are made
+/// only when the certificate has a number.
 void keep_draft(evaluation::Evaluated& evaluated) {
   for (Results::Written& w : evaluated.results.outputs) {
     auto& artifacts = w.result.artifacts;

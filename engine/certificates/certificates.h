@@ -25,9 +25,9 @@ inline constexpr const char* no_key =
 /// attachments the manifest, the readings, the parts of site.toml that affect them, results.json
 /// and the signed XML documents. Files to be issued under a number are then in
 /// `Evaluated::certificate`; they are finally taken from the register, so files that are issued
-/// already are not signed again. Only the pages of a draft are kept, unsigned; other files that
-/// would be signed wait with it. If the campaign failed, nothing is signed and these artifacts are
-/// removed. `signer` is null if site.toml has no [signing].
+/// already are not signed again. Of a draft, only the pages are kept, unsigned; other files that
+/// would be signed are left out until the draft is approved. If the campaign failed, nothing is
+/// signed and these artifacts are removed. `signer` is null if site.toml has no [signing].
 Expected<void> sign_artifacts(evaluation::Evaluated& evaluated, CampaignFiles& files,
                               const reading::Context& context, const Signer* signer,
                               sign::Time now);

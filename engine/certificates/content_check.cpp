@@ -197,7 +197,7 @@ class Again {
                 storage::listed(*strange_)};
   }
 
-  /// Why the file cannot be made again; empty if it can.
+  /// Returns why the file cannot be made again; returns an empty text if it can.
   std::string why_not_drawn(const sign::Check& templates) const {
     if (stated_.nonio != context_.version)
       return "was made by version \"" + stated_.nonio + "\", this is " + context_.version;

@@ -45,7 +45,7 @@ double short_wait(const config::Numbering& numbering) {
   return std::min(seconds, numbering.patience);
 }
 
-using Files = std::vector<std::pair<std::string, std::string>>;  // name, bytes
+using Files = std::vector<std::pair<std::string, std::string>>;  // name and bytes of each file
 
 const std::string* find_file(const Files& files, const std::string& name) {
   for (const auto& [known, bytes] : files)
@@ -112,8 +112,8 @@ void take_issued(evaluation::Evaluated& evaluated) {
   remove_unsigned(evaluated);
 }
 
-/// Puts the reasons that the certificate states into `issue`. If two persons gave one for the same
-/// finding, both are stated.
+/// Puts the reasons for accepting an expired calibration, which the certificate states, into
+/// `issue`. If two persons gave different reasons for the same finding, both are stated.
 void put_reasons(const Releasing& releasing, Issue& issue) {
   for (const evaluation::KnownFinding& f : releasing.draft.findings) {
     if (!reading::is_expired_calibration(f.id)) continue;

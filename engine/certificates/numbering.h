@@ -10,7 +10,8 @@
 
 namespace nonio::certificates {
 
-/// Returns the rule of the site that accepts this finding; null if there is none.
+/// Returns the rule of the site that accepts this finding; null if there is none. Findings about
+/// plausibility are accepted by no rule, because they require a person's reason each time.
 const config::AcceptedRule* rule_for(const config::Numbering& numbering,
                                      const evaluation::KnownFinding& finding);
 
@@ -18,7 +19,8 @@ const config::AcceptedRule* rule_for(const config::Numbering& numbering,
 struct Releasing {
   WaitingDraft draft;
   Approval by;
-  reading::Twins twins{};  ///< twins of the campaign, as the run knew them
+  reading::Twins twins{};  ///< files of readings that the campaign shares with other campaigns, as
+                           ///< the run found them
 };
 
 /// Accesses the site's register for a run, or for the approval of one campaign. Every call opens
@@ -27,8 +29,8 @@ class Numbers {
  public:
   struct Where {
     std::filesystem::path site, out;
-    std::string today;  ///< YYYY-MM-DD
-    bool can_sign;      ///< whether there is a key, or signing needs none
+    std::string today;  ///< present date, YYYY-MM-DD
+    bool can_sign;      ///< whether a key exists, or no key is needed
   };
   /// `releasing` is null in a run.
   Numbers(Where where, const reading::Context& context, const Releasing* releasing)

@@ -15,8 +15,8 @@ inline constexpr std::size_t shortest_password = 12, longest_password = 200;
 /// Returns a new hash. An error if the password does not have 12 to 200 bytes, or contains a
 /// control character.
 Expected<std::string> password_hash(std::string_view password);
-/// Whether the text has the form of such a hash. One that would need more than 1 GiB of memory is
-/// rejected.
+/// Returns whether the text has the form of a hash that `password_hash` returns. A hash whose check
+/// would need more than 1 GiB of memory is rejected.
 bool is_password_hash(const std::string& text);
 /// Whether the password matches the hash. Takes a tenth of a second, even for an empty hash, which
 /// matches no password, so that the time does not show whether a user exists.

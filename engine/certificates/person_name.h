@@ -6,8 +6,8 @@
 namespace nonio::certificates {
 
 /// Returns what is wrong with the name of a person who approves; empty if nothing. A name is one
-/// line without invisible characters, without compatibility characters (NFKC), and without words
-/// that mix letters of two alphabets.
+/// line of up to 100 bytes without invisible characters, without compatibility characters (NFKC),
+/// and without words that mix letters of two alphabets.
 std::string mistake_in_name(const std::string& name);
 
 /// Returns the letters and digits of a name in lower case, with letters of other alphabets replaced

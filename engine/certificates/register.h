@@ -20,16 +20,21 @@ struct RegisterPlace;
 /// One number in a register.
 struct RegisterEntry {
   std::string number, campaign;
-  std::string state;  ///< drawn, issued, amended, withdrawn
-  std::string date;   ///< of issue; for a number that is only drawn, the day on which it was drawn
+  std::string state;  ///< state of the number: drawn, issued, amended, withdrawn
+  std::string date;   ///< date of issue; for a number that is only drawn, the day on which it was
+                      ///< drawn
   std::string replaces, replaced_by;
-  std::string reason;       ///< why it was withdrawn; why it is not issued yet
-  std::uint64_t order = 0;  ///< in which numbers were issued, counted from 1; 0: not issued
-  /// Persons who approved and withdrew it, as stated. Empty: approved by the rules; not stated.
+  std::string reason;       ///< why the number was withdrawn, or why it is not issued yet
+  std::uint64_t order = 0;  ///< position in the order in which numbers were issued, counted from 1;
+                            ///< 0: not issued
+  /// Names of the persons who approved and withdrew the certificate, as stated. If `released_by` of
+  /// an issued certificate is empty, the rules of the site approved it; if `withdrawn_by` of a
+  /// withdrawn one is empty, no name was stated.
   std::string released_by{}, withdrawn_by{};
-  /// Their accounts of the operating system, "user@host"; empty before version 2026-12.
+  /// Accounts of these persons in the operating system, "user@host"; empty before version 2026-12.
   std::string released_account{}, withdrawn_account{};
-  /// Account of users.toml whose password was given; empty: the name is unverified.
+  /// Account of users.toml whose password was given for the approval; empty: the name of the person
+  /// is unverified.
   std::string released_user{};
   /// Subject and SHA-256 of the signer's certificate; empty before version 2026-12.
   std::string signer{}, signer_sha256{};
@@ -38,19 +43,21 @@ struct RegisterEntry {
 
 /// The approval of a draft by a person.
 struct Approval {
-  std::string by, role;                        ///< role: author, authoriser
-  std::string at{};                            ///< UTC
-  std::map<std::string, std::string> reasons;  ///< why a finding is accepted, by `finding_key`
-  std::string account{};  ///< of the operating system; empty before version 2026-12
+  std::string by, role;                        ///< name of the person, and role: author or
+                                               ///< authoriser
+  std::string at{};                            ///< time of the approval, UTC
+  std::map<std::string, std::string> reasons;  ///< reasons why findings are accepted, by
+                                               ///< `finding_key`
+  std::string account{};  ///< account of the operating system; empty before version 2026-12
   std::string user{};     ///< account of users.toml whose password was given; empty: none
 };
 
 /// A draft that a run has made and no person has approved yet.
 struct WaitingDraft {
-  std::string campaign, folder;  ///< folder: relative to the site
+  std::string campaign, folder;  ///< id of the campaign, and its folder relative to the site
   std::string out;               ///< output folder of the run
   std::string file, sha256;      ///< the PDF in OUT/campaign, and its digest
-  std::string replaces;          ///< number that it would replace; may be empty
+  std::string replaces;          ///< number that the certificate would replace; may be empty
   reading::Inputs made_from;     ///< digests of its data, plugins, templates and version
   std::vector<evaluation::KnownFinding> findings;
   std::optional<Approval> author{};  ///< approval by the author, if two persons are required
@@ -68,12 +75,12 @@ std::string finding_key(const evaluation::KnownFinding& finding);
 
 /// Result of checking a register for changes and removals.
 struct Audit {
-  std::string id;             ///< identity of the register
-  std::uint64_t entries = 0;  ///< of the journal
+  std::string id;             ///< id of the register
+  std::uint64_t entries = 0;  ///< number of entries in the journal
   std::uint64_t certificates = 0, files = 0;
   std::string last_at, last_sha256;  ///< time and digest of the last entry; they should be kept in
                                      ///< another place too
-  std::vector<std::string> wrong;    ///< what is wrong; empty: nothing
+  std::vector<std::string> wrong;    ///< errors that the check found; empty: none
 };
 
 /// The site's register of certificate numbers and of all files issued under them: an SQLite file,

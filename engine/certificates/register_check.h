@@ -21,7 +21,8 @@ struct RegisterRows {
   bool exists = false;
   std::string id;
   std::vector<RegisterEntry> entries;
-  std::map<std::string, std::string> issued;  ///< number by the SHA-256 of an issued file
+  std::map<std::string, std::string> issued;  ///< certificate numbers, by the SHA-256 of the issued
+                                              ///< files
 };
 
 /// Reads the site's register; does nothing if `site` is empty.
@@ -35,8 +36,8 @@ std::string no_verdict(const RegisterRows& rows, const std::string& what);
 std::string issued_by(const RegisterRows& rows, std::string_view bytes);
 
 /// Checks a signed file against the register of a site (`register.state`): this very file was
-/// issued under its number, and the number is in force. None if the file has no number from a
-/// register. An error if the register is required and could not be read.
+/// issued under its number, and the number is in force. Returns none if the file states no
+/// certificate number. An error if the register is required and could not be read.
 Expected<std::optional<sign::Check>> check_register(const sign::Verified& verified,
                                                     std::string_view bytes,
                                                     const RegisterRows& rows);

@@ -41,8 +41,8 @@ Expected<void> check_durable(Database& database) {
 }
 
 struct Identity {
-  std::string id;          ///< empty: the site has no register yet
-  std::int64_t place = 0;  ///< place of the last journal entry that the site has seen; 0: none
+  std::string id;          ///< id of the register; empty: the site has no register yet
+  std::int64_t place = 0;  ///< position of the last journal entry that the site has seen; 0: none
   std::string sha256{};    ///< digest of that entry
 };
 

@@ -138,7 +138,9 @@ Expected<void> make_server_tables(storage::Database& database, const std::string
   const bool made = is_of_this_version(database);
   if (auto well = database.take_error(); !well || made) return well;
   storage::Database::Transaction transaction(database);
-  if (is_of_this_version(database)) return transaction.end();  // another process was faster
+  if (is_of_this_version(database))
+    return transaction.end();  // another process has made the
+                               // tables in the meantime
   if (has_tables(database)) return fail(of_newer_version);
   if (database.first("SELECT count(*) FROM pg_catalog.pg_class c JOIN pg_catalog.pg_namespace n ON "
                      "n.oid = c.relnamespace WHERE n.nspname = ?",
@@ -158,7 +160,9 @@ Expected<void> make_tables(storage::Database& database) {
   const bool made = is_of_this_version(database);
   if (auto well = database.take_error(); !well || made) return well;
   storage::Database::Transaction transaction(database);
-  if (is_of_this_version(database)) return transaction.end();  // another process was faster
+  if (is_of_this_version(database))
+    return transaction.end();  // another process has made the
+                               // tables in the meantime
   const bool is_marked = integer(database.first("PRAGMA application_id")) == application;
   const bool is_old = is_marked && database.first("PRAGMA user_version") == "1";
   if (!is_old && !database.failed() && database.first("SELECT count(*) FROM sqlite_schema") != "0")

@@ -28,10 +28,10 @@ struct Restamped {
   std::vector<std::string> added;  ///< what was added, in words
 };
 
-/// Writes the file with its revocation data and, if `how` contains a server for it, a time stamp to
-/// `out`, or over itself if that is empty; completely or not at all. Refuses the output folder of a
-/// run, because the next run would restore the issued file. A file that the register has issued is accepted with the signer of that
-/// time.
+/// Writes the file with its revocation data and, if `how` contains a server for it, a time stamp
+/// into the folder `out`, or over itself if `out` is empty; completely or not at all. Refuses a
+/// separate DCC, and the output folder of a run, because the next run would restore the issued
+/// file. A file that the register has issued is accepted even if its signer is no longer expected.
 Expected<Restamped> restamp(const std::filesystem::path& file, const sign::Prolonging& how,
                             const RegisterRows& rows, const std::filesystem::path& out);
 

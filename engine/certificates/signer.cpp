@@ -95,8 +95,8 @@ void answer(int stream, const Expected<sign::Key>& key,
   done ? reply("", *done) : reply(done.error().message, {});
 }
 
-/// Sends bytes to the signer and returns them signed. `go_on`: called repeatedly until the answer
-/// begins; false gives up; may be empty.
+/// Sends bytes to the signer and returns them signed. `go_on` is called repeatedly until the answer
+/// begins; if it returns false, the request is given up. It may be empty.
 Expected<sign::Signed> ask(int channel, std::string_view bytes,
                            const std::function<bool()>& go_on = {}) {
   NONIO_TRY(auto ends, process::channel_pair(SOCK_STREAM, signing_process));

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// In the order of `Role`, as users_file() declares them.
+/// Names of the roles in the order of `Role`, as users_file() declares them.
 constexpr std::array role_names{"view", "measure", "approve", "administer"};
 
 }  // namespace

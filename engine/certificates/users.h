@@ -20,7 +20,7 @@ const char* to_text(Role role);
 
 /// `[[user]]` of users.toml.
 struct User {
-  std::string account;  ///< as the reverse proxy states it, or as the person enters it
+  std::string account;  ///< account, as the reverse proxy states it or as the person enters it
   std::string name;     ///< name of the person, as documents print it
   Role role = Role::view;
   std::string password{};  ///< hash of the password (password.h); empty: the user cannot sign in

@@ -127,7 +127,8 @@ Expected<sign::Verified> verify_file(const fs::path& path, const sign::Verifier&
   const bool is_xml = bytes->starts_with("<?xml");
   sign::Verified v =
       is_xml ? sign::verify_xml(*bytes, verifier) : sign::verify_pdf(*bytes, verifier);
-  // The register may contain an earlier signer.
+  // Without the register there is no verdict, because it may state that the file was issued with an
+  // earlier signer.
   if (verdict_of(v) == Verdict::untrusted && !rows.no_answer.empty())
     return fail(no_verdict(rows, path.string()));
   if (is_xml) {

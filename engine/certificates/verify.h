@@ -54,7 +54,8 @@ Verdict verdict_of(const sign::Verified& verified);
 std::string id_of(Verdict verdict);
 /// Returns the verdict for people: "VALID", "NOT A CERTIFICATE".
 std::string text_of(Verdict verdict);
-/// Returns the checks that could not be made and do not make the verdict negative.
+/// Returns the ids of the checks that could not be made, except that of the DCC, because a
+/// certificate need not have one.
 std::vector<std::string> not_made(const sign::Verified& verified);
 
 }  // namespace nonio::certificates

@@ -65,7 +65,8 @@ class FittedBefore {
   }
 
  private:
-  // Entries, for steps back and forth; 8 MB each for 1,000,000 readings.
+  // Largest number of stored entries, so that steps back and forth need no new fit. An entry takes
+  // 8 MB for 1,000,000 readings.
   static constexpr std::size_t most = 8;
   std::deque<std::pair<std::string, std::shared_ptr<SharedColumn>>> all_;
 };
@@ -85,9 +86,9 @@ struct Running {
   std::string received{};
   std::shared_ptr<SharedColumn> residual{};
   bool fills = false;     ///< whether this job writes `residual`
-  bool is_begun = false;  ///< the first state was reported
+  bool is_begun = false;  ///< whether the first state was reported
   Clock::time_point begun = Clock::now();
-  int reported = 0;  ///< seconds that were reported last
+  int reported = 0;  ///< elapsed time that was reported last, s
 };
 
 bool write_all(int fd, std::string_view bytes) {
@@ -147,7 +148,8 @@ bool is_slow(const Job& job) { return job.kind == "explain" || job.kind == "with
 /// Returns the priority of a job as a nice value: a picture that a person waits for goes before
 /// background work.
 int niceness(const Job& job, const Bench& bench) {
-  constexpr std::size_t takes_seconds = 100000;  // readings from which a fit takes seconds
+  constexpr std::size_t takes_seconds = 100000;  // number of readings from which on a fit takes
+                                                 // seconds
   if (is_slow(job)) return 10;
   if (job.number == 0) return 5;
   for (const auto& part : bench.parts)
@@ -200,8 +202,8 @@ class Loop {
       gone_ = true;
   }
 
-  /// Whether a person waits for this fit. Slow jobs start when it is ready, or if it takes longer
-  /// than a second itself.
+  /// Returns whether a person waits for this fit. Slow jobs are started when such a fit is ready,
+  /// or when it has taken longer than a second.
   bool is_awaited(const Running& one) const {
     constexpr auto long_time = std::chrono::seconds(1);
     return one.job.kind == "fit" && !one.is_begun && niceness(one.job, bench_) == 0 &&
@@ -260,8 +262,8 @@ class Loop {
     one.residual = std::move(residual), one.fills = fills;
   }
 
-  /// Whether this process itself has to do groundwork, which all later requests need: only while no
-  /// request waits.
+  /// Returns whether this process itself has to prepare matrices (groundwork) that all later
+  /// requests need. It does so only while no other than slow jobs are running.
   bool has_work() const {
     return without_groundwork(bench_) != nullptr &&
            std::all_of(running_.begin(), running_.end(),
@@ -294,7 +296,7 @@ class Loop {
     for (const std::uint64_t number : ended) finish(number);
   }
 
-  /// Reads what the child has sent; false at the end of the stream.
+  /// Reads what the child has sent. Returns false at the end of the stream.
   static bool read_from(Running& one) {
     std::array<char, 1 << 16> bytes;
     const ssize_t n = ::read(one.pipe.get(), bytes.data(), bytes.size());

@@ -4,9 +4,9 @@
 #include "live/calculation.h"
 #include "platform/process/channel.h"
 
-/// The bench process: it holds a campaign and its plugins. It has one thread, reads the campaign
-/// once, and makes a child process for each request. So readings are shared, a crash costs one
-/// answer, and a request is cancelled by ending its child.
+/// The bench process keeps a campaign and its plugins in memory. It has one thread, reads the
+/// campaign once, and makes a child process for each request. So readings are shared, a crash costs
+/// one answer, and a request is cancelled by ending its child.
 namespace nonio::live {
 
 /// Messages from the bench process to the server, packed: number of the job, state, text. Job 0 is
@@ -14,8 +14,10 @@ namespace nonio::live {
 namespace job_state {
 inline constexpr const char* opened = "opened";
 inline constexpr const char* catalogue = "catalogue";
-inline constexpr const char* running = "running";  ///< text: elapsed seconds
-inline constexpr const char* begun = "begun";      ///< text: first part of the answer
+inline constexpr const char* running = "running";  ///< state of a job that is still running; text:
+                                                   ///< elapsed seconds
+inline constexpr const char* begun = "begun";      ///< state of a job with an incomplete answer;
+                                                   ///< text: first part of the answer
 inline constexpr const char* done = "done";
 inline constexpr const char* failed = "failed";
 }  // namespace job_state

@@ -374,7 +374,8 @@ Expected<Bench> open_bench(const BenchWish& wish) {
     modelling::set_model(part, {}, bench.read);
     readings += part.part.table.size();
   }
-  constexpr std::size_t many = 50000;  // readings; below this, the catalogue takes less than 0.1 s
+  constexpr std::size_t many = 50000;  // number of readings below which the catalogue takes less
+                                       // than 0.1 s
   if (readings <= many) fill_catalogue(bench);
   return bench;
 }

@@ -31,8 +31,8 @@ struct Bench {
   std::unique_ptr<reading::Workplace> place;
   reading::ReadCampaign read;
   std::vector<modelling::PartModel> parts;  ///< all parts; each request sets their model
-  bool has_catalogue = false;  ///< false for very many readings: each process that needs the
-                               ///< catalogue makes it
+  bool has_catalogue = false;  ///< whether the catalogue exists; false for very many readings, for
+                               ///< which each process that needs it makes it
   /// Prepared matrices of large parts, which are the same for every tried model.
   std::map<std::string, model::Groundwork> groundwork{};
 
@@ -53,22 +53,24 @@ storage::Json described(const Bench& bench);
 /// "catalogue" of `described`.
 storage::Json fill_catalogue(Bench& bench);
 
-/// Returns the next part whose groundwork has to be done; null if none. Only parts without a
-/// set-up: their groundwork runs no plugin, so it may be done in the process that all requests are
+/// Returns the next part, of 5,000 to 200,000 readings, whose prepared matrices (groundwork) are
+/// still missing; null if there is none. Parts with set-up effects are left out, because without
+/// these the groundwork runs no plugin and so may be computed in the process that all requests are
 /// forked from.
 const modelling::PartModel* without_groundwork(const Bench& bench);
 void do_groundwork(Bench& bench, const modelling::PartModel& part);
 
-/// Receives the first part of an answer.
+/// Function that receives the first part of an answer.
 using First = std::function<void(const std::string&)>;
 
 /// Answers one request. Has to run in a child process, since it changes `bench`. `residual`:
 /// residual of each reading of the part in the order of the files, NaN for excluded ones; a fit
 /// fills it, other requests read it if `fitted`. Errors are texts for the person at the page.
 ///
-/// fit: packed, the members "compare" and "text", and the value of "page". For many readings this
-/// is sent first without the places, and then the page is empty. explain: the explanation is sent
-/// first, then the fingerprints.
+/// The answer to "fit" is packed: first the members "compare" and "text" as a text, then the value
+/// of "page". For many readings, both are sent in `first` before the places where the model does
+/// not fit are computed; the page of the final answer is then empty. The answer to "explain" sends
+/// the explanation in `first`, and the fingerprints as the final answer.
 Expected<std::string> calculate(Bench& bench, const storage::Json& request,
                                 std::span<double> residual, bool fitted, const First& first);
 

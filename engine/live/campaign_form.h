@@ -15,8 +15,8 @@ struct DroppedFile {
   storage::Json form;
   std::string name, bytes;
 };
-/// Parses the body of such a request. An error is the refusal: no valid form, or a file name that a
-/// campaign must not contain.
+/// Parses the body of a request with a file. An error is the refusal: no valid form, an empty file,
+/// or a file name that a campaign must not contain.
 tl::expected<DroppedFile, Answer> dropped_file(const std::string& body);
 
 /// Returns the options --column=... for the member `columns` and --axis for `axis`.

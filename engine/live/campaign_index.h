@@ -20,13 +20,15 @@ namespace nonio::live {
 /// One campaign as stated in campaign.toml, run.json and results.json.
 struct ListedCampaign {
   std::string folder, id, day, customer, place;
-  std::string machine, model;           ///< name of the machine in the history; empty: none
-  std::string state;                    ///< new, ok, attention, failed
+  std::string machine, model;           ///< name of the machine in the history, and its model;
+                                        ///< empty: none
+  std::string state;                    ///< state of the campaign: new, ok, attention, failed
   std::string verdict;                  ///< worst decision on a tolerance; empty: none
   std::string certificate;              ///< number of the certificate
-  std::string message;                  ///< first error
-  bool draft = false;                   ///< a draft of a certificate waits for approval
-  bool changed = false;                 ///< campaign.toml has changed since the results were made
+  std::string message;                  ///< message of the first error
+  bool draft = false;                   ///< whether a draft of a certificate waits for approval
+  bool changed = false;                 ///< whether campaign.toml has changed since the results
+                                        ///< were made
   std::vector<std::string> files{};     ///< names of the output files
   std::vector<std::string> findings{};  ///< findings with severity warning, in words
   std::vector<std::string> columns{};   ///< columns that a person stated for its files
@@ -37,14 +39,14 @@ struct ListedCampaign {
 
 struct CampaignQuery {
   std::string search{};  ///< words that must all occur
-  std::string folder{};  ///< only the campaign in this folder; empty: any
-  std::string state{};   ///< a state, a verdict, "draft" or "certificate"; empty: any
+  std::string folder{};  ///< folder of the only campaign to find; empty: any
+  std::string state{};   ///< required state or verdict, "draft" or "certificate"; empty: any
   std::size_t page = 0, size = 50;
 };
 
 struct CampaignPage {
   std::size_t found = 0, all = 0;
-  bool complete = false;  ///< false: some campaigns have not been read yet
+  bool complete = false;  ///< whether all campaigns have been read
   std::vector<ListedCampaign> campaigns{};
 };
 
@@ -64,7 +66,7 @@ class CampaignIndex {
 
   /// Returns matching campaigns by day, the newest first, then by id.
   CampaignPage find(const CampaignQuery& query) const;
-  /// Calls `take` for all campaigns in the same order; `take` must not call the index.
+  /// Calls `take` for all campaigns in the order of `find`; `take` must not call the index.
   void each(const std::function<void(const ListedCampaign&)>& take) const;
   bool has(const std::string& folder) const;
   std::size_t size() const;
@@ -83,7 +85,8 @@ class CampaignIndex {
   std::string stamp_of(const std::string& folder, const std::string& id) const;
   Seen read(const std::string& folder) const;
   void run();
-  /// Returns false if nothing has changed.
+  /// Reads all campaigns whose files have changed, and removes those that no longer exist. Returns
+  /// false if nothing has changed.
   bool look_at_all();
   bool is_over() const;
 
@@ -94,7 +97,7 @@ class CampaignIndex {
   std::chrono::steady_clock::time_point last_look_{};
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  std::map<std::string, Seen> seen_{};  ///< by folder
+  std::map<std::string, Seen> seen_{};  ///< campaigns as they were last read, by folder
   bool over_ = false, soon_ = true, complete_ = false;
   std::thread thread_;
 };

@@ -19,7 +19,7 @@ class Starting : public Service {
 /// Returns the folders with a campaign.toml below a site, relative to it and sorted.
 std::vector<std::string> campaigns_in(const std::filesystem::path& site);
 
-/// HTML of the pages, in the language of the site.
+/// HTML of the pages and the sentences that they show, in the language of the site.
 struct Shells {
   std::string campaign, site;
   Sentences sentences;

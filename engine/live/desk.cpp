@@ -193,8 +193,8 @@ Answer Desk::state(bool may_write) {
   return {200, json_type, storage::dump_line(json)};
 }
 
-/// Returns the fit of a part, waiting for it if necessary. `picture`: also accept one whose places
-/// are not computed yet.
+/// Returns the fit of a part and waits for it if necessary. If `picture`, a fit whose places are
+/// not computed yet is accepted as well.
 Answer Desk::fit(const std::string& part, const Request& request, bool picture) {
   std::unique_lock lock(mutex_);
   const auto is_known = [&] {

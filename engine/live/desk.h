@@ -17,13 +17,13 @@ namespace nonio::live {
 /// State of one part for the present trial.
 struct PartState {
   struct Work {
-    std::string state = "none";  ///< none, queued, running, done, failed
+    std::string state = "none";  ///< state of the calculation: none, queued, running, done, failed
     std::uint64_t job = 0;
     std::string error;
     int seconds = 0;
-    /// First part and rest of the answer. fit: members "compare" and "text", and the value of
-    /// "page", without places until it is done. explain: {"explain": ...}, {"fingerprints": ...};
-    /// the second may come later.
+    /// First part and rest of the answer. For a fit, they contain the members "compare" and "text",
+    /// and the value of "page"; the places are missing until the fit is done. For an explanation,
+    /// they are {"explain": ...} and {"fingerprints": ...}; the second may come later.
     std::string head, rest;
   };
   std::string key;  ///< key of the trial that this belongs to
@@ -53,7 +53,7 @@ class Remembered {
 /// A search that adds effects one after the other, as `nonio model explain --auto` does.
 struct Searching {
   std::uint64_t job = 0;
-  std::string kind;  ///< suggest or finish
+  std::string kind;  ///< kind of the search: suggest or finish
   std::vector<std::string> added;
   std::vector<std::string> failed_before;  ///< parts that could not be explained at the start
 };

@@ -14,7 +14,8 @@ using storage::Json;
 
 namespace {
 
-constexpr std::size_t most_added = 12;  // limit of `nonio model explain --auto`
+constexpr std::size_t most_added = 12;  // largest number of added effects, as in `nonio model
+                                        // explain --auto`
 constexpr std::size_t longest_text = 2000;
 
 }  // namespace

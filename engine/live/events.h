@@ -19,10 +19,11 @@ namespace nonio::live {
 
 struct Event {
   std::uint64_t version = 0;  ///< version of the state, sent as `id:`
-  std::string type;           ///< "state", "fit", "explain", "progress", "changed", "failed"
+  std::string type;           ///< type of the event: "state", "fit", "explain", "progress",
+                              ///< "changed", "failed"
   std::string about;          ///< subject, for example a part: a newer event of this type with the
                               ///< same subject replaces it
-  std::string data;           ///< JSON, one line
+  std::string data;           ///< content of the event: JSON on one line
 };
 
 /// Returns the event as sent, for example "id: 17\nevent: fit\ndata: {...}\n\n".

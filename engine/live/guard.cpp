@@ -21,7 +21,7 @@ Verdict denied(int status, std::string name,
 }
 
 struct Authority {
-  std::string name, port;  ///< port without ":"; empty if not stated
+  std::string name, port;  ///< name and port; the port is without ":" and empty if not stated
 };
 
 /// Parses "NAME:PORT", "[::1]:PORT" or "NAME"; none if it is something else.
@@ -45,8 +45,8 @@ std::optional<Authority> authority_of(std::string_view text) {
   return out;
 }
 
-/// Whether the authority is an address of this server. `scheme`: of an Origin header, in which the
-/// default port is left out.
+/// Returns whether the authority is an address of this server. `scheme` is that of an Origin
+/// header, in which the default port is left out; it is empty for a Host header.
 bool is_ours(std::string_view text, const Post& post, std::string_view scheme) {
   const auto given = authority_of(text);
   if (!given) return false;
@@ -304,7 +304,7 @@ Verdict judge(const Head& head, const Post& post, const std::vector<Route>& rout
   // The token is checked before the path, so that a client without it does not learn which paths
   // exist.
   std::vector<std::string> tokens = head.all("X-Nonio-Token");
-  // Used by programs that collect metrics (RFC 6750).
+  // Programs that collect metrics send the token in this header (RFC 6750).
   constexpr std::string_view bearer = "Bearer ";
   if (tokens.empty())
     for (const std::string& given : head.all("Authorization"))

@@ -21,19 +21,20 @@ struct Head {
 
   /// Returns the values of all fields with that name, in any case of letters.
   std::vector<std::string> all(std::string_view name) const;
-  /// Returns the first of these values; empty if there is none.
+  /// Returns the value of the first field with that name; empty if there is none.
   std::string first(std::string_view name) const;
 };
 
 /// Settings of the server that the checks depend on.
 struct Post {
   std::uint16_t port = 0;
-  std::string token;                 ///< 32 hexadecimal digits
+  std::string token;                 ///< secret token of 32 hexadecimal digits
   std::vector<std::string> hosts{};  ///< values of --host: "nonio.example.org",
                                      ///< "nonio.example.org:8443"
-  bool ipv6 = false;                 ///< [::1] is bound
+  bool ipv6 = false;                 ///< whether the server is also bound to [::1]
   bool edit = false;
-  bool sign_in = false;  ///< requests have a session, which the service checks, instead of a token
+  bool sign_in = false;  ///< whether requests have a session, which the service checks, instead of
+                         ///< a token
 };
 
 /// Limits of the head: bytes, fields, bytes of the target.
@@ -47,8 +48,10 @@ enum class Method { get, post };
 /// --edit.
 struct Route {
   Method method = Method::get;
-  std::string path;   ///< "/api/parts/{part}/fit": a step in braces is a placeholder
-  bool open = false;  ///< needs no token: files of the page itself, which contain no data
+  std::string path;   ///< path, for example "/api/parts/{part}/fit"; a step in braces is a
+                      ///< placeholder
+  bool open = false;  ///< whether no token is needed: for files of the page itself, which contain
+                      ///< no data
   bool writes = false;
   std::string body{};            ///< content types of a POST's body, separated by blanks
   std::size_t most = most_body;  ///< largest body in bytes
@@ -62,8 +65,8 @@ struct Said {
 };
 
 struct Verdict {
-  int status = 200;  ///< 200: accepted
-  Said said{};       ///< otherwise what is wrong and what to do
+  int status = 200;  ///< HTTP status of the answer; 200: the request is accepted
+  Said said{};       ///< what is wrong and what to do, if the status is not 200
   const Route* route = nullptr;
   std::vector<std::string> names{};  ///< values of the placeholders, percent-decoded
 };
@@ -76,7 +79,8 @@ int head_status(std::string_view bytes);
 
 /// Returns the route, or the first check that failed. Order of the checks: size of the head (414,
 /// 431), Host (421), Sec-Fetch-Site and Origin (403), method (405), token (403), path (404, 405),
-/// --edit (403), content type (415), announced length of the body (413).
+/// --edit (403), announced length of the body (400, 413), content type (415). Open routes need
+/// neither token nor --edit.
 Verdict judge(const Head& head, const Post& post, const std::vector<Route>& routes);
 
 /// Returns the address of the page without the token, for example "http://127.0.0.1:4711/".

@@ -79,7 +79,7 @@ class Front {
   };
   process::Handle socket_;
   std::uint16_t port_;
-  std::map<std::uint64_t, Visitor> waiting_{};  ///< in the order of arrival
+  std::map<std::uint64_t, Visitor> waiting_{};  ///< connections in the order of their arrival
   std::uint64_t last_ = 0;
 };
 
@@ -185,7 +185,9 @@ Expected<std::string> token_in(const std::string& file) {
 
 constexpr std::size_t threads = 16, most_queued = 64;
 constexpr auto heartbeat = std::chrono::seconds(15);
-constexpr auto between_events = std::chrono::milliseconds(100);  // at most 10 per second
+constexpr auto between_events = std::chrono::milliseconds(100);  // shortest time between two
+                                                                 // events, so that at most 10 per
+                                                                 // second are sent
 constexpr auto body_patience = std::chrono::seconds(30);
 
 /// Data that all connections share.
@@ -308,7 +310,7 @@ void set_timeout(int socket, int option, long seconds, long microseconds) {
 /// client has read the answer.
 void part_from(int socket) {
   constexpr int most = 64;
-  constexpr long soon = 200'000;  // us
+  constexpr long soon = 200'000;  // time limit of one read, us
   ::shutdown(socket, SHUT_WR);
   set_timeout(socket, SO_RCVTIMEO, 0, soon);
   std::array<char, 1 << 16> rest;
@@ -437,7 +439,7 @@ Expected<void> serve_here(const LiveWish& wish) {
   NONIO_TRY(auto front, Front::open(wish.port));
   auto service = service_of(wish);  // starts processes, so before the first thread
   if (!service) return fail(service.error());
-  std::string token;  // empty if people sign in
+  std::string token;  // secret token; empty if people sign in
   if (!(*service)->signs_in()) {
     auto made = wish.token_file.empty() ? random_token() : token_in(wish.token_file);
     if (!made) return fail(made.error());

@@ -24,7 +24,8 @@ struct LiveWish {
                                    ///< does
   std::uint16_t port = 0;
   bool edit = false, quiet = false;
-  bool sign_in = false;  ///< a site with users.toml and without `user_header`; set by service_of
+  bool sign_in = false;  ///< whether users sign in at this server: a site with users.toml and
+                         ///< without `user_header`; set by service_of
 };
 
 /// Serves the page until SIGINT or SIGTERM. Prints one line, the address with the token. An error

@@ -22,7 +22,7 @@ struct Request {
   const Route& route;
   const std::vector<std::string>& names;  ///< values of the placeholders in the route's path
   std::string body;
-  bool may_write = true;  ///< the user's role allows it
+  bool may_write = true;  ///< whether the user's role allows changes
 
   /// Returns a value of the query; none if it is missing.
   std::optional<std::string> query(std::string_view name) const;
@@ -70,7 +70,7 @@ class Service {
   virtual Answer answer(const Request& request) = 0;
   /// Refuses a request before its body is read, if the user is not signed in.
   virtual std::optional<Answer> before_body(const Head&, const Route&) { return std::nullopt; }
-  /// Sentences for refusals.
+  /// Returns the sentences for refusals.
   virtual const Sentences& sentences() const = 0;
   /// Whether requests have a session instead of a token.
   virtual bool signs_in() const { return false; }
@@ -80,8 +80,8 @@ class Service {
 
 /// Routes of the page's own files, which contain no data.
 std::vector<Route> shell_routes();
-/// Returns one of these files; the shell with the words of its language. Status 404 if there is no
-/// such file. Handles If-None-Match.
+/// Returns one of the page's own files; for a path that ends with "/", the page itself, which is
+/// `shell`. Status 404 if there is no such file. Handles If-None-Match.
 Answer shell_file(const Request& request, const std::string& shell);
 
 }  // namespace nonio::live

@@ -28,7 +28,7 @@ struct Excluded {
 struct Trial {
   std::vector<std::string> model;           ///< effects in the order in which they would be saved
   std::vector<Excluded> excluded;           ///< sorted by part and row
-  std::map<std::string, double> period_mm;  ///< by axis, for axes with a tried period
+  std::map<std::string, double> period_mm;  ///< tried periods in mm, by axis
   bool operator==(const Trial&) const = default;
 };
 
@@ -94,7 +94,8 @@ class Session {
 /// they are equal.
 std::string command_of(const std::string& campaign, const std::vector<std::string>& saved,
                        const Trial& trial);
-/// Returns the commands from one trial to the next, without changes that no command can revoke.
+/// Returns the commands from one trial to the next. Changes that no command can make, such as
+/// including readings again, are left out.
 std::string command_between(const std::string& campaign, const Trial& from, const Trial& to);
 /// Quotes a word for the shell if necessary.
 std::string quoted_for_shell(const std::string& word);

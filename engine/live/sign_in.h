@@ -27,7 +27,8 @@ class SignIn {
   /// Result of checking a password.
   struct Checked {
     bool fits = false;
-    int wait_s = 0;  ///< not checked: seconds to wait after wrong passwords
+    int wait_s = 0;  ///< seconds to wait after wrong passwords, if the password was not checked;
+                     ///< otherwise 0
   };
   /// Checks a password. Checks run one after the other, so that guessing uses at most one
   /// processor, and only a few may wait. After wrong passwords the account is not checked for 1, 2,
@@ -59,10 +60,11 @@ class SignIn {
   std::mutex mutex_, checking_;
   std::string cookie_{};                       ///< name of the cookie; random for each start of a
                                                ///< server
-  std::map<std::string, Session> sessions_{};  ///< by SHA-256 of the cookie's value
-  std::map<std::string, Wrong> wrong_{};       ///< by account, and by account of a session
-  std::array<Wrong, 256> wrong_of_others_{};   ///< for accounts that do not exist: by SHA-256 of
-                                               ///< the account
+  std::map<std::string, Session> sessions_{};  ///< sessions, by SHA-256 of the cookie's value
+  std::map<std::string, Wrong> wrong_{};       ///< wrong passwords by account, and separately by
+                                               ///< account of a user who is signed in
+  std::array<Wrong, 256> wrong_of_others_{};   ///< wrong passwords for accounts that do not exist,
+                                               ///< by SHA-256 of the account
   std::atomic<int> waiting_ = 0;
 };
 

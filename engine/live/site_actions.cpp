@@ -10,7 +10,7 @@ using storage::Json;
 
 namespace {
 
-/// Adds those members of the body as options that it has.
+/// Adds the members `names` of the body as options, as far as the body has them.
 void add_options(std::vector<std::string>& arguments, const Json& body,
                  std::initializer_list<const char*> names) {
   for (const char* name : names)

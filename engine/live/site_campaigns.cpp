@@ -303,7 +303,7 @@ Answer SiteCampaigns::create(const Request& request) {
   const ToolEnd end = call_(std::move(arguments));
   if (end.status != 0) {
     std::error_code ignored;
-    fs::remove(site_ / *name, ignored);  // does nothing if the folder is not empty
+    fs::remove(site_ / *name, ignored);  // removes the folder only if it is empty
     return refusal(422, end.errors);
   }
   index_.look_at(*name);

@@ -14,7 +14,7 @@ namespace nonio::live {
 
 /// State of the runs in an output folder.
 struct RunNow {
-  std::string state{};       ///< none, or a state of `nonio status`
+  std::string state{};       ///< state of the last run as in `nonio status`, or none
   std::uint64_t number = 0;  ///< number of the last run that began
   std::string date{};
   std::uint64_t last = 0;  ///< number of the last complete run; 0: none

@@ -107,7 +107,8 @@ Answer SiteService::settings(const User* user) const {
   if (!site) return refusal(422, site.error().front().message);
   const Laboratory& lab = site->laboratory;
   const auto list = [](const std::optional<std::vector<std::string>>& all) {
-    return all ? Json(*all) : Json(nullptr);  // null: all that apply
+    return all ? Json(*all) : Json(nullptr);  // null: site.toml states no list, so all that apply
+                                              // are used
   };
   Json json = {{"schema", "nonio-live-settings/1"},
                {"laboratory",
@@ -146,7 +147,8 @@ Answer SiteService::settings(const User* user) const {
 
 namespace {
 
-/// Only plain files, by name; a link leads anywhere.
+/// Returns whether `name` is a plain file directly in `folder`. Links are refused, because they may
+/// lead to any file.
 bool is_plain_file_in(const fs::path& folder, const std::string& name) {
   std::error_code error;
   return name == fs::path(name).filename() && !name.starts_with('.') &&

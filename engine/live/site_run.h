@@ -15,7 +15,7 @@ namespace nonio::live {
 
 /// Results of a campaign at one moment, to compare them before and after a run.
 struct ResultsNow {
-  std::string status;                 ///< empty: no results
+  std::string status;                 ///< status of the campaign; empty: there are no results
   std::string sha256;                 ///< digest of results.json
   std::vector<std::string> findings;  ///< findings with severity warning
 };
@@ -31,7 +31,8 @@ class SiteRun {
   SiteRun& operator=(const SiteRun&) = delete;
   ~SiteRun();
 
-  /// Starts a run. `id`: of the campaign; empty: a whole run. Returns false if one is running.
+  /// Starts a run. `id` is the campaign that is run alone; empty for a run of all changed
+  /// campaigns. Returns false if a run is in progress already.
   Expected<bool> begin(const std::vector<std::string>& arguments, const std::string& command,
                        const std::string& id);
   /// Ends the present run. Returns false if there is none.

@@ -23,7 +23,7 @@ namespace {
 constexpr bool is_line = true;
 constexpr std::size_t most_input = 4096, most_printed = 64 << 20, most_errors = 1 << 16;
 
-/// Appends what can be read to `into`; false at the end.
+/// Appends what can be read to `into`. Returns false at the end of the stream.
 bool take_from(int fd, std::string& into) {
   std::array<char, 1 << 16> bytes;
   const ssize_t n = ::read(fd, bytes.data(), bytes.size());

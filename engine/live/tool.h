@@ -14,7 +14,7 @@ namespace nonio::live {
 /// Result of a command.
 struct ToolEnd {
   int status = -1;          ///< exit status; -1: it did not end by itself
-  std::string out, errors;  ///< its output; of the error output only the end
+  std::string out, errors;  ///< standard output, and the end of the error output
 };
 
 /// Runs the program with these arguments in a process with one thread. Sends each line of its error

@@ -37,7 +37,7 @@ class Watch {
   std::mutex mutex_;
   std::condition_variable over_or_new_;
   std::map<std::string, std::string> expected_;
-  std::map<std::string, Seen> seen_;  ///< used by the thread only
+  std::map<std::string, Seen> seen_;  ///< files as they were last read; used by the thread only
   bool over_ = false, changed_ = false;
   std::thread thread_;
 };

@@ -37,7 +37,8 @@ using kit::Verdict;
 using CheckState = PluginCheck::State;
 
 constexpr double scan_seconds = 1.0;
-constexpr std::size_t most_hanging = 2;  // checks of one plugin
+// Checks of one plugin that reach the time limit; then no more are tried
+constexpr std::size_t most_hanging = 2;
 
 bool went_well(const PluginCheck& c) {
   return c.state == CheckState::passed || c.state == CheckState::skipped;
@@ -98,7 +99,8 @@ void go_elsewhere() {
   if (::chdir("/usr") != 0) throw std::runtime_error("no folder /usr");
 }
 
-/// Sets the first installed locale that writes a decimal comma; without one, nothing changes.
+/// Sets the first installed locale that writes a decimal comma; without such a locale nothing
+/// changes.
 void speak_otherwise() {
   for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "it_IT.UTF-8", "es_ES.UTF-8"})
     if (std::setlocale(LC_ALL, name) != nullptr) return;
@@ -184,7 +186,7 @@ class Checker {
     pure_again();
   }
 
-  /// The names of all plugins of the files that were loaded.
+  /// Returns the names of all plugins of the files that were loaded.
   const std::vector<std::string>& names() const { return names_; }
 
  private:
@@ -275,7 +277,8 @@ class Checker {
       const PluginCheck result = in_child(once.plugin, "pure", [&](Bench& b) {
         std::string why;
         b.only_plugin = [&] {
-          // only now: calls of the host before this point restore the working folder
+          // The environment is changed only here, because calls of the host before this point
+          // restore the working folder.
           go_elsewhere();
           speak_otherwise();
           why = process::confine_pure(tell_impurity);
@@ -455,11 +458,11 @@ class Checker {
     std::vector<kit::Sample> samples;
     bool evaluated = false;
   };
-  std::map<std::uint64_t, Made> made_;  ///< by seed
+  std::map<std::uint64_t, Made> made_;  ///< samples and their results, by seed
   bool wants_results_ = false;          ///< the plugin under test needs the results of the samples
   std::vector<kit::Source> cases_;
   std::vector<std::string> names_;
-  fs::path path_, shown_path_;  ///< the second as the user gave it
+  fs::path path_, shown_path_;  ///< path of the plugin file, and this path as the user stated it
   std::size_t hung_ = 0;        ///< checks of the current plugin that reached the time limit
   const char* zone_ = nullptr;  ///< time zone of the next child; null: unchanged
   /// Result of the first run of `pure` for one plugin.
@@ -472,7 +475,7 @@ class Checker {
   };
   static constexpr std::chrono::milliseconds a_second{1100};
   std::vector<Once> once_;
-  Brought brought_;  ///< filled only in a child
+  Brought brought_;  ///< plugins of the file; filled only in a child process
 };
 
 template <class Checks>

@@ -9,29 +9,31 @@
 
 #include "nonio/sdk/error.h"
 
-/// `nonio plugin check`: tries each law that a plugin must obey in a child process with limits of
-/// time and memory.
+/// `nonio plugin check`: tests in child processes, with limits of time and memory, whether a plugin
+/// obeys each of the laws that apply to it.
 namespace nonio::plugin_check {
 
 struct PluginCheck {
   enum class State { passed, failed, crashed, skipped };
-  std::string file;    ///< path of the plugin file
-  std::string plugin;  ///< "effect bow"; empty for a check of the file itself
-  std::string name;    ///< name of the check: "rows"
+  std::string file;  ///< path of the plugin file
+  /// Kind and name of the plugin: "effect bow"; empty for a check of the file itself.
+  std::string plugin;
+  std::string name;  ///< name of the check: "rows"
   State state = State::passed;
-  std::string says;        ///< what was found and what was expected; why it was skipped
+  std::string says;        ///< what was found and expected, or why the check was skipped
   std::uint64_t seed = 1;  ///< seed of the samples
 };
 const char* to_text(PluginCheck::State state);
 
 struct PluginCheckRequest {
-  std::filesystem::path subject;             ///< a plugin, or a folder with plugins below it
-  std::vector<std::filesystem::path> cases;  ///< folders with campaigns below: more samples
-  std::string only;                          ///< name of the only check to run; empty: all
-  std::string plugin;                        ///< the one plugin to check, by name; empty: all
-  std::uint64_t seed = 1;                    ///< first seed of the samples
-  std::uint64_t seeds = 3;                   ///< number of seeds: seed, seed + 1, ...
-  double seconds = 20.0;                     ///< processor time per check
+  std::filesystem::path subject;  ///< path of a plugin, or of a folder with plugins below it
+  /// Folders below which campaigns serve as additional samples.
+  std::vector<std::filesystem::path> cases;
+  std::string only;         ///< name of the only check to run; empty: all
+  std::string plugin;       ///< the one plugin to check, by name; empty: all
+  std::uint64_t seed = 1;   ///< first seed of the samples
+  std::uint64_t seeds = 3;  ///< number of seeds: seed, seed + 1, ...
+  double seconds = 20.0;    ///< processor time per check, s
   double memory_MB = 2000.0;
   /// the program's plugins, which read and evaluate the samples
   std::filesystem::path own_plugins;

@@ -14,8 +14,8 @@ namespace nonio::plugin_check::kit {
 
 namespace {
 
-/// Results of an analysis for one sample as a list of numbers. The evidence of findings is kept
-/// apart, because a finding appears or disappears at a threshold.
+/// Results of an analysis for one sample as a list of numbers. Numbers that are evidence of
+/// findings are stored separately, because a finding appears or disappears at a threshold.
 struct Said {
   struct One {
     std::string name;

@@ -46,7 +46,7 @@ Expected<Sample> open_source(const Source& source, const std::vector<Reader>& re
       config::parse_manifest(source.manifest, source.name + "/" + config::manifest_name, methods);
   if (!manifest) return fail(manifest.error().front());
   Sample s{source.name, std::move(manifest->campaign), std::move(manifest->options), {}};
-  for (Axis& axis : s.campaign.machine.axes) {  // else no controller writes a table
+  for (Axis& axis : s.campaign.machine.axes) {  // without these data no controller writes a table
     if (!axis.active_table) axis.active_table.emplace();
     if (!axis.active_backlash) axis.active_backlash = 0.0;
   }

@@ -18,7 +18,8 @@ namespace {
 /// A planted error of one axis, in SI units.
 struct KnownError {
   bool rotary = false;
-  std::vector<double> targets, error;  ///< actual - nominal at each target, mean of both directions
+  /// Targets, and actual - nominal there (mean of both directions).
+  std::vector<double> targets, error;
   double reversal = 0.0;
 
   double at(double x) const {
@@ -86,7 +87,7 @@ Sample sample_of(const KnownError& k) {
 struct Written {
   std::vector<Artifact> files;
   std::vector<LoadedTable> tables;
-  std::string refused;  ///< why no table was written
+  std::string refused;  ///< reason why no table was written
   bool unable = false;  ///< the plugin failed without stating what it lacks
 };
 
@@ -149,8 +150,9 @@ std::vector<SetUp> settings_that_write(const Controller& o, const Bench& bench, 
   return all;
 }
 
-/// Range of the remaining error at the targets once the control adds the tables. Both directions
-/// are taken together if the files state the reversal. None if no table belongs to the axis.
+/// Returns the range of the error that remains at the targets if the control adds the tables, m or
+/// rad; none if no table belongs to the axis. If the files state the reversal, the range includes
+/// both directions.
 std::optional<double> left(const KnownError& k, const std::vector<LoadedTable>& tables) {
   const std::string axis = k.rotary ? "C" : "X";
   const auto c = math::correction_of(tables, axis);
@@ -256,7 +258,7 @@ Verdict table_cancels(const Controller& o, const Bench& bench) {
   });
 }
 
-/// Check: for an error that rises linearly the table falls, and the reverse.
+/// Check: for an error that rises linearly the correction in the table falls, and vice versa.
 Verdict table_sign(const Controller& o, const Bench& bench) {
   return each_setting(o, bench, [&](const SetUp& s) -> std::string {
     for (const double slope : {40e-6, -40e-6}) {
@@ -277,7 +279,8 @@ Verdict table_sign(const Controller& o, const Bench& bench) {
   });
 }
 
-/// Range of the remaining error at the points of the tables, in m.
+/// Returns the range of the error that remains at the points of the tables in one direction, m or
+/// rad.
 double left_at_points(const KnownError& k, const std::vector<LoadedTable>& tables,
                       const math::Correction& added, int direction) {
   double low = 1e9, high = -1e9;

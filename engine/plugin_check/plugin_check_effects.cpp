@@ -16,7 +16,8 @@ namespace {
 
 using Columns = Effect::Columns;
 
-constexpr double planted_size = 10e-6, planted_noise = 0.5e-6;  // m or rad
+// Size of the planted effect and standard deviation of the noise, m or rad
+constexpr double planted_size = 10e-6, planted_noise = 0.5e-6;
 
 /// One term of the effect, in a part of a sample that can show it.
 struct Shown {
@@ -226,7 +227,7 @@ Verdict effect_grid(const Effect& e, const Bench& bench) {
   });
 }
 
-/// Share of the sum of squares of `columns` that is in the span of `others`, 0 to 1.
+/// Returns the share (0 to 1) of the sum of squares of `columns` that is in the span of `others`.
 double alike(const Observations& o, const Columns& columns, const Columns& others) {
   double least = 0.0, whole = 0.0, left = 0.0;
   const Columns basis = basis_of(o, others, least);

@@ -202,7 +202,7 @@ Verdict fingerprint(const Method& m, const Bench& bench) {
     const auto o = readings ? observe(m, {one.sample.campaign, one.measurement, *readings})
                             : Expected<Observations>(fail(readings.error()));
     text += one.where() + (o ? std::string("\n") : ": " + o.error().message + "\n");
-    if (readings)  // what both add and subtract cancels in the observations
+    if (readings)  // the readings too: a term that both functions use cancels in observations
       for (const auto& [name, column] : readings->columns)
         for (const double value : column) text += exact_text(value) + " ";
     for (std::size_t i = 0; o && i < o->size(); ++i)

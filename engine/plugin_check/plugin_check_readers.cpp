@@ -23,7 +23,7 @@ char any_byte(storage::Random& random) {
 /// At most 120 numbers of a file are replaced, one at a time; 300 random damages are tried per
 /// file.
 constexpr std::size_t most_tokens = 120, damages = 300;
-constexpr double no_reading = 1e6;  // m or rad: no machine has so large a deviation
+constexpr double no_reading = 1e6;  // deviation that no machine can have, m or rad
 
 /// A sample file that the reader recognises, with the campaign and measurement that it belongs to.
 struct ReadFile {
@@ -251,7 +251,7 @@ std::string line_words(const std::string& bytes, std::size_t at) {
 
 /// Returns how many readings a number at byte `at` can affect: those of its source line.
 std::size_t readings_of_line(const Observations& o, const std::string& bytes, std::size_t at) {
-  if (o.source_line.empty()) return 3;  // the three coordinates of a ball
+  if (o.source_line.empty()) return 3;  // at most the three coordinates of a ball
   const auto line = static_cast<std::uint32_t>(
       1 + std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
   return static_cast<std::size_t>(std::count(o.source_line.begin(), o.source_line.end(), line));

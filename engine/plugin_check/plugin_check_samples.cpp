@@ -56,8 +56,8 @@ class MadeMachine {
     turning_ = waves(random_, 20e-6, turn);
   }
 
-  /// Returns rows of a file: the error (m) that is sensed along `sense` on the way from `from` to
-  /// `to`, relative to the start. `target` converts the fraction of the way into the unit of the
+  /// Returns rows of a file for a line from `from` to `to`: the error (m) that is sensed along
+  /// `sense`, relative to the start. `target` converts the fraction of the way into the unit of the
   /// file.
   template <class Target>
   std::string line(const Vector& from, const Vector& to, const Vector& sense, const Pass& pass,

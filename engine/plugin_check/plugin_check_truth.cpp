@@ -19,7 +19,7 @@ namespace {
 
 /// A row of a table: its fields by column name. Blank fields are left out.
 struct TableRow {
-  std::string where;  ///< "readings.csv:3"
+  std::string where;  ///< file and line of the row: "readings.csv:3"
   std::map<std::string, std::string> fields;
 
   const std::string* find(const std::string& column) const {

@@ -32,7 +32,8 @@ struct Sample {
   Campaign campaign;
   config::RawOptions options;
   std::vector<Observations> observations;
-  std::optional<Results> results{};  ///< of the program's own plugins, if they were evaluated
+  /// Results of the program's own plugins; none: not evaluated yet.
+  std::optional<Results> results{};
 
   const Observations& of(const Measurement& m) const {
     return observations[static_cast<std::size_t>(&m - campaign.measurements.data())];
@@ -52,13 +53,13 @@ Expected<Sample> open_source(const Source& source, const std::vector<Reader>& re
 struct Bench {
   std::uint64_t seed = 1;
   std::vector<Source> sources;
-  std::vector<Sample> samples;  ///< of all sources that could be read
-  std::vector<Method> methods;  ///< the file's own, then the program's
+  std::vector<Sample> samples;  ///< samples of all sources that could be read
+  std::vector<Method> methods;  ///< methods of the plugin file, followed by those of the program
   std::vector<Reader> readers;
   std::vector<Effect> effects;
   std::vector<Analysis> analyses;
   Templates templates;
-  reading::Context context;  ///< for the model; it contains no site
+  reading::Context context;  ///< context with which models are fitted; it contains no site
   /// Called when everything is ready and only the plugin remains to be called; the check `pure`
   /// then changes the environment.
   std::function<void()> only_plugin{};
@@ -81,7 +82,7 @@ inline Verdict skipped(std::string says) { return {Verdict::State::skipped, std:
 template <class Plugin>
 struct Check {
   const char* name;
-  const char* law;  ///< one sentence, for --help
+  const char* law;  ///< sentence about what the check tests, for --help
   std::function<Verdict(const Plugin&, const Bench&)> run;
 };
 
@@ -95,12 +96,12 @@ const std::vector<Check<Controller>>& controller_checks();
 /// Returns the checks of written files, which controllers share with outputs.
 std::vector<Check<Controller>> controller_checks_of_files();
 
-/// Returns what is wrong with the declaration of an option; empty if nothing. `may_be_absent`: an
-/// empty default means that the key is not written.
+/// Returns what is wrong with the declaration of an option; empty if nothing. If `may_be_absent`,
+/// an empty default means that the key is not written.
 std::string wrong_option(const Option& option, bool may_be_absent);
 
-/// Passes with a digest of what a plugin computes for all samples, or skips with the reason why
-/// there is none. Calls `Bench::only_plugin` before the plugin.
+/// Returns a passed verdict with a digest of what a plugin computes for all samples, or a skipped
+/// one with the reason why there is no digest. Calls `Bench::only_plugin` before the plugin.
 Verdict fingerprint(const Method& method, const Bench& bench);
 Verdict fingerprint(const Reader& reader, const Bench& bench);
 Verdict fingerprint(const Effect& effect, const Bench& bench);
@@ -122,7 +123,8 @@ std::vector<std::pair<std::string, Observations>> odd_tables(const Observations&
 /// Returns the plugin's default options, replaced by those that the sample sets.
 Settings settings_for(const Info& info, const Sample& sample);
 Settings settings_for(const Output& output, const Sample& sample);
-/// Adds to those the numbers of the axes in order, which many controllers require.
+/// Returns the options of a controller for a sample, including the numbers of the axes in order,
+/// which many controllers require.
 Settings settings_for(const Controller& controller, const Sample& sample);
 /// Returns all results of the analyses and the model for a sample; computes them unless the sample
 /// contains them.

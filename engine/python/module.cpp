@@ -25,7 +25,8 @@ namespace nonio::python {
 
 namespace {
 
-/// Becomes the Python exception nonio.Error; thrown while Python's lock is released.
+/// Becomes the Python exception nonio.Error. Unlike a Python exception, it can also be thrown while
+/// Python's lock is released.
 struct Failure {
   Error error;
 };
@@ -57,7 +58,8 @@ Quantity quantity_of(const std::string& unit) {
 
 using Columns = std::map<std::string, std::vector<double>>;
 
-/// Returns the readings of one axis as columns in printed units, as a function of Python gets them.
+/// Returns the readings of one axis as named columns in printed units, for the Python function of
+/// an effect.
 Columns readings_columns(const Observations& o, const AxisReadings& r, const Axis& axis) {
   Columns out;
   const auto put = [&](const char* name, const std::vector<double>& values, Quantity quantity) {
@@ -142,7 +144,8 @@ Effect effect_of(OwnEffect given) {
   return effect;
 }
 
-/// A campaign that was read. Its methods release Python's lock while they compute.
+/// A campaign that was read. The constructor and the methods evaluate, compare and explain release
+/// Python's lock while they work.
 class OpenedCampaign {
  public:
   OpenedCampaign(const fs::path& folder, std::vector<fs::path> plugins,
@@ -280,7 +283,8 @@ py::tuple error_arguments(const Error& e) {
 PYBIND11_MODULE(_nonio, module) {
   using namespace nonio::python;
   module.attr("version") = NONIO_VERSION;
-  // Outlives the module, because an exception may still be active at its end.
+  // The Python class nonio.Error. It must outlive the module, because an exception may still be
+  // active when the module ends.
   static py::object raised;
   module.def("raise_with", [](const py::object& type) { raised = type; });
   py::register_exception_translator([](std::exception_ptr thrown) {

@@ -94,9 +94,10 @@ double rms(const std::vector<double>& values) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// Returns the deviation caused by all columns. Coefficients of a curve are random, scaled to its
-/// RMS. In space, where not every reading senses it, the basis functions of a curve are orthogonal
-/// over the places, with rms 1.
+/// Returns the deviation of each reading caused by all columns, m or rad. The coefficients of a
+/// curve are random, and are scaled so that the curve has the specified rms: over the readings, or,
+/// in space, where not every reading senses it, by the coefficients alone, because its basis
+/// functions are orthogonal over the places, with rms 1.
 std::vector<double> deviation_of_columns(const EffectSpec& e, const Effect::Columns& columns,
                                          storage::Random random) {
   std::vector<double> factor = e.linear, sum(columns.empty() ? 0 : columns[0].size(), 0.0);
@@ -156,8 +157,9 @@ Json quantity_json(double value, bool rotary) {
           {"unit", unit_of(deviation_of(rotary)).symbol}};
 }
 
-/// Returns the factor with which a reading in another direction senses an error along an axis, as
-/// in `explain`.
+/// Returns the factor with which reading i senses the error along the axis `place`: the component
+/// of its direction of sensing, or 1 with a single axis, on a rotary axis and for effects in space,
+/// as in `explain`.
 double sensed(const Seen& seen, const EffectSpec& e, const Axis& place, std::size_t i) {
   const std::size_t k = coordinate_of(place.name);
   if (seen.part == nullptr || e.effect.instances || seen.table.axes.size() < 2 || place.rotary ||

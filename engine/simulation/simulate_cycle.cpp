@@ -228,8 +228,8 @@ class CycleReader {
     c_.timed = reader_.flag("times").value_or(true);
   }
 
-  /// Reads the keys of a circle. The feed is that of the measurement; there is no dwell on the
-  /// path.
+  /// Reads the keys of a circle. The feed is that of the measurement, and the dwell is 0 unless
+  /// `dwell_s` is stated.
   void read_circle() {
     if (const auto readings = reader_.integer("readings"))
       c_.readings = static_cast<std::uint32_t>(*readings);

@@ -21,7 +21,7 @@ bool of_ball(const CycleSpec& c) { return c.is("ball-centres") || c.is("rtcp"); 
 std::string millimetres(double si) { return fixed_text(printed(si, Quantity::length), 5); }
 std::string micrometres(double si) { return fixed_text(printed(si, Quantity::deviation), 3); }
 
-/// Returns the distance from the first end of a diagonal.
+/// Returns the distance of reading i from the first end of a diagonal, m.
 double along(const CycleSpec& c, const Observations& o, std::size_t i) {
   double square = 0.0;
   for (const auto& axis : o.axes) {
@@ -48,7 +48,7 @@ std::string ball_row(const CycleSpec& c, const Observations& o, std::size_t i,
   for (std::size_t k = 0; k < 3; ++k)
     text += "," + millimetres(c.is("rtcp") ? o.axes[1 + k].position[i] : e[k]);
   if (!c.is("rtcp")) return text;
-  if (probe)  // found minus commanded position
+  if (probe)  // a probe reports the found minus the commanded position
     return text + "," + micrometres(-e[0]) + "," + micrometres(-e[1]) + "," + micrometres(-e[2]) +
            "," + o.lines[o.line[i]].name.substr(0, o.lines[o.line[i]].name.size() - 2);
   const auto& sense = c.sensor == "turns" ? o.lines[o.line[i]].sense : o.sense_of(i);

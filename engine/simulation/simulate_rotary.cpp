@@ -28,7 +28,7 @@ Vector rotated(const Vector& v, const Vector& n, double angle) {
   return out;
 }
 
-/// Builds the table: axes and lines first, then rows one after the other.
+/// Builds the observations of one measurement: axes and lines first, then one row after the other.
 class Rows {
  public:
   explicit Rows(const CycleSpec& c) : c_(c), clock_(c) {
@@ -120,10 +120,10 @@ Observations centres(const RotarySpec& r, const RotarySpec* carrier, const Cycle
   return rows.done();
 }
 
-/// Returns the position of the tool relative to the workpiece, minus the one that the control
-/// computes, while the axis turns. Table: the axis moves the ball, and the tool follows the
-/// computed position. Head: the axis moves the tool, and the linear axes compensate the computed
-/// movement.
+/// Returns the readings of kind rtcp: along each direction of sensing, the position of the tool
+/// relative to the workpiece, minus the one that the control computes, while the axis turns. Table:
+/// the axis moves the ball, and the tool follows the computed position. Head: the axis moves the
+/// tool, and the linear axes compensate the computed movement.
 Observations with_tool_centre(const RotarySpec& r, const CycleSpec& c) {
   const Vector centre = r.control_centre.value_or(r.centre),
                direction = r.control_direction.value_or(r.direction);
@@ -141,7 +141,8 @@ Observations with_tool_centre(const RotarySpec& r, const CycleSpec& c) {
       const Vector meant = turned(c.balls[b], centre, direction, angle),
                    is = turned(sum(c.balls[b], 1.0, c.ball_offset), r.centre, r.direction, angle);
       const Vector moved = sum(is, -1.0, meant);
-      // Position of the linear axes: at the ball, or back by the vector from the pivot to it.
+      // Position of the linear axes. Table: the computed position of the ball. Head: the ball minus
+      // the computed vector from the head's centre to the tool.
       const Vector at = head ? sum(sum(c.balls[b], 1.0, centre), -1.0, meant) : meant;
       for (std::size_t k = 0; k < senses; ++k) {
         const Vector sense = probe                 ? units[k]

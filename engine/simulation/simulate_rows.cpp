@@ -43,7 +43,8 @@ Expected<std::vector<Side>> sides_of(const Measurement& m) {
   return sides;
 }
 
-/// Performs all passes: calls put(target, direction, run).
+/// Calls put(target, direction, run) for each reading of all passes, and pauses before each further
+/// run.
 template <class Put>
 void sweep(const CycleSpec& c, const std::vector<double>& targets, Clock& clock, Put put) {
   const auto pass = [&](std::uint32_t run, double direction) {
@@ -140,8 +141,9 @@ Expected<Observations> in_steps(const Specification& s, const CycleSpec& c) {
   return o;
 }
 
-/// Returns the readings of a circle: each run counter-clockwise, then clockwise; lines are named as
-/// the reader of the file names them. No reading is exactly at a reversal.
+/// Returns the readings of a circle: each run in the specified direction, then, if `pendulum`, in
+/// the opposite one. Lines are named as the reader of the file names them. No reading is exactly at
+/// a reversal.
 Expected<Observations> on_circle(const CycleSpec& c) {
   Observations o;
   o.measurement = c.measurement.id;

@@ -20,14 +20,17 @@ Expected<Observations> rows_of(const Specification&, const CycleSpec&,
 std::array<double, 3> turned(const std::array<double, 3>& ball, const std::array<double, 3>& centre,
                              const std::array<double, 3>& direction, double angle);
 
-/// Returns the rows of ball centres and rtcp, with the readings of exact linear axes as deviations.
+/// Returns the rows of a measurement of kind ball-centres or rtcp, with the readings that a machine
+/// with exact linear axes gives as deviations. Error: a rotary axis has no [[simulation.rotary]],
+/// or for rtcp it does not state what the axis carries.
 Expected<Observations> rotary_rows(const Specification&, const CycleSpec&);
 
-/// Assigns times to readings taken one after the other.
+/// Computes the times and temperatures of readings that are taken one after the other.
 class Clock {
  public:
   explicit Clock(const CycleSpec& c) : c_(c) {}
-  /// Moves by `way`, m or rad, and adds time and temperature of the reading to the table.
+  /// Advances the time by a move of `way`, m or rad, and by the dwell, except for the first
+  /// reading, and appends time (s) and material temperature (degC) of the reading to `o`.
   void reading(Observations& o, double way);
   void pause() { t_ += c_.pause; }
 
@@ -39,8 +42,8 @@ class Clock {
 
 /// Returns the header row of a measurement's file.
 std::string header_of(const CycleSpec&);
-/// Returns the row of reading `at` (or of three readings of a ball centre), with `deviation` in
-/// place of the table's.
+/// Returns the row of the file that begins with reading `at`: one reading, or the three of a ball
+/// centre. `deviation` (m or rad) replaces the deviations of these readings.
 std::string row_of(const CycleSpec&, const Observations&, std::size_t at,
                    const std::vector<double>& deviation);
 /// Returns a whole file with the columns that a method declares.

@@ -86,7 +86,8 @@ class EffectReader {
     errors_.push_back(Error{std::move(message), file_, line});
   }
 
-  /// Finds kind and axis by name; null after an error is reported.
+  /// Returns the effect whose kind `name` contains, and sets `axis` to its axis, except for an
+  /// effect in space; null after an error is reported.
   const Effect* find_effect(config::TableReader& reader, const std::string& name, Axis& axis) {
     const std::size_t colon = name.find(':');
     const std::string kind = name.substr(0, colon),
@@ -147,7 +148,8 @@ class EffectReader {
   std::vector<Error>& errors_;
 };
 
-/// Reads the seed, and formulas that campaign.toml must not contain.
+/// Reads [simulation]: the seed, rotary axes and squares. Returns its formulas, which campaign.toml
+/// must not contain.
 std::vector<Formula> read_simulation(config::TableReader& top, Specification& s) {
   auto reader = top.table("simulation");
   if (!reader) return {};

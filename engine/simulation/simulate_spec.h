@@ -14,7 +14,7 @@
 
 namespace nonio::simulation {
 
-/// One [[cycle]]: how a measurement is simulated. SI.
+/// One [[cycle]]: how a measurement is simulated. All values are SI.
 struct CycleSpec {
   Measurement measurement;
   Axis axis;
@@ -26,25 +26,30 @@ struct CycleSpec {
   double direction = 1.0;
   bool timed = true;
   double dwell = 5.0;    ///< time at each target, s
-  double feed = 0.0;     ///< m/s or rad/s
+  double feed = 0.0;     ///< feed rate, m/s or rad/s
   double pause = 0.0;    ///< pause before each further run, s
   double noise = 0.0;    ///< standard deviation of a reading, m or rad
   double misread = 0.0;  ///< probability that a reading is misread
-  /// range of the error, in multiples of the noise
+  /// range of the size of a misreading, in multiples of the noise
   std::pair<double, double> misread_size{8.0, 40.0};
+  /// Temperature of the material over time: a value at the start, degC, plus a drift, K/s, plus a
+  /// sine wave with an amplitude `swing`, K, and a period, s.
   struct Course {
-    double start = 20.0, drift = 0.0, swing = 0.0, period = 3600.0;  ///< degC, K/s, K, s
+    double start = 20.0, drift = 0.0, swing = 0.0, period = 3600.0;
   };
   std::optional<Course> temperature;
   std::uint32_t steps = 0;  ///< number of steps of a diagonal or step diagonal; 0: targets are used
   std::uint32_t readings = 720;               ///< number of readings per turn of a circle
   double set_up = 0.0;                        ///< angle of a straightedge to the axis, rad
-  std::vector<std::array<double, 3>> balls;   ///< positions with the rotary axes at 0, m
+  std::vector<std::array<double, 3>> balls;   ///< positions of the balls with the rotary axes at 0,
+                                              ///< m
   std::string carrier;                        ///< another rotary axis that turns too; empty: none
   std::vector<double> carrier_at;             ///< positions of the carrier, rad
   std::vector<std::array<double, 3>> senses;  ///< directions of gauges, unit vectors
-  std::string sensor;                         ///< sensor of rtcp: turns, stands or probe
-  std::array<double, 3> ball_offset{};        ///< distance from the position in the control, m
+  std::string sensor;                         ///< for rtcp: "turns" (gauges that turn with the
+                                              ///< axis), "probe", or else gauges at rest
+  std::array<double, 3> ball_offset{};        ///< true position of the ball minus its position in
+                                              ///< the control, m
   /// Set for a kind whose file only its method can write; simulated as runs along its axis.
   const Method* method = nullptr;
   bool is(std::string_view kind) const { return measurement.kind == kind; }
@@ -72,7 +77,8 @@ struct EffectSpec {
   Axis axis;
   std::uint64_t line = 0;
   std::vector<double> linear;                ///< linear parameters, SI
-  std::vector<std::optional<double>> shape;  ///< SI; none: determined by the readings
+  std::vector<std::optional<double>> shape;  ///< nonlinear parameters, SI; without a value: not
+                                             ///< specified
 };
 
 struct Specification {
@@ -80,7 +86,7 @@ struct Specification {
   std::string manifest;  ///< text of the specification without the tables of the simulation
   std::uint64_t seed = 1;
   std::vector<Effect> catalogue;  ///< the plugins' effects, and formulas
-  std::vector<CycleSpec> cycles;  ///< sorted by measurement
+  std::vector<CycleSpec> cycles;  ///< one per measurement, in the order of the measurements
   std::vector<EffectSpec> effects;
   std::vector<RotarySpec> rotaries;
   std::vector<SquareSpec> squares;
@@ -102,8 +108,8 @@ std::vector<CycleSpec> read_cycles(config::TableReader& top, const Campaign& cam
 
 /// Reads [[simulation.rotary]] and [[simulation.square]].
 void read_things(config::TableReader& simulation, Specification& s);
-/// Reads vectors, three numbers each, multiplied by `scale`; error if their number is not a
-/// multiple of three.
+/// Returns the vectors of the array `key`, three numbers each, multiplied by `scale`. An array
+/// whose size is 0 or not a multiple of three is reported as an error to `reader`.
 std::vector<std::array<double, 3>> vectors_at(config::TableReader& reader, std::string_view key,
                                               double scale);
 

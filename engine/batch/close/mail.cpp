@@ -38,11 +38,12 @@ namespace net = Poco::Net;
 
 namespace {
 
-constexpr std::size_t longest_answer = 300;  // bytes, of a message from a server or program
+constexpr std::size_t longest_answer = 300;  // longest quoted message of a server or program, in
+                                             // bytes
 constexpr std::size_t longest_subject = 200;
 
-/// Replaces control characters by spaces and shortens the text to `longest` bytes without cutting a
-/// character.
+/// Replaces control characters by spaces. A text longer than `longest` bytes is shortened without
+/// cutting a character, and "..." is appended.
 std::string one_line(std::string text, std::size_t longest) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
@@ -70,7 +71,7 @@ std::string encoded_subject(const std::string& subject) {
   const bool plain = std::all_of(text.begin(), text.end(),
                                  [](char c) { return static_cast<unsigned char>(c) < 0x80; });
   if (plain) return text;
-  constexpr std::size_t piece = 39;  // bytes: 52 in base64, below the 75 of a word
+  constexpr std::size_t piece = 39;  // largest piece in bytes: 52 in base64, below the 75 of a word
   std::string out;
   for (std::size_t at = 0; at < text.size();) {
     std::size_t end = std::min(at + piece, text.size());

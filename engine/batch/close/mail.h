@@ -11,12 +11,13 @@
 namespace nonio::batch {
 
 struct Letter {
-  std::string subject;  ///< UTF-8; line ends become spaces
-  std::string text;     ///< UTF-8
+  std::string subject;  ///< subject of the mail in UTF-8; line ends are sent as spaces
+  std::string text;     ///< body of the mail in UTF-8
 };
 
-/// Whether this line is severe enough for a mail, by the setting `on`. A line that was acknowledged
-/// or fixed is not, nor is a change that is not significant enough.
+/// Returns whether this worklist line is severe enough for a mail, according to the setting `on`.
+/// Lines that were acknowledged or fixed are not severe enough, and neither are changes below the
+/// significance that a mail requires.
 bool is_reason_for_mail(const reports::WorkItem& line, config::Mail::On on);
 
 /// Sends the letter once, through the program or the server of `mail`. Paths are relative to

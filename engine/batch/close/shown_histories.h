@@ -21,8 +21,8 @@ class ShownHistories {
   ShownHistories(const RunOptions& options, const reading::Context& context)
       : options_(options), context_(context) {}
 
-  /// Has to be called before the first result is stored, if one is going to be: marks the histories
-  /// in documents as possibly outdated.
+  /// Has to be called before the first result of a run is stored. Notes that documents may show
+  /// outdated histories until `end` is called.
   Expected<void> begin() const;
   /// Returns, by campaign, the history that its document should show, for campaigns whose document
   /// shows another one. `looked`: read the store even if all documents are noted as up to date.

@@ -36,7 +36,7 @@ std::string one_reason(const std::string& text, const config::TerminalWords& wor
   return text;
 }
 
-constexpr std::size_t most_shown = 6;  // lines of a list that summary.txt shows
+constexpr std::size_t most_shown = 6;  // largest number of lines of a list in summary.txt
 
 /// A list of the summary: its first entries as text for a person, and all entries as lines of JSON
 /// for a program.
@@ -214,8 +214,8 @@ std::string waiting_line(const std::vector<certificates::WaitingDraft>& drafts,
   return line + (drafts.size() > most ? ", ..." : "") + "\n";
 }
 
-/// Returns the line of counts, for example "12 campaigns: 3 done, 9 unchanged, 0 failed; 2 lines:
-/// action required".
+/// Returns the line with the version and the counts, for example "Nonio 2026-12: 12 campaigns: 3
+/// done, 9 unchanged, 0 failed; 2 lines: action required".
 std::string counts_line(const RunResult& run, const Lists& lists, const WorklistPages& worklist,
                         const std::string& version) {
   const auto n = [](std::size_t count) { return std::to_string(count); };
@@ -247,7 +247,9 @@ void write_fresh(storage::Spool& out, const Lists& lists) {
             "\n");
 }
 
-/// Whether nothing was done, failed, vanished or issued in this run, and no action is required.
+/// Returns whether the run has nothing to report: no campaign was evaluated, failed or vanished, no
+/// certificate was issued or waits for approval, there is no note, and a worklist exists that
+/// requires no action.
 bool is_quiet(const RunResult& run, const Lists& lists, const WorklistPages& worklist) {
   return lists.done.count == 0 && lists.failed.count == 0 && lists.vanished.count == 0 &&
          worklist.asking == 0 && !worklist.json.empty() && run.issued.empty() &&

@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t most_lines = 16;  // lines of summary.txt: one page
+constexpr std::size_t most_lines = 16;  // largest number of worklist lines in summary.txt, so that
+                                        // it fits on one page
 
 bool is_as_it_was(const fs::path& path, const std::string& bytes) {
   std::error_code error;
@@ -26,8 +27,8 @@ bool is_as_it_was(const fs::path& path, const std::string& bytes) {
   return found && *found == bytes;
 }
 
-/// Whether the line has a separate list in summary.txt: failed and lost campaigns, which are listed
-/// there with more details.
+/// Returns whether summary.txt shows the line in a separate list with more details: lines of failed
+/// and of lost campaigns.
 bool is_in_a_list(const reports::WorkItem& line) {
   return line.kind == reports::WorkItem::Kind::lost || line.kind == reports::WorkItem::Kind::failed;
 }

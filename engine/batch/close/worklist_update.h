@@ -10,18 +10,19 @@
 
 namespace nonio::batch {
 
-/// Texts that a run reports to people, and their counts.
+/// The worklist of a run as texts for the summary, the pages and the mail, with the number of lines
+/// that require action.
 struct WorklistPages {
-  std::string text;  ///< for summary.txt: one line per action; failed and lost campaigns are listed
-                     ///< elsewhere
-  std::string json;  ///< the same lines for summary.json, as a list
+  std::string text;  ///< worklist for summary.txt: one line per action; failed and lost campaigns
+                     ///< are listed elsewhere
+  std::string json;  ///< lines of the worklist for summary.json, as a JSON list
   std::uint64_t asking = 0;  ///< number of new lines that require action
   bool judged = true;        ///< whether at least one campaign states a tolerance limit
   std::string actions;       ///< lines that require action as JSON, in the language of the site
   std::string mail;          ///< lines that are severe enough for a mail; empty: no mail
 };
 
-/// Collects what the run knows and the history does not contain: failed and vanished campaigns,
+/// Collects the facts of the run that the history does not contain: failed and vanished campaigns,
 /// issued certificates, drafts.
 assessment::LastRun last_run_of(const RunResult& run, const std::filesystem::path& out,
                                 const Templates& templates);

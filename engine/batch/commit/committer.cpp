@@ -64,7 +64,7 @@ Expected<void> Committer::give(Given campaign) {
   if (!channel_)
     if (auto started = start(); !started) return started;
   pending_.push_back(campaign);
-  // If the process has ended already, done() finds it.
+  // If the process has ended already, done() detects this and returns the campaign.
   [[maybe_unused]] const ssize_t n = ::send(channel(), &campaign, sizeof campaign, MSG_NOSIGNAL);
   return {};
 }

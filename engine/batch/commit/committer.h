@@ -25,8 +25,9 @@ class Committer {
   };
   struct Done {
     Given given;
-    std::string error;   ///< why it could not be stored; empty: stored
-    bool again = false;  ///< the process died while storing it; the parent may store it
+    std::string error;   ///< reason why the results could not be stored; empty: they are stored
+    bool again = false;  ///< the process died while storing the campaign, so the parent process may
+                         ///< store it
   };
   /// Runs in the child process: stores these campaigns and returns the outcome of each.
   using Task = std::function<std::vector<Expected<void>>(const std::vector<Given>&)>;
@@ -35,7 +36,7 @@ class Committer {
 
   /// Queues a campaign. An error if the process cannot be started.
   Expected<void> give(Given campaign);
-  /// Campaigns that were given and not answered yet.
+  /// Returns the campaigns that were given and not answered yet.
   const std::vector<Given>& pending() const { return pending_; }
   /// Ends the process at once, even while it writes.
   void end();
@@ -44,7 +45,7 @@ class Committer {
   std::vector<Done> done();
   int channel() const {
     return channel_.get();
-  }  ///< readable when a campaign is finished; -1: no process
+  }  ///< descriptor that can be read when a campaign is finished; -1: the process is not running
 
  private:
   Expected<void> start();

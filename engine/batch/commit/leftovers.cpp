@@ -11,8 +11,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Removes leftovers from all results folders of the output folder. `hashed`: the folders are one
-/// level deeper (OUT/ab/<id>).
+/// Removes leftovers from all results folders of the output folder. If `hashed`, the folders are
+/// one level deeper (OUT/ab/<id>).
 Expected<void> tidy_below(const fs::path& out, bool hashed) {
   std::error_code error;
   for (fs::directory_iterator it(out, error), end; !error && it != end; it.increment(error)) {

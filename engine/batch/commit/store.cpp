@@ -185,7 +185,7 @@ class Move {
              return now && evaluation::to_json(*now) == evaluation::to_json(record_);
            });
     if (!done_) return;
-    // The new results are complete, so a failure to remove the rest of the old ones does no harm.
+    // The new results are complete, so a failure to remove remaining old files does no harm.
     [[maybe_unused]] const auto gone = put_away_record_before(folder_);
   }
 
@@ -261,7 +261,7 @@ class Move {
   fs::path folder_;
   evaluation::Record record_{};
   std::set<std::string> names_{};
-  bool moved_ = false;  ///< the results have their own names already
+  bool moved_ = false;  ///< whether the results have their own names already
   Expected<void> done_{};
 };
 
@@ -309,7 +309,8 @@ Expected<void> store(const fs::path& out, const evaluation::Evaluated& evaluated
 }
 
 Expected<void> tidy(const fs::path& folder) {
-  constexpr int tries = 3;  // an error of the file system may pass
+  constexpr int tries = 3;  // number of attempts, because an error of the file system may be
+                            // transient
   auto left = storage::temporaries(folder);
   for (int i = 0; i < tries && (!left || !left->empty()); ++i, left = storage::temporaries(folder))
     storage::remove_leftovers(folder);

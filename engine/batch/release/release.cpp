@@ -133,7 +133,8 @@ class Releaser {
     return std::move(out_);
   }
 
-  /// Replaces the name of the person by that of the user whose password was given.
+  /// Checks the password of the user that `--user` names, and takes the name of the person from
+  /// users.toml. Without `--user`, calls `no_user_is_named`.
   Expected<void> identify() {
     if (request_.user.empty()) return no_user_is_named();
     if (!request_.by.empty()) return fail("--by and --user: expected one of them");
@@ -184,7 +185,8 @@ class Releaser {
     return role_ == authoriser ? may_authorise() : Expected<void>{};
   }
 
-  /// Checks that the person is in the laboratory's list of persons who may authorise.
+  /// Checks that the person is in the laboratory's list of persons who may authorise, if site.toml
+  /// states such a list.
   Expected<void> may_authorise() const {
     std::string digest;
     const auto site = config::read_site(options_.site, digest);
@@ -342,8 +344,8 @@ class Releaser {
   std::optional<OutputLock> lock_;
   std::string id_, role_, last_number_;
   certificates::WaitingDraft seen_;  ///< the draft as it was first read from the register
-  reading::Twins twins_;             ///< files of readings that other campaigns have too, as the
-                                     ///< run knew them
+  reading::Twins twins_;             ///< files of readings that other campaigns contain too, as the
+                                     ///< run of the draft found them
   Released out_;
 };
 

@@ -14,9 +14,11 @@ namespace nonio::batch {
 /// Arguments of `nonio certificate approve`.
 struct ReleaseRequest {
   std::filesystem::path campaign;  ///< folder of the campaign
-  std::string by;                  ///< a person's name, as it is printed; empty with `user`
-  std::string role;                ///< author or authoriser; empty: the role that the site requires
-  std::map<std::string, std::string> reasons;  ///< by finding_key or by the finding's id
+  std::string by;                  ///< name of the person, as it is printed; empty with `user`
+  std::string role;                ///< role of the person: author or authoriser; empty: the role
+                                   ///< that the site requires
+  std::map<std::string, std::string> reasons;  ///< reasons why findings are accepted, by
+                                               ///< finding_key or by the finding's id
   std::filesystem::path out;                   ///< output folder of the run; empty: the folder
                                                ///< stated in the draft
   /// Name of a user in users.toml, whose printed name is used; the password proves the identity.
@@ -34,7 +36,7 @@ struct Released {
   } state = State::refused;
   std::string why;
   std::optional<certificates::WaitingDraft> draft;
-  std::vector<std::string> without_reason;  ///< keys of findings
+  std::vector<std::string> without_reason;  ///< keys of the findings that still need a reason
   std::vector<std::string> notes;
   certificates::RegisterEntry entry;         ///< entry of the issued certificate
   std::vector<std::filesystem::path> files;  ///< written files in the output folder of the run
@@ -49,7 +51,7 @@ Released release(const ReleaseRequest& request, const RunOptions& base, const Ru
 Expected<std::vector<certificates::WaitingDraft>> waiting_drafts(
     const std::filesystem::path& folder);
 
-/// Why the draft cannot be approved as it is; empty if it can.
+/// Returns why the draft cannot be approved in its present state; returns an empty text if it can.
 std::string why_stale(const certificates::WaitingDraft& draft);
 
 }  // namespace nonio::batch

@@ -95,8 +95,8 @@ Expected<void> PackedShard::hand_over(const RunOptions& options, const RunPlan& 
 namespace {
 
 /// Removes the results of an earlier run from a campaign's folder; results of this run and other
-/// files are kept. The record is removed after all files that only it names, so that a rest does
-/// not count as results of this run.
+/// files are kept. The record is removed after all files that only it names, so that files
+/// remaining after an interruption can still be found and removed.
 Expected<void> clear_folder(const fs::path& folder, std::uint64_t run) {
   NONIO_TRY(const auto there, storage::is_there(folder));
   if (!there) return {};

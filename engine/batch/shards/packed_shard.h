@@ -16,8 +16,8 @@
 /// file, a pack.
 namespace nonio::batch {
 
-/// Returns the record of the shard if its pack is stored and undamaged; the shard need not be done
-/// again then.
+/// Returns the record of the shard if its pack is stored and undamaged, so that the shard need not
+/// be done again; otherwise returns none.
 std::optional<ShardRecord> reported_pack(const std::filesystem::path& out, const RunPlan& plan,
                                          std::uint64_t shard);
 

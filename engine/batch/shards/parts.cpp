@@ -41,8 +41,8 @@ std::string own_token() {
   return token + more.data();
 }
 
-/// Returns the campaigns in one list, ordered by id. Campaigns that others name only as twins are
-/// added at the end; nothing is done with them.
+/// Returns the campaigns in one list, ordered by id. Campaigns that are known only because they
+/// share files of readings with others are added at the end; they are not evaluated.
 std::vector<CampaignState> states_of(std::vector<Listed> listed, bool whole_site) {
   std::stable_sort(listed.begin(), listed.end(),
                    [](const Listed& a, const Listed& b) { return a.campaign.id < b.campaign.id; });
@@ -133,8 +133,8 @@ void take_reported(const ShardRecord& record, std::vector<CampaignState>& campai
   }
 }
 
-/// Evaluates the campaigns of a shard: the first `own` of the run's. If the error leaves
-/// `run.error` empty, the shard was refused or interrupted.
+/// Evaluates the campaigns of a shard, which are the first `own` of `run.campaigns`. If an error is
+/// returned and `run.error` is empty, the shard was refused or interrupted.
 Expected<void> do_part(const RunOptions& options, const RunEvents& events, const RunPlan& plan,
                        std::size_t own, RunResult& run) {
   RunOptions where = options;

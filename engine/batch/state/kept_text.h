@@ -32,7 +32,8 @@ class KeptText {
   friend std::ostream& operator<<(std::ostream& out, const KeptText& a) { return out << a.view(); }
 
  private:
-  const char* at_ = nullptr;  ///< its length, then its bytes; null: empty
+  const char* at_ = nullptr;  ///< address of the text's length, which its bytes follow; null: empty
+                              ///< text
 };
 
 }  // namespace nonio::batch

@@ -88,14 +88,14 @@ bool is_gone(const User& user, const User& own) {
   return !user.machine.empty() && user.machine == own.machine && user.host == own.host;
 }
 
-/// The bytes of OUT/.nonio/user; none if there is no such file.
+/// Returns the bytes of OUT/.nonio/user; none if there is no such file.
 Expected<std::optional<std::string>> read_user(const fs::path& path) {
   NONIO_TRY(const auto there, storage::is_there(path));
   if (!there) return std::nullopt;
   auto text = storage::read_small_file(path);
   if (text) return *text;
   const auto still = storage::is_there(path);
-  if (still && !*still) return std::nullopt;  // removed in the meantime
+  if (still && !*still) return std::nullopt;  // the file was removed in the meantime
   return fail(text.error());
 }
 
@@ -124,7 +124,7 @@ enum class Made { done, taken, no_links };
 /// answer is lost and a second attempt reports "exists", the link count of 2 proves that the file
 /// was created.
 Expected<Made> make_user(const fs::path& path, const User& user, const std::string& says) {
-  std::string own = temporary(path, user) + "XXXXXX";  // mkostemp puts its letters there
+  std::string own = temporary(path, user) + "XXXXXX";  // mkostemp replaces XXXXXX by letters
   const int fd = ::mkostemp(own.data(), O_CLOEXEC);
   if (fd < 0) return fail("cannot write " + own + ": " + std::strerror(errno));
   const bool written = ::write(fd, says.data(), says.size()) == static_cast<ssize_t>(says.size()) &&
@@ -147,8 +147,8 @@ Expected<Made> make_user(const fs::path& path, const User& user, const std::stri
   return fail("cannot write " + path.string() + ": " + std::strerror(linked));
 }
 
-/// True if this process now owns the user file. False on file systems without hard links, where
-/// only flock protects the folder.
+/// Returns true if this process now owns the user file, and false on file systems without hard
+/// links, where only flock protects the folder.
 Expected<bool> become_user(const fs::path& out, const fs::path& path, const User& own,
                            const std::string& says) {
   sweep(path, own);

@@ -20,8 +20,8 @@ namespace nonio::batch {
 class OutputLock {
  public:
   enum class Use {
-    whole,    ///< exclusive; refused while a run is planned, too
-    planned,  ///< exclusive; for a process that makes, merges or withdraws a plan
+    whole,    ///< exclusive use; refused also while a run is planned
+    planned,  ///< exclusive use; for a process that makes, merges or withdraws a plan
     shard     ///< shared with other shards by flock only, since two processes of the same shard do
               ///< no harm
   };
@@ -33,8 +33,9 @@ class OutputLock {
  private:
   explicit OutputLock(int fd) : fd_(fd) {}
   int fd_;
-  std::filesystem::path user_{};  ///< OUT/.nonio/user; empty if this does not own it
-  std::string says_{};            ///< content of the user file
+  std::filesystem::path user_{};  ///< path of OUT/.nonio/user; empty if this object does not own
+                                  ///< the file
+  std::string says_{};            ///< content of the file OUT/.nonio/user as this process wrote it
   long pid_ = 0;                  ///< process id of the owner, so that its child processes do not
                                   ///< remove the file
 };

@@ -248,8 +248,8 @@ bool is_for_shard(const CampaignState& c) {
   return c.action == Action::todo && c.status != evaluation::Status::failed;
 }
 
-/// Returns the positions of the campaigns, those of the first shard first and those of no shard
-/// last. Sets the counts in the plan.
+/// Returns the positions of the campaigns in `campaigns`, sorted by shard; campaigns of no shard
+/// come last. Sets the numbers of campaigns in the plan.
 std::vector<std::uint32_t> by_list(const fs::path& out, RunPlan& plan,
                                    const std::vector<CampaignState>& campaigns) {
   const auto rest = static_cast<std::uint32_t>(plan.shards.size());

@@ -20,14 +20,15 @@ namespace nonio::batch {
 struct RunPlan {
   struct List {
     std::uint64_t campaigns = 0;
-    std::string sha256;  ///< digest of the file
+    std::string sha256;  ///< SHA-256 of the file with the list
   };
   std::string id;  ///< id of the plan and of its folder; a second plan of the same run has another
                    ///< id
   evaluation::RunLabel run{};
   std::string site;            ///< folder of the site on the host that made the plan
   reading::Inputs made_with;   ///< digests of site.toml, plugins, templates and version
-  bool register_read = false;  ///< false: another process kept the register locked
+  bool register_read = false;  ///< whether the register was read; false: another process kept it
+                               ///< locked
   std::optional<std::uint64_t>
       history_known{};  ///< the run up to which the history was complete when the plan was made
   std::uint64_t to_do = 0, seen = 0;
@@ -69,9 +70,10 @@ Expected<std::vector<Listed>> read_rest(const std::filesystem::path& out, const 
 /// Outcome of a campaign in its shard.
 struct ShardResult {
   std::string campaign;
-  evaluation::Status status = evaluation::Status::none;  ///< none: left to the merge
-  bool stored = true;   ///< false: it failed, and the failure could not be stored
-  bool packed = false;  ///< its results are in the pack of the shard
+  evaluation::Status status = evaluation::Status::none;  ///< status of the results; none: the
+                                                         ///< campaign is left to the merge
+  bool stored = true;   ///< false: the campaign failed, and the failure could not be stored
+  bool packed = false;  ///< whether the results are in the pack of the shard
   std::vector<Error> errors{};
 };
 struct ShardRecord {

@@ -62,7 +62,8 @@ Expected<std::optional<storage::Json>> read_state(const fs::path& out) {
   return json;
 }
 
-/// Writes the state of the run. `end`: for a run that is complete; none while it is running.
+/// Writes the state of the run. `end` contains the counts of a complete run; it is none while the
+/// run is in progress.
 Expected<void> write_state(const fs::path& out, const RunState& run,
                            const std::optional<RunEnd>& end) {
   storage::Json json = {{"schema", "nonio-night/1"}, {"night", run.number},
@@ -75,8 +76,9 @@ Expected<void> write_state(const fs::path& out, const RunState& run,
   return storage::publish(out / state_folder, {{state_name, storage::dump(json)}});
 }
 
-/// Why the results of `site` must not be stored with those of `other`; empty if they may. A site
-/// that was moved is still the same site: its old folder no longer exists.
+/// Returns why the results of `site` must not be stored with those of `other`; returns an empty
+/// text if they may. A site that was moved is still the same site, because its old folder no longer
+/// exists.
 std::string other_site(const std::string& other, const std::string& site, const fs::path& out) {
   std::error_code error;
   if (other.empty() || other == site || !fs::is_directory(other, error) ||

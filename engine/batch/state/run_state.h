@@ -23,17 +23,18 @@ inline constexpr const char* plan_name = "plan.json";
 /// number when it is resumed, so that its summary equals that of an undisturbed run.
 struct RunState {
   std::uint64_t number = 1;
-  std::string date{};            ///< YYYY-MM-DD, as given
+  std::string date{};            ///< date of the run, YYYY-MM-DD, as given
   std::optional<RunEnd> last{};  ///< the previous complete run; none before the first
   bool force = false;
   bool resumed = false;
-  /// Order of the last number in the register when the previous run ended, or when the first one
-  /// began; none if the register could not be read.
+  /// Position, in the order of issue, of the last certificate number in the register when the
+  /// previous run ended, or when the first run began; none if the register could not be read.
   std::optional<std::uint64_t> issued_before{};
-  /// Order of the last number in the register when this run began; needed if the run is reopened
-  /// later.
+  /// Position, in the order of issue, of the last certificate number in the register when this run
+  /// began. It is needed if the run is reopened later.
   std::optional<std::uint64_t> issued_at_begin{};
-  bool reopened = false;  ///< a complete run, of which one campaign is evaluated again
+  bool reopened = false;  ///< whether this is a complete run of which one campaign is evaluated
+                          ///< again
   std::string site{};     ///< folder of the site that the results belong to
   evaluation::RunLabel of() const { return {number, date}; }
 };

@@ -14,7 +14,7 @@ namespace nonio::batch {
 /// The counts of a complete run.
 struct RunEnd {
   evaluation::RunLabel run{};
-  std::uint64_t seen = 0;  ///< number of campaigns
+  std::uint64_t seen = 0;  ///< number of campaigns in the site
   std::uint64_t failed = 0;
 };
 
@@ -24,7 +24,8 @@ struct RunStatus {
   evaluation::RunLabel run{};              ///< the last run that began
   std::optional<RunEnd> last{};            ///< the last run that is complete
   double age = 0.0;                        ///< seconds since the last summary was written
-  std::uint64_t shards = 0, reported = 0;  ///< of a planned run
+  std::uint64_t shards = 0, reported = 0;  ///< number of shards of a planned run, and number of
+                                           ///< those that have reported
   std::string used_by{};  ///< description of the process that uses the folder; empty if none
 };
 

@@ -37,7 +37,7 @@ class ByFolder {
  private:
   const CampaignState* first_;
   const CampaignState* end_;
-  // Few: folders that are not UTF-8, or not in the order.
+  // Folders that are not UTF-8 or not in the order of the others; there are only few of them.
   std::map<std::string, const CampaignState*> others_;
 };
 

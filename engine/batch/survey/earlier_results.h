@@ -15,7 +15,7 @@ namespace nonio::batch {
 
 /// Results in the output folder whose id no manifest of this run states.
 struct EarlierResult {
-  std::string id, folder;  ///< folder: of the campaign, as text, relative to the site
+  std::string id, folder;  ///< id of the campaign, and its folder relative to the site, as text
   std::uint64_t run = 0;
   bool failed = false;
 };
@@ -31,7 +31,8 @@ class ClaimedIds {
   std::vector<std::uint32_t> by_id_;
 };
 
-/// Returns such results, by id. An error if the output folder cannot be listed.
+/// Returns the results in `out` whose id is not in `claimed`, sorted by id. An error if the output
+/// folder cannot be listed.
 Expected<std::vector<EarlierResult>> unclaimed_results(const std::filesystem::path& out,
                                                        const ClaimedIds& claimed);
 

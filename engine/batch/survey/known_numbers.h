@@ -23,7 +23,8 @@ enum class Look { first, again };
 Expected<std::optional<Known>> known_of(const RunOptions& options, const reading::Context& context,
                                         Look look = Look::first);
 
-/// Returns the order of the last number; 0 if there is none.
+/// Returns the position of the last issued number in the order of issue, counted from 1; 0 if no
+/// number is issued.
 std::uint64_t issued_so_far(const std::vector<certificates::RegisterEntry>& numbers);
 
 }  // namespace nonio::batch

@@ -32,8 +32,8 @@ std::string_view without_end(std::string_view text) {
   return text.substr(0, last == std::string_view::npos ? 0 : last + 1);
 }
 
-/// Describes a loss of bytes that cannot be an edit: the file is empty, or cut at its end. Empty
-/// otherwise.
+/// Returns a description of a loss of bytes that no edit explains: the file is empty, or cut at its
+/// end. Returns an empty text if there is no such loss.
 std::string lost_bytes(std::string_view before, std::string_view now) {
   before = without_end(before), now = without_end(now);
   if (before.empty() || now.size() >= before.size()) return {};

@@ -19,13 +19,14 @@ namespace nonio::batch {
 /// restored.
 class SiteParts {
  public:
-  /// Compares the site with the inventory in `out`; without an inventory nothing counts as lost.
-  /// Nothing is written. An error if the inventory or the folder of templates cannot be read.
+  /// Compares the site with the inventory in `out`; without an inventory, no file is reported as
+  /// lost. Nothing is written. An error if the inventory or the folder of templates cannot be read.
   static Expected<SiteParts> compare(const std::filesystem::path& site,
                                      const std::filesystem::path& out);
 
   /// Returns files that are lost and were not removed on purpose, by path; `id` and `folder` are
-  /// the path below the site. If all files of a folder are lost, the folder is returned instead.
+  /// the path below the site. If all files of a folder are missing, at least two of them, the
+  /// folder is returned instead. A damaged inventory is returned as well.
   const std::vector<Vanished>& lost() const { return lost_; }
   /// Names lost files without which no result, table or certificate can be trusted: site.toml and
   /// templates. Empty if none is lost.
@@ -57,7 +58,8 @@ class SiteParts {
   std::filesystem::path site_{}, out_{};
   std::string date_{}, damaged_{};  ///< date of the inventory; why the inventory cannot be read
   std::uint64_t run_ = 0;
-  std::map<std::string, Part> parts_{};           ///< by path below the site
+  std::map<std::string, Part> parts_{};           ///< files of the inventory, by path below the
+                                                  ///< site
   std::map<std::string, std::string> renewed_{};  ///< new bytes of files that differ from their
                                                   ///< copies
   std::vector<std::string> removed_{};            ///< files that were removed on purpose

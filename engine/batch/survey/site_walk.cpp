@@ -32,7 +32,7 @@ constexpr std::size_t most_hung = 64;
 /// After this many folders that hang, each further one gets at most one second.
 constexpr std::size_t patient_for = 8;
 
-// Places that hung, with the messages about them.
+// Paths that did not answer, each with the message about it.
 using Passed = std::map<std::string, std::string>;
 
 std::string lower(std::string text) {
@@ -48,7 +48,7 @@ bool is_nearly_manifest(const std::string& name) {
 }
 
 struct FolderNames {
-  std::deque<std::string> folders;  // a deque, since there may be millions
+  std::deque<std::string> folders;  // a deque, because there may be millions of folders
   std::vector<std::string> links, nearly;
   bool has_manifest = false;
 };
@@ -99,7 +99,8 @@ class Walker {
     if (++remarks_ <= most_remarks) tell(Seen::note, text);
   }
 
-  /// Whether the place may be read; false, with the reason reported, if it hung before.
+  /// Returns whether the path `place` may be read. If it did not answer in an earlier attempt, the
+  /// reason is reported and false is returned.
   bool may(const std::string& place) {
     signs_.reading(place);
     const auto hung = passed_.find(place);
@@ -200,7 +201,8 @@ class Walker {
   std::size_t remarks_ = 0;
 };
 
-/// Adds the pieces received from the child to `walk`; true when the walk is complete.
+/// Adds the pieces received from the child process to `walk`. Returns true when the walk is
+/// complete.
 bool take_over(const std::vector<std::string>& pieces, SiteWalk& walk) {
   for (const std::string& piece : pieces) {
     Seen what{};

@@ -29,7 +29,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Campaigns given to one process: starting it is then cheap, and a crash costs little.
+/// Largest number of campaigns given to one process: starting it is then cheap, and a crash costs
+/// little.
 constexpr std::size_t campaigns_in_batch = 2000;
 /// After this many campaigns whose files hang, each further one gets at most one second.
 constexpr std::size_t most_patience = 8;
@@ -145,9 +146,9 @@ class Pool {
 
   const SurveyInput& in_;
   std::vector<CampaignState>& states_;
-  std::vector<Batch> todo_;  // batches that go before all others
+  std::vector<Batch> todo_;  // batches that are examined before all other campaigns
   std::vector<process::Watched> children_;
-  std::vector<Batch> batches_;  // batches of the children
+  std::vector<Batch> batches_;  // batch of each process in `children_`
   std::map<std::uint32_t, int> trials_;
   std::size_t hung_ = 0;
   std::string unknown_;
@@ -161,7 +162,7 @@ Expected<void> look_at_all(const SurveyInput& input, std::span<const std::uint32
   return Pool(input, states).run(which);
 }
 
-/// Makes an id from the name of the folder, for a campaign whose manifest states none.
+/// Returns an id made from the name of the folder, for a campaign whose manifest states none.
 std::string folder_id(const std::string& folder) {
   std::string id = folder == "." ? "campaign" : fs::path(folder).filename().string();
   for (char& c : id) {
@@ -176,10 +177,10 @@ std::string folder_id(const std::string& folder) {
 /// results, otherwise one from the folder's name that no other campaign has.
 void name_by_folder(std::vector<CampaignState>& states, const std::vector<EarlierResult>& earlier,
                     const ClaimedIds& claimed) {
-  std::map<std::string_view, std::string_view> known;  // id by folder
+  std::map<std::string_view, std::string_view> known;  // ids of earlier results, by folder
   std::set<std::string> taken;
   for (const EarlierResult& e : earlier) {
-    // A name that was made from the folder is replaced by one that a manifest stated.
+    // An id that was made from the folder's name is replaced by one that a manifest stated.
     const auto [at, is_new] = known.emplace(e.folder, e.id);
     if (!is_new && !e.failed) at->second = e.id;
     taken.insert(e.id);

@@ -24,12 +24,13 @@ struct SurveyInput {
   std::vector<std::string>& notes;  ///< notes on skipped names, for the summary
   bool (*stopped)();            ///< whether to stop, called repeatedly; after true the result is
                                 ///< incomplete
-  bool verify_results = false;  ///< compare the digests of all output files, not only their times
+  bool verify_results = false;  ///< whether to compare the digests of all output files, not only
+                                ///< their times
 };
 
 struct Surveyed {
-  std::vector<CampaignState> campaigns;  ///< sorted by id
-  std::vector<Vanished> vanished;        ///< sorted by id
+  std::vector<CampaignState> campaigns;  ///< all campaigns of the site, sorted by id
+  std::vector<Vanished> vanished;        ///< campaigns that no longer exist, sorted by id
 };
 
 /// Finds all campaigns of a site and decides what is to be done with each, and why. Campaigns with
@@ -41,8 +42,8 @@ Expected<Surveyed> survey(const SurveyInput& input);
 /// shared readings.
 void set_in_order(std::vector<CampaignState>& campaigns);
 
-/// Returns an error if the output folder contains a number that the register does not: numbers
-/// would be used twice. For a run whose survey could not read the register.
+/// Returns an error if the output folder contains a number that the register does not contain,
+/// because numbers would be used twice. Called by a run whose survey could not read the register.
 Expected<void> check_numbers(const std::filesystem::path& out,
                              const std::vector<CampaignState>& campaigns,
                              const std::vector<certificates::RegisterEntry>& numbers);

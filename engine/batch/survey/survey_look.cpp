@@ -40,7 +40,7 @@ CampaignState ChangeDetector::at(const CampaignState& known, bool rough) {
   state.named_by_folder = known.named_by_folder;
   signs_.reading((fs::path(known.folder) / config::manifest_name).string());
   const auto text = storage::read_small_file(in_.site / known.folder / config::manifest_name);
-  if (!text) {  // the worker reports why it cannot be read
+  if (!text) {  // the worker reports why the manifest cannot be read
     state.named_by_folder = true;
     state.reason = "no earlier result";
     return state;

@@ -23,7 +23,7 @@ class ChangeDetector {
   /// Returns the state of a campaign whose folder is known, and whose id if its manifest states
   /// none. `rough`: do not parse the manifest, because that crashed the process before.
   CampaignState at(const CampaignState& known, bool rough);
-  /// An issued number that the register does not contain; empty if there is none.
+  /// Returns an issued number that the register does not contain; empty if there is none.
   const std::string& unknown_number() const { return unknown_; }
 
  private:
@@ -37,8 +37,8 @@ class ChangeDetector {
   void judge(CampaignState& state, const Last& last, const std::string& manifest_digest);
   std::string changes(CampaignState& state, const evaluation::Record& record,
                       const std::string& manifest_digest);
-  /// Adds to `why` if the file differs from `digest`. Returns the first 64 bits of its present
-  /// digest; none if it cannot be read.
+  /// Adds a reason to `why` if the content of the file differs from `digest`. Returns the first 64
+  /// bits of the file's present digest; none if the file cannot be read.
   std::optional<std::uint64_t> look_at_file(const CampaignState& state, const std::string& name,
                                             const std::string& digest,
                                             std::vector<std::string>& why);

@@ -28,7 +28,8 @@ std::vector<std::uint64_t> found_again(const std::vector<CampaignState>& campaig
 }  // namespace
 
 void find_twins(std::vector<CampaignState>& campaigns) {
-  using File = std::pair<std::uint64_t, std::uint32_t>;  // digest, campaign
+  using File = std::pair<std::uint64_t, std::uint32_t>;  // digest of a file, index of a campaign
+                                                         // with it
   const std::vector<std::uint64_t> often = found_again(campaigns);
   std::vector<File> files;
   for (std::size_t i = 0; i < campaigns.size(); ++i) {

@@ -17,7 +17,7 @@ void find_twins(std::vector<CampaignState>& campaigns);
 /// the id of that campaign. The list is sorted by digest, as the evaluation requires.
 reading::Twins twins_of(const CampaignState& campaign, const std::vector<CampaignState>& all);
 
-/// Returns the twins that a record states.
+/// Returns the files shared with other campaigns that the inputs in a record state.
 reading::Twins twins_of(const reading::Inputs& inputs);
 
 }  // namespace nonio::batch

@@ -49,8 +49,8 @@ std::optional<evaluation::AssignedNumber> ask_for_number(
   return assigned;
 }
 
-/// Why the answer cannot come from a process of this program; empty if it can. These values decide
-/// which files are written.
+/// Returns why the answer cannot come from a process of this program; returns an empty text if it
+/// can. The values checked here decide which files are written.
 std::string unsound_answer(const evaluation::Evaluated& e, const std::string& id) {
   if (e.campaign.id != id) return "another campaign's results";
   if (e.status != evaluation::Status::ok && e.status != evaluation::Status::attention &&

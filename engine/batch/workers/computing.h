@@ -29,14 +29,15 @@ class Evaluator {
 
   /// Results of the analysis, before the campaign has a number.
   struct Analysed {
-    evaluation::Evaluated evaluated;                  ///< only where a number is required
+    evaluation::Evaluated evaluated;                  ///< results of the analysis; empty if no
+                                                      ///< number is required
     std::optional<std::vector<std::string>> missing;  ///< what is missing for a number; none: no
                                                       ///< number is required
   };
 
   /// Calls `read_campaign` and `analyse` in the other process. If that process has ended, this
-  /// process ends too; the parent knows why. An error if the answer cannot come from a process of
-  /// this program.
+  /// process ends too, and the parent process determines the reason. An error if the answer cannot
+  /// come from a process of this program.
   Expected<Analysed> analyse(const std::filesystem::path& folder, const std::string& id,
                              const reading::Twins& twins,
                              const std::optional<HistorySoFar>& history);

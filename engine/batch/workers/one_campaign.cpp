@@ -84,8 +84,8 @@ bool wants_signature(const evaluation::Evaluated& evaluated) {
   });
 }
 
-/// Evaluates a campaign in the other process: reads, analyses, numbers and writes it. `as_draft`:
-/// without a number, whatever the rules state.
+/// Evaluates a campaign in the other process: reads, analyses, numbers and writes it. If
+/// `as_draft`, it gets no number, whatever the rules state.
 Expected<evaluation::Evaluated> evaluated_apart(const SiteWork& site, const RegisterState& state,
                                                 const CampaignState& c, const fs::path& folder,
                                                 certificates::CampaignFiles& files, bool as_draft,

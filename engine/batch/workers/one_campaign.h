@@ -22,18 +22,22 @@ struct SiteWork {
   const RunState& run;
   const std::vector<CampaignState>& campaigns;
   const certificates::Numbers& numbers;
-  certificates::Signer* signer;  ///< null: nothing is signed
-  const reading::Twins* twins;   ///< twins of the campaign that is approved; null in a run
+  certificates::Signer* signer;  ///< process with the key; null: nothing is signed
+  const reading::Twins* twins;   ///< shared files of readings of the campaign that is approved;
+                                 ///< null in a run
   /// History by campaign, for campaigns whose documents show it.
   const std::map<std::string, assessment::HistoryBasis>& histories;
-  bool elsewhere = false;  ///< register and key are on another host: campaigns that need them wait
+  bool elsewhere = false;  ///< whether register and key are on another host; campaigns that need
+                           ///< them are left to the merge
 };
 
 /// The register of certificates, as known when a worker is started.
 struct RegisterState {
-  bool read = true;         ///< false: another process keeps it locked
+  bool read = true;         ///< whether the register was read; false: another process keeps it
+                            ///< locked
   std::string unsound{};    ///< why no number can be drawn; empty: numbers can be drawn
-  bool last_trial = false;  ///< last attempt: the lock is not waited for any longer
+  bool last_trial = false;  ///< whether this is the last attempt, which does not wait for the lock
+                            ///< any longer
 };
 
 /// Does one campaign in the worker, which contains no plugin code: plugins run at the other end of

@@ -37,13 +37,14 @@ constexpr const char* loading_process = "the process that loads plugins";
 constexpr double load_seconds = 10.0, prepare_seconds = 30.0, answer_seconds = 30.0;
 constexpr std::string_view preparing = "prepare ", died = "died";
 constexpr int most_unexplained = 3;
-constexpr std::size_t most_prints = 16 << 10;  // bytes of plugin output that are printed
+constexpr std::size_t most_prints = 16 << 10;  // largest size of plugin output that is printed,
+                                               // bytes
 
 /// Message of the loading process when all plugins are loaded.
 struct Ready {
   loader::Catalogue catalogue;
   std::vector<std::string> said;
-  std::string refused;  ///< why the process cannot continue; empty: it can
+  std::string refused;  ///< why the process cannot continue; empty: it can continue
 };
 
 void take_input() {
@@ -54,7 +55,7 @@ void take_input() {
 /// Waits up to 50 ms. Returns whether the stream can be read.
 bool is_ready(int stream) {
   pollfd one{stream, POLLIN, 0};
-  constexpr int now_and_then = 50;  // ms
+  constexpr int now_and_then = 50;  // longest wait, ms
   return ::poll(&one, 1, now_and_then) > 0;
 }
 
@@ -86,8 +87,10 @@ void PluginHost::end() {
 }
 
 Expected<loader::Catalogue> PluginHost::start() {
-  constexpr int most_trials = 100;  // each attempt leaves out one more plugin
-  int unexplained = 0;              // deaths without a known plugin: lack of memory may pass
+  constexpr int most_trials = 100;  // largest number of attempts, each of which leaves out one more
+                                    // plugin
+  int unexplained = 0;              // deaths that no plugin explains, possibly due to a temporary
+                                    // lack of memory
   for (int i = 0; i < most_trials; ++i) {
     auto loaded = load_once();
     const bool again =
@@ -130,15 +133,15 @@ Expected<loader::Catalogue> PluginHost::load_once() {
   const std::string where = progress.get();
   Error error{where.empty() ? std::string(loading_process) + " died: " + why : why};
   error.key = where.empty() ? died : preparing;
-  // A process that died once may have lacked memory, and one that was killed was killed from
-  // outside, so both get another attempt. A plugin that hangs gets none.
+  // A process that died once may have lacked memory, and a process killed by signal 9 was killed
+  // from outside, so both get further attempts. A plugin that hangs gets none.
   const int most_deaths = why.starts_with("signal 9 ") ? 5 : 1;
   if (!where.empty() && (!hung.empty() || ++died_at_[where] > most_deaths)) leave_out(where, why);
   return fail(error);
 }
 
-/// Waits for the message of the loading process. Each step, such as loading one plugin, has its own
-/// time limit; `hung` states why the wait was given up.
+/// Waits for the message of the loading process and returns it. Each step, such as loading one
+/// plugin, has its own time limit; `hung` states why the wait was given up.
 Expected<std::string> PluginHost::answer(int stream, process::SharedStatus& progress,
                                          std::string& hung) {
   std::string last;
@@ -288,7 +291,8 @@ void PluginHost::serve(int control, int catalogue, int prints, process::SharedSt
   std::sort(kept.begin(), kept.end());
   process::close_others(kept);
   process::forget_environment();
-  // Lets the library behind it read its settings before files are out of reach.
+  // The first digest makes the cryptographic library read its settings while files can still be
+  // opened.
   storage::sha256("");
   std::vector<fs::path> readable = request_.folders;
   readable.insert(readable.end(), request_.readable.begin(), request_.readable.end());

@@ -71,7 +71,8 @@ class PluginHost {
   std::map<std::filesystem::path, std::string> refused_;  ///< plugins that are not loaded, and why
   std::map<std::string, std::string> unprepared_;         ///< outputs that are not prepared, and
                                                           ///< why
-  std::map<std::string, int> died_at_;                    ///< number of deaths by stage
+  std::map<std::string, int> died_at_;                    ///< number of times that the process
+                                                          ///< died, by the stage reported before
   std::vector<pid_t> children_before_;
   process::Child child_;
   process::Handle control_, prints_;

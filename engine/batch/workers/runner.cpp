@@ -175,7 +175,7 @@ class Runner {
       give_up_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                     std::chrono::duration<double>(numbering.patience));
     register_.last_trial = Clock::now() >= *give_up_;
-    constexpr double now_and_then = 0.5;  // s
+    constexpr double now_and_then = 0.5;  // time limit of one attempt to read the register, s
     auto numbers = read_apart<std::vector<certificates::RegisterEntry>>(
         "the register of certificates", context_.site.limits.disk_seconds,
         [&](process::SignsOfLife&) {
@@ -216,7 +216,8 @@ class Runner {
   }
 
   /// Handles the answer of a worker. Returns whether the worker may do another campaign: not after
-  /// a failure, and not if a campaign waits for a second attempt in a new worker.
+  /// a failure, not if a campaign waits for a second attempt in a new worker, and not if the worker
+  /// has done its number of campaigns or its memory has grown.
   bool take(Worker& worker, Answer answer) {
     switch (answer) {
       case Answer::ok:
@@ -357,12 +358,12 @@ class Runner {
   const RunEvents& events_;
   const reading::Context& context_;
   const RunState& run_;
-  certificates::Signer* signer_;  ///< null: nothing is signed
+  certificates::Signer* signer_;  ///< process with the key; null: nothing is signed
   PluginHost& plugins_;
   const std::vector<fs::path> secrets_;
   const certificates::Numbers numbers_;
   const SiteWork work_;
-  NumbersCheck recheck_;  ///< null: the register was checked
+  NumbersCheck recheck_;  ///< check of the numbers in the register; null: it is done
   RegisterState register_;
   const std::map<std::string, assessment::HistoryBasis>& histories_;
   std::vector<CampaignState>& campaigns_;
@@ -371,8 +372,8 @@ class Runner {
   Committer committer_;
   const std::size_t campaigns_per_worker_;
   std::size_t next_ = 0;
-  int starts_failed_ = 0;             ///< failures in a row
-  std::vector<std::size_t> again_;    ///< campaigns with a second attempt
+  int starts_failed_ = 0;             ///< number of process starts that failed in a row
+  std::vector<std::size_t> again_;    ///< campaigns that wait for their second attempt
   std::vector<std::size_t> waiting_;  ///< campaigns that need the register, which is locked
   std::optional<Worker::Clock::time_point> give_up_;
   bool register_hangs_ = false;

@@ -21,13 +21,18 @@ using NumbersCheck = std::function<Expected<void>(const std::vector<certificates
 
 /// What the workers need to issue certificates.
 struct ReleaseDesk {
-  certificates::Signer* signer = nullptr;              ///< null: nothing is signed
-  const certificates::Releasing* releasing = nullptr;  ///< null: a run, not an approval
-  NumbersCheck recheck{};                              ///< empty: the register was checked before
+  certificates::Signer* signer = nullptr;              ///< process with the key; null: nothing is
+                                                       ///< signed
+  const certificates::Releasing* releasing = nullptr;  ///< the approval that is carried out; null
+                                                       ///< in a run
+  NumbersCheck recheck{};                              ///< check of the numbers as soon as the
+                                                       ///< register can be read; empty: they were
+                                                       ///< checked before
   PluginHost* plugins = nullptr;                       ///< starts the processes that evaluate
   /// History by campaign, for campaigns whose documents show it; others are evaluated without one.
   std::map<std::string, assessment::HistoryBasis> histories{};
-  /// Register and key are on another host: campaigns that need them are left to the merge.
+  /// Whether register and key are on another host. Campaigns that need them are then left to the
+  /// merge.
   bool elsewhere = false;
 };
 

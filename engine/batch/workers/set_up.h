@@ -21,8 +21,9 @@ struct SetUp {
   loader::Plugins plugins;  ///< declarations only: this process contains no plugin code
   std::optional<PluginHost> host;
   SiteParts parts;
-  std::vector<std::string> notes;  ///< notes for the summary
-  std::string unstamped;           ///< note for the summary only: it is the same in every run
+  std::vector<std::string> notes;  ///< notes for the summary of the run
+  std::string unstamped;           ///< note for the summary that nothing is time-stamped; it is the
+                                   ///< same in every run
   std::string no_key;              ///< why nothing can be signed; empty: signing works
 };
 

@@ -66,7 +66,7 @@ void Worker::give(std::size_t campaign, Clock::duration limit) {
   campaign_ = campaign;
   ++given_;
   deadline_ = Clock::now() + limit;
-  // If the worker has ended already, answer() finds it.
+  // If the worker has ended already, answer() detects this.
   [[maybe_unused]] const ssize_t n = ::send(channel(), &campaign, sizeof campaign, MSG_NOSIGNAL);
 }
 

@@ -22,7 +22,7 @@ enum class Answer : char {
   failed,
   again,       ///< failed and not written; an earlier campaign of the worker may be the cause
   waits,       ///< needs the register of certificates, which another process keeps locked
-  not_stored,  ///< the worker's message states why
+  not_stored,  ///< the results could not be stored; the worker's message states why
   none,        ///< the process ended without an answer
 };
 
@@ -30,7 +30,10 @@ class PluginHost;
 
 struct Outcome {
   Outcome(Answer a, bool has_grown = false, bool history = false)
-      : answer(a), grown(has_grown), shows_history(history) {}  // NOLINT: an answer is one
+      : answer(a),
+        grown(has_grown),
+        shows_history(history) {}  // NOLINT: an Answer may be used as
+                                   // an Outcome
   Answer answer;
   bool grown;          ///< whether the memory of the evaluating process has grown
   bool shows_history;  ///< whether a document of the campaign shows the machine's history
@@ -42,7 +45,7 @@ struct Outcome {
 class Worker {
  public:
   using Clock = std::chrono::steady_clock;
-  /// Runs in the worker. `first`: the first campaign of this process.
+  /// Function that runs in the worker. `first` is true for the first campaign of this process.
   using Task =
       std::function<Outcome(std::size_t campaign, bool first, process::SharedStatus& stage)>;
 

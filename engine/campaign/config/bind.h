@@ -18,12 +18,14 @@ namespace nonio::config {
 using Span = std::pair<double, double>;
 using Numbers = std::map<std::string, double>;
 using Translations = std::map<std::string, std::string>;
-/// Index of the chosen text: its `Choice::value`.
+/// The `Choice::value` of the text that a key contains.
 struct Chosen {
   int value = 0;
 };
 
-/// Returns the value of a key in the unit of the member; none if it is absent, empty or wrong.
+/// Returns the value of a key in the unit of the member and reports a wrong value as an error.
+/// Returns none if the key is absent or its value cannot be used; a list of whole numbers is empty
+/// then.
 template <class T>
 std::optional<T> value_of(TableReader&, const Key&);
 // The specializations are defined with the reader (toml_reader.cpp).
@@ -50,8 +52,8 @@ std::optional<Numbers> value_of(TableReader&, const Key&);
 template <>
 std::optional<Translations> value_of(TableReader&, const Key&);
 
-/// Fills one struct for each table under the key. `add` creates the struct, `check` is called after
-/// its keys were read.
+/// Fills one struct for each table under the key. `add` creates the struct; `check` is called after
+/// the keys of its table were read.
 void read_tables(TableReader&, const Key&, void* outer, void* (*add)(void* outer, std::string_view),
                  void (*check)(TableReader&, void* inner, void* outer));
 
@@ -117,7 +119,7 @@ struct Path {
   using Value = typename Plain<Member>::Type;
 };
 
-/// Reads a key into `to`; an absent or wrong value leaves `to` unchanged.
+/// Reads a key into `to`. If `value_of` returns none, `to` stays unchanged.
 template <class Kind, class Value, class Member>
 void read(TableReader& reader, const Key& key, Member& to) {
   auto value = value_of<typename Kind::Type>(reader, key);
@@ -223,9 +225,9 @@ inline constexpr Key::Into number_or_0 = as<binding::As<number_or_none, double>,
 /// Fills a bool with the value of the chosen text (`choices`).
 template <auto... path>
 inline constexpr Key::Into chosen = as<binding::As<text, Chosen>, path...>;
-/// Fills a struct or optional from a table, a vector or map from a list of tables. `check` is
-/// called after each table with the reader, the filled struct and, if it takes it, the struct of
-/// the outer table.
+/// Fills a struct or optional from a table, a vector from a list of tables, or a map from tables
+/// under any name. After each table, `check` is called with the reader, the filled struct and, if
+/// it has a third parameter, the struct that the outer table fills.
 template <auto check, auto... path>
 inline constexpr Key::Into checked = binding::nested<check, binding::Path<path...>>();
 template <auto... path>
@@ -234,14 +236,15 @@ inline constexpr Key::Into nested = checked<nullptr, path...>;
 template <auto check, auto... path>
 inline constexpr Key::Into by_names =
     binding::nested<check, binding::Path<path...>, named_tables>();
-/// Fills the same struct as the keys of the outer table from a table.
+/// Declares an inner table whose keys fill the same struct as the keys of the outer table.
 template <class T, auto check = nullptr>
 inline constexpr Key::Into same =
     binding::table<check, table, T, T>([](void* outer, std::string_view) { return outer; });
 /// Declares a whole file whose keys fill a T.
 template <class T>
 inline constexpr Key::Into file{table, nullptr, nullptr, &binding::tag<T>};
-/// Reads a key by the function `read`, which takes the member and, if declared so, its struct.
+/// Reads a key with the function `read(reader, key, member)`. If `read` has a fourth parameter, it
+/// also receives the struct that contains the member.
 template <auto read, Key::Holds holds, auto... path>
 inline constexpr Key::Into by = binding::by<read, holds, binding::Path<path...>>();
 /// Declares tables that the code reads by name, each into a T.

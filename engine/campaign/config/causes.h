@@ -19,19 +19,20 @@ namespace nonio::config {
 inline constexpr std::string_view site_causes = "causes/site/";
 
 struct Cause {
-  Formula formula;  ///< without an axis: for every axis of its kind
+  Formula formula;  ///< without an axis it applies to every axis of its kind
   bool rotary = false;
-  std::string title, is, size, appearance, similar, remedy;  ///< English
-  std::map<std::string, std::string> titles{};               ///< by language
-  std::string prior;                                         ///< common, rare, very-rare
-  std::vector<std::string> columns{};  ///< "time_s": readings without times do not show it
+  std::string title, is, size, appearance, similar, remedy;  ///< texts for people in English
+  std::map<std::string, std::string> titles{};  ///< titles in other languages, by language
+  std::string prior;  ///< frequency of the cause: common, rare or very-rare
+  /// Columns that readings need to show the cause, such as "time_s".
+  std::vector<std::string> columns{};
   bool compensable = false;
   std::string file;  ///< file of the formula, for messages
 
   /// Returns 2 ln of the odds against the cause before readings are known: 0 for a common one, as
   /// for effects of plugins, otherwise 2 ln 10 (rare) or 2 ln 100 (very rare).
   double price() const;
-  /// Makes the effect of the formula. `tried`: see `formula_effect`.
+  /// Returns the effect of the formula. If `tried`, the units of the formula are not checked again.
   Expected<Effect> effect(bool tried) const;
 };
 
@@ -40,8 +41,8 @@ bool is_causes_file(std::string_view name);
 
 using Library = std::shared_ptr<const std::vector<Cause>>;
 
-/// Returns all causes in these templates in the order of their files. An error if a name is used
-/// twice, or if a formula of the site is invalid.
+/// Returns all causes in these templates in the order of their files. Errors: a file is not valid,
+/// a name is used twice, or a formula of the site is not valid.
 Checked<Library> causes_in(const Templates& templates);
 
 /// Returns a warning with file and line for each key with a former name.

@@ -5,8 +5,8 @@
 
 namespace nonio::config {
 
-/// Combines `[certificate]` of a campaign and of site.toml: for each key the campaign's value,
-/// otherwise the site's, otherwise the default.
+/// Returns `[certificate]` of a campaign combined with that of site.toml: for each key the value of
+/// the campaign, otherwise that of the site, otherwise the default.
 CertificateTexts certificate_of(const CertificateTexts& site, const CertificateTexts& campaign);
 
 }  // namespace nonio::config

@@ -7,8 +7,9 @@
 #include "campaign/config/manifest.h"
 #include "campaign/config/site_logs.h"
 
-/// Functions that check and complete a table after its keys were read, for conditions that involve
-/// several keys. The third argument is the struct that the outer table fills.
+/// Functions for conditions that involve several keys. Those named check_... check and complete a
+/// table after its keys were read; a third argument is the struct that the outer table fills. Those
+/// named read_... read one key into a member.
 namespace nonio::config {
 
 void read_options(TableReader&, const Key&, RawOptions&);

@@ -17,7 +17,7 @@ namespace {
 
 std::string symbol_of(Quantity q) { return std::string(FormulaUnit{q, {}}.symbol()); }
 
-/// Returns one printed unit of the parameter in SI units.
+/// Returns the value in SI units of the unit in which the parameter is printed.
 double amount(const Formula::Parameter& p) { return 1.0 / unit_of(p.quantity).per_si; }
 
 /// Checks on random readings that the expression is finite, linear in its linear parameters, and
@@ -298,7 +298,8 @@ Expected<Effect> formula_effect(const Formula& formula, const Axis& axis, bool t
   e.info = {formula.name, "formula", formula.expression, {}};
   const auto searched = std::count_if(formula.parameters.begin(), formula.parameters.end(),
                                       [](const auto& p) { return p.range.has_value(); });
-  // With several shapes each has fewer values; the search then refines between these values.
+  // With several shapes, fewer values of each are tried; the search then refines between these
+  // values.
   const int values = searched < 2 ? most : searched == 2 ? most * 5 / 16 : most / 9;
   for (const Formula::Parameter& p : formula.parameters) {
     const Effect::Parameter parameter{p.name, "of the formula", p.quantity};

@@ -22,7 +22,8 @@ struct Name {
 constexpr Dimension no_dimension{0, 0, 0}, distance{1, 0, 0}, duration{0, 1, 0},
     temperature{0, 0, 1};
 
-/// In the order of Expression::Variable; on a rotary axis p and theta are angles.
+/// Names and dimensions of the variables, in the order of Expression::Variable. On a rotary axis p
+/// and theta are angles.
 constexpr std::array<Name, Expression::variables> readings{{{"p", 0.0, distance},
                                                             {"theta", 0.0, distance},
                                                             {"d", 0.0, no_dimension},

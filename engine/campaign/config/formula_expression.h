@@ -14,7 +14,8 @@ namespace nonio::config {
 /// Exponents of length, time and temperature in a unit; all 0 for an angle.
 using Dimension = std::array<int, 3>;
 
-/// The expression of a formula over slots: variables, units, parameters, each a number in SI.
+/// The expression of a formula. Its slots contain the values of the variables, units and parameters
+/// in SI units.
 class Expression {
  public:
   enum Variable : std::size_t {
@@ -24,7 +25,8 @@ class Expression {
     t,
     K,
     run,
-    // A parameter may have one of the following names, which then means the parameter.
+    // A parameter of the formula may have one of the following names; the name then means the
+    // parameter.
     length,
     duration,
     runs,
@@ -36,8 +38,8 @@ class Expression {
     variables
   };
 
-  /// Parses an expression; an error contains the position. `known`: it was parsed before, so that
-  /// only the names that occur in it are declared.
+  /// Parses an expression; an error contains the position. If `known`, the expression was parsed
+  /// before, and only the names that occur in it are declared.
   static Expected<Expression> parse(const Formula& formula, const Axis& axis, bool known = false);
   Expression(Expression&&) noexcept;
   Expression& operator=(Expression&&) noexcept;

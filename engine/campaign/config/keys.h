@@ -15,8 +15,9 @@ namespace nonio::config {
 
 struct Choice {
   std::string_view name;
-  std::string_view meaning{};  ///< in brackets after the name in messages: "um (deviation)"
-  int value = 0;               ///< of the enum or bool that it is chosen for
+  /// Text that messages show in brackets after the name: "um (deviation)".
+  std::string_view meaning{};
+  int value = 0;  ///< value of the enum or bool that the choice sets
 };
 
 /// Condition that another key of the same table has one of these values.
@@ -27,10 +28,10 @@ struct When {
 
 /// The characters that a text may have. An empty text is always accepted.
 struct TextRule {
-  std::string_view letters{};      ///< "a-z0-9._-"; empty: any
-  std::string_view not_letters{};  ///< any but these
+  std::string_view letters{};      ///< allowed characters: "a-z0-9._-"; empty: all
+  std::string_view not_letters{};  ///< characters that are not allowed
   std::string_view not_first{};
-  std::size_t shortest = 0, longest = 0;  ///< bytes; 0: any
+  std::size_t shortest = 0, longest = 0;  ///< limits of the length in bytes; 0: no limit
   std::span<const std::string_view> except{};
   std::string_view begins{};
 };
@@ -43,24 +44,24 @@ class TableReader;
 
 struct Key {
   enum class Holds {
-    text,            ///< one line
-    number,          ///< finite
+    text,            ///< one line of text
+    number,          ///< a finite number
     number_or_none,  ///< a finite number, or the text "none"
-    whole,           ///< 0 to 1000000000
-    flag,            ///< true or false
-    date,            ///< a day without quotes
-    texts,           ///< a list
-    numbers,         ///< a list
+    whole,           ///< a whole number from 0 to 1000000000
+    flag,            ///< a flag: true or false
+    date,            ///< a date without quotes
+    texts,           ///< a list of texts
+    numbers,         ///< a list of numbers
     wholes,          ///< a list of whole numbers
     span,            ///< two numbers, the smaller first
-    number_table,    ///< numbers under any name
-    translations,    ///< a text, or texts by language
-    table,           ///< with the keys `keys`
-    tables,          ///< a list of them: [[name]]
-    named_tables,    ///< tables of that kind under any name
+    number_table,    ///< a table of numbers under any name
+    translations,    ///< a text, or a table of texts by language
+    table,           ///< a table with the keys in `keys`
+    tables,          ///< a list of tables with the keys in `keys`: [[name]]
+    named_tables,    ///< tables with the keys in `keys`, under any name
     options,         ///< a table for each plugin, with its options
     anything,        ///< a table whose content is not checked
-    by_kind          ///< declared differently by different methods
+    by_kind          ///< a key that different methods declare differently
   };
 
   /// Kind of value of a key, and the function that reads it into a member of the struct that the
@@ -69,9 +70,9 @@ struct Key {
   struct Into {
     Holds holds;
     void (*read)(TableReader&, const Key&, void* object) = nullptr;
-    const void* of = nullptr;     ///< the type of `object`
-    const void* inner = nullptr;  ///< of a table: the type that its keys fill
-    bool by_choice = false;       ///< the value is that of the choice
+    const void* of = nullptr;     ///< identifies the type of `object`
+    const void* inner = nullptr;  ///< identifies the type that the keys of an inner table fill
+    bool by_choice = false;       ///< the member receives the `Choice::value` of the text
     constexpr Into(Holds h) : holds(h) {}
     template <class Read>
     constexpr Into(Holds h, Read r, const void* o, const void* i = nullptr, bool c = false)
@@ -80,11 +81,11 @@ struct Key {
 
   std::string_view name;
   Holds holds;
-  std::string_view help;  ///< plain English; the first letter is a capital
+  std::string_view help;  ///< explanation in plain English; the first letter is a capital
   Into into;
-  std::string_view unit{};       ///< as in docs: "um", "mm or deg"; empty: none
-  double scale = 1.0;            ///< factor from this unit to that of the member
-  std::string_view otherwise{};  ///< the default in documentation, if it is a value
+  std::string_view unit{};  ///< unit as documentation states it: "um", "mm or deg"; empty: none
+  double scale = 1.0;       ///< factor from this unit to that of the member
+  std::string_view otherwise{};  ///< default value that schema and reference state; empty: none
   bool required = false;
   When only{};    ///< condition without which the key is unknown
   When needed{};  ///< condition under which the key is required
@@ -93,15 +94,17 @@ struct Key {
   std::string_view missing{};
   /// Message about a value that the following limits refuse; {} is replaced by the value.
   std::string_view wanted{};
-  bool may_be_secret = false;             ///< for a text: no message repeats the value
-  std::span<const Choice> choices{};      ///< for a text
-  Named named = Named::nothing;           ///< for a text, or each text of a list
-  TextRule text{};                        ///< for a text, or each text of a list
-  std::optional<double> least{}, most{};  ///< for a number, or each number of a list or table
-  bool above = false;                     ///< the value must be greater than `least`
-  std::size_t longest_list = 0;           ///< for a list; 0: no limit
-  bool distinct = false;                  ///< for a list: all elements must differ
-  std::span<const Key> keys{};            ///< for a table
+  bool may_be_secret = false;  ///< messages do not repeat the text, because it may be a password
+  /// Allowed values of a text or of each text of a list; empty: all.
+  std::span<const Choice> choices{};
+  Named named = Named::nothing;  ///< kind of name that a text, or each text of a list, contains
+  TextRule text{};               ///< rule for a text, or for each text of a list
+  /// Limits, in `unit`, of a number or of each number of a list or table.
+  std::optional<double> least{}, most{};
+  bool above = false;            ///< the value must be greater than `least`
+  std::size_t longest_list = 0;  ///< largest number of elements of a list; 0: no limit
+  bool distinct = false;         ///< all elements of a list must differ
+  std::span<const Key> keys{};   ///< keys of a table or of each table of a list
   /// For named_tables: if the name of a table begins with one of these letters, its key `by_name`
   /// has the default `named_so`.
   std::string_view initials{};
@@ -132,24 +135,26 @@ struct Key {
   constexpr void set(const Attribute& attribute) { attribute(*this); }
 };
 
-/// Each function declares a file as one table; keys that it does not contain are unknown.
+/// Return the declaration of a file as one table. Keys that the declaration does not contain are
+/// unknown.
 const Key& campaign_file();
 const Key& site_file();
-/// Declares SITE/machines/<asset>.toml.
+/// Returns the declaration of SITE/machines/<asset>.toml.
 const Key& machine_file();
-/// Declare SITE/events.toml, acknowledged.toml and forgotten.toml, entries of people about
-/// machines.
+/// Return the declarations of SITE/events.toml, acknowledged.toml and forgotten.toml, which contain
+/// entries of people about machines.
 const Key& events_file();
 const Key& acknowledged_file();
 const Key& forgotten_file();
-/// Declares SITE/users.toml, the accounts of a site's live page.
+/// Returns the declaration of SITE/users.toml, the accounts of a site's live page.
 const Key& users_file();
-/// Declares causes/*.toml of the templates and of a site.
+/// Returns the declaration of causes/*.toml of the templates and of a site.
 const Key& causes_file();
-/// Declares the part of a specification of `nonio model simulate` that campaign.toml does not
-/// contain.
+/// Returns the declaration of the part of a specification of `nonio model simulate` that
+/// campaign.toml does not contain.
 const Key& specification_file();
-/// Condition on the kind of axis that a cycle moves; the code that reads cycles settles it.
+/// Key that conditions name (`When::key`) for the kind of axis that a cycle moves. Files do not
+/// contain it: the code that reads cycles sets its value with `TableReader::settle`.
 inline constexpr std::string_view cycle_axis = "(axis)";
 
 /// Names that a campaign must not have, because a run writes such files next to the campaigns'

@@ -17,13 +17,14 @@ inline constexpr const char* machines_folder = "machines";
 
 /// The table and backlash value in the control for one axis, from one day on.
 struct ControlState {
-  std::string since{};                 ///< YYYY-MM-DD
-  std::optional<std::string> table{};  ///< files below the site; empty: there was none
-  std::optional<double> backlash{};    ///< m or rad; 0: there was none
-  std::string source = "stated";       ///< stated by a person, backup, nonio
-  std::string sha256{};                ///< of the files; empty: not stated
-  std::string files{};                 ///< name of the table's files in RecordFile::tables
-  std::string key{};                   ///< axes.X, or axes.X.state
+  std::string since{};  ///< first day of the state, YYYY-MM-DD
+  /// Table files, relative to the site; empty: no table was active.
+  std::optional<std::string> table{};
+  std::optional<double> backlash{};  ///< backlash value, m or rad; 0: no value was active
+  std::string source = "stated";     ///< origin: stated (by a person), backup or nonio
+  std::string sha256{};              ///< SHA-256 of the table files; empty: not stated
+  std::string files{};               ///< name of the table's files in RecordFile::tables
+  std::string key{};                 ///< key of the record that states it: axes.X or axes.X.state
   std::uint64_t line_of_table = 0, line_of_since = 0;
 
   /// Whether the state applies on a day. A state loaded on a day applies to later days only,
@@ -36,21 +37,21 @@ struct ControlState {
 
 struct RecordedAxis {
   bool rotary = false;
-  std::string name{};  ///< name in the control, if it differs
+  std::string name{};  ///< name of the axis in the control, if it differs
   /// Settings under the names of option `axes` of the controllers: number, reference_mm, from_mm,
   /// to_mm, resolution_um, largest_um, slope_um_per_m, and the corresponding ones of rotary axes.
   std::map<std::string, double> settings{};
-  std::vector<ControlState> states{};  ///< by day
-  ControlState present{};              ///< as stated for the axis; in `states` if it has a day
+  std::vector<ControlState> states{};  ///< all states of the control for this axis, sorted by day
+  ControlState present{};  ///< state in the keys of the axis; also in `states` if it has a day
 
   /// Returns the state of the control on this day; null if it is not known.
   const ControlState* state_on(const std::string& day) const;
 };
 
 struct MachineRecord {
-  std::string file;  ///< relative to the site
+  std::string file;  ///< path of the record, relative to the site
   std::string asset, maker, model, serial, control, control_version;
-  std::vector<std::string> taken{};  ///< numbers in use, "0", "100-227"
+  std::vector<std::string> taken{};  ///< table numbers that are already in use: "0", "100-227"
   std::map<std::string, RecordedAxis> axes{};
   KeyLines lines{};
 };
@@ -58,7 +59,7 @@ struct MachineRecord {
 /// Returns the SHA-256 of the files of a table, independent of their names and order.
 std::string table_sha256(const std::vector<Artifact>& files);
 
-/// Parses a record. Returns all errors of the file at once, each with its line. `asset`: the
+/// Parses a record. Returns all errors of the file at once, each with its line. `asset` is the
 /// machine that the name of the file states.
 Checked<MachineRecord> parse_machine(std::string_view text, const std::string& file,
                                      const std::string& asset);
@@ -66,13 +67,13 @@ Checked<MachineRecord> parse_machine(std::string_view text, const std::string& f
 /// A file of SITE/machines. A record with errors fails the campaigns of its machine. If its machine
 /// is not known, it fails all campaigns that name no asset and have no other record.
 struct RecordFile {
-  std::string asset;   ///< the name of the file
-  std::string bytes;   ///< empty where it cannot be read
-  std::string sha256;  ///< of it and of the tables that it names
+  std::string asset;   ///< asset of the machine; the name of the file without .toml
+  std::string bytes;   ///< content of the file; empty if it cannot be read
+  std::string sha256;  ///< digest of the file and of the table files that it names
   Checked<MachineRecord> record;
   std::map<std::string, std::vector<Artifact>>
-      tables{};                   ///< those that are or were in the control, by ControlState::files
-  std::string maker{}, serial{};  ///< of a record with errors: from its last valid version
+      tables{};  ///< table files that are or were in the control, by ControlState::files
+  std::string maker{}, serial{};  ///< from the last valid version, if the record has errors
 };
 using MachineRecords = std::vector<RecordFile>;
 
@@ -84,7 +85,8 @@ Expected<MachineRecords> read_machines(const std::filesystem::path& site);
 std::string machine_input(const Machine& machine);
 /// Prefix of the names that `machine_input` returns.
 inline constexpr std::string_view machine_prefix = "machine ";
-/// Returns the digest of the records of this machine; `absent` if there is none.
+/// Returns the digest of the records of the machine for which `machine_input` returns `input`;
+/// `absent` if there is no record.
 std::string machine_digest(const MachineRecords& records, std::string_view input);
 
 /// Returns the record of a machine; null if there is none. It may be a record with errors that
@@ -101,7 +103,8 @@ std::vector<Error> contradictions(const Manifest& manifest, const MachineRecord&
 Checked<Settings> settle_table_options(const Info& output, const RawOptions& site,
                                        const Manifest& manifest, const MachineRecord* record);
 
-/// Converts a record with its tables into one text, which is attached to signed files, and back.
+/// Name under which a record is attached to signed files. `packed` converts a record with its
+/// tables into the text that is attached, and `unpacked_record` converts this text back.
 inline constexpr const char* machine_record_name = "machine-record.json";
 std::string packed(const RecordFile& record);
 Expected<RecordFile> unpacked_record(std::string_view json);

@@ -21,8 +21,8 @@ namespace {
 constexpr double mm = 1e-3, um = 1e-6;
 constexpr double deg = 1.0 / deg_per_rad, arcsec = 1.0 / arcsec_per_rad;
 
-/// Reports a coefficient of expansion that is probably in 1/K: read as um/(m K), it would have no
-/// effect without any message.
+/// Reports a coefficient of expansion that is probably in 1/K. Read in um/(m K), such a value would
+/// be so small that it has no effect.
 void check_expansion(TableReader& reader, const std::optional<double>& value) {
   constexpr double least = 1e-3;
   if (value && *value != 0.0 && std::fabs(*value) < least * um)

@@ -38,7 +38,8 @@ using RawOptions = std::map<std::string, std::map<std::string, RawOption>>;
 using KeyLines = std::map<std::string, std::uint64_t, std::less<>>;
 
 struct RunChoice {
-  std::optional<std::vector<std::string>> analyses, outputs;  ///< absent: all that apply
+  /// Names of the plugins to run; none: all that apply.
+  std::optional<std::vector<std::string>> analyses, outputs;
 };
 
 /// `[[tables.accept]]`: a finding that would prevent tables, and the reason why a table may be
@@ -50,20 +51,24 @@ struct AcceptedFinding {
 
 struct Manifest {
   Campaign campaign;
-  std::string purpose{};  ///< periodic, acceptance, after-repair, check; empty: not stated
-  std::vector<std::string> undeclared_axes{};  ///< measured, but not in [machine.axes]
+  /// Reason for the campaign: periodic, acceptance, after-repair, check; empty: not stated.
+  std::string purpose{};
+  /// Axes that are measured but not listed in [machine.axes].
+  std::vector<std::string> undeclared_axes{};
   std::vector<AcceptedFinding> accepted{};
   RunChoice run;
   RawOptions options;
   KeyLines lines;
-  std::vector<Error> warnings{};  ///< keys with former names
+  std::vector<Error> warnings{};  ///< warnings about keys with former names
 };
 
 struct Limits {
   double seconds = 600.0;
   double memory_MB = 4096.0;
-  double disk_seconds = 60.0;         ///< without a sign of life, in the survey
-  std::size_t missing_campaigns = 0;  ///< of the previous run that may be missing
+  /// Time without a response after which the survey reports a path as failed, s.
+  double disk_seconds = 60.0;
+  /// Number of campaigns of the previous run that may be missing.
+  std::size_t missing_campaigns = 0;
 };
 
 /// `[[alias]]` of site.toml: another name of a machine, and its asset.
@@ -74,14 +79,15 @@ struct Alias {
 
 /// `[database]` of site.toml. The path is relative to the site.
 struct DatabaseChoice {
-  std::string url;  ///< without a password
+  std::string url;  ///< address of the database, without a password
   std::string password_file{};
   std::string schema = "nonio";
-  std::string register_schema{};  ///< empty: the register of certificate numbers is a file
+  /// Schema of the register of certificate numbers; empty: it is a file.
+  std::string register_schema{};
 };
 
-/// `[[due]]` of site.toml: months from the last campaign to the next. An empty machine stands for
-/// all machines without a rule of their own.
+/// `[[due]]` of site.toml: months from the last campaign to the next. If `machine` is empty, the
+/// rule applies to all machines without a rule of their own.
 struct DueRule {
   std::string machine;
   int months = 0;
@@ -90,35 +96,39 @@ struct DueRule {
 /// A signer that `verify` accepts, and the days between which it signs, because keys are replaced.
 struct SignerRule {
   std::string who;          ///< subject of the certificate, or its SHA-256
-  std::string from, until;  ///< YYYY-MM-DD, both included; may be empty
+  std::string from, until;  ///< first and last day, YYYY-MM-DD; empty: no limit
 };
 
 /// `[signing]` of site.toml: the key, the source of its password, the time-stamp server, and the
 /// signers and roots that `verify` accepts. Paths are relative to the site.
 struct Signing {
   std::string pkcs12, pkcs11, module, certificates;
-  std::string password_file, password_env, password_credential;  ///< exactly one
-  /// `trust`: one root for signers and time servers; otherwise each has a file of its own.
+  /// Source of the password; exactly one is stated.
+  std::string password_file, password_env, password_credential;
+  /// `trust` is one root for signers and time servers; if it is empty, each has a file of its own.
   std::string trust, signer_roots, time_stamp_roots, revocation;
-  std::string signer;  ///< the only accepted signer, without dates; otherwise `signers`
+  std::string signer;  ///< the only accepted signer; empty: those of `signers` are accepted
   std::vector<SignerRule> signers{};
-  std::string time_stamp;           ///< address of the server; empty: none
-  bool time_stamp_required = true;  ///< without an answer no certificate is issued
+  std::string time_stamp;           ///< address of the time-stamp server; empty: no time stamps
+  bool time_stamp_required = true;  ///< no certificate is issued if the server does not answer
   int time_stamp_seconds = 10;
 };
 
 /// `[[certificate.accept]]`: a finding that does not prevent an automatic approval.
 struct AcceptedRule {
-  std::string finding;  ///< its id, or "kind.*": all whose id begins with "kind."
+  std::string finding;  ///< id of the finding, or "kind.*" for all ids that begin with "kind."
   std::string reason;
 };
 
 /// `[certificate]` of site.toml: how certificates are approved and numbered.
 struct Numbering {
-  std::string pattern = "{year}-{number:4}";          ///< the sequence begins anew with each year
-  std::string register_file = "certificates.sqlite";  ///< relative to the site
-  std::optional<DatabaseChoice> server{};  ///< in place of the file; its schema is the register's
-  double patience = 60.0;                  ///< s to wait while another process locks the register
+  /// Pattern of the numbers; the sequence begins anew each year.
+  std::string pattern = "{year}-{number:4}";
+  /// File of the register, relative to the site.
+  std::string register_file = "certificates.sqlite";
+  /// Database of the register in place of the file; its schema is that of the register.
+  std::optional<DatabaseChoice> server{};
+  double patience = 60.0;  ///< longest time to wait for another process that locks the register, s
   /// a run may approve a certificate that no finding prevents
   bool automatic = false;
   std::vector<AcceptedRule> accepted{};
@@ -131,25 +141,27 @@ struct Mail {
     lost,
     out,
     decision
-  };  ///< what is lost or failed; or out; or every action required
+  };  ///< lost: what is lost or failed; out: also what is out of tolerance; decision: all actions
   enum class Tls { starttls, tls, none };
   std::vector<std::string> to;
   std::string from;
   On on = On::decision;
-  std::string base_url;        ///< of the output folder, for links; empty: they are relative
-  std::string sendmail, smtp;  ///< exactly one: a program, the name of a server
+  std::string base_url;  ///< address of the output folder, for links; empty: links are relative
+  /// Program that sends mail, or name of the mail server; exactly one is stated.
+  std::string sendmail, smtp;
   Tls tls = Tls::starttls;
-  int port = 0;       ///< without the key `port`, the reader sets the usual port of `tls`
+  int port = 0;  ///< port of the server; without the key, the reader sets the usual one of `tls`
   std::string trust;  ///< PEM file with roots, relative to the site; empty: those of the system
   std::string user;
-  std::string password_file, password_env, password_credential;  ///< exactly one with `user`
+  /// Source of the password; exactly one is stated if `user` is stated.
+  std::string password_file, password_env, password_credential;
 };
 
 /// `[webhook]` of site.toml: the address that receives new lines of the worklist.
 struct Webhook {
-  std::string url;          ///< https, or http on this machine
-  std::string secret_file;  ///< key of the HMAC that signs the lines
-  std::string trust;        ///< as in `Mail`
+  std::string url;          ///< address: https, or http on this machine
+  std::string secret_file;  ///< file with the key of the HMAC that signs the lines
+  std::string trust;        ///< PEM file with roots; empty: those of the system
 };
 
 struct SiteFile {
@@ -162,15 +174,15 @@ struct SiteFile {
   RunChoice run;
   RawOptions options;
   Limits limits;
-  std::vector<Alias> aliases{};  ///< each name once; no name is an asset
-  std::vector<DueRule> due{};    ///< at most one per machine
+  std::vector<Alias> aliases{};  ///< other names of machines; each occurs once and is not an asset
+  std::vector<DueRule> due{};  ///< rules for the time to the next campaign; at most one per machine
   std::optional<DatabaseChoice> database{};
   KeyLines lines;
   std::string language = "en";    ///< language of the terminal and of summary.txt
-  bool hashed_folders = false;    ///< results in OUT/ab/<id>
+  bool hashed_folders = false;    ///< results are stored in OUT/ab/<id> instead of OUT/<id>
   std::string settings;           ///< TOML: the part of the file that certificates depend on
-  std::string evaluation;         ///< TOML: the part of it that results depend on
-  std::vector<Error> warnings{};  ///< keys with former names
+  std::string evaluation;         ///< TOML: the part of the file that results depend on
+  std::vector<Error> warnings{};  ///< warnings about keys with former names
 };
 
 template <class T>
@@ -189,8 +201,8 @@ std::string extract_id(std::string_view text);
 bool is_campaign_id(std::string_view id);
 
 /// Returns the options of one plugin: defaults, overridden by the site's, then by the campaign's.
-/// Each is checked for name, kind, range and choice. `others`: options of plugins of another kind
-/// with the same name, which share the table.
+/// Each is checked for name, kind, range and choice. `others` contains the options of plugins of
+/// another kind with the same name, which share the table.
 Checked<Settings> settle_options(const Info& plugin, const RawOptions& site,
                                  const RawOptions& campaign,
                                  const std::vector<Option>& others = {});

@@ -52,7 +52,7 @@ class CampaignKeys {
   };
   std::deque<KindKeys> of_kinds_;
   std::vector<Key> measurement_, top_;
-  std::deque<Kinds> kinds_;  ///< conditions of the keys after the common ones
+  std::deque<Kinds> kinds_;  ///< kinds that declare or require each key of a method
   Key file_;
 };
 

@@ -15,14 +15,14 @@ std::vector<std::filesystem::path> secret_files(const SiteFile& file,
                                                 const std::filesystem::path& site);
 
 /// Returns an error if other users have access to a file, because they could use its key or
-/// password. `what`: name in the message, "the signing key".
+/// password. The message names the file `what`, for example "the signing key".
 Expected<void> check_secret(const std::filesystem::path& path, const std::string& what);
 
 /// The source of a password; exactly one of the three is not empty.
 struct PasswordSource {
   const std::string &file, &env, &credential;
-  std::string what;     ///< "the key's password"
-  std::string section;  ///< of site.toml
+  std::string what;     ///< name of the password in messages: "the key's password"
+  std::string section;  ///< section of site.toml that states the source
 };
 
 /// Reads a password from its source, without the line feed at its end.

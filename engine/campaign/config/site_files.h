@@ -18,7 +18,7 @@ Checked<SiteFile> read_site(const std::filesystem::path& site, std::string& dige
 
 /// The files of a site that apply to all its campaigns.
 struct SiteFiles {
-  std::optional<std::string> settings{};  ///< site.toml; none: there is no such file
+  std::optional<std::string> settings{};  ///< text of site.toml; none: there is no such file
   TemplateFiles templates{};
 };
 
@@ -27,7 +27,8 @@ Expected<SiteFiles> read_site_files(
     const std::filesystem::path& site,
     const std::function<void(const std::filesystem::path&)>& reading);
 
-/// Parses site.toml from files that `read_site_files` has read; each error has its line.
+/// Parses site.toml from files that `read_site_files` has read; each error has its line. `digest`
+/// receives the SHA-256 of site.toml.
 Checked<SiteFile> site_in(const SiteFiles& files, std::string& digest);
 
 /// Returns `folders`, followed by the site's own templates and causes if they exist.

@@ -32,7 +32,8 @@ bool takes_back(const Withdrawal& w, const Acknowledgement& a) {
          a.quantity == w.quantity;
 }
 
-/// Parses one of the files and removes withdrawn acknowledgements.
+/// Parses one of the files of site_logs.h and returns its entries without withdrawn
+/// acknowledgements.
 Checked<Entries> parse_log(std::string_view text, const std::string& file, const Key& declaration) {
   auto root = parse_toml(text, file);
   if (!root) return tl::unexpected(std::vector<Error>{root.error()});
@@ -144,7 +145,8 @@ class SiteLock {
 std::vector<Error> one(Error error) { return {std::move(error)}; }
 
 using Check = std::function<Checked<std::size_t>(const std::string&)>;
-/// Checks the number of valid entries before and after an entry was added.
+/// Whether the numbers of valid entries before and after an addition show that the new entry is
+/// read as intended.
 using Adds = bool (*)(std::size_t before, std::size_t after);
 
 Checked<void> append(

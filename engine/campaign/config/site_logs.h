@@ -21,13 +21,14 @@ inline constexpr const char* forgotten_name = "forgotten.toml";
 bool is_site_part(std::string_view path);
 
 struct Event {
-  std::string date, machine, axis, kind, text, by;  ///< empty axis: the whole machine
+  std::string date, machine, axis, kind, text, by;  ///< an empty axis means the whole machine
   std::uint64_t line = 0;
 };
 
 struct Acknowledgement {
   std::string date, finding, machine, axis, quantity, until;
-  std::optional<double> value{}, U{};  ///< value of the quantity on that day, in its unit
+  /// Value of the quantity on that day and its U, in the unit of the quantity.
+  std::optional<double> value{}, U{};
   std::string by, why;
   std::uint64_t line = 0;
 };
@@ -41,7 +42,7 @@ struct Withdrawal {
 
 struct Forgotten {
   std::string date;
-  std::string campaign;  ///< or a path that fulfils `is_site_part`
+  std::string campaign;  ///< id of a campaign, or a path that fulfils `is_site_part`
   std::string by, why;
   std::uint64_t line = 0;
 };

@@ -42,7 +42,8 @@ struct CarriedTemplates {
   Templates templates;
   std::string sha256;                ///< digest, as `read_templates` returns it
   std::vector<std::string> strange;  ///< names of files that differ from the installed ones
-  std::string missing{};  ///< a font that differs from the one used then (fonts are not attached)
+  /// Name of a font that differs from the one used then; fonts are not attached.
+  std::string missing{};
 };
 /// Reads attached templates. An error if the text is not in the form that `read_templates` writes.
 Expected<CarriedTemplates> templates_from(std::string_view json, const Templates& installed,

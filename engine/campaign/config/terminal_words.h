@@ -25,8 +25,8 @@ class TerminalWords {
   /// Returns the text `<name>.one` for a count of 1, otherwise `<name>.many`, with `{count}`
   /// replaced.
   std::string counted(std::string_view name, std::size_t count, Parts parts = {}) const;
-  /// Translates a fixed text of the program (a reason, a decision) by a list of the templates;
-  /// returns it unchanged if there is no entry.
+  /// Returns the translation of a fixed text of the program (a reason, a decision), which the table
+  /// `list` of the templates contains; returns the text unchanged if there is no entry.
   std::string of(std::string_view list, const std::string& text) const;
 
   /// Returns a number with the decimal sign of the language.

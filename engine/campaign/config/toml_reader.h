@@ -20,7 +20,7 @@ namespace nonio::config {
 /// programming error and throws std::logic_error.
 class TableReader {
  public:
-  /// Reads the file as a table; `declaration` must outlive the reader.
+  /// Makes a reader of a whole file. `declaration` must outlive the reader.
   TableReader(const toml::table& table, const Key& declaration, const std::string& file,
               std::vector<Error>& errors)
       : TableReader(table, declaration, {}, file, errors) {}
@@ -43,7 +43,7 @@ class TableReader {
   /// Sets the value of `key` for conditions of the declaration, for tables that do not contain the
   /// key.
   void settle(std::string_view key, std::string_view value) { settled_ = {key, value}; }
-  /// Returns the settled value: for an axis "linear" or "rotary".
+  /// Returns the value that `settle` set; for an axis it is "linear" or "rotary".
   std::string_view settled() const { return settled_.second; }
   /// Returns a reader of the same table with another declaration.
   TableReader declared(const Key& declaration) const;
@@ -62,7 +62,7 @@ class TableReader {
   std::uint64_t line_of(std::string_view key) const;
   std::uint64_t line() const { return table_.source().begin.line; }
   const std::string& file() const { return file_; }
-  /// Returns the name of this table if it is one under any name.
+  /// Returns the name of this table if its declaration allows any name; otherwise empty.
   const std::string& name() const { return name_; }
   const toml::table& raw() const { return table_; }
   const std::string& place() const { return place_; }
@@ -121,10 +121,10 @@ Expected<toml::table> parse_toml(std::string_view text, const std::string& file)
 /// A key with the name of an earlier version. It may also be the header of a table, or the id of a
 /// finding.
 struct FormerKey {
-  std::string place;         ///< table that contains it: "machine.axes.X"; empty: the file
-  std::string former, name;  ///< "table_on", "active_table"
-  std::uint64_t line = 0;    ///< 1-based
-  bool is_value = false;     ///< it is the id of a finding
+  std::string place;         ///< table that contains the key: "machine.axes.X"; empty: the file
+  std::string former, name;  ///< former and present name: "table_on", "active_table"
+  std::uint64_t line = 0;    ///< number of the line, from 1
+  bool is_value = false;     ///< `former` is the id of a finding instead of a key
 };
 /// Renames the keys in `table` that have former names according to `declaration`, so that all later
 /// code finds the present names. Returns them in the order of their lines. A former name next to

@@ -125,7 +125,7 @@ class Precheck {
 
   std::string_view text_;
   std::size_t at_ = 0;
-  std::string_view closing_;  // of the string or comment that is open
+  std::string_view closing_;  // end of the string or comment that is open; empty: none
   std::string open_;          // open brackets: [ contains values, { contains keys
   bool wants_value_ = false, in_word_ = false;
   /// Limits of dots in a key and of open brackets. toml++ reads, copies and frees tables

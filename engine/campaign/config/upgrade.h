@@ -12,7 +12,7 @@
 namespace nonio::config {
 
 struct UpgradedLine {
-  std::uint64_t line = 0;  ///< 1-based
+  std::uint64_t line = 0;  ///< number of the line, from 1
   std::string before, after;
 };
 

@@ -10,7 +10,8 @@
 
 namespace nonio::evaluation {
 
-/// Returns the sum of all tables of an axis over its own position, at all of their points.
+/// Returns the sum of all tables that correct an axis by its own position, at the points of all of
+/// these tables.
 AxisCorrection correction_of(const std::vector<LoadedTable>& tables, const std::string& axis);
 
 /// Returns the member `control_tables` of results.json. The history uses it to recognize a table

@@ -35,7 +35,8 @@ bool is_in_unit_of(const Tolerance& tolerance, const Value& v) {
   return unit_of(v.quantity).symbol == unit_of(tolerance.quantity).symbol;
 }
 
-/// Adds a decision for each value with the name and unit of the tolerance; false if there is none.
+/// Adds a decision for each value that has the name and unit of the tolerance. Returns false if
+/// there is no such value.
 bool add_decisions(const Campaign& campaign, const std::vector<Results::Analysed>& analyses,
                    const Held& held, std::vector<Conformity>& out) {
   const std::size_t before = out.size();

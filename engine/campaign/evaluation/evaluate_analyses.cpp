@@ -26,7 +26,7 @@ double floor_of(const Cmc& cmc, Quantity q, double length) {
     case Quantity::angle:
     case Quantity::angular_deviation:
     case Quantity::small_angle:
-    case Quantity::number:  // components of a direction
+    case Quantity::number:  // components of a direction have the uncertainty of an angle
       return cmc.angle.value_or(0.0);
     default:
       return 0.0;
@@ -34,9 +34,9 @@ double floor_of(const Cmc& cmc, Quantity q, double length) {
 }
 
 /// Raises each U of an evaluation to at least the smallest uncertainty of an accredited laboratory,
-/// `[laboratory.cmc]`. length: over which it was measured, m. Does nothing without accreditation.
-/// Source: the policy of ILAC-P14 that U on a certificate is not below the CMC; its text was not at
-/// hand.
+/// `[laboratory.cmc]`, for a measurement over `length` (m). Does nothing without accreditation.
+/// Source: the policy of ILAC-P14 that U on a certificate is not below the CMC; its text was not
+/// available.
 void apply_cmc(const Laboratory& laboratory, double length, Evaluation& e) {
   if (laboratory.accreditation.empty() || !laboratory.cmc.stated()) return;
   std::string raised;
@@ -49,7 +49,7 @@ void apply_cmc(const Laboratory& laboratory, double length, Evaluation& e) {
   const auto note = [&](const std::string& name) { raised += (raised.empty() ? "" : ", ") + name; };
   for (Value& v : e.values)
     if (v.U && raise(*v.U, v.quantity)) {
-      v.k = 2.0;  // that of [laboratory.cmc]
+      v.k = 2.0;  // coverage factor for which [laboratory.cmc] states U
       note(v.name);
     }
   for (PointTable::Column& c : e.points.columns)
@@ -74,8 +74,8 @@ void note_reasons_missing(const Measurement& m, Evaluation& evaluation) {
        .texts = {{"file", m.file}, {"id", m.id}}});
 }
 
-/// Returns the length over which an evaluation was measured: that of its budget, otherwise the
-/// largest travel of its linear axes, in m.
+/// Returns the length over which an evaluation was measured, in m: that of its budget, otherwise
+/// the largest range of positions of a linear axis in the measurement; 0 if there is none.
 double measured_length(const reading::ReadCampaign& read, const Evaluation& e,
                        const Measurement* measurement) {
   if (e.budget) return e.budget->length;
@@ -90,8 +90,9 @@ double measured_length(const reading::ReadCampaign& read, const Evaluation& e,
   return most;
 }
 
-/// Marks all values of an analysis that does not state which of its values are followed over the
-/// campaigns of a machine. Of these, only values with an uncertainty budget are followed later.
+/// Marks all values of an evaluation for comparison between the campaigns of a machine. It is
+/// called for analyses that do not mark values themselves. Values without an uncertainty budget are
+/// left out later.
 void follow_all(const std::string& plugin, const Measurement* m, Evaluation& e) {
   for (Value& v : e.values) {
     v.followed = {plugin + ':' + v.name, m == nullptr ? std::string() : m->axis};

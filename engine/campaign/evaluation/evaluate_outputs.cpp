@@ -199,7 +199,7 @@ Expected<OutputResult> table_of(const Work& work, const WantedController& w,
   auto written = write_over_present(work, w, of_model, results);
   if (!written && !w.asked && written.error().key.empty())
     written = no_table("table.not-written", info, "why", written.error().message);
-  if (written && !w.asked)  // the machine may not have this control
+  if (written && !w.asked)  // not requested: the machine may not have this control
     for (Finding& f : written->findings)
       if (f.id == "table.axis-number" || f.id == "table.active-not-stated") f.attention = false;
   return written;
@@ -270,9 +270,10 @@ std::optional<NumberRequest> number_request(const Work& work,
   }
   request.missing = std::move(*missing);
   request.incomplete.findings = reading::traceability_findings(work.campaign());
-  std::erase_if(request.incomplete.findings, [](const Finding& f) {  // requires a reason
-    return reading::is_expired_calibration(f.id);
-  });
+  // An expired calibration does not prevent a certificate if the person who approves it states a
+  // reason, so that its finding is removed here.
+  std::erase_if(request.incomplete.findings,
+                [](const Finding& f) { return reading::is_expired_calibration(f.id); });
   for (const Finding& f : request.incomplete.findings)
     request.missing.push_back(finding_text(work.context.templates, "en", f, "title") + " (" + f.id +
                               ")");

@@ -35,31 +35,33 @@ struct WantedController {
 struct WantedOutput {
   const Output* output = nullptr;
   Settings options;
-  bool history = false;  ///< it shows the history of the machine
+  bool history = false;  ///< the output shows the history of the machine
 };
 
 /// A request for a certificate number: the output that is issued, and what it lacks.
 struct NumberRequest {
   std::string output;
-  std::vector<std::string> missing;  ///< keys to fill, findings to correct
-  OutputResult incomplete;           ///< findings about its traceability
+  /// Keys that must be filled, and findings that must be corrected.
+  std::vector<std::string> missing;
+  OutputResult incomplete;  ///< result with the findings about traceability
 };
 
 /// A campaign that is completely evaluated, before its documents are written.
 struct AnalysedCampaign {
   reading::ReadCampaign read;
-  Evaluated evaluated;                  ///< including the tables
+  Evaluated evaluated;                  ///< results of the campaign, including the tables
   std::vector<WantedOutput> documents;  ///< documents to write next
-  std::optional<NumberRequest> number;  ///< none: no output is issued under a number
+  /// Request for a number; none: no output is issued under one.
+  std::optional<NumberRequest> number;
 };
 
 AnalysedCampaign analyse(reading::ReadCampaign read, const std::string& id,
                          const reading::Context& context, const reading::Stage& stage,
                          const reading::Twins& twins);
 
-/// Writes the documents of a campaign. `assigned`: the answer to `AnalysedCampaign::number`; null
-/// if no number is assigned. `history`: of the machine up to this campaign; null if it is not
-/// known.
+/// Writes the documents of a campaign. `assigned` is the answer to `AnalysedCampaign::number`, or
+/// null if no number is assigned. `history` is the history of the machine up to this campaign, or
+/// null if it is not known.
 Evaluated write_documents(AnalysedCampaign analysed, const AssignedNumber* assigned,
                           const reading::Context& context, const reading::Stage& stage,
                           const HistorySoFar* history = nullptr);
@@ -82,8 +84,8 @@ struct Work {
   Error error_at(std::string key, const std::string& message) const;
   /// Returns the options of a plugin; reports errors in them.
   std::optional<Settings> settle(const Info& info) const;
-  /// Returns whether a plugin states that it applies. An error of the plugin is reported and means
-  /// no.
+  /// Whether a plugin states that it applies. An error of the plugin is reported, and the result is
+  /// then false.
   bool asks_to_apply(const std::string& who, const std::string& where,
                      const std::function<bool()>& ask) const;
   /// Whether a plugin runs if neither manifest nor site names plugins.
@@ -118,7 +120,8 @@ bool has_plugin(const std::vector<Plugin>& all, const std::string& name) {
 void report_absent(const Work& work, const char* kind, const char* key, const PluginNames& names,
                    const std::function<bool(const std::string&)>& is_there);
 
-/// Run the requested analyses, and the models if the manifest requests them.
+/// Run the requested analyses and, if the manifest requests them, the models. They return the
+/// results.
 std::vector<Results::Analysed> run_analyses(const Work& work);
 std::vector<Results::Analysed> fit_models(const Work& work, std::vector<ModelFit>& models);
 
@@ -143,15 +146,17 @@ struct WantedPlugins {
   std::vector<WantedOutput> outputs;
 };
 WantedPlugins wanted_plugins(const Work& work, std::vector<Remark>& notes);
-/// Writes the tables of the controllers into `results`. `doubts`: the result of `open_doubts`.
+/// Writes the tables of the controllers into `results`. `doubts` contains the ids that
+/// `open_doubts` returned.
 void write_tables(const Work& work, const std::vector<WantedController>& wanted,
                   const std::vector<std::string>& doubts, Results& results);
-/// Returns the request for a number; none if no output is issued under one, or after an error.
+/// Returns the request for a certificate number; none if no output is issued under a number, or
+/// after an error.
 std::optional<NumberRequest> number_request(const Work& work,
                                             const std::vector<WantedOutput>& documents,
                                             const Results& results);
 
-/// Checks the result of a plugin. `taken`: results whose files already use their names.
+/// Checks the result of a plugin. The files of the results in `taken` already use their names.
 Expected<void> check_output(const OutputResult& result, const std::vector<Results::Written>& taken);
 
 }  // namespace nonio::evaluation

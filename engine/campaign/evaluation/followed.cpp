@@ -61,8 +61,8 @@ void put_conditions(FollowedQuantity& to, const math::AxisTest& test, const Camp
   if (!m.lateral.empty()) to.texts.emplace_back("across", m.lateral);
 }
 
-/// Returns the followed quantities of the readings of one axis, along or across it; none for other
-/// measurements.
+/// Returns the quantities of the readings of one axis, along or across it, that are compared
+/// between campaigns; none for other measurements.
 std::optional<FollowedGroup> of_axis(const reading::ReadCampaign& read, std::size_t index) {
   const Campaign& campaign = read.manifest->campaign;
   const Measurement& m = campaign.measurements[index];
@@ -97,8 +97,8 @@ std::optional<FollowedGroup> of_axis(const reading::ReadCampaign& read, std::siz
   return out;
 }
 
-/// Returns the followed values that have a budget; its contributions state what the instrument
-/// contributes.
+/// Returns the values of an analysis that are compared between campaigns, if it has an uncertainty
+/// budget; otherwise none. The budget states what the instrument contributes to their uncertainty.
 std::optional<FollowedGroup> of_budget(const Results::Analysed& a, const Campaign& campaign) {
   if (!a.evaluation.budget) return std::nullopt;
   const UncertaintyBudget& budget = *a.evaluation.budget;
@@ -143,9 +143,9 @@ std::string effects_of(const ModelFit& fit) {
   return out;
 }
 
-/// Whether a parameter of a model is followed. Parameters of curves are not, because their knots
-/// differ between campaigns. Scales are not, because `scale` follows them with the parts of
-/// instrument and temperature.
+/// Whether a parameter of a model is compared between campaigns. Parameters of curves are not,
+/// because their knots differ between campaigns. Scales are not, because the quantity `scale`
+/// contains them with the parts of instrument and temperature.
 bool is_followed(const ModelFit& fit, const ModelFit::Parameter& p) {
   const auto effect = std::find_if(fit.effects.begin(), fit.effects.end(),
                                    [&](const ModelFit::Effect& e) { return e.name == p.effect; });
@@ -153,7 +153,8 @@ bool is_followed(const ModelFit& fit, const ModelFit::Parameter& p) {
          (effect == fit.effects.end() || !effect->curve);
 }
 
-/// Returns the linear parameters of a model, with their covariance.
+/// Returns the linear parameters of a model that are compared between campaigns, with their
+/// covariance.
 std::optional<FollowedGroup> of_model(const ModelFit& fit, const Campaign& campaign) {
   FollowedGroup out;
   std::vector<std::size_t> kept;

@@ -21,30 +21,33 @@ struct FollowedQuantity {
     std::string source;
     double u = 0.0;
   };
-  std::string measurement;  ///< empty: the whole campaign
-  std::string axis;         ///< name in the control; X1 and X2 of a gantry are two axes
+  std::string measurement;  ///< id of the measurement; empty: the whole campaign
+  std::string axis;         ///< name of the axis in the control; X1 and X2 of a gantry are two axes
   std::string name;
   double value = 0.0;
   Quantity quantity = Quantity::deviation;
   double u = 0.0;  ///< standard uncertainty of the part that is new in each campaign
   std::vector<Common> common{};
-  std::string state{};  ///< as-found, as-left
+  std::string state{};  ///< as-found or as-left; empty: not stated
   /// Conditions that must be equal for campaigns to be comparable; numbers in printed units.
   std::vector<std::pair<std::string, double>> numbers{};
   std::vector<std::pair<std::string, std::string>> texts{};
-  /// keys whose uncertainty `u` does not contain, because they are not stated
+  /// keys that are not stated, so that `u` does not contain their uncertainty
   std::vector<std::string> not_stated{};
 };
 
-/// Quantities that were estimated together, and the covariance of their u, row by row; SI.
+/// Quantities that were estimated together, and the covariance matrix of their `u`, row by row in
+/// SI units.
 struct FollowedGroup {
   std::vector<FollowedQuantity> quantities;
   std::vector<double> covariance;
-  /// Only for quantities that are functions of values at targets.
+  /// Data for the comparison with other targets; none unless the quantities are computed from
+  /// values at targets.
   std::optional<ComparedTargets> targets{};
 };
 
-/// Returns the followed quantities of all results, without measurements that have no uncertainty.
+/// Returns the quantities of all results that are compared between campaigns. Measurements without
+/// an uncertainty are left out.
 std::vector<FollowedGroup> followed_of(const reading::ReadCampaign& read, const Results& results);
 
 /// Writes the members `followed` and `followed_covariance` of results.json.

@@ -67,7 +67,7 @@ const storage::Json& list_in(const storage::Json& object, const char* key) {
 }
 
 FileChange change_in(const storage::Json& json) {
-  // written before version 2 of the register
+  // Before version 2 of the register, a change was written as a text.
   if (json.is_string()) return {json.get<std::string>()};
   FileChange file{text_in(json, "file")};
   for (const storage::Json& place : list_in(json, "places")) {

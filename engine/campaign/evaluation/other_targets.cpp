@@ -47,7 +47,7 @@ void put_fit(JsonWriter& json, const char* name, const ComparedTargets::Fit& fit
   json.member("dof", fit.dof);
   if (const std::size_t n = fit.residuals.size(); n > 0)
     put_list(json, "residuals", n, [&](std::size_t i) {
-      constexpr double digits = 1e4;  // of um or arcsec
+      constexpr double digits = 1e4;  // residuals are rounded to 1e-4 um or arcsec
       return std::round(printed(fit.residuals[i], q) * digits) / digits + 0.0;
     });
   if (const std::size_t n = fit.coefficients.size(); n > 0) {
@@ -87,7 +87,7 @@ ComparedTargets compared_targets(const nonio::math::AxisTest& test,
                       .mean = fit(fits.mean),
                       .reversal = fit(fits.reversal)};
   const double step = test.rotary ? 0.001 / unit_of(Quantity::angle).per_si : 1e-6;
-  out.digest = 0xcbf29ce484222325U;  // FNV-1a
+  out.digest = 0xcbf29ce484222325U;  // initial value of FNV-1a
   for (const double target : test.targets) {
     auto bits = static_cast<std::uint64_t>(std::llround(target / step));
     for (int byte = 0; byte < 8; ++byte, bits >>= 8)

@@ -20,7 +20,7 @@ struct ComparedTargets {
     double beyond = 0.0, dof = 0.0;
     std::vector<double> coefficients{}, covariance{}, share{};
     std::vector<double> sinusoids{};  ///< value, variance and share of each
-    std::vector<double> residuals{};  ///< by target
+    std::vector<double> residuals{};  ///< residual at each target, m or rad
   };
 
   /// digest of the targets to 1 um or 0.001 deg: equal for equal targets
@@ -33,7 +33,8 @@ struct ComparedTargets {
 
 ComparedTargets compared_targets(const nonio::math::AxisTest&, const nonio::math::OtherTargets&);
 
-/// Writes the member `other_targets`. variances: squares of u of the quantities, SI units.
+/// Writes the member `other_targets`. `variances` contains the squares of u of the quantities, in
+/// SI units.
 void put_other_targets(JsonWriter& json, const ComparedTargets&,
                        const std::vector<Quantity>& quantities,
                        const std::vector<double>& variances);

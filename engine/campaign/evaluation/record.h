@@ -34,15 +34,15 @@ struct RecordedFile {
 /// A run, by its number and the date it was given.
 struct RunLabel {
   std::uint64_t number = 0;
-  std::string date;  ///< YYYY-MM-DD; empty if an older version wrote it
+  std::string date;  ///< date of the run, YYYY-MM-DD; empty if an older version wrote it
 };
 
 /// The run since which the history's data of a campaign have not changed
 /// (laboratory/store/entry.h).
 struct IndexedSince {
   RunLabel run{};
-  std::string version;  ///< version that first evaluated it so
-  std::string sha256;   ///< digest of the data
+  std::string version;  ///< program version that first gave these data
+  std::string sha256;   ///< SHA-256 of the data that the history contains
 };
 
 /// `run.json`, stored with the results of a campaign: from what, in which run and why they were
@@ -53,18 +53,21 @@ struct Record {
   std::string date;  ///< date of that run
   std::string reason;
   Status status = Status::none;
-  bool retry = false;  ///< it failed for a reason that is not part of its content
-  std::optional<RunLabel> failed_since{};  ///< first run of those in which it failed
+  bool retry = false;  ///< the campaign failed for a reason that is not part of its content
+  /// First of the successive runs in which the campaign failed.
+  std::optional<RunLabel> failed_since{};
   reading::Inputs inputs;
-  std::optional<IndexedSince> indexed{};  ///< none: it failed for a temporary reason
-  std::string certificate;                ///< its number; empty: none
-  bool draft = false;                     ///< the certificate is a draft that waits for approval
+  /// Run since which its data are unchanged; none: it failed temporarily.
+  std::optional<IndexedSince> indexed{};
+  std::string certificate;  ///< number of the certificate; empty: none
+  bool draft = false;       ///< the certificate is a draft that waits for approval
   std::vector<RecordedFile> files;
   /// history that a document shows; none: no document shows it
   std::optional<ShownHistory> history{};
   std::vector<Error> errors;
-  std::string language{};                        ///< of the site, for `nonio show`; empty: English
-  std::vector<KnownFinding> findings, previous;  ///< previous: of the last run before this one
+  std::string language{};  ///< language of the site, for `nonio show`; empty: English
+  /// Findings of this run, and those of the run before it.
+  std::vector<KnownFinding> findings, previous;
 };
 
 inline constexpr const char* record_name = "run.json";
@@ -76,8 +79,8 @@ inline constexpr const char* record_before_name = ".run.json.before";
 inline constexpr const char* last_good_name = "last-good";
 
 std::string to_json(const Record& record);
-/// Reads a record. The error does not state why a file is not a record, because the campaign is
-/// then simply evaluated again.
+/// Reads the record in a folder of results. The error does not state why a file is not a record,
+/// because the campaign is then evaluated again.
 Expected<Record> read_record(const std::filesystem::path& campaign_output);
 
 /// The record of the last results: `run.json`, or, if storing new results was interrupted, the old

@@ -9,7 +9,8 @@
 
 namespace nonio::evaluation {
 
-/// Returns results.json (schema nonio-results/1). `files`: the output files in their order.
+/// Returns results.json (schema nonio-results/1) for the stored output files `files`, in their
+/// order.
 std::string results_json(const Evaluated& evaluated, const reading::Context& context,
                          const std::vector<RecordedFile>& files);
 /// Returns results.json (schema nonio-results/1) for output files that were not stored.

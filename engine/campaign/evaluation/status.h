@@ -6,7 +6,7 @@
 
 namespace nonio::evaluation {
 
-/// Outcome of a campaign; `none`: it was not evaluated yet.
+/// Outcome of a campaign; `none` means that it was not evaluated yet.
 enum class Status : char { none, ok, attention, failed };
 
 /// Returns "ok", "attention" or "failed", the words in JSON, the summary and the terminal; "" for

@@ -45,7 +45,8 @@ std::optional<std::string> filled_in(const std::string& text, const Places& plac
 }
 
 /// Returns the id of the campaign to which a file belongs. Without `campaign` in the rule it
-/// consists of all places except axis and id, as in 2024-03-02-fp12. Capital letters become small.
+/// consists of the date and of all other places except axis and id, as in 2024-03-02-fp12. Capital
+/// letters become small letters, and blanks become "-".
 std::string campaign_of(const ImportRule& rule, const Places& places) {
   std::string id;
   if (!rule.campaign.empty()) {
@@ -122,7 +123,7 @@ class Importer {
 
   Expected<void> look() {
     NONIO_TRY(const auto names, files());
-    std::map<std::string, std::string> first;  // by digest
+    std::map<std::string, std::string> first;  // name of the first file with each digest
     for (const std::string& name : names) {
       const auto excluded =
           std::find_if(request_.rule.exclude.begin(), request_.rule.exclude.end(),
@@ -186,8 +187,8 @@ class Importer {
     return {};
   }
 
-  /// Whether a folder contains all these files, and its manifest a measurement for each: then it
-  /// was imported before, and its manifest may have been completed since.
+  /// Whether a folder contains all these files and its manifest a measurement for each of them. If
+  /// so, the campaign was imported before, and its manifest may have been completed since.
   static bool is_there(const fs::path& folder, const ImportedCampaign& campaign,
                        const std::vector<Found>& found) {
     std::error_code error;
@@ -253,7 +254,8 @@ class Importer {
                              (request_.rule.axes.empty() ? "" : ", as the rule states"));
   }
 
-  /// Returns campaign.toml. What is still missing is a comment at the beginning and in its place.
+  /// Returns the text of campaign.toml. Data that are still missing are named in a comment at the
+  /// beginning and in one at their place.
   std::string manifest_of(const ImportedCampaign& campaign, const Places& places) const {
     toml::table root;
     if (auto extra = config::parse_toml(request_.rule.manifest, "rule"); extra)

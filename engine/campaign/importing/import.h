@@ -15,16 +15,16 @@ namespace nonio::importing {
 
 /// The rule by which the names of files state what was measured.
 struct ImportRule {
-  std::string pattern;               ///< "{machine}_{axis}_{date}.rtl"
-  std::string campaign;              ///< id of the campaign, with places; empty: see campaign_of
-  std::string kind = "axis";         ///< of every measurement
-  std::string reader;                ///< empty: by content
+  std::string pattern;   ///< form of the names: "{machine}_{axis}_{date}.rtl"
+  std::string campaign;  ///< pattern of the campaign's id, as in `pattern`; empty: see campaign_of
+  std::string kind = "axis";         ///< kind of every measurement
+  std::string reader;                ///< reader of every file; empty: chosen by the content
   std::vector<std::string> exclude;  ///< a file is skipped if its path contains one of these
-  std::string axis;                  ///< of every file; empty: the text at {axis}
+  std::string axis;                  ///< axis of every file; empty: the text at {axis} in the name
   /// Texts accepted at {axis}, and the axis of the machine that each stands for; empty: names of
   /// axes.
   std::map<std::string, std::string, std::less<>> axes;
-  std::string manifest;  ///< TOML: further content of every campaign.toml
+  std::string manifest;  ///< TOML text that every campaign.toml also contains
 };
 
 using Places = std::map<std::string, std::string, std::less<>>;
@@ -39,12 +39,12 @@ config::Checked<ImportRule> parse_import_rule(std::string_view text, const std::
 std::vector<Places> readings_of_name(const ImportRule& rule, const std::string& path);
 
 struct ImportedFile {
-  std::string file;  ///< below the folder
-  std::string name;  ///< in the campaign
+  std::string file;  ///< path of the file below the imported folder
+  std::string name;  ///< name of the file in the campaign
   std::string measurement, axis, reader;
   std::uint64_t readings = 0, missing = 0;
   std::vector<std::string> lacks;  ///< what must be stated or corrected first
-  std::string same_as;             ///< a file with the same readings
+  std::string same_as;             ///< another file with the same readings; empty: none
   std::vector<std::string>
       assumed;  ///< what was derived from the name or the rule, not stated literally
 };
@@ -52,10 +52,11 @@ struct ImportedFile {
 struct ImportedCampaign {
   std::string id;
   std::vector<ImportedFile> files;
-  std::vector<std::string> lacks;  ///< of the campaign as a whole
+  std::vector<std::string> lacks;  ///< what must be stated about the campaign as a whole
   bool written = false;
-  std::string asset{}, maker{}, serial{};  ///< of its machine
-  /// Imported before: its folder contains these files, and its manifest a measurement for each.
+  std::string asset{}, maker{}, serial{};  ///< asset, maker and serial number of its machine
+  /// The campaign was imported before: its folder contains these files, and its manifest a
+  /// measurement for each of them.
   bool there = false;
 
   bool whole() const;
@@ -72,8 +73,10 @@ struct ImportReport {
 struct ImportRequest {
   std::filesystem::path folder, out;
   ImportRule rule;
-  std::string asset{}, maker{}, serial{};  ///< of the machine of all campaigns; empty: not stated
-  bool partial = false;  ///< write campaigns that lack something too, with what is to be filled
+  /// Asset, maker and serial number of the machine of all campaigns; empty: not stated.
+  std::string asset{}, maker{}, serial{};
+  /// Also write campaigns that lack something; comments name what is missing.
+  bool partial = false;
   bool dry_run = false;
 };
 

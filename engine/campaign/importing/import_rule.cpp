@@ -94,8 +94,8 @@ class Matcher {
   }
 
  private:
-  /// Matches the tokens from `token` on with the text from `at` on. Matches that differ only in {*}
-  /// are the same.
+  /// Matches the tokens from `token` on with the text from `at` on. Matches that differ only in the
+  /// text of {*} are regarded as one.
   void from(std::size_t token, std::size_t at) {
     if (found_.size() > 1 || ++steps_ > most_steps) return;
     if (token == tokens_.size()) {

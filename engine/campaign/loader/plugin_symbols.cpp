@@ -12,7 +12,8 @@ namespace nonio::loader {
 
 namespace {
 
-/// Reads a table of the file; empty if it would exceed the end of the file.
+/// Returns the `n` entries of a table that begins at byte `at` of the ELF file; none if the table
+/// would exceed the end of the file.
 template <class Entry>
 std::vector<Entry> entries(std::string_view bytes, std::uint64_t at, std::uint64_t n) {
   if (at > bytes.size() || n > (bytes.size() - at) / sizeof(Entry)) return {};

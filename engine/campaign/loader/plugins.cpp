@@ -80,11 +80,13 @@ std::string try_registering(const fs::path& path) {
 }
 
 struct Probed {
-  std::vector<std::string> refusals;  ///< for the files before the child ended
+  /// Reason of refusal of each file tried before the child ended; "": accepted.
+  std::vector<std::string> refusals;
   process::ChildEnd end;
 };
 
-/// Tries the files one after another in one child process.
+/// Tries to load the files one after another in one child process, and returns the results of those
+/// that were tried.
 Probed probe_in_child(std::span<const fs::path> paths) {
   std::vector<process::SharedStatus> said(paths.size());  // empty until that file was tried
   for (const process::SharedStatus& words : said)
@@ -228,7 +230,8 @@ void Plugins::load_file(const fs::path& path, const std::string& refusal) {
   const process::Muted muted;
   try {
     auto entry = open_entry(path);
-    // a temporary failure must not change the results of a run
+    // Opening is tried a second time, because a temporary failure must not change the results of a
+    // run.
     if (!entry) entry = open_entry(path);
     Offered offered;
     if (entry) (*entry)->add_to(offered);
@@ -274,7 +277,7 @@ std::string_view named_with(std::string_view kind) {
 
 bool Plugins::accept(std::string_view kind, const Info& info) {
   const std::string name = std::string(kind) + " " + info.name;
-  // none: added without a file
+  // The path is empty if the plugin was added without a file.
   const fs::path path = files_.empty() ? fs::path() : files_.back().path;
   const std::string other = std::string(named_with(kind)) + " " + info.name;
   for (const auto& [known, where] : names_)
@@ -363,7 +366,8 @@ std::string Plugins::refusals() const {
 }
 
 std::vector<std::string> Plugins::refusal_notes() const {
-  std::vector<std::pair<std::string, std::string>> files;  // by reason
+  // Names of the refused files, by reason of refusal
+  std::vector<std::pair<std::string, std::string>> files;
   for (const PluginFile& file : files_) {
     if (file.refused.empty()) continue;
     const std::string name = file.path.filename().string();

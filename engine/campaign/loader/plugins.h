@@ -13,8 +13,8 @@ namespace nonio::loader {
 /// A file in a plugin folder: the plugins that it registered, or why it was refused.
 struct PluginFile {
   std::filesystem::path path;
-  std::string refused;               ///< empty: loaded
-  std::vector<std::string> brought;  ///< "analysis iso230-2 1.0.0", ...
+  std::string refused;               ///< why the file was refused; empty: it was loaded
+  std::vector<std::string> brought;  ///< plugins that it registered: "analysis iso230-2 1.0.0", ...
 };
 
 /// The declarations of all plugins as data, for a process that has none of their code.
@@ -36,13 +36,13 @@ class Plugins final : public Registry {
   /// Returns the shared libraries in the folders, in their order. A folder that cannot be read is
   /// recorded as a conflict.
   std::vector<std::filesystem::path> files_in(const std::vector<std::filesystem::path>& folders);
-  /// Loads and registers a file, or only records `refusal` if it is not empty. Call it in a process
-  /// that a plugin may crash.
+  /// Loads and registers a file, or only records `refusal` if it is not empty. A plugin may crash
+  /// the process, so call it only in one whose end is detected.
   void load_file(const std::filesystem::path& path, const std::string& refusal);
 
-  /// Loads every shared library of the folders, in their order. Each is first tried in a child
-  /// process: a file that crashes or hangs there is refused. The ABI tag is compared before any of
-  /// its functions is called.
+  /// Loads every shared library of the folders, in their order. A library that
+  /// `process::must_be_tried` selects is first tried in a child process and refused if it crashes
+  /// or hangs there. The ABI tag is compared before any function of a library is called.
   void load(const std::vector<std::filesystem::path>& folders);
 
   const std::vector<PluginFile>& files() const { return files_; }
@@ -94,7 +94,8 @@ class Plugins final : public Registry {
 
   std::vector<PluginFile> files_;
   std::vector<std::string> conflicts_;
-  std::vector<std::pair<std::string, std::filesystem::path>> names_;  // "analysis iso230-2"
+  // Kind and name of each plugin, "analysis iso230-2", and its file
+  std::vector<std::pair<std::string, std::filesystem::path>> names_;
   std::vector<Method> methods_;
   std::vector<Reader> readers_;
   std::vector<Effect> effects_;

@@ -10,7 +10,7 @@ namespace nonio::modelling {
 
 namespace {
 
-constexpr double k = 2.0;  // ISO 230-2 since 1997
+constexpr double k = 2.0;  // coverage factor of ISO 230-2 since 1997
 
 /// Returns the weighted RMS of values about the mean of their line, without the parts of the set-up
 /// (zeros, slopes, rotations), which are unknown before and after a table is loaded.

@@ -16,15 +16,15 @@ namespace nonio::modelling {
 /// and steps; `nonio table predict` evaluates one.
 struct AfterTable {
   struct Positioning {
-    double E, A, R;  ///< m or rad
+    double E, A, R;  ///< results according to ISO 230-2, m or rad
   };
   struct Test {
     std::string measurement;
     Positioning before, after;
   };
   std::vector<std::string> effects;    ///< the compensated effects; empty: none is compensable
-  double rms_before = 0.0, rms = 0.0;  ///< m or rad
-  std::vector<Test> tests;             ///< empty where no axis is measured along itself
+  double rms_before = 0.0, rms = 0.0;  ///< RMS without and with the table, m or rad
+  std::vector<Test> tests;  ///< results per measurement; empty if no axis is measured along itself
 };
 
 AfterTable after_table(const PartModel& model, const model::Fit& fit);

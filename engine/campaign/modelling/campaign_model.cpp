@@ -107,7 +107,7 @@ bool PartModel::shows(const std::string& written) const {
   const std::string effect = entry_of(written).effect;
   if (part.kind == model::Part::Kind::axis && split(effect).second == part.name) return true;
   if (!model::is_for(part, effect)) return false;
-  // In a course, the effect "heat:t4/x1" belongs to the term heat:t4.
+  // In a displacement over time (`course`), the effect "heat:t4/x1" belongs to the term heat:t4.
   const std::string name =
       part.kind == model::Part::Kind::course ? effect.substr(0, effect.find('/')) : effect;
   for (const auto* list : {&terms, &catalogue})
@@ -201,7 +201,7 @@ Expected<void> hold(PartModel& part, const Entry& entry, const Machine& machine,
   return {};
 }
 
-/// Appends the held terms to the terms of the fit.
+/// Appends the terms whose value the model states to the terms of the fit.
 void append_held(const PartModel& part, model::Fit& fit) {
   for (const PartModel::Held& h : part.held) {
     fit.terms.push_back(h.term);
@@ -213,7 +213,7 @@ void append_held(const PartModel& part, model::Fit& fit) {
   }
 }
 
-/// Returns the catalogue without the held terms of the part.
+/// Returns the catalogue without the terms whose value the model states.
 std::vector<model::Term> without_held(std::vector<model::Term> catalogue, const PartModel& part) {
   std::erase_if(catalogue, [&](const model::Term& t) {
     return std::any_of(part.held.begin(), part.held.end(),
@@ -364,8 +364,8 @@ std::vector<model::Term> library_of(const PartModel& part, std::shared_ptr<const
 
 namespace {
 
-/// Removes candidates with separate values for each group, unless they explain more than the effect
-/// with a common value.
+/// Removes candidates with separate values for each group of measurements, unless they explain more
+/// than the same effect with one common value.
 void leave_out_weaker_groups(model::Explanation& e) {
   std::map<std::string, double> score;
   for (const model::Candidate& c : e.candidates) score[c.term.name()] = c.score;
@@ -387,11 +387,12 @@ bool may_imitate(const PartModel& part, const model::Candidate& named) {
 }
 
 /// Searches the causes of the library together with the catalogue, if the catalogue leaves an error
-/// unexplained or names an effect that may imitate a cause. The new result replaces `out` if it
-/// contains at most one cause, and if the named effect has evidence by itself; any other set only
-/// describes an error that none of its effects causes. Whether there is an error at all was decided
-/// before. The rate of false alarms is that of the second search, whose noise no longer contains
-/// what the first search left unexplained.
+/// unexplained or names an effect that may imitate a cause. The new result replaces `out` only if
+/// the named effect has evidence by itself and if the result contains one cause, or none where the
+/// catalogue already named an effect. Any other set only describes an error that none of its
+/// effects causes. Whether there is an error at all was decided before. The rate of false alarms is
+/// that of the second search, whose noise no longer contains what the first search left
+/// unexplained.
 void look_up_library(const PartModel& part, std::uint64_t seed, const model::Groundwork* known,
                      model::Explanation& out) {
   using Kind = model::Verdict::Kind;

@@ -27,18 +27,18 @@ struct PartModel {
   /// The causes of the library for an axis. They are searched if the catalogue may not explain the
   /// readings.
   config::Library library{};
-  /// Effects whose value is stated. Their prediction is subtracted from the deviations of `part`,
-  /// so that all other effects are fitted to the rest. A comparison lists them after its other
-  /// terms.
+  /// Effects whose value the model states. Their prediction is subtracted from the deviations of
+  /// `part`, and all other effects are fitted to what remains. A comparison lists them after its
+  /// other terms.
   struct Held {
     model::Term term;
     model::Parameter parameter;
-    std::string text;          ///< as the model states it: "squareness:XY = 12.3 arcsec"
-    std::vector<double> part;  ///< its prediction for each reading, m or rad
+    std::string text;          ///< entry of the model: "squareness:XY = 12.3 arcsec"
+    std::vector<double> part;  ///< prediction of the effect for each reading, m or rad
   };
   std::vector<Held> held{};
 
-  /// Returns the deviations as they were read, with the held effects.
+  /// Returns the deviations as they were read, including the effects whose value is stated.
   std::vector<double> measured() const;
   Quantity deviation() const { return deviation_of(part.table.angular); }
   /// Returns the quantity of the coordinate along the line of a reading: a position, an angle or a
@@ -61,10 +61,10 @@ std::string kind_of(const model::Part& part);
 /// The place of a reading, by which a person finds it.
 struct ReadingPlace {
   std::string measurement, file;
-  std::uint64_t line = 0;  ///< 0: the reader does not state it
-  std::uint32_t run = 0;   ///< 0: the reader does not state it
-  int direction = 0;       ///< 0: the reader does not state it
-  double target = 0.0;     ///< along its line, m or rad
+  std::uint64_t line = 0;  ///< line in the file; 0: the reader does not state it
+  std::uint32_t run = 0;   ///< number of the run; 0: the reader does not state it
+  int direction = 0;       ///< direction of motion, +1 or -1; 0: the reader does not state it
+  double target = 0.0;     ///< position of the target along its line, m or rad
   Quantity position = Quantity::length;
 };
 ReadingPlace place_of(const PartModel& part, const Campaign& campaign, std::size_t row);
@@ -77,8 +77,9 @@ RowsPlace place_of(const PartModel& part, const Campaign& campaign,
 std::vector<std::string> model_mistakes(const std::vector<std::string>& effects,
                                         const reading::ReadCampaign& read);
 
-/// Returns one entry for each part of the campaign (model/explain.h). `effects`: the model, usually
-/// that of the manifest. A mistake in it is an error with the line of [model] effects.
+/// Returns one entry for each part of the campaign (model/explain.h) with the model `effects`,
+/// which is usually that of the manifest. A mistake in the model is an error with the line of
+/// [model] effects.
 Expected<std::vector<PartModel>> part_models(const reading::ReadCampaign& read,
                                              const std::vector<std::string>& effects);
 
@@ -89,8 +90,9 @@ Error nothing_to_compare(const reading::ReadCampaign& read);
 /// manifest.
 std::vector<std::string> kinds_measured(const reading::ReadCampaign& read);
 
-/// The steps of `part_models`: parts with readings only; and their catalogue, for which every
-/// effect examines every reading.
+/// The steps of `part_models`. `bare_parts` returns the parts with their readings only, the next
+/// function adds the catalogue, for which every effect examines every reading, and the last one
+/// adds the places of interpolated temperatures.
 std::vector<PartModel> bare_parts(const reading::ReadCampaign& read);
 void fill_catalogue(PartModel& part, const reading::ReadCampaign& read);
 void fill_interpolated(PartModel& part, const reading::ReadCampaign& read);
@@ -112,11 +114,10 @@ std::vector<std::string> below_uncertainty(const model::Fit& fit);
 Expected<model::Comparison> compare_part(const PartModel& part,
                                          const model::Groundwork* known = nullptr,
                                          const model::Fitted& fitted = {});
-/// Returns the terms for causes of the library that these readings can show; `keeps` owns their
-/// effects.
+/// Returns the terms for causes of the library that these readings can show. `keeps` receives the
+/// owner of their effects.
 std::vector<model::Term> library_of(const PartModel& part, std::shared_ptr<const void>& keeps);
-/// Explains a part. `with_library`: causes of the library take part in a second stage of the
-/// search.
+/// Explains a part. If `with_library`, a second stage of the search includes causes of the library.
 Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed,
                                           const model::Groundwork* known = nullptr,
                                           bool with_library = true);

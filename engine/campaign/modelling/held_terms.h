@@ -13,18 +13,20 @@ namespace nonio::modelling {
 
 /// An entry of [model] effects.
 struct Entry {
-  std::string effect;                  ///< "squareness:XY"
-  std::optional<std::string> value{};  ///< "12.3 arcsec"; none: it is fitted
+  std::string effect;                  ///< name of the effect: "squareness:XY"
+  std::optional<std::string> value{};  ///< stated value: "12.3 arcsec"; none: it is fitted
   /// Returns the entry as a manifest has it: one blank around "=" and before the unit.
   std::string text() const { return value ? effect + " = " + *value : effect; }
 };
 Entry entry_of(const std::string& written);
 
-/// Returns the entry for an effect, fitted or held; null if the model does not contain it.
+/// Returns the entry for an effect, whether it is fitted or its value is stated; null if the model
+/// does not contain it.
 const std::string* find_effect(const std::vector<std::string>& model, const std::string& effect);
 
-/// Returns the stated value in SI units. Only an effect with one parameter and without shapes can
-/// be held. An error states what was expected. `rotary`: the axis of the effect is rotary.
+/// Returns the stated value in SI units. If `rotary`, the axis of the effect is rotary. An error
+/// states what was expected: only an effect with one parameter and without shapes can have a stated
+/// value.
 Expected<double> held_value(const Entry& entry, const Effect& effect, bool rotary);
 
 }  // namespace nonio::modelling

@@ -18,7 +18,7 @@ namespace {
 using model::Holds;
 using storage::Json;
 
-// per campaign, because its columns are kept in memory
+// Largest number of readings per campaign, because its columns are kept in memory.
 constexpr std::size_t most_readings = 20000;
 
 const char* name_of(Holds holds) {
@@ -71,7 +71,8 @@ std::map<std::string, std::vector<std::pair<const reading::ReadCampaign*, PartMo
   return out;
 }
 
-/// Whether a group has more values than a sentence can list; then only its RMS is printed.
+/// Whether the parameters of an effect in one group are more than a sentence can list; then only
+/// their RMS is printed.
 bool is_curve(const std::vector<model::Parameter>& group) {
   return std::count_if(group.begin(), group.end(), [](const auto& p) { return !p.shape; }) > 3;
 }
@@ -96,7 +97,7 @@ std::string place_text(const Together& t, std::size_t campaign) {
   return t.campaigns[campaign] + (t.dates[campaign].empty() ? "" : " (" + t.dates[campaign] + ")");
 }
 
-/// Whether all values of the group may be zero (chi-squared test, p > 0.001).
+/// Whether all parameters of the group may be zero (chi-squared test, p > 0.001).
 bool is_absent(const std::vector<model::Parameter>& group) {
   constexpr double least_p = 0.001;
   double squares = 0.0, count = 0.0;
@@ -105,7 +106,8 @@ bool is_absent(const std::vector<model::Parameter>& group) {
   return math::chi2_upper(squares, count) > least_p;
 }
 
-/// Returns the indices of the campaigns with the smallest and the largest first value.
+/// Returns the indices of the campaigns in which the first parameter of the effect is smallest and
+/// largest.
 std::pair<std::size_t, std::size_t> extremes(const model::JointEffect& e) {
   std::pair<std::size_t, std::size_t> out{e.groups.size(), e.groups.size()};
   for (std::size_t g = 0; g < e.groups.size(); ++g) {

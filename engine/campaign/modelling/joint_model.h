@@ -12,19 +12,19 @@ namespace nonio::modelling {
 
 /// One axis in several campaigns, in the order of their dates, and the explanation of all together.
 struct Together {
-  std::string part;  ///< "X"
+  std::string part;  ///< name of the part, which is that of its axis: "X"
   std::vector<std::string> campaigns, dates;
   std::vector<PartModel> parts;
-  std::vector<std::string> effects;  ///< effects in the models of the campaigns
+  std::vector<std::string> effects;  ///< effects that the models of the campaigns contain
   model::JointExplanation explanation;
   std::vector<std::shared_ptr<const void>> keeps{};  ///< owns effects that no campaign owns
 
   Quantity deviation() const { return parts.front().deviation(); }
 };
 
-/// Explains the runs of each axis that at least two campaigns measured, with their own models. What
-/// cannot be explained together (other parts, axes of one campaign) is added to `left_out` as
-/// "<campaign> <part>".
+/// Explains the runs of each axis that at least two campaigns measured, with the models of these
+/// campaigns. Parts that cannot be explained together (other kinds, axes that only one campaign
+/// measured) are added to `left_out` as "<campaign> <part>".
 Expected<std::vector<Together>> explain_together(
     const std::vector<const reading::ReadCampaign*>& campaigns, std::uint64_t seed,
     std::vector<std::string>& left_out);

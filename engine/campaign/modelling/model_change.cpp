@@ -85,8 +85,8 @@ Expected<void> write(const fs::path& folder, const reading::ReadCampaign& read,
       folder, {{history_name, std::move(history)}, {config::manifest_name, std::move(edited)}});
 }
 
-/// Changes the model by one edit and compares it before and after. `known`: an existing comparison
-/// of the model before.
+/// Returns the model after one edit and its comparisons before and after. `known` is a comparison
+/// of the model before the edit, if one already exists; otherwise null.
 Expected<Change> changed(const reading::ReadCampaign& read, const std::vector<std::string>& model,
                          const ModelEdit& edit, const Compared* known) {
   const std::string& effect = edit.effect;
@@ -146,7 +146,7 @@ Expected<void> leave_out(reading::ReadCampaign& read, const Exclusion& one) {
 }
 
 Expected<void> set_period(reading::ReadCampaign& read, const Period& one) {
-  constexpr double most = 1e5;  // mm
+  constexpr double most = 1e5;  // largest screw pitch, mm
   auto& axes = read.manifest->campaign.machine.axes;
   const auto axis =
       std::find_if(axes.begin(), axes.end(), [&](const Axis& a) { return a.name == one.axis; });

@@ -20,16 +20,17 @@ struct Compared {
 /// A change of the model and its effect on the part that shows the changed effect.
 struct Change {
   ModelStep step;
-  std::vector<std::string> effects;       ///< all effects of the model after the change
-  std::optional<Compared> before, after;  ///< none: the model could not be fitted
-  std::string no_before;                  ///< why there is no `before`
+  std::vector<std::string> effects;  ///< all effects of the model after the change
+  /// Comparisons of the part before and after the change; none: the model could not be fitted.
+  std::optional<Compared> before, after;
+  std::string no_before;  ///< why there is no `before`
 };
 
 /// An effect to add to a model, or to remove from it.
 struct ModelEdit {
   std::string effect;
   bool add = true;
-  std::string why{};  ///< comment of a person; goes into the history
+  std::string why{};  ///< comment of a person, which the history records
 };
 /// Returns the edits that lead from one model to another: removals first, then additions.
 std::vector<ModelEdit> edits_between(const std::vector<std::string>& from,
@@ -48,8 +49,8 @@ struct CampaignEdit {
 Expected<std::string> edited_manifest(std::string_view text, const CampaignEdit& edit);
 
 /// Writes all changes, each with its line in the history, or none. Exclusions and periods come
-/// first, so that effects are fitted to the remaining readings. `known`: an existing comparison of
-/// the present model.
+/// first, so that effects are fitted to the remaining readings. `known` is a comparison of the
+/// present model, if one already exists; otherwise null.
 Expected<std::vector<Change>> change_campaign(const std::filesystem::path& folder,
                                               reading::ReadCampaign& read, const CampaignEdit& edit,
                                               const Compared* known = nullptr);

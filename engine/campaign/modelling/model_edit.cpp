@@ -333,7 +333,7 @@ Expected<std::string> with_excluded(std::string_view text, const std::string& me
     out = with_line(text, *table, "file", "exclude = [" + numbers + "]");
   }
   table->insert_or_assign("exclude", std::move(wanted));
-  // the reason, in the text that was already changed
+  // The reason is changed in the text that already contains the new list of lines.
   auto half = config::parse_toml(out, config::manifest_name);
   toml::table* const now = half ? measurement_in(*half, measurement) : nullptr;
   if (now == nullptr) return not_meant("exclude", *table);

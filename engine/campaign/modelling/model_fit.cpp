@@ -156,7 +156,8 @@ void put_fit(ModelFit& out, const PartModel& part, const model::Comparison& c) {
   for (const model::Suspect& s : c.suspects) out.suspects.push_back({s.row, s.minimal_detectable});
 }
 
-constexpr std::size_t most_refitted = 20000;  // readings; fits of more take seconds
+// Largest number of readings; fits of more take seconds
+constexpr std::size_t most_refitted = 20000;
 
 /// Returns the terms that are marked in `in`, in the order of the model.
 std::vector<model::Term> chosen(const std::vector<model::Term>& terms,
@@ -167,7 +168,8 @@ std::vector<model::Term> chosen(const std::vector<model::Term>& terms,
   return out;
 }
 
-/// Marks the terms of the set-up, which every model contains.
+/// Returns a mark for each term: 1 for terms of the set-up, which every model contains, otherwise
+/// 0.
 std::vector<char> set_up_of(const std::vector<model::Term>& terms) {
   std::vector<char> in;
   for (const model::Term& term : terms) in.push_back(term.effect->is_nuisance ? 1 : 0);
@@ -259,7 +261,8 @@ ModelFit value_of(const PartModel& part, const model::Explanation& e) {
   return out;
 }
 
-/// Marks rows of a measurement so that each position and direction occurs once.
+/// Returns a mark for each row of a measurement: 1 for the first row with its position and
+/// direction, otherwise 0.
 std::vector<char> first_of_each(const Observations& o) {
   std::set<std::vector<double>> seen;
   std::vector<char> kept(o.size(), 0);

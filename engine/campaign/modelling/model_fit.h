@@ -13,7 +13,7 @@ namespace nonio::modelling {
 
 struct ModelFits {
   std::vector<Results::Analysed> analyses;
-  std::vector<ModelFit> models;  ///< of the parts that could be fitted
+  std::vector<ModelFit> models;  ///< fits of the parts that could be fitted
 };
 
 /// Fits the model of each part with readings and returns it under the part's first measurement. A

@@ -29,12 +29,13 @@ struct Period {
 /// One recorded change of the model: of an effect, or of data on which its fit depends.
 struct ModelStep {
   std::string effect;
-  bool added = true;  ///< false: dropped
+  bool added = true;  ///< false: the effect was removed
   Quantity quantity = Quantity::deviation;
   /// RMS in m or rad; none if that model could not be fitted.
   std::optional<double> rms_before{}, rms_after{};
-  std::optional<double> cv_before{}, cv_after{}, floor{};  ///< cross-validation; noise floor
-  std::string why{};                                       ///< comment of a person; usually empty
+  /// RMS in cross-validation; noise floor; m or rad.
+  std::optional<double> cv_before{}, cv_after{}, floor{};
+  std::string why{};  ///< comment of a person; usually empty
   std::optional<Exclusion> excluded{};
   std::optional<Period> period{};
 };

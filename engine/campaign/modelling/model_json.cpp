@@ -249,7 +249,8 @@ storage::Json candidate_json(const model::Candidate& c, const PartModel& part, d
   return json;
 }
 
-/// Returns why an effect is not a candidate, in which lines of the file, and what would help.
+/// Returns JSON that states why an effect is not a candidate, in which lines of the file, and what
+/// would help.
 storage::Json unseen_json(const model::Candidate& c, const PartModel& part,
                           const Campaign& campaign, const ModelWords& words) {
   const std::string says = words.unseen(c, place_of(part, campaign, c.rows));
@@ -323,7 +324,8 @@ storage::Json verdict_json(const Explained& e, const ModelWords& words) {
   json["says"] = words.verdict(e.explanation, e.part);
   if (const std::string text = words.card(v.effect, "is"); !text.empty()) json["is"] = text;
   if (const std::string text = words.card(v.effect, "remedy"); !text.empty())
-    json["remedy"] = json["cure"] = text;  // former name, kept for one version
+    // "cure" is the former name, which is written for one more version
+    json["remedy"] = json["cure"] = text;
   storage::put(json, "suspects_share", v.suspects_share, Quantity::ratio);
   return json;
 }
@@ -406,7 +408,7 @@ void put_explained(storage::Json& json, const Explained& e, const Campaign& camp
   json["unseen"] = std::move(unseen);
   json["together"] = x.together;
   json["significant"] = x.certain;
-  json["certain"] = x.certain;  // its name in version 0.1
+  json["certain"] = x.certain;  // name of the key in version 0.1
   storage::Json cancelling = storage::Json::array();
   for (const auto& pair : x.cancelling) cancelling.push_back({pair.first, pair.second});
   json["cancelling"] = std::move(cancelling);

@@ -15,7 +15,8 @@ namespace nonio::modelling {
 std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,
                                      const ModelWords& words);
 
-/// Extent of an entry: `first`, which the page shows at first, omits what a table would leave.
+/// Extent of an entry of "parts". With `first`, which the page requests at first, it omits the
+/// prediction of what remains after compensation by a table.
 enum class Extent { whole, first };
 
 /// Returns an entry of "parts" in nonio-compare/1 and nonio-explain/1.

@@ -10,16 +10,17 @@
 /// Applies the model of one campaign to the readings of another campaign.
 namespace nonio::modelling {
 
-/// The prediction of one displacement in readings to which the model was not fitted.
+/// The prediction of one part of a campaign to whose readings the model was not fitted.
 struct Predicted {
   PartModel seen, unseen;
   model::Prediction prediction;
 };
 
-/// Returns a prediction for every displacement of `unseen` that `seen` contains too, matched by
-/// measurement and name, otherwise by name. The model is that of the manifest of `seen`; only the
-/// zero is fitted again, unless `zero_kept`. If no displacement matches, an error lists those of
-/// both.
+/// Returns a prediction for every part of `unseen` that `seen` contains too. Parts are matched by
+/// kind and name, displacements over time otherwise by displacement. The model is that of the
+/// manifest of `seen`; only the zeros of the lines are fitted again. If `zero_kept`, the zero of a
+/// displacement over time is kept too, and other parts are an error. If no part matches, an error
+/// lists the parts of both campaigns.
 Expected<std::vector<Predicted>> predictions(const reading::ReadCampaign& seen,
                                              const reading::ReadCampaign& unseen, bool zero_kept);
 

@@ -15,7 +15,8 @@ namespace nonio::modelling {
 struct Explained {
   PartModel part;
   model::Explanation explanation;
-  std::optional<std::vector<model::Foresight>> what_if{};  ///< if it was requested
+  /// What one more run would change; none: not requested.
+  std::optional<std::vector<model::Foresight>> what_if{};
 };
 
 /// Returns the index of the part with the most severe verdict: missing, unrepeatable, unknown,
@@ -26,7 +27,7 @@ std::size_t most_severe(const std::vector<Explained>& all);
 /// according to the most severe verdict, "" if there is none: one step of `nonio model explain
 /// --auto`.
 struct PartVerdict {
-  std::string kind, effect;          ///< of the verdict
+  std::string kind, effect;          ///< kind of the verdict, and the effect that it names
   std::vector<std::string> certain;  ///< significant effects, the one with the most evidence first
 };
 std::vector<PartVerdict> verdicts_of(const std::vector<Explained>& all);

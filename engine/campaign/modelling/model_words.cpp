@@ -113,8 +113,8 @@ std::vector<Finding> no_sign_findings(const model::Explanation& e, const PartMod
 namespace {
 
 // docs/dev/constants.md, M24.
-constexpr double separable = 4.0;          // standard deviations
-constexpr double most_longer = 10.0;       // times a test is measured longer
+constexpr double separable = 4.0;  // power of a plan that separates effects, in standard deviations
+constexpr double most_longer = 10.0;       // largest factor by which a longer test is proposed
 constexpr std::size_t enough_targets = 9;  // a wave and a bend need as many columns as 5 targets
 
 class Next {
@@ -165,8 +165,8 @@ class Next {
           {{"effect", s.weakest}});
   }
 
-  /// Proposes the cheapest plan that separates the effects; without one, to measure over a wider
-  /// range.
+  /// Proposes the cheapest plan that separates the effects. If no plan separates them, proposes to
+  /// measure over a wider range.
   void plan() {
     if (e_.plans.empty()) return;
     const auto good = std::find_if(e_.plans.begin(), e_.plans.end(),
@@ -289,7 +289,7 @@ Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
   if ((v.kind == Kind::nothing || v.kind == Kind::unknown) && !e.comparison.floor)
     f.id += "-without-floor";
   if (v.kind == Kind::nothing && part.part.kind == model::Part::Kind::course && e.comparison.floor)
-    f.id += "-over-time";  // the noise floor over time comes from successive readings
+    f.id += "-over-time";  // over time, the noise floor comes from successive readings
   if (const model::Fit& fit = e.comparison.fit; v.kind == Kind::nothing && e.comparison.floor &&
                                                 fit.noise.zero == model::Noise::Zero::of_pass) {
     f.id += "-of-passes";

@@ -41,7 +41,8 @@ class ModelWords {
   std::vector<std::string> next(const model::Explanation& explanation, const PartModel& part) const;
   std::string false_alarms(const model::Verdict& verdict) const;
   std::string lack_of_fit(const model::Comparison& comparison, Quantity deviation) const;
-  /// Returns "RMS 0.7 um, from -1.1 um at 210 mm to 0.9 um at 640 mm".
+  /// Returns the size of a curve in words, such as "RMS 0.7 um, from -1.1 um at 210 mm to 0.9 um at
+  /// 640 mm".
   std::string curve(const ModelFit::Curve& curve, const PartModel& part) const;
   std::string suspect(const model::Suspect& suspect, const ReadingPlace& place,
                       Quantity deviation) const;
@@ -55,7 +56,8 @@ class ModelWords {
   /// States how the noise of a fit differs from independent readings with one scatter; usually
   /// empty.
   std::vector<std::string> noise(const model::Fit& fit, const PartModel& part) const;
-  /// States what thermal tests of the campaign give for this part, one sentence per axis.
+  /// States the time constants that thermal tests of the campaign give for this part, one sentence
+  /// per axis.
   std::vector<std::string> time_constants(const PartModel& part, const model::Fit& fit) const;
   std::string order_unknown() const;
   std::string has_unstated_position() const;
@@ -74,7 +76,8 @@ class ModelWords {
   std::string language_;
 };
 
-/// The same statements as findings, for documents in any language: ids "verdict.*" and "place.*".
+/// Return the statements of `ModelWords` as findings, for documents in any language, with ids
+/// "verdict.*" and "place.*".
 Finding verdict_finding(const model::Explanation& explanation, const PartModel& part);
 Finding place_finding(const model::Place& place, Quantity deviation);
 Finding plan_finding(const model::Plan& plan);
@@ -92,7 +95,8 @@ std::optional<ModelFit::Curve> curve_of(const PartModel& part, const model::Fit&
 /// Returns " (D1)" for a place on one line; otherwise "".
 std::string on_line(const model::Place& place);
 
-/// Returns where a place is largest, "12.5 mm" or "run 3"; "" if it is not at one place.
+/// Returns the position, run or time at which the deviations of a place are largest, "12.5 mm" or
+/// "run 3"; "" if they do not occur mainly at one.
 std::string where_largest(const model::Place& place, const std::string& language);
 
 }  // namespace nonio::modelling

@@ -20,8 +20,8 @@ const model::Term* asks(const PartModel& part, const std::string& axis) {
   return nullptr;
 }
 
-/// Returns the fitted time constant of a term and sets `term` to the fitted term; null if it is not
-/// in the model.
+/// Returns the time constant that was fitted for the term `asked`, and sets `term` to the fitted
+/// term; returns null if the model does not contain the term.
 const model::Parameter* fitted_tau(const model::Fit& fit, const model::Term& asked,
                                    const model::Term*& term) {
   for (const model::Term& t : fit.terms)

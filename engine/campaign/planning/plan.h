@@ -15,13 +15,14 @@ namespace nonio::planning {
 
 using config::TerminalWords;
 
-/// State why a plan is listed, and its disadvantages compared with the best one.
+/// Return sentences that state why a plan is listed, and its disadvantages compared with the best
+/// plan.
 std::string why_listed(const math::TriplePlan& plan, const TerminalWords& say);
 std::string gives_up(const math::TriplePlan& plan, const math::TriplePlan& best,
                      const TerminalWords& say);
-/// States that the diagonals run nearly along one axis; empty if they do not.
+/// Returns a warning if the diagonals run nearly along one axis; otherwise empty.
 std::string aspect_warning(const math::TriplePlan& plan, const TerminalWords& say);
-/// States which limits to relax, as options of the command.
+/// Returns a sentence that states which limits to relax, as options of the command.
 std::string why_nothing(const math::TriplePlans& plans, const TerminalWords& say);
 
 /// Returns the JSON nonio-triples/1; its sentences are in the language of `say`.

@@ -40,7 +40,7 @@ namespace {
 
 const Campaign& campaign_in(const ReadCampaign& out) { return out.manifest->campaign; }
 
-/// Reads the manifest into `out`; false if it cannot be read.
+/// Reads the manifest into `out`. Returns false if it cannot be read.
 bool read_manifest(const CampaignSource& from, ReadCampaign& out) {
   from.stage("reading campaign.toml");
   const auto text = storage::read_small_file(from.folder / config::manifest_name);
@@ -66,7 +66,7 @@ bool read_manifest(const CampaignSource& from, ReadCampaign& out) {
   return true;
 }
 
-/// Takes the active compensation from the machine's record for an axis, unless the manifest states
+/// Sets the active compensation of an axis from the machine's record, unless the manifest states
 /// it.
 void take_present_state(const config::RecordFile& file, Axis& axis, ReadCampaign& out) {
   const auto found = file.record->axes.find(axis.name);
@@ -81,7 +81,7 @@ void take_present_state(const config::RecordFile& file, Axis& axis, ReadCampaign
   if (!axis.active_backlash) axis.active_backlash = state->backlash;
 }
 
-/// Adds what the site's record of the machine states and the manifest does not.
+/// Adds the data about the machine that its record in the site contains and the manifest does not.
 void look_up_machine(const CampaignSource& from, ReadCampaign& out) {
   Machine& machine = out.manifest->campaign.machine;
   const std::string input = config::machine_input(machine);
@@ -166,7 +166,8 @@ void add_own_effects(ReadCampaign& out) {
       blame("an effect of the catalogue has this name");
       continue;
     }
-    const Axis& axis = *campaign_in(out).machine.axis(formula.axis);  // the manifest was checked
+    // The axis exists, because the manifest was checked
+    const Axis& axis = *campaign_in(out).machine.axis(formula.axis);
     auto effect = config::formula_effect(formula, axis);
     if (!effect) {
       blame(effect.error().message);

@@ -21,21 +21,22 @@ inline constexpr const char* former_key_note = "manifest.former-key";
 struct ReadCampaign {
   std::optional<config::Manifest> manifest;  ///< none if it cannot be read; then all else is empty
   std::optional<config::MachineRecord>
-      machine{};  ///< what the site knows of the campaign's machine
+      machine{};  ///< record of the campaign's machine in the site; none: there is no record
   /// For each axis, the files of the table that was active during the measurement, if there was
   /// one.
   std::map<std::string, std::vector<Artifact>> active_tables{};
   /// Files of the states in `machine`, by ControlState::files.
   std::map<std::string, std::vector<Artifact>> state_files{};
-  std::vector<Observations> observations;  ///< one per measurement; empty if it could not be read
-  std::vector<Effect> effects;             ///< of the plugins and the campaign
+  /// Observations of each measurement; empty if they could not be read.
+  std::vector<Observations> observations;
+  std::vector<Effect> effects;  ///< effects of the plugins and of the campaign
   /// The library of causes. Causes that the model may name are also in `effects`.
   config::Library causes = std::make_shared<std::vector<config::Cause>>();
   std::vector<Finding> doubts{};  ///< findings that the files themselves are implausible
   std::vector<Remark> notes;
   std::vector<std::string> unread;  ///< measurements of a kind that no plugin reads
   std::vector<Error> errors;
-  Inputs inputs;  ///< the campaign's own files, manifest first
+  Inputs inputs;  ///< names and digests of the campaign's own files, manifest first
 };
 
 ReadCampaign read_campaign(const std::filesystem::path& folder, const Context& context,
@@ -48,9 +49,9 @@ struct Workplace {
   std::vector<std::string> notes;  ///< notes about refused plugins
 };
 
-/// Which templates `open_workplace` reads; fonts and words of other languages take a third of the
-/// time of a short command. `terminal_with_library` makes the causes of the library effects that
-/// can be named.
+/// Which templates `open_workplace` reads: all for `documents`, otherwise only the words in the
+/// language of the site and the causes, because all others take a third of the time of a short
+/// command. Except with `terminal`, the causes of the library become effects that can be named.
 enum class TemplatesFor { documents, terminal, terminal_with_library };
 
 /// Loads plugins, templates and the site.toml of the nearest folder at or above the campaign that

@@ -15,8 +15,9 @@ inline bool reads_columns_of(const Reader& reader, const Method* method) {
   return reader.reads_columns && method != nullptr && !method->columns.empty();
 }
 
-/// Asks a reader whether it reads a measurement of this method. A method with columns of its own is
-/// identified by its name, any other by the kind that it is observed as.
+/// Whether a reader reads a measurement of this method. The reader is asked for the name of the
+/// method if the method has columns of its own, otherwise for the kind that the measurement is
+/// observed as.
 inline bool reads(const Reader& reader, const Measurement& m, const Method* method) {
   const bool of_its_own = method != nullptr && !method->columns.empty();
   return reader.reads(of_its_own ? method_name(m) : m.kind);

@@ -17,20 +17,21 @@ namespace nonio::reading {
 struct Context {
   std::string version;
   config::SiteFile site;
-  std::string site_sha256;            ///< of site.toml; of nothing if there is none
-  config::MachineRecords machines{};  ///< of the site
+  std::string site_sha256;  ///< digest of site.toml; without this file, that of an empty text
+  config::MachineRecords machines{};  ///< records of the machines of the site
   const loader::Plugins* plugins = nullptr;
-  std::string plugins_sha256;  ///< empty where no results are recorded
-  std::string today{};         ///< YYYY-MM-DD; empty: no date is too late
+  std::string plugins_sha256;  ///< digest of the plugins; empty if no results are recorded
+  std::string today{};  ///< date of today, YYYY-MM-DD; empty: no date is regarded as too late
   Templates templates;
   std::string templates_sha256;
-  std::string templates_json{};  ///< see `read_templates`; attached to signed files
+  /// All templates as one text (`read_templates`), attached to signed files.
+  std::string templates_json{};
   /// every cause of the library is an effect; otherwise only if a model names one
   bool every_cause = false;
 };
 
 /// Data on which a campaign's results depend, in the order in which a change is reported.
-using Inputs = std::vector<std::pair<std::string, std::string>>;  // name, SHA-256
+using Inputs = std::vector<std::pair<std::string, std::string>>;  // name and SHA-256 of each input
 
 /// Returns the name of a measurement file in `Inputs`.
 std::string input_name(const std::string& file);

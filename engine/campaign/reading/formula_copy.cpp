@@ -49,7 +49,8 @@ Columns span_of(const Observations& o, Columns columns) {
   return basis;
 }
 
-/// Returns the sine of the largest angle between two spans; 1 if their dimensions differ.
+/// Returns the largest sine of the angle between a basis vector of the first span and the second
+/// span; 1 if their dimensions differ.
 double apart(const Columns& a, const Columns& b) {
   if (a.size() != b.size()) return 1.0;
   double most = 0.0;
@@ -78,7 +79,7 @@ class Nearest {
       if (!effect_.shapes[k].usual) searched = k, ++free;
     }
     if (free == 0) return at(usual_);
-    if (free > 1) return 1.0;  // no effect of the catalogue has two
+    if (free > 1) return 1.0;  // no effect of the catalogue has two searched shapes
     searched_ = searched;
     const auto grid = effect_.shapes[searched].grid(o_, axis_);
     double least = 1.0;
@@ -108,7 +109,7 @@ class Nearest {
   const Axis& axis_;
   const Effect& effect_;
   const Columns& own_;
-  std::vector<double> usual_{};  // of each shape
+  std::vector<double> usual_{};  // usual value of each shape
   std::size_t searched_ = 0;
 };
 

@@ -201,7 +201,8 @@ std::optional<Settings> settle_reader(const CampaignSource& from, const Info& in
   return std::nullopt;
 }
 
-/// Adds findings that make the file implausible, and notes about missing and changed readings.
+/// Adds findings about an implausible end of the file, and notes about missing and changed
+/// readings.
 void note_oddities(const Measurement& m, std::string_view bytes, Observations& o,
                    ReadCampaign& out) {
   auto ends = implausible_end(bytes, m.file);
@@ -210,10 +211,10 @@ void note_oddities(const Measurement& m, std::string_view bytes, Observations& o
       doubt.measurement = m.id;
       out.doubts.push_back(std::move(doubt));
     }
-  if (o.missing > 0 && m.kind != "axis")  // analyses of an axis state it
+  if (o.missing > 0 && m.kind != "axis")  // for an axis, the analyses report them
     o.notes.push_back(
         {"readings.not-taken", {{"missing", static_cast<double>(o.missing), Quantity::count}}});
-  // Of an artefact its features are what readings come back to.
+  // On an artefact the positions are those of its features, so they are not joined.
   if (m.motion != Measurement::Motion::targets) return;
   if (const std::size_t moved = join_targets(o); moved > 0)
     o.notes.push_back(

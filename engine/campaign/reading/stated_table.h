@@ -12,7 +12,7 @@ namespace nonio::reading {
 
 /// A table in a file whose columns a person can describe.
 struct StatedTable {
-  const Reader* reader = nullptr;  ///< reads the table with option `columns`
+  const Reader* reader = nullptr;  ///< reader that can read the table with its option `columns`
   std::vector<std::vector<std::string>> rows;
 };
 

@@ -132,8 +132,8 @@ class SchemaWriter {
     json_.end_object();
   }
 
-  /// Writes the schema of a value. `assumed`: value of the key that distinguishes tables of this
-  /// kind, if the table does not contain it.
+  /// Writes the schema of the value of a key. `assumed` is the default of the key that
+  /// distinguishes tables of this kind.
   void put_value(const config::Key& key, std::string_view assumed) {
     switch (key.holds) {
       case Holds::text:
@@ -188,7 +188,7 @@ class SchemaWriter {
     if (names.empty()) {
       put_pattern(key.text);
     } else {
-      if (!key.required) names.emplace_back();  // an empty text counts as missing
+      if (!key.required) names.emplace_back();  // an empty text is treated as missing
       json_.member("enum", names);
     }
     if (key.required && names.empty()) json_.member("minLength", std::int64_t{1});

@@ -35,7 +35,8 @@ std::string_view without_end(std::string_view text) {
   return text;
 }
 
-/// The statements of the campaign about an axis, with their places for messages.
+/// What the campaign states about the compensation of an axis, with the places of the keys for
+/// messages.
 class Stated {
  public:
   Stated(const reading::ReadCampaign& read, const Axis& axis) : read_(read), axis_(axis) {}
@@ -99,7 +100,7 @@ std::vector<LoadedTable> opposite(std::vector<LoadedTable> tables) {
   return tables;
 }
 
-/// Whether the record states this table from a day after the measurement on.
+/// Whether the record states that these tables were loaded on the day of the measurement or later.
 bool is_loaded_later(const reading::ReadCampaign& read, const Controller& controller,
                      const std::vector<LoadedTable>& backup, const std::string& axis,
                      const Settings& options) {

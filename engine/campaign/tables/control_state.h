@@ -24,29 +24,29 @@ struct Origin {
   std::string file;
   std::uint64_t line = 0;
   std::string date, campaign;
-  std::string serial;  ///< of the machine; empty: not stated
+  std::string serial;  ///< serial number of the machine; empty: not stated
   std::string place() const { return file + ":" + std::to_string(line); }
 };
 std::optional<Origin> origin_of(const std::vector<Artifact>& files, const std::string& axis);
 
 /// The answer of a person about the state during the measurement, used in place of the manifest.
 struct StateAnswer {
-  std::string table;  ///< list of files; empty: none
+  std::string table;  ///< names of the table's files, separated by commas; empty: no table
   std::vector<Artifact> files{};
-  std::optional<double> backlash{};  ///< m or rad; 0: none
+  std::optional<double> backlash{};  ///< backlash value, m or rad; 0: no value was active
 };
 void state_by_answer(reading::ReadCampaign&, const std::string& axis, const StateAnswer&);
 
-/// Returns what was active while `axis` was measured. The manifest has precedence, then the record
-/// of the machine, then the backup. An error that names the key or file to correct if they
-/// contradict each other, or if the table in the backup was made from this campaign or a later one,
-/// and so was loaded after the measurement.
+/// Returns the compensation that was active while `axis` was measured. The manifest has precedence,
+/// then the record of the machine, then the backup. Returns an error that names the key or file to
+/// correct if they contradict each other, or if the table in the backup was made from this campaign
+/// or a later one and so was loaded after the measurement.
 Expected<MeasuredWith> measured_with(const reading::ReadCampaign&, const Controller&,
                                      const std::vector<Artifact>& backup, const std::string& axis,
                                      const Settings& options, std::vector<Finding>& findings);
 
-/// Sets the state of axes that were measured with a table of the backup and for which nothing else
-/// states what was active. Axes without a table in the backup stay unchanged. Errors as in
+/// Sets the active compensation of axes that were measured with a table of the backup, if nothing
+/// else states it. Axes without a table in the backup stay unchanged. Returns errors like
 /// `measured_with`.
 Expected<void> state_by_backup(reading::ReadCampaign&, const Controller&,
                                const std::vector<Artifact>& backup, Settings& options,

@@ -29,7 +29,7 @@ double sum_at(const std::vector<const LoadedTable*>& tables, const std::vector<d
   return sum;
 }
 
-using Knots = std::vector<std::vector<double>>;  // of each input
+using Knots = std::vector<std::vector<double>>;  // grid positions of each input axis, m or rad
 
 void merge(Knots& knots, const std::vector<const LoadedTable*>& tables) {
   for (const LoadedTable* t : tables)
@@ -99,9 +99,9 @@ void compare(TableDifference& d, const std::vector<const LoadedTable*>& was,
   if (!will.empty()) d.next = shape_of(will);
 }
 
-/// Returns the 95 % quantile of the range of as many normal values as there are means, with the
-/// standard uncertainty of a mean, because a table is made from one sample of the means. Factor by
-/// simulation: 95 % of ranges of 10 to 200 values.
+/// Returns the range (m or rad) that the means at the targets exceed by scatter alone in 5 % of
+/// cases; 0 without repeated readings. It is added because a table is made from one sample of the
+/// means. The factor is from a simulation with 10 to 200 means.
 double range_of_scatter(const math::AxisTest& test) {
   double squares = 0.0, n = 0.0, means = 0.0;
   for (std::size_t i = 0; i < test.targets.size(); ++i)
@@ -204,7 +204,7 @@ Expected<const Controller*> control_of(const loader::Plugins& plugins, const std
     return fail("no control \"" + name + "\"" + storage::suggestion(name, names) + "; there are " +
                 storage::listed(names));
   if (named.size() == 1) return named.front();
-  // controllers whose format the files have, except for one line
+  // Controllers whose format the files would have if one line were correct.
   std::vector<const Controller*> nearly;
   for (const Controller* o : all) {
     const auto settled = config::options_from(o->info, options);
@@ -278,7 +278,7 @@ std::vector<Observations> without_tables(const Campaign& campaign,
 Results without_tables(const Results& results, const Tables& tables) {
   Results out = results;
   for (Results::Analysed& a : out.analyses) {
-    std::map<char, std::string> axis_of;  // by the letter of ISO 230-1
+    std::map<char, std::string> axis_of;  // names of the axes by their letter in ISO 230-1
     const auto is_curve = [](const Series& s) {
       return s.name.size() >= 3 && s.name[0] == 'E' && s.quantity == Quantity::deviation;
     };
@@ -313,7 +313,7 @@ Expected<std::optional<Underlay>> active_compensation(const reading::ReadCampaig
   const Campaign& campaign = read.manifest->campaign;
   Underlay on{{}, options, {}};
   for (const auto& [name, files] : read.active_tables) {
-    const std::string& axis = name;  // clang 14 captures no structured binding
+    const std::string& axis = name;  // clang 14 cannot capture a structured binding
     const std::string who =
         "the compensation that was active while axis " + axis + " was measured: ";
     auto tables = tables_in(controller, files, campaign, options);
@@ -323,7 +323,7 @@ Expected<std::optional<Underlay>> active_compensation(const reading::ReadCampaig
       return fail(who + "its files hold no table of " + axis +
                   (tables->empty() ? "" : ", but of " + tables->front().output) +
                   "; which number has the axis in the control?");
-    for (const LoadedTable& t : *tables) {  // a file may hold those of other axes too
+    for (const LoadedTable& t : *tables) {  // a file may contain tables of other axes too
       if (t.output != axis) continue;
       const auto stated = stated_backlash(options, axis, t.rotary);
       if (stated && t.backlash.value_or(0.0) != 0.0 && std::fabs(*stated - *t.backlash) > 5e-10)
@@ -408,7 +408,7 @@ Expected<RenewedTables> renew(const reading::ReadCampaign& read, const Controlle
     const Campaign one = with_one(campaign, m);
     const auto files = write(one, {raw[i]});
     if (!files) return tl::unexpected<Error>(files.error());
-    if (files->artifacts.empty()) continue;  // refused; the finding states why
+    if (files->artifacts.empty()) continue;  // the table was refused; a finding states why
     const auto tables = tables_in(controller, files->artifacts, one, options);
     if (!tables) return tl::unexpected<Error>(tables.error());
     out.forecast.push_back(forecast_of_axis(campaign, m, control_axis(campaign.machine, m),

@@ -24,10 +24,10 @@ Expected<std::vector<LoadedTable>> tables_in(const Controller&, const std::vecto
 
 /// Size, step and slope of the correction of a table, in m or rad.
 struct TableShape {
-  double largest = 0.0;  ///< largest absolute correction
-  double step = 0.0;     ///< largest step from one point to the next
-  double slope = 0.0;    ///< m/m or rad/rad
-  double step_at = 0.0;  ///< position of the step, of the first input
+  double largest = 0.0;  ///< largest absolute correction, m or rad
+  double step = 0.0;     ///< largest step from one point to the next, m or rad
+  double slope = 0.0;    ///< largest absolute slope, m/m or rad/rad
+  double step_at = 0.0;  ///< position of this step on the first input axis, m or rad
   std::optional<double> backlash{};
 };
 
@@ -35,11 +35,12 @@ struct TableShape {
 struct TableDifference {
   std::string output;
   std::vector<std::string> input;
-  bool rotary = false;  ///< of the output
+  bool rotary = false;  ///< the output axis is rotary
   std::optional<TableShape> present{},
-      next{};                      ///< none if only the other set of tables has such a table
-  double largest = 0.0, at = 0.0;  ///< size of next - present, and where
-  double range = 0.0;              ///< of next - present
+      next{};  ///< none if only the other set of tables has such a table
+  /// Largest absolute value of next - present, and its position on the first input axis.
+  double largest = 0.0, at = 0.0;
+  double range = 0.0;  ///< range of next - present, m or rad
 };
 std::vector<TableDifference> differences(const std::vector<LoadedTable>& present,
                                          const std::vector<LoadedTable>& next);
@@ -48,7 +49,7 @@ std::vector<TableDifference> differences(const std::vector<LoadedTable>& present
 struct TableForecast {
   std::string measurement, axis;
   bool rotary = false;
-  double E[2]{}, B[2]{}, M[2]{};  ///< before and after loading
+  double E[2]{}, B[2]{}, M[2]{};  ///< values before and after loading the tables, m or rad
   /// Amount by which E after loading may be larger because the readings scatter (95 %); 0 with one
   /// run.
   double scatter = 0.0;
@@ -58,8 +59,8 @@ struct TableForecast {
 /// The compensation that was active while a campaign was measured, and its readings without it.
 struct Underlay {
   std::vector<LoadedTable> tables;
-  Settings options;                    ///< with the backlash values in the files of these tables
-  std::vector<Observations> readings;  ///< as they would be without these tables
+  Settings options;  ///< options of the controller with the backlash values of these tables
+  std::vector<Observations> readings;  ///< readings as they would be without these tables
 };
 /// Returns the campaign with only this measurement. Its axis becomes that of the control instead of
 /// a side of a gantry: a caller that treats one axis after another treats both sides.
@@ -77,8 +78,9 @@ std::vector<Observations> without_tables(const Campaign&, const std::vector<Obse
 /// EXY_even, ...) in `Results`, which were computed from readings with the tables active. The mean
 /// of both directions is removed.
 Results without_tables(const Results&, const std::vector<LoadedTable>&);
-/// Sets the values before loading in the predictions to those measured, because the table was made
-/// from readings without the active compensation. Reports a table that does not reduce E.
+/// Replaces the values before loading in the predictions of a result by the measured ones, because
+/// the table was made from readings without the active compensation. Adds a finding if a table does
+/// not reduce E.
 void compare_with_measured(const reading::ReadCampaign&, OutputResult&);
 
 /// Returns the backlash parameter (m or rad) that option `axes` states for an axis during the
@@ -88,14 +90,14 @@ std::optional<double> stated_backlash(const Settings& options, const std::string
 /// Adds a backlash parameter (m or rad) to option `axes`.
 void state_backlash(Settings& options, const std::string& axis, bool rotary, double value);
 
-/// Predicts the measurements with these tables in the control, in place of the active compensation
-/// `on`, or of none.
+/// Predicts E, B and M of the measurements with these tables in the control. They replace the
+/// active compensation `on`; without it the readings were measured without tables.
 std::vector<TableForecast> forecast(const reading::ReadCampaign&, const std::vector<LoadedTable>&,
                                     const Settings& options,
                                     const std::optional<Underlay>& on = std::nullopt);
 
-/// Predicts one measurement. `measured`: readings as measured; `raw`: without the active
-/// compensation.
+/// Predicts E, B and M of one measurement. `measured` contains the readings as they were measured,
+/// `raw` those without the active compensation.
 TableForecast forecast_of_axis(const Campaign&, const Measurement&, const std::string& axis,
                                const Observations& measured, const Observations& raw,
                                const std::vector<LoadedTable>& loaded, const Settings& options);
@@ -111,7 +113,7 @@ struct RenewedTables {
 Expected<RenewedTables> renew(const reading::ReadCampaign&, const Controller&, Settings options,
                               const std::vector<LoadedTable>& present);
 
-/// The tables of a campaign for a control; empty if all were refused.
+/// The tables that a controller writes for a campaign; empty if all were refused.
 struct CampaignTables {
   std::vector<Artifact> files;
   std::vector<LoadedTable> tables;
@@ -122,20 +124,20 @@ Expected<CampaignTables> tables_of_campaign(const reading::ReadCampaign&, const 
 
 /// The compensation with which an axis was measured.
 struct MeasuredWith {
-  std::vector<LoadedTable> tables;   ///< empty: none
-  std::string files;                 ///< names; empty: none
-  std::optional<double> backlash{};  ///< m or rad
-  bool from_backup = false;          ///< only the backup states it
+  std::vector<LoadedTable> tables;   ///< tables of the axis; empty: no table was active
+  std::string files;                 ///< names of their files; empty: no table was active
+  std::optional<double> backlash{};  ///< backlash value, m or rad; none: not stated
+  bool from_backup = false;          ///< whether only the backup states this compensation
 };
 
 /// A control's backup in which the table of one axis is replaced.
 struct MergedTables {
-  std::vector<Artifact> files;  ///< changed files, completely; none: the table was refused
+  std::vector<Artifact> files;  ///< complete text of the changed files; none: the table was refused
   std::vector<Artifact> whole;  ///< all files that contain the table afterwards
   std::vector<TableDifference> differences;
-  std::vector<TableForecast> forecast;  ///< with everything loaded
+  std::vector<TableForecast> forecast;  ///< predictions with all tables of the files loaded
   MeasuredWith with;
-  std::vector<LoadedTable> next;  ///< of the axis
+  std::vector<LoadedTable> next;  ///< tables of the axis after the merge
   std::vector<Finding> findings;
   std::vector<Remark> notes;
 };
@@ -152,13 +154,15 @@ Expected<MergedTables> merge_tables(const reading::ReadCampaign&, const Controll
 struct SignProbe {
   std::string measurement, axis;
   bool rotary = false;
-  double start = 0.0, from = 0.0, to = 0.0;  ///< the first target; the two stops; m or rad
-  double difference = 0.0;                   ///< of the error, without a table
-  double as_measured = 0.0;  ///< the same difference with what was active during the measurement
-  double scatter = 0.0;      ///< standard deviation of a reading about its mean; 0 with one run
+  /// Positions of the first target and of the two stops, m or rad.
+  double start = 0.0, from = 0.0, to = 0.0;
+  double difference = 0.0;  ///< difference of the error between the stops without a table, m or rad
+  double as_measured = 0.0;  ///< the same difference with the compensation during the measurement
+  double scatter = 0.0;      ///< standard deviation of a reading, m or rad; 0 with one run
   bool shows() const { return difference * difference > 36.0 * scatter * scatter; }
 };
-/// Finds the two positions. `raw`: readings without the active compensation; `measured`: with it.
+/// Returns the two positions. `raw` contains the readings without the active compensation,
+/// `measured` those with it.
 Expected<SignProbe> sign_probe(const Measurement&, const Observations& raw,
                                const Observations& measured);
 

@@ -18,7 +18,7 @@ bool is_own(const TableDifference& d, const std::string& axis) {
 /// A campaign reduced to one measurement of an axis.
 struct OneAxis {
   Campaign campaign;
-  std::vector<Observations> readings;  ///< without what was active
+  std::vector<Observations> readings;  ///< readings without the active compensation
   std::vector<Observations> measured;
 };
 
@@ -64,7 +64,7 @@ void take_active(OneAxis& one, const MeasuredWith& with, const std::string& axis
 /// unchanged.
 Expected<void> only_this_axis(const ReadTables& present, const ReadTables& fresh,
                               const ReadTables& next, const std::string& axis) {
-  constexpr double nothing = 1e-12;  // m, rad
+  constexpr double nothing = 1e-12;  // largest difference that is regarded as rounding, m or rad
   for (const TableDifference& d : differences(present, next)) {
     if (is_own(d, axis)) continue;
     if (!d.present || !d.next || d.largest > nothing || d.present->backlash != d.next->backlash)
@@ -163,7 +163,7 @@ Expected<MergedTables> merge_tables(const reading::ReadCampaign& read, const Con
                    .findings = written->findings,
                    .notes = written->notes};
   out.findings.insert(out.findings.begin(), findings.begin(), findings.end());
-  if (written->artifacts.empty()) return out;  // refused: the findings state why
+  if (written->artifacts.empty()) return out;  // the table was refused; the findings state why
   const Campaign& campaign = read.manifest->campaign;
   // Files that contain one axis only are replaced as they are.
   const bool merges = controller.merge != nullptr;

@@ -133,7 +133,7 @@ class Assessment::State {
     kept_.keep(changes);
   }
 
-  /// Number of machines; campaigns without a machine follow them in `site`.
+  /// Returns the number of machines with a name; campaigns without a machine follow them in `site`.
   std::size_t count() const { return machines_with_name_; }
 
   reports::SiteHistory site;
@@ -160,10 +160,11 @@ class Assessment::State {
     std::vector<config::Event> events;
     std::vector<std::string> campaigns;  ///< campaigns whose evaluation is not superseded
     KeptMachine kept;
-    bool is_new = false;                    ///< `kept` differs from what is stored
-    std::optional<Fits> fits{};             ///< loaded when the machine is read
+    bool is_new = false;                    ///< whether `kept` differs from the stored data
+    std::optional<Fits> fits{};             ///< cache of trends, loaded when the machine is read
     std::optional<AssessedMachine> read{};  ///< data from the store, if they had to be read
-    bool fitted = false;                    ///< the series in `read` have their trends
+    bool fitted = false;                    ///< whether the trends of the series in `read` have
+                                            ///< been fitted
     std::vector<std::vector<Adjusted>> adjusted{};
     std::optional<reports::MachineHistory> described{};
   };
@@ -404,7 +405,7 @@ class Assessment::State {
   }
 
   Expected<void> put_together() {
-    // Only lost and failed campaigns need this.
+    // The machine of each campaign is needed only for the lines of vanished and failed campaigns.
     Expected<std::map<std::string, std::string>> machine_of_campaign;
     if (!last_run_.vanished.empty() || !last_run_.failed.empty())
       machine_of_campaign = store_.machine_of_campaigns();
@@ -475,7 +476,8 @@ class Assessment::State {
   const Links links_{out_};
   /// Campaigns dated later are treated as not measured yet.
   const std::string until_ = last_run_.date.empty() ? "9999-12-31" : last_run_.date;
-  std::map<std::string, std::vector<reports::WorkItem>> lines_{};  ///< by name of the machine
+  std::map<std::string, std::vector<reports::WorkItem>> lines_{};  ///< worklist lines, by name of
+                                                                   ///< the machine
 };
 
 Assessment::Assessment(std::unique_ptr<State> state) : state_(std::move(state)) {}

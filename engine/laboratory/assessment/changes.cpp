@@ -56,8 +56,8 @@ struct Asked {
   Adjusted* adjusted = nullptr;
 };
 
-/// Adjusts the p of one run's tests by the procedure `by`. `asked`: number of tests; those without
-/// a candidate enter with p = 1.
+/// Adjusts the p of one run's tests by the procedure `by` and stores the results in the member
+/// `which`. `asked` is the number of tests; tests without a candidate enter with p = 1.
 void adjust(const std::vector<Asked>& tests, std::size_t asked, double Adjusted::*which,
             std::vector<double> by(const std::vector<double>&)) {
   std::vector<double> p(std::max(asked, tests.size()), 1.0);

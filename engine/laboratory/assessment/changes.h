@@ -15,7 +15,8 @@
 /// Finds the changes of all machines of a site and decides which are significant.
 namespace nonio::assessment {
 
-/// Probability that a run reports a false change: in the worklist, and in a mail.
+/// Significance levels of a change: in the worklist, for p adjusted by Benjamini and Hochberg, and
+/// in a mail, for p adjusted by Holm.
 inline constexpr double significant_below = 0.05, mailed_below = 0.01;
 /// Significance level of a step at a place where an event is stated.
 inline constexpr double declared_below = 0.01;
@@ -30,7 +31,7 @@ struct OfQuantity {
 struct Lesson {
   std::string quantity;  ///< quantity and unit, separated by a space
   std::uint64_t points = 0;
-  std::vector<double> ratios{};  ///< see `kernel::Scatter`
+  std::vector<double> ratios{};  ///< scatter ratio of each point, see `kernel::Scatter`
   std::optional<nonio::statistics::Slope> slope{};
 };
 /// Returns how many of the first evaluations are used for the statistics of the laboratory: all, or

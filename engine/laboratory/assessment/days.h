@@ -10,7 +10,8 @@ namespace nonio::assessment {
 /// Returns the days since 1970-01-01; none if `day` is not a date YYYY-MM-DD.
 std::optional<std::int64_t> day_number(const std::string& day);
 std::string day_text(std::int64_t number);
-/// Returns the same day `months` months later, or the last day of a shorter month.
+/// Returns the same day of the month `months` months later, or the last day of a shorter month;
+/// empty if `day` is not a date.
 std::string months_later(const std::string& day, int months);
 
 inline constexpr double days_a_year = 365.25;

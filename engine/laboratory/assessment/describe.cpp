@@ -152,7 +152,8 @@ class Describing {
     // A campaign that states no limit leaves the previous limit valid.
     out.limit = si(*m_.stored.results[s.judged.back()].tolerance, q);
     if (s.ended) return out;
-    // Series of the followed quantity on the same axis.
+    // Use the forecast of a series of a followed quantity on the same axis whose limit is that of
+    // this quantity.
     for (const FollowedSeries& f : m_.followed) {
       if (f.axis != s.axis || f.unit != s.unit || f.ended || f.quantity == s.quantity) continue;
       const auto limit = limit_of(m_, f);
@@ -382,7 +383,8 @@ reports::MachineHistory describe(const AssessedMachine& machine, const fs::path&
   reports::MachineHistory m;
   m.id = named.name, m.maker = named.stated.maker;
   m.model = named.stated.model, m.serial = named.stated.serial;
-  // The last campaign that states them counts.
+  // The customer is that of the last campaign; place and control are those of the last campaign
+  // that states them.
   for (const StoredCampaign& c : machine.stored.campaigns) {
     m.customer = c.customer;
     if (!c.place.empty()) m.place = c.place;

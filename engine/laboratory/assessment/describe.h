@@ -50,7 +50,8 @@ struct FollowedLimit {
 /// measured together with B_mean since the last significant change. None if neither exists.
 std::optional<FollowedLimit> limit_of(const AssessedMachine& machine, const FollowedSeries& series);
 
-/// Whether a change of a quantity of this axis is between the same campaigns as the loaded table.
+/// Returns whether the change is one of a quantity of this axis between the same campaigns between
+/// which the table was loaded.
 bool is_at(const reports::TableLoaded& table, const std::string& axis,
            const reports::HistoryChange& change);
 

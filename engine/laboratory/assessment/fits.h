@@ -22,7 +22,7 @@ class Fits {
  public:
   /// Starts with an empty cache.
   Fits() = default;
-  /// Starts with the entries that `kept` returned.
+  /// Returns a cache with the entries that `kept` returned earlier.
   static Fits of(std::string_view kept);
 
   nonio::statistics::Trend trend(const nonio::statistics::Series& series);
@@ -30,7 +30,8 @@ class Fits {
 
   /// Returns all entries that were requested, in the order of their keys.
   std::string kept() const;
-  /// Whether an entry was computed that the cache did not contain.
+  /// Returns whether the entries of `kept` differ from those at the start: an entry was computed,
+  /// or an entry was not requested.
   bool is_new() const;
   std::size_t computed() const { return computed_; }
 

@@ -19,12 +19,13 @@ namespace nonio::assessment {
 /// The data from which the history of one campaign is made.
 struct HistoryBasis {
   std::string campaign, day;
-  store::NamedMachine machine;  ///< no name: the campaign states no machine
+  store::NamedMachine machine;  ///< machine of the campaign; it has no name if the campaign states
+                                ///< no machine
   std::vector<std::string> aliases;
   /// The machine's other campaigns up to that day, ordered by day and id; each with the digest of
   /// its results.
   std::vector<std::pair<std::string, std::string>> campaigns;
-  std::vector<config::Event> events;  ///< up to that day
+  std::vector<config::Event> events;  ///< events of the machine up to that day
   int months = 0;                     ///< interval of the site's rule in months; 0: there is no
                                       ///< rule
   /// Digest of all these data; the campaign's own results are not included.

@@ -12,7 +12,7 @@ NONIO_MEMBERS(Finding, a, b, c, d, e, f)
 NONIO_MEMBERS(reports::OpenValue, a, b, c, d, e, f, g, h, i)
 NONIO_MEMBERS(reports::WorkItem, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v)
 NONIO_MEMBERS(reports::IntervalProposal, a, b, c, d, e)
-/// Lists the members that are stored; series are not.
+/// Lists the members of a machine's description that are stored; its series are not stored.
 template <class Archive, class T>
 requires std::same_as<std::remove_const_t<T>, reports::MachineHistory>
 void members(Archive& archive, T& m) {
@@ -47,7 +47,8 @@ constexpr const char* machines_name = "machines.sqlite";
 /// Versions of the stored data; another program may compute other results or trends.
 constexpr std::string_view machines_version = "9 " NONIO_VERSION, trends_version = "4";
 constexpr std::size_t digest_size = 64;
-constexpr double patience = 5.0;  // s to wait for a lock; without the file a run takes longer
+constexpr double patience = 5.0;  // longest wait for a lock in s; without the file, everything is
+                                  // computed again
 
 constexpr const char* tables =
     "CREATE TABLE version(of TEXT PRIMARY KEY, is_ TEXT NOT NULL);"
@@ -132,11 +133,11 @@ void KeptMachines::make_anew() {
 
 void KeptMachines::keep(const Changes& changes) {
   if (changes.machines.empty() && changes.gone.empty() && !changes.runs) return;
-  if (!file_) make_anew();  // it is missing or cannot be read
+  if (!file_) make_anew();  // the file is missing or cannot be read
   if (!file_) return;
   if (put(changes)) return;
   file_.reset();
-  make_anew();  // a file that can be read and not written would never be updated
+  make_anew();  // a file that can be read but not written would never be updated
 }
 
 Expected<void> KeptMachines::put(const Changes& changes) {

@@ -31,7 +31,7 @@ struct KeptMachine {
   struct Page {
     std::string made_from{};
     std::uint64_t size = 0;
-    std::int64_t changed = 0;  ///< time of the last change in nanoseconds
+    std::int64_t changed = 0;  ///< time of the last change of the page's file, ns
   };
   Page page{};
 };
@@ -50,15 +50,17 @@ class KeptMachines {
 
   std::map<std::string, KeptMachine> machines();
   std::map<std::uint64_t, RunResult> runs();
-  /// Returns what `Fits::kept` returned for the machine.
+  /// Returns the bytes of `Fits::kept` that were stored for the machine.
   std::string trends_of(const std::string& machine);
 
   /// Entries to be written. All of them are written in one transaction, or none.
   struct Changes {
     struct Of {
       std::string machine;
-      const KeptMachine* kept = nullptr;    ///< null: unchanged, or not stored
-      std::optional<std::string> trends{};  ///< none: unchanged
+      const KeptMachine* kept = nullptr;    ///< data to be stored; null: they are unchanged or must
+                                            ///< not be stored
+      std::optional<std::string> trends{};  ///< trends to be stored, as returned by `Fits::kept`;
+                                            ///< none: they are unchanged
     };
     std::vector<Of> machines;
     std::set<std::string> gone;  ///< machines that no longer exist
@@ -75,7 +77,7 @@ class KeptMachines {
 
   std::filesystem::path out_;
   std::optional<storage::Database> file_;
-  bool has_machines_ = false;  ///< the file contains machines of this version
+  bool has_machines_ = false;  ///< whether the file contains machines of this version
 };
 
 /// Returns the value as bytes; equal values give equal bytes.

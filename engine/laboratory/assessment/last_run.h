@@ -13,8 +13,9 @@ namespace nonio::assessment {
 /// Facts about the last run that the history does not contain.
 struct LastRun {
   struct Failed {
-    std::string campaign, folder;  ///< folder: relative to the site, as text
-    std::string message;           ///< with file and line
+    std::string campaign, folder;  ///< id of the campaign, and its folder relative to the site, as
+                                   ///< text
+    std::string message;           ///< error message with file and line
     std::string since;             ///< day of the first run with this failure; empty: it is new in
                                    ///< this run
   };
@@ -26,9 +27,9 @@ struct LastRun {
   std::uint64_t run = 0;
   std::string date;  ///< date of the run, YYYY-MM-DD; used in place of a clock
   std::uint64_t campaigns = 0, done = 0, unchanged = 0;
-  std::vector<Failed> failed{};        ///< sorted by campaign
-  std::vector<Vanished> vanished{};    ///< sorted by campaign; without those that were removed on
-                                       ///< purpose
+  std::vector<Failed> failed{};        ///< failed campaigns, sorted by campaign
+  std::vector<Vanished> vanished{};    ///< vanished campaigns, sorted by campaign; without those
+                                       ///< that were removed on purpose
   std::vector<std::string> issued{};   ///< numbers of issued certificates
   std::vector<std::string> waiting{};  ///< campaigns whose drafts wait for approval
   std::string language = "en";         ///< language of the site

@@ -16,9 +16,9 @@ using Kind = WorkItem::Kind;
 
 namespace {
 
-// Failures with the same message that are listed one by one.
+// Largest number of failures with the same message that are listed one by one.
 constexpr std::size_t most_alike = 3;
-constexpr std::size_t most_machines = 5;  // names of machines in one line
+constexpr std::size_t most_machines = 5;  // largest number of machine names in one line
 
 void put_count(WorkItem& line, const char* name, std::size_t n) {
   line.finding.evidence.push_back({name, static_cast<double>(n), Quantity::count});

@@ -24,8 +24,9 @@ struct Known {
   const std::vector<std::string>& unknown;
 };
 
-/// Returns the lines of the worklist. They are sorted by what ignoring them costs, then new before
-/// known, then by size. One cause is reported once.
+/// Returns the lines of the worklist. They are sorted by kind, beginning with the kind that is most
+/// costly to ignore, then new before known, then sudden before gradual changes, then by size. One
+/// cause is reported once.
 std::vector<reports::WorkItem> lines_of(const Known& known);
 
 /// Returns the kind of a quantity: reversal, scale, curve, turn, cyclic, scatter, squareness,

@@ -30,8 +30,9 @@ struct AxisChange {
     const HistoryChange* change = nullptr;
     double size() const { return std::fabs(change->size) / change->u; }
   };
-  std::vector<Seen> seen;  ///< sorted by size / u, largest first
-  bool listed = false;     ///< already part of the line of values that do not conform
+  std::vector<Seen> seen;  ///< quantities that show the change, sorted by |size| / u, largest first
+  bool listed = false;     ///< whether the change is already part of the line of values that do not
+                           ///< conform
 };
 
 bool is_correction(const HistoryChange& c) {
@@ -94,7 +95,8 @@ class OfMachine {
                          [](const auto& a, const auto& b) { return a.size() > b.size(); });
   }
 
-  /// Whether the change is a table that was loaded wrongly, which has its own line.
+  /// Returns whether the change was caused by a table that was loaded wrongly, which has its own
+  /// worklist line.
   bool is_fault(const std::string& axis, const HistoryChange& c) const {
     return std::any_of(d_.tables_loaded.begin(), d_.tables_loaded.end(), [&](const auto& t) {
       return t.kind != "loaded" && t.kind != "removed" && is_at(t, axis, c);
@@ -275,8 +277,9 @@ class OfMachine {
     out_.back().also.clear();  // all values conform
   }
 
-  /// Whether the last two judgements used the same definition and no wider limit: then the machine
-  /// has improved.
+  /// Returns whether the last two judgements used the same source and conditions, and the last
+  /// limit is not wider. Only then does a value that conforms again show that the machine has
+  /// improved.
   bool is_judged_alike(const ShownSeries& s) const {
     const auto& last = m_.stored.results[s.judged.back()];
     const auto& before = m_.stored.results[s.judged[s.judged.size() - 2]];
@@ -302,7 +305,8 @@ class OfMachine {
                      [&](const Judged& a, const Judged& b) { return share(a) > share(b); });
   }
 
-  /// Returns the first day of the uninterrupted decision of this result.
+  /// Returns the day of the first of the consecutive judgements that have the same decision as this
+  /// result, up to the campaign of this result.
   std::string since(const ShownSeries& s, const store::StoredResult& r) const {
     std::size_t first = s.judged.size() - 1;
     while (first > 0 && m_.stored.results[s.judged[first]].campaign > r.campaign) --first;
@@ -357,8 +361,9 @@ class OfMachine {
 
   // ---- lines about loaded tables
 
-  /// Adds a line for the last table of each axis if it was loaded wrongly, or if no event states
-  /// that it was loaded.
+  /// Adds a line for the last table of each axis if it was loaded wrongly, or if neither a campaign
+  /// nor an event states that it was loaded. No line is added if the axis was repaired or
+  /// compensated later.
   void loaded() {
     std::map<std::string, const reports::TableLoaded*> last;
     for (const reports::TableLoaded& t : d_.tables_loaded) last[t.axis] = &t;

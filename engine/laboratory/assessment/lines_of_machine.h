@@ -10,7 +10,8 @@
 
 namespace nonio::assessment {
 
-/// Returns a line whose id is the same in every run: finding and subject `of`.
+/// Returns a worklist line whose id consists of the finding and the subject `of`, so that it is the
+/// same in every run.
 reports::WorkItem line_of(reports::WorkItem::Kind kind, const char* finding, const std::string& of);
 
 /// Sets the text `name` of the line's finding.

@@ -13,10 +13,11 @@ namespace nonio::assessment {
 
 struct LoadingVerdict {
   enum class Answer { worked, failed, not_decided };
-  Answer answer = Answer::not_decided;  ///< not_decided: the readings allow no decision
+  Answer answer = Answer::not_decided;  ///< not_decided: the measurements allow no decision
   std::vector<Finding> findings{};      ///< findings of the analysis before-after: pitch and
                                         ///< reversal
-  /// The change between both campaigns, recognised as a table; none: it is not that of this table.
+  /// Change between both campaigns, recognised as a loaded table; none if the tables worked, or if
+  /// the change is not one that the tables in `next` would cause.
   std::optional<statistics::TableChange> change{};
   double E = 0.0;  ///< E of the axis after loading, m or rad
 };

@@ -26,7 +26,8 @@ struct Judged {
 /// by those of the same measurement: a circle in another plane does not replace them.
 std::vector<Judged> open_results(const store::StoredMachine& machine, const ShownSeries& series);
 
-/// Returns limits for which the newest campaign that measured their axis has no value.
+/// Returns limits for which the newest campaign that measured their axis has no value. A limit
+/// without an axis is returned until all axes of its campaign are measured again.
 std::vector<const store::LimitWithoutValue*> open_limits(const store::StoredMachine& machine);
 
 reports::OpenValue open_value(const store::StoredMachine& machine, std::size_t result);
@@ -46,9 +47,9 @@ struct Withheld {
   std::vector<std::string> outputs;  ///< names of the outputs
 };
 
-/// Returns tables withheld in the newest campaign that measured their axis, results withheld by an
-/// analysis and expired calibrations in the newest campaign, and certificates withheld in any
-/// campaign, since each certificate is an independent document.
+/// Returns tables withheld in the newest campaign that measured their axis; results withheld by an
+/// analysis and expired calibrations, unless all axes of their campaign were measured again later;
+/// and certificates withheld in any campaign, since each certificate is an independent document.
 std::vector<Withheld> withheld(const store::StoredMachine& machine);
 
 }  // namespace nonio::assessment

@@ -67,7 +67,7 @@ std::optional<std::pair<Found, std::size_t>> last_found(const AssessedMachine& m
   return worst;
 }
 
-using Fleet = std::tuple<std::string, std::string, double>;  // maker, model, months
+using Fleet = std::tuple<std::string, std::string, double>;  // maker, model, interval in months
 
 struct Counted {
   int passed = 0, machines = 0;
@@ -130,8 +130,9 @@ std::optional<std::size_t> last_significant(const FollowedSeries& s) {
   return std::nullopt;
 }
 
-/// Returns the shortest interval over all followed quantities with a limit. `refusal`: why one of
-/// them gives none.
+/// Returns the shortest interval after which the forecast of a followed quantity meets its limit;
+/// none if no forecast does. `refusal` is set if the last change of a quantity is not explained
+/// yet.
 std::optional<IntervalProposal> chart(const AssessedMachine& m,
                                       std::optional<IntervalProposal>& refusal) {
   std::optional<IntervalProposal> shortest;

@@ -20,14 +20,16 @@ inline constexpr std::size_t fewest_of_a_fleet = 5;
 /// Data of one machine from which intervals are proposed.
 struct IntervalFacts {
   std::string maker, model;
-  std::uint64_t days = 0;  ///< number of days on which it was measured
-  double months = 0.0;     ///< its interval in months; 0: none
+  std::uint64_t days = 0;  ///< number of days on which the machine was measured
+  double months = 0.0;     ///< calibration interval in months; 0: none
   double tested = 0.0;     ///< months between the last campaign with a result as found and the one
                            ///< before
   /// Worst decision among the last results as found of all quantities with a limit.
   std::optional<nonio::statistics::Found> found{};
-  std::optional<reports::IntervalProposal> chart{};    ///< shortest interval from its own readings
-  std::optional<reports::IntervalProposal> refusal{};  ///< why its own readings give no interval
+  std::optional<reports::IntervalProposal> chart{};    ///< shortest interval that the machine's own
+                                                       ///< readings allow
+  std::optional<reports::IntervalProposal> refusal{};  ///< reason why the machine's own readings
+                                                       ///< give no interval
   std::optional<reports::IntervalProposal> out_now{};  ///< the worst value that is beyond its limit
                                                        ///< today
 };

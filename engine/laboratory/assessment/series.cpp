@@ -17,7 +17,8 @@ namespace {
 
 using storage::Json;
 
-constexpr double same_place = 0.01;  // fraction of the span
+constexpr double same_place = 0.01;  // largest difference of positions that count as equal, as a
+                                     // fraction of the span
 bool near(double a, double b, double span) { return std::fabs(a - b) <= same_place * span; }
 
 double number_at(const Json& o, const char* key) {
@@ -25,9 +26,9 @@ double number_at(const Json& o, const char* key) {
   return it != o.end() && it->is_number() ? it->get<double>() : 0.0;
 }
 
-/// Why two results cannot be points of one series; empty: they can. Switching a table on or off is
-/// a known step and does not separate them. `common_stretch`: results with different ends can be
-/// compared over the stretch that they have in common.
+/// Returns why two results cannot be points of one series; returns an empty text if they can.
+/// Switching a table on or off is a known step and does not separate them. If `common_stretch` is
+/// true, results with different ends can be compared over the stretch that they have in common.
 std::string difference(const Json& a, const Json& b, bool common_stretch) {
   const double span = number_at(a, "to") - number_at(a, "from");
   if (!common_stretch && (a.contains("from") != b.contains("from") ||
@@ -102,8 +103,8 @@ void pool(std::vector<kernel::Point>& points) {
   for (kernel::Point& p : points) p.u = std::sqrt((p.u * p.u + *middle) / 2.0);
 }
 
-/// Order of results: by day, as found before as left, then by campaign and the order of its
-/// manifest.
+/// Returns whether result `a` precedes result `b`: results are ordered by day, as found before as
+/// left, then by campaign and by their order in its manifest.
 bool before(const StoredMachine& m, std::size_t a, std::size_t b) {
   const auto key = [&](std::size_t i) {
     const StoredResult& r = m.results[i];
@@ -166,7 +167,8 @@ class Happenings {
     return concerns(e, s_) && day(k) <= e.date && e.date <= day(k + 1);
   }
 
-  /// Whether an event is on the day of an adjustment: then it is that adjustment.
+  /// Returns whether the event is on the day of an adjustment in `table`; it is then taken as that
+  /// adjustment.
   bool on_day_of_table(const config::Event& e, const std::vector<bool>& table) const {
     for (std::size_t k = 0; k < table.size(); ++k)
       if (table[k] && (day(k) == e.date || day(k + 1) == e.date)) return true;

@@ -38,9 +38,9 @@ struct FollowedSeries {
   std::vector<std::string> said{};   ///< text of each declared event, as entered
   std::vector<std::string> kinds{};  ///< kind of each declared event: crash, repair, ..., table,
                                      ///< instrument
-  bool ended = false;                ///< later campaigns measure the quantity in a way that cannot
-                                     ///< be joined
-  std::uint64_t run = 0;             ///< run of the last point
+  bool ended = false;                ///< whether later campaigns measure the quantity in a way that
+                                     ///< cannot be joined
+  std::uint64_t run = 0;             ///< run that added the last point
   nonio::statistics::Trend trend{};
   /// p of each change of the trend, adjusted for all tests of its run.
   std::vector<double> p_adjusted{};
@@ -55,8 +55,8 @@ struct ShownSeries {
   /// Deciding result of each campaign that compares the quantity with a limit: as left before as
   /// found, and the worst of several measurements of the axis.
   std::vector<std::size_t> judged{};
-  bool ended = false;  ///< later campaigns use another unit, since the axis was changed between
-                       ///< linear and rotary
+  bool ended = false;  ///< whether later campaigns use another unit, since the axis was changed
+                       ///< between linear and rotary
 };
 
 /// Returns all followed series of a machine, by axis and quantity. `events`: those of this machine.

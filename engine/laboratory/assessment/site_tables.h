@@ -18,7 +18,8 @@ std::vector<reports::MonthOfMachine> months_of(const AssessedMachine& machine,
 /// Returns the results of one machine by the instrument and certificate that they depend on.
 std::vector<reports::InstrumentUse> instruments_of(const AssessedMachine& machine,
                                                    const std::filesystem::path& out);
-/// Joins the lists of all machines.
+/// Joins the lists of all machines: the results of one instrument and certificate become one entry,
+/// sorted by day and campaign.
 std::vector<reports::InstrumentUse> joined(
     const std::vector<const std::vector<reports::InstrumentUse>*>& of_machines);
 
@@ -27,8 +28,9 @@ struct ComparedValue {
   std::string axis, quantity;
   Quantity unit = Quantity::deviation;
   double value = 0.0, u = 0.0;
-  std::string conditions{};        ///< JSON: conditions that must be equal, without the travel
-  std::optional<double> travel{};  ///< from the first target to the last, m or rad
+  std::string conditions{};        ///< conditions that must be equal for a comparison, as JSON
+                                   ///< without the travel
+  std::optional<double> travel{};  ///< distance from the first target to the last, m or rad
   bool rotary = false;
 };
 std::vector<ComparedValue> compared_of(const AssessedMachine& machine,

@@ -113,8 +113,8 @@ bool is_later(const config::Acknowledgement& a, const WorkItem& l) {
 /// Marks a line as known if a person has acknowledged it until this date or later. It stays new if
 /// its change happened after the acknowledgement, or if its value has moved by more than U since:
 /// from the value that the acknowledgement states, otherwise from the last one before its day.
-/// Other values in the line are known if they were open on that day and have not moved; the rest is
-/// returned as a new line.
+/// Other values in the line are known if they were open on that day and have not moved; if some are
+/// not known, they are returned as a new line.
 std::optional<WorkItem> acknowledge(WorkItem& l, const AssessedMachine& m,
                                     const store::StoredLogs& logs, const std::string& date) {
   if (l.state == WorkItem::State::fixed) return std::nullopt;
@@ -196,7 +196,8 @@ Standing standing_of(const AssessedMachine& m, const reports::MachineHistory& de
   s.until = acknowledgements_of(described.id, logs).empty()
                 ? same_until(m, described, s.lines, last_run.date)
                 : last_run.date;
-  for (std::size_t i = 0; i < s.lines.size(); ++i)  // unacknowledged rests are appended
+  for (std::size_t i = 0; i < s.lines.size(); ++i)  // lines of values that are not acknowledged are
+                                                    // appended
     if (auto rest = acknowledge(s.lines[i], m, logs, last_run.date)) s.lines.push_back(*rest);
   s.months = months_of(m, described);
   s.instruments = instruments_of(m, out);

@@ -17,17 +17,17 @@ namespace nonio::assessment {
 /// Result of the assessment of one machine: everything that the lists over all machines need.
 struct Standing {
   std::string name;               ///< name of the machine, or id of a campaign without a machine
-  bool alone = false;             ///< a campaign without a machine
-  reports::MachineHistory shown;  ///< description without series
+  bool alone = false;             ///< whether this is a campaign without a machine
+  reports::MachineHistory shown;  ///< description of the machine without its series
   std::vector<ComparedValue> compared{};
   std::vector<reports::WorkItem> lines{};
   std::vector<reports::MonthOfMachine> months{};
   std::vector<reports::InstrumentUse> instruments{};
   bool has_results = false;
-  bool judged = false;     ///< some result was compared with a limit
-  bool conforms = false;   ///< all values that were judged last conform
-  bool attention = false;  ///< the last campaign has a finding with severity warning
-  bool reversal = false;   ///< and at least one such finding is about reversal
+  bool judged = false;     ///< whether some result was compared with a limit
+  bool conforms = false;   ///< whether all values that were judged last conform
+  bool attention = false;  ///< whether the last campaign has a finding with severity warning
+  bool reversal = false;   ///< whether such a finding of the last campaign is about reversal
   IntervalFacts interval{};
   std::string until{};  ///< last date of a run for which the lines are the same
 };

@@ -9,17 +9,17 @@
 
 namespace nonio::assessment {
 
-/// Returns the standard uncertainty of scale changes between campaigns that need no cause, in um/mm
-/// or arcsec/deg.
+/// Returns the standard uncertainty of the change of scale that normally occurs between campaigns
+/// without a particular cause, in um/mm or arcsec/deg.
 double usual_scale_change(bool rotary);
 /// Returns the name used in ids of findings, for example wrong-sign or in-addition.
 const char* loading_name(statistics::Loading loading);
 /// Smallest standard uncertainty of a difference between two campaigns, um or arcsec.
 inline constexpr double change_resolution = 0.1;
 
-/// Returns the changes between two neighbouring campaigns of an axis that are tables, for campaigns
-/// whose results.json has `control_tables`. Known tables are those that earlier campaigns wrote and
-/// those in the record of the machine.
+/// Returns the changes between two neighbouring campaigns of an axis that were caused by loading or
+/// removing a table, for campaigns whose results.json has `control_tables`. Known tables are those
+/// that earlier campaigns wrote and those in the record of the machine.
 std::vector<reports::TableLoaded> tables_loaded(const AssessedMachine& machine);
 /// Returns pairs of neighbouring campaigns of which one does not state the active table.
 std::vector<reports::TableLoaded> tables_unstated(const AssessedMachine& machine);

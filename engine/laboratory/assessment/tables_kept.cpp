@@ -15,7 +15,8 @@ using store::StoredResult;
 
 namespace {
 
-constexpr double scatter_allowed = 2.0;  // times s, added to the uncertainty of the prediction
+constexpr double scatter_allowed = 2.0;  // multiple of s that is added to the uncertainty of the
+                                         // prediction
 constexpr double not_good_below = 0.01;  // significance level over all results of a table
 
 class OfAxis {
@@ -52,8 +53,8 @@ class OfAxis {
     return left.size() == 1;
   }
 
-  /// Returns the campaign of the last table that was predicted before these readings or with them;
-  /// none if it is ambiguous or too old.
+  /// Returns the campaign of the last table whose effect was predicted before these readings or
+  /// with them; none if it is ambiguous or too old.
   std::optional<std::size_t> last_promised(std::size_t left) const {
     std::optional<std::size_t> out;
     std::set<std::string> measurements;
@@ -110,7 +111,7 @@ class OfAxis {
           point(*found), point(*left), promised.value - found->value, scatter_allowed * s);
       if (!check) continue;
       ++asked;
-      const double zeta = check->beside.zeta();  // below 0: better than predicted
+      const double zeta = check->beside.zeta();  // below 0: the result is better than predicted
       if (zeta > 0.0) p = std::min(p, check->beside.p);
       if (out && zeta <= most) continue;
       most = zeta;

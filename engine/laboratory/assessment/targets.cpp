@@ -67,8 +67,8 @@ std::string name_in(const std::string& quantity) {
   return dot == std::string::npos ? quantity : quantity.substr(dot + 1);
 }
 
-/// Degree of the polynomial whose coefficient this quantity is; none for quantities that are not
-/// polynomial coefficients.
+/// Returns the degree of the polynomial whose coefficient this quantity is; none for quantities
+/// that are not polynomial coefficients.
 std::optional<std::size_t> degree_of(const std::string& kind) {
   if (kind == "B_mean") return 0;
   if (kind == "scale") return 1;
@@ -77,8 +77,8 @@ std::optional<std::size_t> degree_of(const std::string& kind) {
   return std::nullopt;
 }
 
-/// Index of a quantity's sinusoid in the fit; none if it is not a sinusoid. The first two are those
-/// of one turn, the last two the cyclic error of the drive.
+/// Returns the index of a quantity's sinusoid in the fit; none if it is not a sinusoid. The first
+/// two sinusoids are those of one turn, the last two the cyclic error of the drive.
 std::optional<std::size_t> sinusoid_of(const std::string& kind, std::size_t count) {
   if (count < 2) return std::nullopt;
   for (const auto& [name, at] :
@@ -88,8 +88,8 @@ std::optional<std::size_t> sinusoid_of(const std::string& kind, std::size_t coun
   return std::nullopt;
 }
 
-/// Factor from the coefficient of P1 (um over a stretch in mm) to the scale in um/m; 1 for other
-/// quantities.
+/// Returns the factor from the coefficient of P1 (um over a stretch in mm) to the scale in um/m;
+/// returns 1 for other quantities.
 double factor_of(const std::string& kind, const kernel::Stretch& over) {
   constexpr double mm_per_m = 1000.0;
   return kind == "scale" ? 2.0 * mm_per_m / over.length() : 1.0;
@@ -112,8 +112,8 @@ double of_squares(const std::vector<double>& v) {
 }
 
 /// Returns half the variance of the difference between the residuals of two fits of equal kind,
-/// minus the part of the readings. `divisor`: of the sum of squares; the median of chi-square over
-/// its mean if a median is taken over many, otherwise 1.
+/// minus the part of the readings. The sum of squares is divided by `divisor`: the ratio of median
+/// to mean of chi-square if a median of many differences is taken, otherwise 1.
 double half_difference(const StoredFit& a, const StoredFit& b, double divisor) {
   std::vector<double> d(a.residuals.size());
   std::transform(a.residuals.begin(), a.residuals.end(), b.residuals.begin(), d.begin(),
@@ -130,10 +130,10 @@ double of_few(double variance, double dof) {
   return variance * dof / z2 * std::expm1(z2 / dof);
 }
 
-/// Variance at each point that comes from the choice of targets, at most `beyond`: half the
-/// variance of the differences between successive points of equal kind. The estimate is the mean of
-/// the median over all pairs, which a change of the machine does not affect, and of the values of
-/// the two neighbours. `beyond` is returned for groups of fewer than four points.
+/// Returns the variance at each point that comes from the choice of targets, at most `beyond`: half
+/// the variance of the differences between successive points of equal kind. The estimate is the
+/// mean of the median over all pairs, which a change of the machine does not affect, and of the
+/// values of the two neighbours. `beyond` is returned for groups of fewer than four points.
 std::vector<double> drawn_anew(const std::vector<PointTargets>& targets, double beyond) {
   constexpr std::size_t fewest = 4;
   std::map<Kind, std::vector<std::size_t>> kinds;

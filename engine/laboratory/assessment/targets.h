@@ -16,7 +16,7 @@ namespace nonio::assessment {
 /// A fit to values at the targets of a campaign, in the units of the store.
 struct StoredFit {
   double beyond = 0.0, dof = 0.0;          ///< variance about the fit in excess of that of the
-                                           ///< readings
+                                           ///< readings, and degrees of freedom of the fit
   nonio::statistics::FittedCurve curve{};  ///< without coefficients: its quantities do not refer to
                                            ///< the ends of the targets
   /// Coefficients of cosine and sine of each sinusoid in addition to the curve.
@@ -26,9 +26,10 @@ struct StoredFit {
 
 /// Data of one measurement in the store (results.json, `other_targets`).
 struct StoredTargets {
-  std::string digest;  ///< equal for equal targets
+  std::string digest;  ///< digest of the targets; equal for equal targets
   nonio::statistics::Stretch span{};
-  std::vector<double> other_variance, share;  ///< for each quantity, see `PointTargets`
+  std::vector<double> other_variance, share;  ///< one value for each quantity, with the meaning of
+                                              ///< the members of `PointTargets`
   StoredFit mean{}, reversal{};
 };
 

@@ -24,18 +24,18 @@ struct Difference {
 Expected<Difference> difference(const Point& before, const Point& after, double expected = 0.0,
                                 double u_expected = 0.0);
 
-/// Whether a table achieved its prediction: as-left minus as-found compared with the predicted
-/// step.
+/// Result of comparing the step from as found to as left with the step that was predicted for a
+/// table.
 struct TableCheck {
   Difference beside;  ///< difference from the predicted step
   /// Fraction of the error as found that the table compensated: 1 all, 0 none, below 0: made worse.
   /// None if the error as found is within twice its uncertainty.
   std::optional<double> taken{};
-  bool as_promised = true;  ///< the difference is not significant at 1 %
+  bool as_promised = true;  ///< whether the difference is not significant at 1 %
 };
 
-/// `promised`: predicted as-left minus as-found; `u_promised`: standard uncertainty from rounding
-/// and from interpolation between the points of the table.
+/// Compares as-left minus as-found with the predicted step `promised`. `u_promised` is its standard
+/// uncertainty from rounding and from interpolation between the points of the table.
 Expected<TableCheck> check_table(const Point& as_found, const Point& as_left, double promised,
                                  double u_promised = 0.0);
 

@@ -14,8 +14,10 @@ enum class Answer { keep, watch, act, cannot_say };
 
 struct Forecast {
   double time = 0.0;
-  double value = 0.0, u = 0.0;  ///< state of the machine
-  double u_reading = 0.0;       ///< uncertainty of the next campaign's reading
+  double value = 0.0, u = 0.0;  ///< predicted value of the machine without the scatter of a
+                                ///< campaign, and its standard uncertainty
+  double u_reading = 0.0;       ///< standard uncertainty of the value that the next campaign will
+                                ///< measure
   double p_out = 0.0, p_read_out = 0.0;
   std::optional<double> leaves{};  ///< earliest time at which the 95 % bound meets the limit
   Answer answer = Answer::cannot_say;
@@ -28,11 +30,12 @@ struct Beyond {
 };
 
 /// Forecasts a series at `time` (years). The state is x' b with u^2 = x' C x (plus walk dt).
-/// `limit` applies to the absolute value plus `beyond`. Answers by P(out): below 5 % keep, up to 50
-/// % watch, above 50 % or if the last point is out already, act. The answer is cannot_say for fewer
-/// than three points, or beyond half of their span (points on one day count once). Source: ISO
-/// 14253-1 and ILAC-G8 for the three answers (general knowledge; the bounds are ours). `u_new`: u
-/// of the next campaign; none: that of the last one.
+/// `limit` applies to the absolute value plus `beyond`. The answer depends on P(out): below 5 %
+/// keep, up to 50 % watch, above 50 % act; it is act in any case if the last point is out already.
+/// Otherwise it is cannot_say for fewer than three points, or later than half of their span after
+/// the last one. `u_new` is the u of the next campaign; none: that of the last one. Source: ISO
+/// 14253-1 and ILAC-G8 for the three answers (general knowledge; the bounds of P are chosen for
+/// Nonio).
 Forecast forecast(const Series&, const Trend&, double time, std::optional<double> limit,
                   std::optional<double> u_new = std::nullopt, Beyond beyond = {});
 

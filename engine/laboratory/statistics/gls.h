@@ -34,10 +34,11 @@ struct Gls {
   double chi2 = 0.0, dof = 0.0;
 };
 
-/// Generalised least squares; none if the points cannot separate the columns.
+/// Fits the columns by generalised least squares. Returns none if the points cannot separate the
+/// columns.
 std::optional<Gls> gls(const Whitened&, const MatrixXd& whitened_columns);
 
-double normal_two_sided(double z);  ///< P(|N| > |z|)
-double normal_upper(double z);      ///< P(N > z)
+double normal_two_sided(double z);  ///< returns P(|N| > |z|) for a standard normal N
+double normal_upper(double z);      ///< returns P(N > z) for a standard normal N
 
 }  // namespace nonio::statistics

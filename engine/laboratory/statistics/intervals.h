@@ -16,7 +16,8 @@ namespace nonio::statistics {
 struct Proposal {
   enum class Method { staircase, control_chart, fleet };
   Method method = Method::staircase;
-  std::optional<double> months{};  ///< none: the history does not determine an interval
+  std::optional<double> months{};  ///< proposed interval; none: the history does not determine an
+                                   ///< interval
   /// Reason as id of a word, and the numbers in it, by name.
   std::string why{};
   std::vector<std::pair<std::string, double>> numbers{};
@@ -26,16 +27,16 @@ struct Proposal {
 enum class Found { conforms, undecided, fails };
 
 /// Halves the interval after a failure, and extends it after a success so that both balance at the
-/// target: (1 + a)^R (1/2)^(1-R) = 1, so 1 + a = 2^((1-R)/R) (3.7 % at 95 %). An indeterminate
-/// result leaves it unchanged. `why`: "passed", "failed"; no interval for "no-interval",
-/// "no-target".
+/// target: (1 + a)^R (1/2)^(1-R) = 1, so 1 + a = 2^((1-R)/R) (3.7 % at 95 %), at most 2. An
+/// indeterminate result leaves the interval unchanged. `why` is "passed", "failed" or "undecided";
+/// no interval is proposed for "no-interval" and "no-target".
 Proposal staircase(double months, Found, double target = 0.95);
 
 /// Proposes the day on which the one-sided 95 % bound of the forecast meets the limit
 /// ("meets-limit"), but not later than half the observed span, which limits forecasts
-/// ("as-far-as-seen"). No interval: "few-campaigns" (fewer than three), "out-already",
-/// "change-not-explained" (fewer than two campaigns after the last significant change, which
-/// follows the point `changed_after`).
+/// ("as-far-as-seen"). No interval is proposed for "few-campaigns" (fewer than three, or all on one
+/// day), "out-already", and "change-not-explained" (fewer than two campaigns after the last
+/// significant change, which follows the point `changed_after`).
 Proposal control_chart(const Series&, const Trend&, double limit,
                        std::optional<std::size_t> changed_after = {}, Beyond beyond = {});
 

@@ -14,8 +14,8 @@ constexpr double median_of_chi2 = 0.45493642311957;
 constexpr std::size_t fewest_ratios = 20;
 
 /// Returns the squared distance of a point from the line through its neighbours, divided by its
-/// variance; level, slope and common parts cancel. None if an event is declared at the point, or if
-/// the neighbours are on one day.
+/// variance; level, slope and common parts cancel. None if an event other than a change of the
+/// instrument is declared at the point, or if the neighbours are on one day.
 std::optional<double> off_line(const Series& s, std::size_t i) {
   for (const Declared& d : s.declared)
     if (d.kind != Declared::Kind::instrument && (d.after == i || d.after + 1 == i))

@@ -23,7 +23,7 @@ struct Common {
 struct Point {
   double time = 0.0;
   double value = 0.0;
-  double u = 0.0;  ///< without the common parts
+  double u = 0.0;  ///< standard uncertainty without the common parts
   std::vector<Common> common{};
 };
 
@@ -39,7 +39,7 @@ struct Declared {
 struct Series {
   std::vector<Point> points;
   std::vector<Declared> declared{};
-  std::uint64_t seed = 1;  ///< of simulations; the same for the same campaigns
+  std::uint64_t seed = 1;  ///< seed of the simulations; the same campaigns give the same seed
   /// Factor on all `u`, because the campaigns of a laboratory may scatter more than their `u`
   /// states (excess_of_ratios).
   double excess = 1.0;
@@ -52,8 +52,8 @@ struct Series {
   bool own_slope = false;
   /// Significance level of a drift.
   double drift_below = 0.01;
-  /// Points that are followed by a step without a declared event, if they are known; then no others
-  /// are searched.
+  /// Points that are followed by a step without a declared event, if they are known; no further
+  /// steps are searched then.
   std::optional<std::vector<std::size_t>> steps{};
 };
 
@@ -62,7 +62,8 @@ struct Series {
 Expected<void> check(const Series&);
 
 /// Scatter at one point: d^2/u(d)^2, where d is the point minus the line through its neighbours.
-/// Levels, slopes and common parts cancel. Points next to a declared event are left out.
+/// Levels, slopes and common parts cancel. Points next to a declared event are left out, unless the
+/// event is a change of the instrument.
 struct Scatter {
   std::size_t point = 0;
   double ratio = 0.0;
@@ -83,8 +84,9 @@ std::optional<Slope> slope_with_steps(const Series&);
 
 /// Returns the standard deviation sigma of the true slopes of many series, per year: sigma solves
 /// mean of min(b^2/(sigma^2 + u^2), 9) = 0.995, its value for a normal variable, so that a few
-/// unusual series hardly affect it. 0 if chance alone makes such slopes in one laboratory of ten,
-/// and for fewer than three. Source: method of moments for random effects (R. C. Paule, J. Mandel
+/// unusual series hardly affect it. Returns 0 for fewer than three slopes, and if the mean for
+/// sigma = 0 exceeds 0.995 by less than 1.88 of its standard deviations, because chance alone may
+/// then explain the slopes. Source: method of moments for random effects (R. C. Paule, J. Mandel
 /// 1982, general knowledge), trimmed.
 double spread_of_slopes(const std::vector<Slope>&);
 

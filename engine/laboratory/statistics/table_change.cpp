@@ -10,17 +10,17 @@
 namespace nonio::statistics {
 namespace {
 
-constexpr double least_p = 1e-3;  // smallest p of a rest that counts as noise
-// Largest rms of a rest that counts as noise, as fraction of the change.
+constexpr double least_p = 1e-3;  // smallest p at which the unexplained part counts as noise
+// Largest rms of the unexplained part that counts as noise, as a fraction of the change.
 constexpr double most_noise = 0.4;
-// If the shape of the table is significant, a rest that is not noise is accepted up to this
-// fraction of the rms of h (table_change.h).
+// If the shape of the table is significant, an unexplained part that is not noise is accepted up to
+// this fraction of the rms of h (table_change.h).
 constexpr double most_left = 0.1;
 // Required difference of chi2 from a change without a table.
 constexpr double clear = 25.0;
-constexpr double distinct = 9.0;          // required difference of chi2 from another candidate
+constexpr double distinct = 9.0;          // required difference of chi2 from any other candidate
 constexpr double slope_seen = 8.0;        // smallest slope of h in units of u_slope, if h is a line
-constexpr int most_points = 5;            // largest offset
+constexpr int most_points = 5;            // largest offset of a table that is recognised, in points
 constexpr std::size_t fewest_places = 4;  // smallest number of positions that both campaigns have
 
 /// Interpolated value of a curve, and the variance of the interpolation.
@@ -103,11 +103,11 @@ CurveChange change_of(const MeasuredCurve& before, const MeasuredCurve& after, d
   return d;
 }
 
-/// Rest after the weighted least-squares fit of a constant for each direction and a slope.
+/// Residuals after the weighted least-squares fit of a constant for each direction and a slope.
 struct Rest {
   double chi2 = 0.0;
-  double rms = 0.0;    ///< after removal of constants and slope
-  double slope = 0.0;  ///< from a fit with a free slope
+  double rms = 0.0;    ///< rms of the residuals after removal of constants and slope
+  double slope = 0.0;  ///< slope, from a fit without a prior of the slope
   double whole = 0.0;  ///< rms after removal of the constants only
 };
 
@@ -130,8 +130,8 @@ Three solved(std::array<Three, 3> a, Three b) {
   return x;
 }
 
-/// Fits both constants and the slope. `u_slope` is the prior of the slope: 0: fixed at 0; infinite:
-/// free.
+/// Fits both constants and the slope. `u_slope` is the standard uncertainty of the slope about 0
+/// before the fit: 0 fixes the slope at 0, infinity leaves it free.
 Three fitted(const CurveChange& d, const std::vector<double>& r, double u_slope) {
   std::array<Three, 3> a{};
   Three b{};
@@ -278,7 +278,7 @@ class Recognizing {
       c.h.push_back(of_t * t[i] + of_s * s[i]);
       r[i] -= c.h[i];
     }
-    // The candidate changes nothing.
+    // A candidate whose change does not exceed the noise is left out.
     if (rms_of(d_, c.h, 0.0) < 2.0 * std::sqrt(mean_variance())) return;
     c.chi2 = chi2_of(d_, r, u_slope_);
     all_.push_back(std::move(c));
@@ -348,7 +348,8 @@ std::optional<CurveChange> comparable(const MeasuredCurve& before, const Measure
   return d;
 }
 
-/// Makes all candidates: every known table on every table that may have been active.
+/// Makes all candidates: each combination of a known table with a table that may have been active
+/// before.
 Recognizing with_bases(const CurveChange& d, const std::optional<TableCurve>& active,
                        const std::vector<TableCurve>& known, double u_slope) {
   Recognizing all(d, known, u_slope);

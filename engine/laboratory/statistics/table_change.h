@@ -16,8 +16,8 @@ struct MeasuredCurve {
                    ///< common; 0: unknown
 };
 
-/// The correction of a table: linear between its points, constant outside; no points: no
-/// correction.
+/// Correction of a table: linear between its points, constant outside them, and zero if it has no
+/// points.
 struct TableCurve {
   std::vector<double> position{}, plus{}, minus{};
   bool empty() const { return position.empty(); }
@@ -32,10 +32,12 @@ enum class Loading { loaded, removed, wrong_sign, twice, in_addition, offset };
 struct TableChange {
   Loading loading = Loading::loaded;
   std::size_t table = 0;  ///< index into the known tables; not used if `removed`
-  int points = 0;         ///< if `offset`: number of points, positive towards larger positions
+  int points = 0;         ///< number of points of an `offset`, positive towards larger positions
   double rms = 0.0;       ///< rms of the change after removal of a constant for each direction
-  double left = 0.0;      ///< the same for the rest that the table does not explain
-  double p = 0.0;         ///< probability of a rest at least this large by chance
+  double left = 0.0;      ///< rms of the part of the change that the table does not explain,
+                          ///< computed in the same way
+  double p = 0.0;         ///< probability that an unexplained part at least this large occurs by
+                          ///< chance
 };
 
 /// Recognises a change as a table. The model is
@@ -51,20 +53,23 @@ struct TableChange {
 ///   T         loaded in addition to S
 ///   T(x - k spacings) - S   loaded with an offset of k points, |k| <= 5
 ///
-/// The best h by chi2 is returned if the rest is noise (p > 1e-3, and less than 0.4 of the change)
-/// or a tenth of h, if no change, a change of scale or of reversal does not explain it (chi2 larger
-/// by 25), and if no other hypothesis is as good (chi2 larger by 9). An offset that cannot be
-/// distinguished from none is `loaded`. `resolution`: smallest standard uncertainty of a
-/// difference. `active`: none: unknown; then S is nothing or any of the known tables. Source: least
-/// squares; limits by simulation (tests/property/loaded_table_test.py).
+/// The best h by chi2 is returned if three conditions are met. First, the part of the change that h
+/// does not explain is noise (p > 1e-3, and less than 0.4 of the change) or less than a tenth of h.
+/// Second, neither no change nor a change of scale or of reversal explains the change as well (chi2
+/// larger by 25). Third, no other hypothesis explains it as well (chi2 larger by 9). An offset that
+/// cannot be distinguished from none is `loaded`. `resolution` is the smallest standard uncertainty
+/// of a difference. If `active` is none, the active table is unknown; S is then nothing or any of
+/// the known tables. Source: least squares; limits by simulation
+/// (tests/property/loaded_table_test.py).
 std::optional<TableChange> recognize(const MeasuredCurve& before, const MeasuredCurve& after,
                                      const std::optional<TableCurve>& active,
                                      const std::vector<TableCurve>& known, double u_slope,
                                      double resolution);
 
-/// Returns the known table that leaves the smallest rest if it was loaded, however large the rest
-/// is, for changes that `recognize` does not recognise. None if no table changes the axis at these
-/// positions. `p` is NaN.
+/// Returns the known table that would leave the smallest part of the change unexplained if it was
+/// loaded, however large that part is, for changes that `recognize` does not recognise. None if no
+/// table changes the axis at these positions, or if both campaigns have too few positions in
+/// common. `p` is NaN.
 std::optional<TableChange> nearest(const MeasuredCurve& before, const MeasuredCurve& after,
                                    const std::optional<TableCurve>& active,
                                    const std::vector<TableCurve>& known, double resolution);

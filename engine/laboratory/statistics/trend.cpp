@@ -16,7 +16,7 @@ namespace {
 
 constexpr int most_steps = 3;
 constexpr int draws = 10000, batch = 100;
-constexpr double sharp = 1e-3;  // below this, Bonferroni's bound is nearly exact
+constexpr double sharp = 1e-3;  // p below which Bonferroni's bound is nearly exact
 // Difference of chi2 below which a line and a step cannot be separated.
 constexpr double inseparable = 4;
 constexpr std::size_t fewest_for_walk = 8;
@@ -25,7 +25,7 @@ constexpr std::size_t fewest_for_walk = 8;
 struct Shape {
   std::vector<Change> changes;
   bool drifts = false;
-  bool free = false;  ///< the slope is fitted without its prior
+  bool free = false;  ///< whether the slope is fitted without its prior
 };
 
 /// Computes the columns of the model, with one row per point.
@@ -186,7 +186,7 @@ class Trending {
     return beyond > expected + 5.0 * std::sqrt(expected);
   }
 
-  /// Adds the most significant step or drift; false if none is significant.
+  /// Adds the most significant step or drift. Returns false if none is significant.
   bool improve() {
     const auto base = fit(shape_);
     if (!base || !(base->dof > 0.0)) return false;
@@ -322,7 +322,8 @@ class Trending {
   /// likelier than the steps at their penalty. At the border q = 0 the likelihood ratio is half a
   /// chi-square with 1 degree of freedom.
   void walk(Trend& out) const {
-    constexpr double at_border = 5.412;  // 99 % quantile of this distribution
+    constexpr double at_border = 5.412;  // 99 % quantile of half a chi-square with 1 degree of
+                                         // freedom
     const bool restless = math::chi2_upper(out.chi2, out.dof) < named_below;
     if (s_.steps && !s_.steps->empty()) return;
     if (s_.points.size() < fewest_for_walk || static_cast<int>(shape_.changes.size()) > steps_ ||
@@ -339,8 +340,8 @@ class Trending {
     for (Segment& s : out.segments) s.last = walk.state, s.u_last = std::sqrt(walk.variance);
   }
 
-  /// Fall of chi2 from a constant level to `out`, minus the penalties: 3 ln n per step and 2 for a
-  /// slope.
+  /// Returns the decrease of chi2 from a constant level to `out`, minus the penalties: 3 ln n per
+  /// step and 2 for a slope.
   double gained(const Trend& out) const {
     const auto level = fit(Shape{});
     const double price = 3.0 * std::log(static_cast<double>(s_.points.size()));

@@ -35,10 +35,11 @@ namespace nonio::statistics {
 enum class Model { none, level, drift, step, walk };
 
 struct Segment {
-  std::size_t from = 0, to = 0;        ///< first and last point, both included
+  std::size_t from = 0, to = 0;        ///< indices of the first and the last point, both included
   double first = 0.0, last = 0.0;      ///< values of the model at these points
-  double u_first = 0.0, u_last = 0.0;  ///< including the common parts
-  double slope = 0.0, u_slope = 0.0;   ///< per year
+  double u_first = 0.0, u_last = 0.0;  ///< standard uncertainties of these values, including the
+                                       ///< common parts
+  double slope = 0.0, u_slope = 0.0;   ///< slope and its standard uncertainty, per year
 };
 
 struct Change {
@@ -53,11 +54,12 @@ struct Change {
 struct Trend {
   Model model = Model::none;
   std::vector<Segment> segments;
-  std::vector<Change> changes;   ///< sorted by time
-  double chi2 = 0.0, dof = 0.0;  ///< of the fit with the prior of the slope
+  std::vector<Change> changes;   ///< changes of the series, sorted by time
+  double chi2 = 0.0, dof = 0.0;  ///< chi2 and degrees of freedom of the fit with the prior of the
+                                 ///< slope
   /// Size of a step at the last possible place that would be detected with a probability of 80 %.
   std::optional<double> smallest_change{};
-  bool line_or_step = false;  ///< these points cannot distinguish a drift from a step
+  bool line_or_step = false;  ///< whether these points cannot distinguish a drift from a step
 
   // For extrapolation (forecast.h): the model at a time after the last point is coefficients . (1,
   // 1 for each change, time).

@@ -10,8 +10,9 @@
 namespace nonio::statistics {
 
 struct Walk {
-  double q = 0.0;                      ///< variance per year
-  double log_likelihood = 0.0;         ///< diffuse: over the points after the first
+  double q = 0.0;                      ///< variance of the level per year
+  double log_likelihood = 0.0;         ///< logarithm of the diffuse likelihood, over the points
+                                       ///< after the first
   double state = 0.0, variance = 0.0;  ///< level at the last point, and its variance
 };
 

@@ -182,7 +182,7 @@ class EntryReader {
   }
 
   /// Reads the parts of the uncertainty budget. The parts of the instrument and of the expansion
-  /// are common to several campaigns; the rest is new in each campaign.
+  /// are common to several campaigns; all other parts are new in each campaign.
   void read_parts(dom::object budget, std::string_view name, ResultRow& row) {
     dom::object results, one, parts;
     if (budget["results"].get(results) != simdjson::SUCCESS ||
@@ -228,7 +228,8 @@ class EntryReader {
 
   dom::object json_;
   Entry entry_;
-  std::map<std::string, std::string> axes_, states_;  ///< by id of the measurement
+  std::map<std::string, std::string> axes_, states_;  ///< axis and state of each measurement, by
+                                                      ///< the measurement's id
 };
 
 /// Writes fields with their lengths, so that two different entries never give the same text.

@@ -26,9 +26,9 @@ struct CommonPart {
 /// One result of a campaign, in the unit of results.json.
 struct ResultRow {
   std::string measurement, axis, quantity;
-  std::string source;  ///< "followed", or the name of the analysis
+  std::string source;  ///< origin of the result: "followed", or the name of the analysis
   std::string unit;
-  std::string state;  ///< as-found, as-left, check, predicted
+  std::string state;  ///< state of the machine: as-found, as-left, check, predicted
   double value = 0.0;
   std::optional<double> u_repeat{};       ///< standard uncertainty without the common parts
   std::optional<double> expanded{}, k{};  ///< expanded uncertainty U and its k
@@ -79,7 +79,8 @@ struct CertificateRow {
 /// One evaluation of one campaign, as stored in the history.
 struct Entry {
   std::string campaign, campaign_sha256, day, customer, purpose, status, message;
-  std::string place, control;  ///< of the machine, as in this evaluation
+  std::string place, control;  ///< location and control of the machine, as stated in this
+                               ///< evaluation
   MachineAsStated machine;
   InstrumentAsStated instrument;
   std::vector<ResultRow> results;  ///< results with a covariance first

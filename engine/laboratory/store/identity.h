@@ -14,7 +14,7 @@ std::string machine_of(const MachineAsStated& machine);
 
 /// Two names that may denote one machine. They are joined only if site.toml states an alias.
 struct Spelling {
-  std::string one, other;  ///< `one` is the name that more campaigns state
+  std::string one, other;  ///< names of two machines; `one` is the name that more campaigns state
   std::string why;         ///< reason in words
 };
 

@@ -14,7 +14,8 @@ namespace nonio::store {
 /// Location of the store of an output folder, kept in OUT/.nonio/database, so that reading the
 /// output folder does not need site.toml.
 struct StorePlace {
-  std::optional<storage::Server> server{};  ///< none: OUT/history.sqlite
+  std::optional<storage::Server> server{};  ///< server that contains the store; none: the store is
+                                            ///< OUT/history.sqlite
   std::string owner{};                      ///< random id, which the schema on the server contains
                                             ///< too
   std::int64_t evaluations = 0;  ///< number of evaluations in the server's store when it was last
@@ -30,12 +31,13 @@ struct StorePlace {
 /// server.
 Expected<StorePlace> place_of(const std::filesystem::path& out);
 
-/// Stores the location of site.toml. Returns true if the store was in another place before.
+/// Stores the location that site.toml states for the store. Returns true if the store was in
+/// another place before.
 Expected<bool> note_place(const std::filesystem::path& out,
                           const std::optional<storage::Server>& server);
 Expected<void> note_evaluations(const std::filesystem::path& out, std::int64_t count);
 
-/// Returns the file or the schema, for messages.
+/// Returns the name of the store for messages: its file or its schema.
 std::string name_of(const StorePlace& place, const std::filesystem::path& out);
 std::string store_in(const std::filesystem::path& out);
 

@@ -14,16 +14,19 @@ namespace nonio::store {
 struct Query {
   std::string machine{}, axis{}, quantity{}, source{};
   std::string from{}, to{};  ///< days of the campaigns, both included
-  bool superseded = false;   ///< include evaluations that were superseded
+  bool superseded = false;   ///< whether to include evaluations that were superseded
 };
 
 /// One result in the history of a machine.
 struct Point {
   std::string machine, axis, quantity, source, unit, day, state, purpose;
-  std::string value;  ///< in the fewest digits that restore the double, as all numbers here
+  std::string value;  ///< value in the fewest digits that restore the double, as for all numbers
+                      ///< here
   std::string u_repeat, u_common, expanded, k, tolerance, decision;
   std::string campaign, measurement, instrument, instrument_certificate, conditions;
-  std::string evaluation, superseded_by;  ///< sequence numbers; superseded_by empty: it is the last
+  std::string evaluation, superseded_by;  ///< sequence numbers of the evaluation and of the one
+                                          ///< that supersedes it; superseded_by is empty for the
+                                          ///< last evaluation
 };
 
 /// Returns the matching results by machine, axis, quantity, source and day, as found before as

@@ -32,7 +32,7 @@ struct StoredCampaign {
 struct StoredResult {
   std::size_t campaign = 0;  ///< index into StoredMachine::campaigns
   std::string measurement, axis, quantity;
-  std::string source{};  ///< "followed", or the name of the analysis
+  std::string source{};  ///< origin of the result: "followed", or the name of the analysis
   std::string unit, state, decision, conditions;
   bool followed = false;
   double value = 0.0;
@@ -55,15 +55,15 @@ struct LimitWithoutValue {
 struct StoredTables {
   std::size_t campaign = 0;  ///< index into StoredMachine::campaigns
   std::string measurement, axis;
-  std::string json{};  ///< the member of `control_tables` of results.json
+  std::string json{};  ///< JSON: the entry of `control_tables` of results.json
 };
 
 /// Everything that the store contains about one machine, without failed campaigns.
 struct StoredMachine {
-  std::vector<StoredCampaign> campaigns;  ///< by day, then by id
-  std::vector<StoredResult> results;      ///< sorted by campaign
-  std::vector<StoredResult> predicted{};  ///< predicted by tables; sorted by campaign
-  /// JSON: member `other_targets` of results.json.
+  std::vector<StoredCampaign> campaigns;  ///< campaigns sorted by day, then by id
+  std::vector<StoredResult> results;      ///< results sorted by campaign
+  std::vector<StoredResult> predicted{};  ///< results predicted by tables, sorted by campaign
+  /// Members `other_targets` of results.json, each as JSON.
   std::vector<std::string> other_targets{};
   /// Severity by finding id, for the last evaluation of each campaign.
   std::vector<std::map<std::string, std::string>> findings;
@@ -71,7 +71,7 @@ struct StoredMachine {
   /// the last evaluation of each campaign.
   std::vector<std::vector<FindingRow>> asked{};
   std::vector<LimitWithoutValue> without_value{};
-  std::vector<StoredTables> tables{};  ///< sorted by campaign
+  std::vector<StoredTables> tables{};  ///< tables sorted by campaign
   struct Later {
     std::string campaign, day;
   };
@@ -87,15 +87,15 @@ struct MachineState {
 
 /// An evaluation, superseded or not.
 struct StoredEvaluation {
-  std::string machine;  ///< aliases joined; empty: no machine
+  std::string machine;  ///< name of the machine, with aliases joined; empty: none
   std::string campaign, sha256, day;
   std::uint64_t run = 0;
-  bool counts = true;  ///< not superseded
+  bool counts = true;  ///< whether the evaluation is in force, that is, not superseded
 };
 
 /// The last evaluation of a campaign.
 struct CountedCampaign {
-  std::string machine;  ///< aliases joined; empty: no machine
+  std::string machine;  ///< name of the machine, with aliases joined; empty: none
   std::string campaign, day, sha256;
 };
 
@@ -104,8 +104,9 @@ struct StoredLogs {
   std::vector<config::Event> events;
   std::vector<config::Acknowledgement> acknowledged;
   std::vector<config::Forgotten> forgotten;
-  std::map<std::string, std::string> aliases;  ///< name of the machine by alias
-  std::map<std::string, int> due;              ///< interval in months by machine; "": all others
+  std::map<std::string, std::string> aliases;  ///< names of the machines, by alias
+  std::map<std::string, int> due;              ///< calibration interval in months, by machine; "":
+                                               ///< all others
   std::set<std::string> recorded{};            ///< machines that have records with events
 };
 

@@ -76,7 +76,7 @@ CREATE VIEW point AS
   LEFT JOIN machine_alias a ON a.alias = c.machine;
 )sql";
 
-/// The table with types that differ between the two.
+/// SQL of the table whose types differ between SQLite and PostgreSQL.
 constexpr const char* covariance_table = R"sql(
 CREATE TABLE covariance (
   evaluation BIGINT NOT NULL, first_item BIGINT NOT NULL, items BIGINT NOT NULL, upper_triangle BLOB NOT NULL,
@@ -88,7 +88,7 @@ CREATE TABLE covariance (
 constexpr const char* append_only[] = {
     "machine",    "campaign", "evaluation",          "result",        "common_part",
     "covariance", "finding",  "limit_without_value", "control_table", "certificate"};
-/// Child tables come before their parents.
+/// All tables, child tables before their parents.
 constexpr const char* all_tables[] = {
     "common_part",   "covariance",    "finding",     "limit_without_value",
     "control_table", "result",        "certificate", "evaluation",

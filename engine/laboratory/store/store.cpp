@@ -29,7 +29,7 @@ namespace {
 
 /// The evaluation of a campaign that a new one supersedes.
 struct Before {
-  std::int64_t evaluation = 0;  ///< 0: there is none
+  std::int64_t evaluation = 0;  ///< number of the evaluation; 0: there is none
   std::string campaign_sha256, version;
 };
 
@@ -214,8 +214,8 @@ class Filling {
     return {};
   }
 
-  /// Adds the new evaluations of these campaigns. False if the rows of the store contradict the
-  /// files.
+  /// Adds the new evaluations of these campaigns. Returns false if the rows of the store contradict
+  /// the files.
   Expected<bool> some(const std::vector<std::string>& campaigns) {
     const Place last = last_place();
     std::map<Place, std::pair<Known, Before>> added;
@@ -348,7 +348,8 @@ Expected<void> check_version(std::optional<std::int64_t> version, const std::str
               ": use the newer program, or remove it; it is made again");
 }
 
-/// Removes history.sqlite, which would become outdated now that the store is on a server.
+/// Removes history.sqlite, which would become outdated now that the store is on a server, and notes
+/// the number of evaluations in the server's store.
 Expected<void> leave_to_server(const fs::path& out, std::int64_t evaluations) {
   std::error_code error;
   const fs::path path = out / store_name;
@@ -419,7 +420,7 @@ Expected<std::optional<std::uint64_t>> known_run(const fs::path& out) {
 }
 
 Expected<void> forget_known_run(const fs::path& out) {
-  // Overwritten and not removed, because on some shares files cannot be removed.
+  // The note is overwritten and not removed, because on some shares files cannot be removed.
   return storage::publish(out / known_folder, {{known_name, "none\n"}});
 }
 

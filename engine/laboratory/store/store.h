@@ -38,17 +38,19 @@ Expected<Updated> update(const std::filesystem::path& out, bool behind,
                          std::vector<std::string> campaigns, const SiteRecords& records,
                          const std::function<void()>& alive);
 
-/// Rebuilds the store from the files of the output folder alone, in one transaction. It yields the
-/// same rows.
+/// Rebuilds the store from the files of the output folder alone, in one transaction. The rows are
+/// the same as those that `update` would write.
 Expected<Updated> rebuild(const std::filesystem::path& out, const SiteRecords& records,
                           const std::function<void()>& alive);
 
 /// Returns the run up to which the store contains all results, noted in OUT/.nonio. None while
 /// results may be newer than the store.
 Expected<std::optional<std::uint64_t>> known_run(const std::filesystem::path& out);
-/// Removes that note. Has to be called before the first result is stored.
+/// Removes the note of the run up to which the store is complete. Has to be called before the first
+/// result is stored.
 Expected<void> forget_known_run(const std::filesystem::path& out);
-/// Sets that note. Has to be called when the store contains all results of the run.
+/// Notes the run up to which the store contains all results. Has to be called when the store
+/// contains all results of the run.
 Expected<void> note_known_run(const std::filesystem::path& out, std::uint64_t run);
 
 }  // namespace nonio::store

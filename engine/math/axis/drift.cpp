@@ -100,8 +100,8 @@ Drift::Part part_of(const Runs& runs, double per_pass, double dof) {
   return part;
 }
 
-// Whether - came before + in a run: by the order of rows, if they contain the passes one after the
-// other; otherwise false.
+// Whether the pass in direction - precedes that in direction +, according to the order of the rows
+// of one run. False if the rows do not contain these passes one after the other.
 bool minus_first(const AxisTest& test) {
   std::uint32_t low[2] = {UINT32_MAX, UINT32_MAX}, high[2] = {0, 0};
   const std::uint32_t run = test.readings().empty() ? 0 : test.readings().front().run;
@@ -126,7 +126,8 @@ std::vector<double> lags(const AxisTest& test) {
 
 double square_of(double x) { return x * x; }
 
-// Fits B_i = const + share b_i, because drift within the passes adds b_i to the reversal.
+// Fits B_i = constant + fraction b_i, because drift within the passes adds b_i to the reversal.
+// Stores the fraction and its p in `drift`.
 void compare_with_reversal(const AxisTest& test, double variance, double dof, Drift& drift) {
   std::vector<double> B, b;
   double per = 0.0;

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double periods_asked = 2.0;
 constexpr double steps_of_period = 20.0;
-// docs/dev/constants.md, A20: an amplitude that may be noise alone is distributed according to
-// Rayleigh.
+// docs/dev/constants.md, A20: an amplitude below noise_alone times its u may be noise alone, which
+// is distributed according to Rayleigh. Its u is then multiplied by of_noise.
 constexpr double noise_alone = 3.0, of_noise = 1.25;
 // tolerance for the rounding of printed targets, as a fraction of a period
 constexpr double as_written = 1e-6;
@@ -37,7 +37,7 @@ std::pair<double, double> extent(std::span<const Pass> passes) {
 struct Design {
   Eigen::MatrixXd X;
   Eigen::VectorXd y;
-  std::vector<int> place;     ///< order index, ascending along each pass; passes are far apart
+  std::vector<int> place;     ///< index for path_noise, ascending; passes are far apart
   std::vector<double> phase;  ///< phase within the period, 0..1
 };
 

@@ -13,7 +13,7 @@
 //   A+, A-          = max(xm_i + k s_i) - min(xm_i - k s_i); A: over both directions together
 //
 // Source: ISO 230-2:2014 clause 2 (symbols; k = 2 since 1997); 1988 with k = 3: its forms 6 s and
-// 3 s. The text of the standards was not available; see docs/formulas.md for what each rests on.
+// 3 s. The text of the standards was not available; docs/formulas.md states the source of each.
 // Valid for: any number of targets; s, R and A need two approaches at every target.
 #include "nonio/math/iso230_2.h"
 

@@ -38,14 +38,17 @@ struct PassModel {
   double middle = 0.0;  ///< position with z = 0, m or rad
 };
 
-/// Fits offsets (and slopes) by least squares, alternating between targets and passes (exact after
-/// one round for equal runs). `left_out`: indices of readings that are omitted.
+/// Fits the means of the targets and the offsets of the passes, and with `slopes` also their
+/// slopes, by least squares. The fit alternates between targets and passes; for equal runs it is
+/// exact after one round. `left_out`: indices of readings that are omitted.
 PassModel fit_passes(const AxisTest& test, bool slopes, std::span<const std::size_t> left_out = {});
 
-/// Returns the index of the first reading of target i in direction + (minus = false) or -.
+/// Returns the index, in `readings()`, of the first reading of target i in direction -, if `minus`,
+/// else in direction +.
 std::size_t first_reading(const AxisTest& test, std::size_t i, bool minus);
 
-/// Returns the degrees of freedom of a + b, both estimated variances (Welch, Satterthwaite).
+/// Returns the effective degrees of freedom of a + b, the sum of two estimated variances with dof_a
+/// and dof_b degrees of freedom (Welch, Satterthwaite).
 double joined_dof(double a, double dof_a, double b, double dof_b);
 
 }  // namespace nonio::math

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Rules of positioning over the statistics of axis_statistics.h. Ranges unless +- precedes them.
+// Rules of positioning over the statistics of axis_statistics.h. Values are ranges, or half ranges
+// if +- precedes them.
 //
 //   iso    as iso230_2.cpp, with k of the edition
 //   upr    min(R+, R-), k = 2
@@ -10,13 +11,14 @@
 //             k s-) - min(xm+ - k s+, xm- - k s-)], which is R/2 of iso with the same k
 //          o: 0, or without offset a constant (offset_of)
 //   raw    R'+ = max_i of high - low in one direction; R': of both directions together at a target
-//          A'+ = largest less smallest reading of all targets in one direction; A': of all. B
+//          A'+ = largest minus smallest reading of all targets in one direction; A': of both
+//          directions; B as iso
 //   jis    accuracy      = max x - min x of the first pass in one direction
 //          +- repeatability = half of the largest high - low at the first, middle and last target
 //          lost_motion   = the largest |B_i| there
 //
 // Sources: docs/formulas.md, Rules of positioning; the texts of the standards were not available.
-// Confidence of every row: the table.
+// The table of rules states the confidence of each.
 #include "nonio/math/positioning.h"
 
 #include <algorithm>

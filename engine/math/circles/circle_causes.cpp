@@ -4,8 +4,9 @@
 // (ccw + cw)/2 and half difference h = (ccw - cw)/2, s contains the causes that do not depend on
 // the direction of travel, h those that do. The noise of s and h is estimated separately, because a
 // shape that the model does not contain is in s, equally in both directions, and is not noise of h.
-// Decisions of the analysis based on the fit: docs/dev/constants.md, A12, of shares;
-// docs/dev/constants.md, A13, of spikes; docs/dev/constants.md, A14, of what is not separable.
+// Decisions of the analysis that are based on the fit: docs/dev/constants.md, A12 (shares of the
+// causes); docs/dev/constants.md, A13 (spikes); docs/dev/constants.md, A14 (causes that cannot be
+// separated).
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -20,7 +21,7 @@ namespace {
 
 constexpr double bin_width = full_turn / 360.0;
 constexpr int bins_of_turn = 360;
-constexpr std::size_t at_least = 24;  // fewest bins; also twice the number of causes
+constexpr std::size_t at_least = 24;  // fewest bins; more if the number of causes requires it
 // smallest squared part of a column that is independent of the others
 constexpr double singular = 1e-10;
 
@@ -29,7 +30,7 @@ double sign_of(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
 
 double within_turn(double t) { return t - full_turn * std::floor(t / full_turn); }
 
-/// Means of one degree, by direction.
+/// Means of the readings within each degree, by direction of travel.
 struct Bins {
   struct Bin {
     double n = 0.0, deviation = 0.0, angle = 0.0;

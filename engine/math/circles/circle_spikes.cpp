@@ -18,7 +18,7 @@ namespace {
 constexpr double normal_quartile = 0.6745;  // median of |x|, in standard deviations
 constexpr double begins = 2.24, goes_on = 1.0, wide = 2.0 * full_turn / 360.0;
 
-// sum and count by angle since the reversal
+// Sum and number of residuals by angle since the reversal, rad.
 using Residuals = std::map<double, std::pair<double, double>>;
 
 /// Returns the residuals between the angles `from` and `to` after a reversal; several runs are
@@ -97,7 +97,7 @@ double scatter_of_windows(const CauseFit& fit) {
 
 /// Returns the remainder of the spikes of an axis after the omitted zone, for both directions and
 /// both reversals together: the difference of the mean residual in the next window and in the one
-/// two windows later, in u of such differences. The larger value of both axes.
+/// two windows later, in u of such differences. The result is the larger value of both axes.
 double left_over(std::span<const CircleReading> readings, const CircleModel& model,
                  const CauseFit& fit) {
   const double edge = model.leave_out, scatter = scatter_of_windows(fit);

@@ -14,7 +14,7 @@ inline constexpr double rounding = 1e-10;     // m or rad: below the scatter of 
 /// over +-1.
 inline constexpr double of_full_range = std::numbers::inv_sqrt3 / 2.0,
                         of_limit = std::numbers::inv_sqrt3;
-// m; above, a double does not resolve micrometres
+// largest accepted coordinate, m; adjacent doubles differ by about 0.1 nm there
 inline constexpr double largest_coordinate = 1e6;
 inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
 

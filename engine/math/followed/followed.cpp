@@ -87,7 +87,7 @@ void add_shapes(Following& work, const Axis* axis, Across across) {
   const bool turn = test.rotary && covers_a_turn(test);
   const Eigen::MatrixXd others = turn ? legendre_columns(test, 1) : legendre_columns(test, 4);
   if (turn) add_sinusoid(work, "turn", full_turn, others);
-  // across the axis, the slope is set-up
+  // the slope of deviations across the axis is an error of the set-up
   if (!test.rotary && across == Across::no) add_scale(work);
   if (!test.rotary) add_curve(work);
   const auto period = drive_period(axis, test.rotary);
@@ -100,8 +100,8 @@ void put_uncertainties(Following& work) {
   for (std::size_t i = 0; i < n; ++i) work.out.quantities[i].u = std::sqrt(C[i * n + i]);
 }
 
-/// Computes the data for comparisons with campaigns that have other targets. For a rotary axis,
-/// whose angles do not refer to its ends, only the sinusoids are fitted.
+/// Computes the data for comparisons with campaigns that have other targets, and stores them in
+/// `work.out`.
 void put_other_targets(Following& work) {
   OtherTargets to;
   for (const Followed& f : work.out.quantities) to.of_readings.push_back(f.u * f.u);

@@ -154,7 +154,8 @@ PassSums pass_sums(const AxisTest& test, const PassModel& m, const TargetWeights
   return out;
 }
 
-/// Covariance by single readings, if adjacent ones are independent.
+/// Returns the covariance of two linear functions due to single readings, if adjacent readings are
+/// independent.
 double covariance_of_singles(const AxisTest& test, const RunComponents& c, const TargetWeights& a,
                              const TargetWeights& b) {
   double sum = 0.0;
@@ -164,7 +165,8 @@ double covariance_of_singles(const AxisTest& test, const RunComponents& c, const
   return sum;
 }
 
-/// Covariance by single readings with correlation r^|k - l| within a pass.
+/// Returns the covariance of two linear functions due to single readings, if readings k and l of a
+/// pass have the correlation r^|k - l|.
 double covariance_of_neighbours(const RunComponents& c, const TargetWeights& a,
                                 const TargetWeights& b) {
   const PassModel& m = c.passes;

@@ -11,8 +11,8 @@ namespace nonio::math {
 
 /// Variance components of the scatter of a test (followed.h).
 struct RunComponents {
-  /// Variance over the runs: corrected for single readings, contribution of single readings, and as
-  /// estimated.
+  /// A variance over the runs: without the contribution of single readings (at least 0), this
+  /// contribution (`noise`), and the estimate that contains it (`whole`).
   struct Part {
     double variance = 0.0, noise = 0.0, whole = 0.0;
   };
@@ -24,16 +24,18 @@ struct RunComponents {
   /// Ratio of the residual degrees of freedom of a pass with the correlation `neighbours` to those
   /// without.
   double independent = 1.0;
-  /// offset that both passes of a run share, and half difference; m^2
+  /// Variance over the runs, m^2 or rad^2, of the offset that both passes of a run share (their
+  /// mean), and of half the difference of their offsets.
   Part shared_offset, own_offset;
-  /// slope, about the middle of the targets, that both passes of a run share, and half difference
+  /// Variance over the runs, (m/m)^2 or (rad/rad)^2, of the slope that both passes of a run share
+  /// (their mean), and of half the difference of their slopes.
   Part shared_slope, own_slope;
 };
 
 RunComponents run_components(const AxisTest&);
 
-/// Weights of a linear function of the readings: of each reading at target i in direction + at
-/// index 2 i, in direction - at 2 i + 1. All readings of a target and direction have equal weights.
+/// Weights of a linear function of the readings. Element 2 i is the weight of every reading at
+/// target i in direction +, element 2 i + 1 that in direction -.
 using TargetWeights = std::vector<double>;
 
 double value_of(const AxisTest&, const TargetWeights&);

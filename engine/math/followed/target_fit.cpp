@@ -11,8 +11,9 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-/// At most half of the targets, so that the residuals show the variation between targets. With a
-/// higher degree, few targets would determine the ends.
+/// Largest degree of the polynomial, and fewest targets for a cubic one of the means and of the
+/// reversals. Above a cubic, the degree is less than half of the number of targets, so that the
+/// residuals show the variation between targets and the ends do not depend on few targets.
 constexpr std::size_t most_degree = 7, fewest_for_cubic = 5, fewest_for_cubic_reversal = 11;
 constexpr std::size_t least_rest = 3;
 

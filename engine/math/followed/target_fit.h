@@ -10,7 +10,7 @@ namespace nonio::math {
 /// Returns columns P0(z), P1(z), ... at the targets; z is -1 at the first and 1 at the last.
 Eigen::MatrixXd legendre_columns(const AxisTest&, int columns);
 
-/// Appends columns of cos and sin of 2 pi x/period to `others`.
+/// Returns the matrix `others` with two more columns, cos and sin of 2 pi x/period at the targets.
 Eigen::MatrixXd with_sinusoid(const Eigen::MatrixXd& others, const AxisTest&, double period);
 
 /// Returns the matrix whose rows give the coefficient of each column of X in a least-squares fit to
@@ -25,13 +25,15 @@ TargetWeights of_means(const AxisTest&, const Eigen::VectorXd& t);
 /// Returns the weights of the mean of B_i over the targets approached from both directions.
 TargetWeights of_reversal(const AxisTest&);
 
-/// Returns the variance of the function if the values at the targets are independent with variance
-/// 1.
+/// Returns the variance of the linear function with these weights if the values at the targets are
+/// independent and have the variance 1. The values are the reversals B_i if `reversal`, else the
+/// means.
 double share_of_targets(const AxisTest&, const TargetWeights&, bool reversal);
 
-/// Fits the means of both directions.
+/// Fits a polynomial, and sinusoids with these periods (m or rad), to the mean deviation m_i at
+/// each target.
 TargetFit fit_means(const AxisTest&, const RunComponents&, const std::vector<double>& periods);
-/// Fits the reversals B_i of a bidirectional test.
+/// Fits a polynomial to the reversals B_i of a bidirectional test.
 TargetFit fit_reversal(const AxisTest&, const RunComponents&);
 
 }  // namespace nonio::math

@@ -106,7 +106,8 @@ LengthPlan length_plan(const std::vector<LengthError>& all) {
 
 namespace {
 
-/// Solves A x = b of a symmetric matrix of four by elimination with pivots; false if singular.
+/// Solves four linear equations in place, by elimination with pivots; the last column is the
+/// right-hand side. Returns false if the matrix is singular.
 bool solve_four(std::array<std::array<double, 5>, 4>& A) {
   for (std::size_t c = 0; c < 4; ++c) {
     std::size_t pivot = c;

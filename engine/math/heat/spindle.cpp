@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formulas: nonio/math/spindle.h. Decisions of the analysis: docs/dev/constants.md, A18, of few
-// turns;
-// docs/dev/constants.md, A19, of waves.
+// Formulas: nonio/math/spindle.h. Decisions of the analysis:
+// docs/dev/constants.md, A18 (few turns); docs/dev/constants.md, A19 (waves).
 #include "nonio/math/spindle.h"
 
 #include <algorithm>

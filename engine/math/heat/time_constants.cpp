@@ -133,9 +133,9 @@ Curve searched(const Means& m, std::size_t parts, const PathNoise& noise) {
   return best;
 }
 
-/// Gauss-Newton steps in ln tau, halved while they increase the residuals. Near the minimum the sum
-/// of squares is flat; small steps are accepted there, so that rounding does not decide where the
-/// search ends.
+/// Improves a curve by Gauss-Newton steps in ln tau, which are halved while they increase the
+/// residuals. Near the minimum the sum of squares is flat; small steps are accepted there, so that
+/// rounding does not decide where the search ends.
 void refine(const Means& m, const PathNoise& noise, Curve& c) {
   constexpr int most = 60;
   constexpr double near = 1e-4, reached = 1e-11;

@@ -44,7 +44,8 @@ struct Search {
   std::vector<Triple> triples;
 };
 
-/// Smallest number of steps and largest step that ISO 230-2 requires for an axis of this length.
+/// Smallest number of steps, and largest step in m, that ISO 230-2 allows for an axis of this
+/// length.
 struct Sampling {
   std::int64_t steps = fewest_steps;
   double largest_step = 1e9;
@@ -285,7 +286,8 @@ std::vector<TriplePlan> chosen(const Search& s, const TripleRequest& w) {
   return plans;
 }
 
-/// Returns the request without one of its limits; nothing if it does not have this limit.
+/// Returns the request with one of its limits removed, or for max_points and hypotenuse with a
+/// limit 20 times as large; nothing if the request does not have this limit.
 std::optional<TripleRequest> without(TripleRequest w, TripleLimit limit) {
   bool had = true;
   switch (limit) {

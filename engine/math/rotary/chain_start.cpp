@@ -30,7 +30,7 @@ constexpr std::size_t kept = 4;  // number of starts that are refined
 constexpr double least_share = 1e-12;
 constexpr double good_enough =
     0.05;  // rms residual of a start relative to the rms distance from the first reading
-constexpr double same_angle = 1e-9;  // rad
+constexpr double same_angle = 1e-9;  // tolerance for equal angles, rad
 
 using Directions = std::vector<Vector3>;
 

@@ -20,7 +20,7 @@ using Points = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 constexpr double thinnest = 1e-6;    // smallest ratio of second to first singular value of a plane
-constexpr double same_angle = 1e-6;  // rad
+constexpr double same_angle = 1e-6;  // smallest difference of two angles of the axis, rad
 // docs/dev/constants.md, A9.
 constexpr double worst_follow = 0.1;  // rms difference between encoder and circle, rad
 
@@ -92,7 +92,8 @@ struct Circle {
   double shear_shift = 0.0;
 };
 
-/// Linear start (Kasa): exact for points on a circle, biased inwards on short arcs with noise.
+/// Returns the starting circle by linear least squares (Kasa); none if the points do not determine
+/// it. It is exact for points on a circle, and biased inwards on short arcs with noise.
 std::optional<Circle> kasa(const Plane& p) {
   Points a(p.flat.rows(), 3);
   a << 2.0 * p.flat.col(0), 2.0 * p.flat.col(1), Eigen::VectorXd::Ones(p.flat.rows());

@@ -19,10 +19,10 @@ using Eigen::VectorXd;
 constexpr double derivative_step = 1e-6;  // m and rad, step of numerical derivatives
 constexpr double ended = 1e-12;           // m: a smaller step ends the iteration
 constexpr int most_steps = 60;
-constexpr double largest_tilt = 0.5;  // rad, in one step
+constexpr double largest_tilt = 0.5;  // largest change of a direction in one step, rad
 // ratio of the sums of squares of two chains that fit equally well
 constexpr double fits_alike = 4.0;
-constexpr double other_way = 0.1;  // rad, between directions of two different chains
+constexpr double other_way = 0.1;  // smallest angle between directions of two different chains, rad
 constexpr double open_changes_nothing = 1e-5, rounding_size = 1e-9;
 constexpr std::size_t most_residual_rows = 200;
 

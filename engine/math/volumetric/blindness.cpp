@@ -10,7 +10,7 @@ namespace nonio::math {
 
 namespace {
 
-// sufficient, because the shapes are polynomials of second degree
+// steps along a line; sufficient, because the shapes are polynomials of second degree
 constexpr std::size_t steps_of_line = 12;
 constexpr double unseen_below = 1e-9;
 
@@ -18,8 +18,8 @@ struct OneError {
   const char* name;
   std::size_t axis;  ///< axis that moves; for a squareness the second axis
   char kind;         ///< 'p' positioning, 's' straightness, 'a' angle, 'q' squareness
-  /// Components of the error: of the shape (p, s), or for angles as levers with component, arm,
-  /// sign.
+  /// For positioning and straightness: component of the error. For angles and squarenesses, the
+  /// levers contain the component, the coordinate of the arm, and the sign.
   std::size_t component;
   struct Lever {
     std::size_t component, arm;

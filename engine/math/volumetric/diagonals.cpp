@@ -147,8 +147,8 @@ class System {
     const Matrix root = scaled(sigma_);
     return product_transposed(root, root);
   }
-  /// Returns the covariance of the rows if every reading of a line, or of a direct straightness,
-  /// has a scatter of 1.
+  /// Returns a matrix B such that B B' is the covariance of the rows if only the readings of lines
+  /// and of direct straightness have noise, with a standard deviation of 1.
   Matrix unit_noise() const { return scaled(unit_); }
 
   Row f(std::size_t i) const { return place(i, 0); }

@@ -15,9 +15,10 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
-// relative to the size of an artefact: a rotation that moves no ball
+// a rotation that moves a ball by less, relative to the size of the artefact, counts as no movement
 constexpr double no_lever = 1e-6;
-// relative to the size: balls on one line do not determine the rotation
+// largest width, relative to the length, of balls that count as being on one line; these do not
+// determine the rotation about it
 constexpr double no_plane = 1e-3;
 constexpr double least_u = 1e-9;  // m, m/m; smallest standard uncertainty used for stated values
 
@@ -174,7 +175,7 @@ void put_placement(const Artefact& a, const Frame& frame, std::size_t p, std::si
   }
 }
 
-/// Line of the values that the certificate states of the balls, and of their scale, the last
+/// Builds the line of the values that the certificate states, and of their scale, which is the last
 /// unknown.
 class Stated {
  public:

@@ -19,9 +19,9 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-// relative change of a result by undetermined combinations
+// largest relative change of a result by undetermined combinations that counts as none
 constexpr double changes_nothing = 1e-6;
-constexpr double shows_nothing = 1e-9;  // relative size of a column in the volume
+constexpr double shows_nothing = 1e-9;  // norm of a row of V below which a term affects no reading
 constexpr double same_share = 1e-6;
 constexpr std::size_t places_of_curve = 21;  // points of a curve
 

@@ -21,7 +21,7 @@ struct RigidTable {
 /// One fit, with the readings divided by the scatter of their groups.
 struct RigidSolved {
   Eigen::VectorXd x, residual;  ///< solution; residuals of the readings divided by their scatter
-  /// right singular vectors that are kept; matrix from readings to unknowns
+  /// right singular vectors up to the rank, as columns; matrix from readings to unknowns
   Eigen::MatrixXd V, map;
   Eigen::VectorXd sigma;  ///< all singular values, descending
   Eigen::VectorXd leverage;
@@ -37,7 +37,7 @@ struct RigidFit {
   RigidTable table;
   RigidSolved solved;
   RigidScatter scatter;
-  double price = 0.0;  ///< Schwarz's criterion
+  double price = 0.0;  ///< value of Schwarz's criterion; the smallest is the best fit
 };
 
 RigidFit fit_rigid_body(const std::vector<RigidLine>&, const RigidBox&,

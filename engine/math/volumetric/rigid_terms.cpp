@@ -89,7 +89,8 @@ Corner farthest_way(const RigidLine& line) {
   return best;
 }
 
-/// Returns the direction of travel of a line, from the reading farthest from the first one.
+/// Returns the direction of travel of a line: the unit vector from the first reading to the reading
+/// farthest from it.
 Corner travel_of(const RigidLine& line) {
   Corner best{};
   for (std::size_t i = 0; i < line.readings.size(); ++i)

@@ -38,7 +38,8 @@ std::vector<RigidTerm> rigid_terms(const RigidBox&, const std::vector<std::strin
 double legendre(std::size_t degree, double t);
 /// Returns P_k at the position of the axis of the term.
 double shape_of(const RigidTerm&, const RigidBox&, const Corner& at);
-/// Returns e for a coefficient of 1 of the unscaled term, m (for an angle: of 1 rad).
+/// Returns the error e of the tool point, m, for a coefficient of 1 m of the unscaled term, or of 1
+/// rad for an angle.
 Corner error_of_term(const RigidTerm&, const RigidBox&, const Corner& at);
 
 /// Derivatives of each reading of a line by the terms (scaled), and by the unknowns of the set-up.

@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 using Index = Eigen::Index;
 
 constexpr double undetermined = 1e-10;  // relative to the largest eigenvalue: not determined
-constexpr double unmoved = 1e-6;        // fraction of a unit vector
+constexpr double unmoved = 1e-6;        // largest change by an undetermined unit vector to ignore
 constexpr int corrections = 2;          // number of corrections of second order
 
 /// Returns two unit vectors perpendicular to u.

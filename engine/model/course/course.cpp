@@ -96,8 +96,9 @@ double fewer_than(const VectorXd& residual) {
   return sum;
 }
 
-/// Tests where the residuals differ (time and channels, in classes), on the means of the bins of
-/// the search; differences within a bin count as noise.
+/// Returns the places of the residuals: tests whether they differ between classes of time, and of
+/// each channel. It uses the means of the bins of the search, so differences within a bin count as
+/// noise.
 std::vector<Place> places_of(const Part& part, const std::vector<double>& all) {
   constexpr std::size_t classes = 8;
   const CourseData data(part);

@@ -9,8 +9,8 @@ namespace nonio::model {
 
 class CourseData;
 
-/// Fits a model like `fit` of model/fit.h, but with noise that is correlated in time, so that u
-/// follows from the number of independent residuals.
+/// Fits a model like `fit` of model/fit.h, but assumes noise that is correlated in time, for the
+/// fit as well as for the uncertainties.
 Expected<Fit> fit_course(const Part& part, const std::vector<Term>& terms);
 Expected<Fit> fit_course(const CourseData& data, const std::vector<Term>& terms);
 Comparison comparison_of_course(const Part& part, Fit fit);
@@ -18,12 +18,12 @@ Expected<Comparison> compare_course(const Part& part, const std::vector<Term>& m
 Expected<Explanation> explain_course(const Part& part, const std::vector<Term>& model,
                                      const std::vector<Term>& catalogue, std::uint64_t seed);
 
-/// Cross-validation: RMS over blocks of time, each predicted from the other blocks and with a zero
-/// of its own; the shapes of the terms are those of the fit. m
+/// Returns the RMS of cross-validation over blocks of time, m: each block is predicted from the
+/// other blocks and has a zero of its own. The shapes of the terms are those of the fit.
 double left_out_rms(const Part& part, const std::vector<Term>& terms);
 
-/// Which channels (sensors) a fit uses, and how much each contributes; none if no term follows a
-/// channel.
+/// Returns which channels (sensors) a fit uses, and how much each contributes; nothing if no term
+/// depends on a channel.
 std::optional<Sensors> sensors_of(const Part& part, const Fit& fit);
 
 }  // namespace nonio::model

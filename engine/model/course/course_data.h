@@ -18,9 +18,9 @@ struct CourseColumns {
   MatrixXd columns;
 };
 
-/// Rows of a course, averaged in at most `most_bins` bins of equal length (their number minus 1 has
-/// no factors except 2, 3 and 5, for the Fourier transform of the changes), divided into
-/// consecutive blocks.
+/// Rows of a course, averaged in at most `most_bins` bins of equal numbers of rows (the number of
+/// bins minus 1 has no prime factors except 2, 3 and 5, for the Fourier transform of the changes),
+/// divided into consecutive blocks.
 class CourseData {
  public:
   static constexpr Index blocks = course_blocks, most_bins = 751;
@@ -28,15 +28,17 @@ class CourseData {
   explicit CourseData(const Part& part);
 
   Index size() const { return static_cast<Index>(first_.size()) - 1; }
-  /// Averages columns with one entry per reading over each bin.
+  /// Returns the means over each bin of columns that have one entry per reading.
   VectorXd means(const std::vector<double>& column) const;
   MatrixXd means(const Effect::Columns& columns) const;
   /// Returns the first bin of block b; for b = count the end of the last block.
   Index begin_of(Index b, Index count = blocks) const { return b * size() / count; }
-  /// Mean time of the readings of bin b, s; `duration`: time from the first to the last bin, s.
+  /// `time` returns the mean time of the readings of bin b, s, and `duration` the time from the
+  /// first to the last bin, s.
   double time(Index b) const { return time_(b); }
   double duration() const { return size() > 1 ? time_(size() - 1) - time_(0) : 0.0; }
-  /// The displacement of this part, then those of parts that move with it: bins x displacements, m.
+  /// Returns the displacement of this part, then those of parts that move with it: bins x
+  /// displacements, m.
   const MatrixXd& displacements() const { return displacements_; }
   const Part& part() const { return part_; }
   /// Returns the columns for every shape on the grid of a term (`shapes_of`), except shapes for

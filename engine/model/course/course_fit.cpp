@@ -105,8 +105,8 @@ class CourseFit {
     return least;
   }
 
-  /// Returns the same cost, -ln of the evidence, with `instead` as the columns of term k and the
-  /// chosen columns of the other terms.
+  /// Returns -ln of the evidence with `instead` as the columns of term k and the chosen columns of
+  /// the other terms.
   double cost_of_chosen(std::size_t k, const MatrixXd& instead) const {
     CoursePool pool(data_, noise_);
     std::vector<Index> columns;

@@ -25,9 +25,9 @@ class CourseWhitening {
   CourseWhitening(const CourseData& data, const CourseNoise& noise);
 
   MatrixXd of(MatrixXd columns) const;
-  /// Half the natural logarithm of the determinant of the noise covariance.
+  /// Returns half the natural logarithm of the determinant of the noise covariance.
   double half_log_determinant() const { return half_log_determinant_; }
-  /// Variance of the zero / variance of the correlated part of the noise.
+  /// Returns the variance of the zero divided by that of the correlated part of the noise.
   double variance_of_zero() const { return variance_of_zero_; }
 
  private:
@@ -41,7 +41,7 @@ class CourseWhitening {
 
 /// Columns of a model, and the quantity of each coefficient.
 struct CourseModel {
-  MatrixXd columns;  ///< bins x k
+  MatrixXd columns;  ///< columns of the model: one row per bin
   std::vector<Quantity> of{};
 
   /// Appends the columns of a term; `quantities` are those of its coefficients, and the last one

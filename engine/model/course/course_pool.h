@@ -32,20 +32,20 @@ class CoursePool {
   /// member.
   void finish();
 
-  /// Returns -ln of the evidence of these columns for each side, with the zero, the coefficients
-  /// and the variance of the noise integrated out.
+  /// Returns -ln of the evidence of these columns for each displacement of `sides`, with the zero,
+  /// the coefficients and the variance of the noise integrated out.
   Eigen::RowVectorXd cost(const std::vector<Index>& columns, const CourseSides& sides) const;
   /// Returns the coefficients of the unscaled columns: columns x sides.
   MatrixXd coefficients(const std::vector<Index>& columns, const CourseSides& sides) const;
-  /// Returns the variance of the noise when the columns are fitted to the first side, m^2.
+  /// Returns the variance of the noise when the columns are fitted to the first displacement, m^2.
   double variance(const std::vector<Index>& columns, const CourseSides& sides) const;
   /// Returns the covariance of the coefficients of the unscaled columns for noise of unit variance.
   /// `variance`: variance of the noise, m^2, which sets the weight of the prior.
   MatrixXd covariance(const std::vector<Index>& columns, double variance) const;
   /// Returns the residuals after these columns are fitted to displacements, bins x displacements.
   MatrixXd remainder(const std::vector<Index>& columns, const MatrixXd& displacements) const;
-  /// Cross-validation: RMS of one side over blocks, each predicted from the other blocks and
-  /// reduced by its own mean, m.
+  /// Returns the RMS of cross-validation of displacement `side` over blocks, each predicted from
+  /// the other blocks and reduced by its own mean, m.
   double left_out(const std::vector<Index>& columns, const CourseSides& sides, Index side) const;
 
   static constexpr std::size_t most_columns = 6;
@@ -58,10 +58,12 @@ class CoursePool {
     double gain = 0.0;
     double variance = 0.0;  ///< variance of the noise after the last added column, m^2
   };
-  /// Searches for sides [from, from + count) together, with the same columns.
+  /// Returns the result for the displacements `from` to `from + count - 1` together, with the same
+  /// columns for all of them.
   Greedy greedy(const std::vector<Index>& columns, const CourseSides& sides, Index from,
                 Index count) const;
-  /// Variance of the noise for a coefficient that is scaled by its prior, m^2: the ridge parameter.
+  /// Returns the ridge parameter: the variance of the noise divided by the variance of a
+  /// coefficient that is scaled by its prior, m^2.
   double ridge() const { return ridge_; }
   /// Returns ln of the number of columns: the evidence that each additional column must exceed.
   double penalty() const;
@@ -94,7 +96,8 @@ class CoursePool {
   double ridge_ = 0.0;  ///< variance of the noise / variance of a scaled coefficient, m^2
 };
 
-/// Products of a pool's columns with displacements, computed once for many sets of columns.
+/// Displacements to which sets of a pool's columns are fitted, and their products with these
+/// columns, computed once.
 struct CourseSides {
   /// products of the pool's columns with the displacements: pool x displacements
   MatrixXd products;

@@ -34,7 +34,7 @@ struct Entry {
   std::size_t term;
   std::vector<double> shape;
   MatrixXd made;               ///< columns of this shape in the bins
-  std::vector<Index> columns;  ///< indices in the pool
+  std::vector<Index> columns;  ///< indices of these columns in the pool
 };
 
 /// Support for added columns: the gain of ln evidence, and the decrease of ln(RMS) of the
@@ -129,7 +129,7 @@ class CourseSearch {
                        [&](std::size_t e) { return entries_[e].term == term; });
   }
 
-  /// Returns the best entry of each term in addition to `set`: {entry, level}.
+  /// Returns, for each term, its best entry in addition to `set`, and -ln of the evidence with it.
   std::map<std::size_t, std::pair<std::size_t, double>> best_with(const Set& set) const {
     std::map<std::size_t, std::pair<std::size_t, double>> out;
     for (std::size_t e = 0; e < entries_.size(); ++e) {
@@ -456,8 +456,9 @@ class CourseExplanation {
     out_.candidates.push_back(std::move(c));
   }
 
-  /// Fits the candidate together with the model. `anew`: all shapes are searched again (first
-  /// candidates and members of the best set); otherwise the shapes are kept as found.
+  /// Fits the candidate together with the model. If `anew`, the shapes of the model are searched
+  /// again, and those of the candidate if it is a member of the best set or nothing was found;
+  /// otherwise all shapes are kept.
   void fit(Candidate& c, bool anew) {
     std::vector<Term> terms = anew ? model_ : out_.comparison.fit.terms;
     terms.push_back(c.term);

@@ -21,7 +21,7 @@ struct Ball {
   std::size_t row = 0;  // row of its first coordinate
 };
 
-/// Combines each three rows, which sense x, y and z, into one ball centre.
+/// Combines every three rows, which sense x, y and z, into one ball centre.
 std::vector<Ball> gathered(const Observations& o) {
   std::vector<Ball> balls;
   for (std::size_t i = 0; i + 2 < o.size(); i += 3) {

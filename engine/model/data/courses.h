@@ -7,7 +7,7 @@
 
 namespace nonio::model {
 
-/// Appends a part for each displacement of a measurement over time.
+/// Appends a part for each displacement of a measurement over time that has at least 60 readings.
 void append_courses(const Measurement& measurement, const Observations& read,
                     std::vector<Part>& parts);
 

@@ -24,8 +24,8 @@ inline std::size_t lines_of(const Observations& o) { return o.line.empty() ? 1 :
 Expected<MatrixXd> columns_of(const Observations& o, const Term& term,
                               const std::vector<double>& shape);
 
-/// Adds a term to the model. A term with groups replaces the term of the same effect without
-/// groups.
+/// Returns the model with the term added. A term with groups replaces the term of the same effect
+/// without groups.
 std::vector<Term> with_term(std::vector<Term> model, Term term);
 
 /// Returns the terms of the catalogue that can be added to a model. An effect that the model has
@@ -42,9 +42,10 @@ inline constexpr double curve_threshold = 1e-4, weakest_of_curve = 0.03;
 /// them: true for curves in space, and descriptions.
 bool may_lose(const Observations& o, const Term& term);
 
-/// Returns the columns of all terms. Of a curve in space that the readings do not completely
-/// separate from the earlier terms (the odd parts of two straightnesses on two diagonals), only the
-/// identifiable combinations; `lost`: number of removed combinations of each term.
+/// Returns the columns of all terms. For a curve in space that the readings do not completely
+/// separate from the earlier terms (the odd parts of two straightnesses on two diagonals), and for
+/// a description, it returns only the identifiable combinations. `lost`: number of removed
+/// combinations of each term.
 Expected<std::vector<MatrixXd>> blocks_of(const Observations& o, const std::vector<Term>& terms,
                                           const VectorXd& root, std::vector<Index>* lost = nullptr);
 
@@ -56,8 +57,8 @@ std::vector<std::vector<double>> shapes_of(const Observations& o, const Term& te
 /// Returns the usual value of shape k of a term (`Effect::Shape::usual`), which needs no evidence;
 /// none if it has none.
 std::optional<double> usual_of(const Term& term, std::size_t k);
-/// `is_usual`: whether shape k has its usual value. `are_usual`: whether all shapes that have a
-/// usual value have it.
+/// `is_usual` returns whether shape k has its usual value, `are_usual` whether all shapes that have
+/// a usual value have it.
 bool is_usual(const Term& term, const std::vector<double>& shape, std::size_t k);
 bool are_usual(const Term& term, const std::vector<double>& shape);
 
@@ -69,7 +70,7 @@ std::vector<double> stated_u(const Observations& o);
 VectorXd root_weights(const Observations& o, const std::vector<double>& weight);
 
 /// Removes from each column its weighted mean in every line, because the unknown zero of the line
-/// absorbs it. The rows are multiplied by their root weights before and after.
+/// absorbs it. The rows of `columns` are already multiplied by their root weights.
 void take_out_zeros(const Observations& o, const VectorXd& root_weight, MatrixXd& columns);
 
 /// Scales each column to unit length.

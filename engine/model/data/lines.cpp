@@ -29,7 +29,7 @@ struct Order {
 
 using Rows = std::vector<std::uint32_t>;
 
-/// Rows of each pass (run and direction), as listed.
+/// Rows of each pass (run and direction), in the order of the file.
 using Passes = std::map<std::pair<std::uint32_t, std::int8_t>, Rows>;
 
 Passes passes_of(const Observations& o) {
@@ -67,9 +67,9 @@ bool against_its_direction(const Observations& o, const Passes& passes) {
   });
 }
 
-/// Returns the rows in pendulum order: run by run, the direction that is listed first first, each
-/// pass along its direction. Runs are counted separately in each direction, because the second
-/// group of a file may continue the numbering.
+/// Returns the rows in pendulum order: run by run, starting with the direction that is listed
+/// first, each pass along its direction. Runs are counted separately in each direction, because the
+/// second group of a file may continue the numbering.
 Rows pendulum(const Observations& o, const Passes& passes) {
   const auto& axis = o.axes.front();
   std::map<std::int8_t, std::uint32_t> count;

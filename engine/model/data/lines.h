@@ -15,10 +15,10 @@ inline double dot(const Vector& a, const Vector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Whether all readings sense one axis along its motion (or its angle).
+/// Whether all readings sense the only axis along its motion, or its angle if it is rotary.
 bool sensed_along_one_axis(const Observations&);
-/// Whether lengths are sensed while linear axes move in other directions: across the motion, or
-/// over several axes at once.
+/// Whether lengths are sensed in a known direction while only linear axes move. Unless they are
+/// sensed along one axis (see above), this is across the motion or over several axes at once.
 bool across(const Observations&);
 /// Whether some direction of sensing has several components, as on a diagonal.
 bool senses_several(const Observations&);

@@ -316,7 +316,8 @@ Noise noise_of(const Part& part, const Repeats& repeats, const std::vector<doubl
   find_stretch(part, repeats, left, weight, noise);
   if (!noise.stretch) return noise;
   std::vector<double> with = with_scatter(weight, noise);
-  // Pass terms carry scatter of the range to other readings, less so with its weights; iterate.
+  // The pass terms transfer scatter of the range to other readings. With the weights of the range
+  // they do so less, so the estimate is iterated.
   for (int round = 0; round < 3; ++round) {
     left = saturate(repeats, part.table.deviation, with);
     measure_stretch(part, repeats, left, weight, noise);

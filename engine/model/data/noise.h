@@ -38,10 +38,12 @@ Noise with_zero(const Observations& o, const std::vector<Term>& terms,
 /// Minimum over the size of a random zero of n ln(squares/n) + ln|V| for a model together with this
 /// zero: `Workbench::State::criterion` without its penalty.
 struct Unsteady {
-  /// zero as a random walk from row to row
+  /// minimum for a zero that is a random walk from row to row
   double walks = std::numeric_limits<double>::infinity();
-  double of_run = std::numeric_limits<double>::infinity();   ///< zero of its own for each run
-  double of_pass = std::numeric_limits<double>::infinity();  ///< zero of its own for each pass
+  double of_run = std::numeric_limits<double>::infinity();   ///< minimum for a random zero of each
+                                                             ///< run
+  double of_pass = std::numeric_limits<double>::infinity();  ///< minimum for a random zero of each
+                                                             ///< pass
   double size_of_pass = 0.0;  ///< size of the zero of a pass, in units of s
   double least() const { return std::min(walks, of_run); }
 };

@@ -56,7 +56,9 @@ class Parts {
       order_.push_back(m);
       return;
     }
-    // Effects of the model need places; rigid-body contains the placement of an artefact.
+    // Only measurements at targets or along a path are used, because effects of the model depend on
+    // positions of the axes. Readings of rigid-body also contain the unknown placement of the
+    // artefact.
     if (own.motion != Motion::targets && own.motion != Motion::path) return;
     if (own.kind == "ball-centres") {
       kind_[m] = Kind::balls;
@@ -220,8 +222,9 @@ std::string listed_groupings(const Part& part) {
   return out.empty() ? "two measurements of one axis" : out;
 }
 
-/// Whether an effect can be in this part. Effects of channels occur in displacements over time, and
-/// in axis tests with recorded channels; no other part has them.
+/// Whether an effect can be in this part. Effects of channels occur only in displacements over time
+/// and in axis tests with recorded channels; other effects occur in all parts except displacements
+/// over time.
 bool can_be_in(const Part& part, const Effect& effect) {
   if (!effect.of_channels) return part.kind != Part::Kind::course;
   return part.kind == Part::Kind::course ||

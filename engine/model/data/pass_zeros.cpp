@@ -93,7 +93,7 @@ bool ZerosOfPasses::unordered() const {
   return least * tests > by_chance;
 }
 
-/// Subtracts the mean of each side.
+/// Subtracts from the value of each pass the mean over the passes of its side.
 void ZerosOfPasses::centre(VectorXd& values) const {
   std::vector<double> sum(sides_, 0.0), n(sides_, 0.0);
   for (std::size_t p = 0; p < zeros_.size(); ++p)

@@ -26,9 +26,9 @@ class ZerosOfPasses {
   /// Returns the p-value of the differences between passes of the same side under the hypothesis
   /// that readings scatter independently with standard deviation s.
   double p_of_differences(double s) const;
-  /// Whether the zeros of passes have no systematic order. A step between two passes, a trend, one
-  /// different run, or any of these in the reversal is a cause, not scatter. Few passes do not show
-  /// it.
+  /// Whether the zeros of passes show no systematic order: a step between two passes, a trend, one
+  /// different run, or any of these in the reversal is a cause, not scatter. False if there are too
+  /// few passes for this test.
   bool unordered() const;
 
  private:

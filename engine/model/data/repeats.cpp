@@ -18,8 +18,8 @@ namespace nonio::model {
 
 namespace {
 
-/// Divides each group of `before` by the values `by`; the new groups are numbered by first
-/// appearance.
+/// Returns the groups that result if each group of `before` is divided by the values `by`, numbered
+/// by first appearance; sets `groups` to their number.
 std::vector<std::uint32_t> divided(const std::vector<std::uint32_t>& before,
                                    const std::vector<std::uint64_t>& by, std::size_t& groups) {
   struct Hash {
@@ -214,9 +214,9 @@ struct Groups {
   }
 };
 
-/// Residuals after the median of its target or cell and the running median of its pass are
-/// repeatedly subtracted from each reading. This needs no model, and an outlier does not affect
-/// other readings.
+/// Returns the residuals that remain after the median of its target or cell, and then the running
+/// median of its pass, are subtracted from each reading, three times. This needs no model, and an
+/// outlier does not affect other readings.
 std::vector<double> polished(const Repeats& r, const std::vector<double>& y) {
   const Groups groups(r);
   const Members targets(groups.of, groups.count), passes(r.pass, r.passes);
@@ -283,8 +283,8 @@ std::vector<double> apart_from_others(const Repeats& r, const std::vector<std::u
 
 namespace {
 
-/// Returns the deviations minus the predicted effects of the set-up (a mirror's tilt varies from
-/// reading to reading), fitted by least absolute residuals, which an outlier hardly affects.
+/// Returns the deviations minus the predicted effects of the set-up, such as the tilt of a mirror.
+/// These are fitted by least absolute residuals, which an outlier hardly affects.
 std::vector<double> without_set_up(const Observations& o, const std::vector<Term>& model) {
   std::vector<Term> set_up;
   for (const Term& term : model)
@@ -302,9 +302,9 @@ std::vector<double> without_set_up(const Observations& o, const std::vector<Term
   return e;
 }
 
-/// Returns, for each reading, the ratio of the scatter of the readings about it (targets next to
-/// it, by the median) to that of all; 1 if it is below 2. A range with more scatter is not a series
-/// of outliers.
+/// Returns, for each reading, the ratio of the scatter near its target, estimated by a median over
+/// adjacent targets, to the scatter s of all readings; 1 if it is below 2. A range with more
+/// scatter is not a series of outliers.
 std::vector<double> rougher_than(double s, const Observations& o, const std::vector<double>& e) {
   constexpr std::size_t fewest = 16;
   // docs/dev/constants.md, M27.

@@ -21,8 +21,8 @@ struct Repeats {
   explicit Repeats(const Observations&);
 };
 
-/// Residuals of the model: deviation = mean of its cell + offset (+ slope, + curvature) of its pass
-/// over `order` + e.
+/// Residuals e of the model deviation = mean of its cell + terms of its pass + e. The terms of a
+/// pass are an offset and, in longer passes, a slope and a curvature over `order`.
 struct Saturated {
   std::vector<double> e;  ///< residual of each reading, including those of weight 0
   double squares = 0.0, dof = 0.0;
@@ -35,7 +35,9 @@ inline Index shared_columns(Index readings) {
   return readings >= 8 ? 3 : readings >= 4 ? 2 : readings >= 1 ? 1 : 0;
 }
 
-/// Returns, for each of `rows`, its value minus the median of the other readings of its target.
+/// Returns, for each of `rows`, its value minus the median of the other readings of its target, or
+/// of its cell if each cell of the target has at least four readings. With too few such readings,
+/// the result is 0 if other targets are repeated, else the value itself.
 std::vector<double> apart_from_others(const Repeats&, const std::vector<std::uint32_t>& rows,
                                       const std::vector<double>& e);
 

@@ -2,7 +2,8 @@
 //
 // A body that is heated evenly and cools by its surface approaches its final state from any initial
 // state as 1 - exp(-t/tau): a warm start, and a later origin of time, change the amplitude (and the
-// apparent constant growth), but not tau. Several tests of one axis: mean of ln tau, weights 1/u^2.
+// apparent constant growth), but not tau. Several tests of one axis give the mean of ln tau with
+// weights 1/u^2.
 #include "thermal_tests.h"
 
 #include <algorithm>
@@ -31,7 +32,7 @@ OfTest of_test(const Measurement& m, const Observations& o) {
   const math::Track growth = math::growth(math::visits_of(o));
   if (growth.size() < 2) return out;
   const auto fit = math::time_constants(growth);
-  // The effects that use it have exactly one time constant.
+  // Only a single time constant is used, because the effects that use it have exactly one.
   if (fit.answer != math::TimeConstants::Answer::resolved || fit.parts.size() != 1) return out;
   const auto& part = fit.parts.front();
   if (!(part.tau > 0.0) || !(part.u_tau > 0.0)) return out;

@@ -7,9 +7,9 @@
 
 namespace nonio::model {
 
-/// Whitens rows of a table: multiplies them by their root weights and, if the noise is correlated,
-/// subtracts the prediction from earlier rows, so that the noise becomes independent with one
-/// standard deviation. Each line separately, rows in their order; rows of weight 0 become 0.
+/// Whitens the rows of a table: multiplies them by their root weights and, if the noise is
+/// correlated, subtracts the prediction from earlier rows of the line, so that the noise becomes
+/// independent with the same standard deviation in each row. Rows of weight 0 become 0.
 /// Method: filter of a first-order autoregression with a level in each line (Durbin and Koopman,
 /// Time Series Analysis by State Space Methods, 4.3).
 class Whitening {
@@ -22,11 +22,12 @@ class Whitening {
   MatrixXd operator()(const MatrixXd& columns) const;
   /// Removes from whitened columns the component that the unknown zero of each line absorbs.
   void take_out_zeros(MatrixXd& whitened) const;
-  /// Root weights of the rows; for independent noise, whitening only multiplies by them.
+  /// Returns the root weights of the rows; for independent noise, whitening only multiplies by
+  /// them.
   const VectorXd& root() const { return root_; }
   bool independent() const { return step_.empty(); }
-  /// ln of the determinant of the noise correlation; the unknown zeros of the lines have a diffuse
-  /// prior.
+  /// Returns ln of the determinant of the noise correlation; the unknown zeros of the lines have a
+  /// diffuse prior.
   double log_det() const { return log_det_; }
 
  private:

@@ -75,7 +75,7 @@ class Signs {
     variance_ = left_.squaredNorm() / dof_;
   }
 
-  /// Score of a noise with random coefficients of these columns.
+  /// Returns the score of a noise that consists of these columns with random coefficients.
   double of(const MatrixXd& columns) const {
     MatrixXd z = white_(columns);
     white_.take_out_zeros(z);
@@ -87,7 +87,7 @@ class Signs {
     return (math::transposed_times(z, left_).squaredNorm() / variance_ - trace) / std::sqrt(spread);
   }
 
-  /// Score of a stronger correlation of adjacent readings.
+  /// Returns the score of a stronger correlation of adjacent readings.
   double of_neighbours() const {
     double found = 0.0, expected = 0.0, pairs = 0.0;
     for (Index i = 1; i < left_.size(); ++i) {

@@ -95,7 +95,8 @@ std::optional<Statement> reversal(const Finding& f, double dof) {
   }
   if (n < 3.0 || !(out.low * out.high > 0.0)) return std::nullopt;
   out.value = sum / n;
-  out.u = std::sqrt(variance / n);  // zeros of passes affect all targets alike
+  out.u = std::sqrt(variance / n);  // not divided by the number of targets, because the zero of a
+                                    // pass affects all of them
   out.p = std::min(1.0, out.p * n);
   return out.p < stated_below ? std::optional(out) : std::nullopt;
 }
@@ -265,10 +266,11 @@ bool few_places(const Finding& finding) {
   return finding.part.kind == Part::Kind::axis && finding.repeats.targets <= most_targets;
 }
 
-/// Where the verdict is `unknown`: explained again with descriptions of place alone (a value for
-/// each target, a reversal for each), which describe all of the remainder that repeats at a place,
-/// but not what changes in time. An effect that is significant there is added to `out.certain`, and
-/// its candidate names the descriptions. Then what all significant effects leave is described.
+/// For the verdict `unknown`: searches again with descriptions of place in the model (a value or a
+/// reversal for each target). These describe all residuals that repeat at a place, but not what
+/// changes in time. An effect that is significant in this search is added to `out.certain`, and its
+/// candidate names the descriptions. Then the residuals that all significant effects leave are
+/// described.
 void describe(const Finding& finding, const std::vector<Term>& catalogue, Explanation& out) {
   out.descriptions = described(finding, certain_terms(out));
   std::vector<Term> model = finding.of_model.fit.terms;
@@ -308,8 +310,8 @@ Expected<Explanation> explain_all(const Part& part, const std::vector<Term>& mod
   return out;
 }
 
-/// Judges candidates that were searched on means of adjacent readings: fits each one to all
-/// readings, and sets its RMS.
+/// Completes an explanation that was searched on means of adjacent readings: fits each candidate to
+/// all readings and sets its RMS, and sets the verdict if too many readings are suspect.
 void judge_on_all(const Part& part, const std::vector<Term>& model,
                   const std::vector<Term>& catalogue, const Groundwork::Found& ground,
                   Explanation& out) {

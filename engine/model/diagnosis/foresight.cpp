@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one more run would do to uncertainties and evidence: docs/dev/model-search.md, "One more run".
+// Predicts how one more run changes uncertainties and evidence: docs/dev/model-search.md, "One more
+// run".
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -37,7 +37,7 @@ struct Course {  // A planned measurement of an axis.
   std::string id;
   std::vector<double> targets;
   std::size_t runs = 1;
-  double pause = 0.0;     // time before it, s
+  double pause = 0.0;     // time between the present readings and this measurement, s
   bool pendulum = true;   // true: + pass, then - pass; false: each target from both sides in turn
   bool reversed = false;  // - pass first
 };

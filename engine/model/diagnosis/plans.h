@@ -7,7 +7,7 @@ namespace nonio::model {
 
 /// A table with one additional planned measurement, whose deviations are 0.
 struct Further {
-  std::string id, of;  ///< as in Plan
+  std::string id, of;  ///< kind and object of the measurement, as `Plan::id` and `Plan::of`
   Observations table;
 };
 
@@ -21,16 +21,18 @@ std::vector<Further> further_runs(const Part& part, const Axis& axis);
 /// Returns tables with one additional measurement on a machine with several axes, or of a ball.
 std::vector<Further> further_in_space(const Part& part);
 
-/// Returns further measurements that would separate a candidate from its aliases: the planned
+/// Returns further measurements that would separate a candidate from its aliases. The planned
 /// readings are added to the existing ones, and the part of the candidate that no alias can explain
-/// is computed, in standard deviations. The plans that reach four, cheapest first; if none does,
-/// the best one.
+/// is computed, in standard deviations `s` of a reading (m or rad). At most three plans are
+/// returned: those that reach four, by increasing number of readings, then the others by decreasing
+/// power.
 std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
                             const Candidate& candidate, const std::vector<Term>& catalogue,
                             double s);
 
-/// Returns further measurements that would separate two effects that cancel each other; `value`:
-/// their linear parameters. Their joint effect is compared with that of each alone.
+/// Returns further measurements that would separate two effects that cancel each other, ordered as
+/// by `plans_for`: their joint effect is compared with that of each alone. `value`: their linear
+/// parameters, SI; `s`: standard deviation of a reading, m or rad.
 std::vector<Plan> plans_for_pair(const Part& part, const std::vector<Term>& model,
                                  const std::vector<Term>& pair, const std::vector<double>& value,
                                  double s);

@@ -12,7 +12,7 @@ namespace nonio::model {
 
 namespace {
 
-/// Returns the residuals minus the terms of each whole pass.
+/// Returns the residuals minus the offset, slope and curvature of each pass.
 std::vector<double> within_passes(const Repeats& repeats, const std::vector<double>& residual,
                                   const std::vector<double>& weight) {
   // one cell per pass, because with one cell per reading no residual would remain
@@ -72,7 +72,7 @@ bool two_valued(const Repeats& repeats, const std::vector<double>& residual,
     const double apart = left / k - (sum - left) / (n - k);
     const double between = apart * apart * k * (n - k) / n;
     const double within = (squares - sum * sum / n - between) / n;
-    // 7 for normal noise, 12 for uniform noise
+    // the largest value of this ratio is about 7 for normal noise, and 12 for uniform noise
     if (apart * apart / within > best)
       best = apart * apart / within, best_apart = -apart, split = i + 1;
   }

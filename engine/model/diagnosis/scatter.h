@@ -13,9 +13,9 @@ namespace nonio::model {
 bool two_valued(const Repeats& repeats, const std::vector<double>& residual,
                 const std::vector<double>& weight, double digit);
 
-/// For targets read once from each of two sides, of which one reading may be an outlier: tests
-/// whether targets differ by more than their two sides do, with the most favorable target omitted.
-/// Returns the place "position", with p corrected for the choice of the omitted target.
+/// Tests whether targets differ by more than their two sides do, for targets read once from each of
+/// two sides, of which one reading may be an outlier: the most favorable target is omitted. Returns
+/// the place "position", with p corrected for the choice of the omitted target.
 std::optional<Place> next_to_a_misread_target(const Observations& o, const Repeats& repeats,
                                               const std::vector<double>& residual,
                                               const std::vector<double>& weight);

@@ -21,12 +21,12 @@ namespace nonio::model {
 
 namespace {
 
-// Largest remaining share, at the positions of an effect, with which it is significant whatever
-// causes the rest.
+// An effect is significant whatever causes the residuals if each structure that remains at its
+// places has at most this share of the mean square of its own contribution.
 // docs/dev/constants.md, M7.
 constexpr double certain_share = 0.06;
-// Evidence for that; far above the level of chance, because the residuals are not independent
-// noise.
+// Evidence that an effect needs to be significant whatever causes the residuals. It is far above
+// the level of chance, because the residuals are not independent noise.
 // docs/dev/constants.md, M8.
 constexpr double certain_evidence = 50.0;
 // docs/dev/constants.md, M9.
@@ -42,7 +42,8 @@ constexpr double least_against_zero = 30.0;
 // docs/dev/constants.md, M10.
 constexpr double cancels_beyond = 0.95;
 
-/// Whether two places share a factor.
+/// Whether two places share a factor; run counts as time, and screw phase and angle count as
+/// position.
 bool same_factor(const Where& a, const Where& b) {
   const auto kin = [](Factor f) {
     if (f == Factor::run) return Factor::time;
@@ -85,7 +86,8 @@ class Judge {
       return;
     }
     const bool scatter_found = passes_.scatter() && !searched;
-    // Zeros of passes that scatter explain such effects as well: they are no evidence of a cause.
+    // If the zeros of passes scatter and no effect is significant with them, these zeros explain
+    // the effects as well, so there is no evidence of a cause.
     if (scatter_found && !walks &&
         std::none_of(out_.together.begin(), out_.together.end(),
                      [&](const std::string& name) { return passes_.shows(name); }))
@@ -148,8 +150,8 @@ class Judge {
                least_serious(f_.of_best.floor);
   }
 
-  /// Returns the degrees of freedom of the cells: their number minus the terms that the passes of a
-  /// side share and the parameters of the best explanation.
+  /// Returns the degrees of freedom of the cells: the number of cells with readings, minus the
+  /// number of terms that the passes of each side share.
   double degrees_of_cells() const {
     std::vector<Index> in_pass(f_.repeats.passes, 0), shared(f_.repeats.sides, 0);
     std::vector<char> used(f_.repeats.cells, 0);
@@ -208,9 +210,9 @@ class Judge {
     return with_terms.walks < own ? Noise::Zero::walks : Noise::Zero::steady;
   }
 
-  /// Returns the margin by which the evidence for zeros of runs must be larger: a small effect is
-  /// not rejected in favor of possible zeros, whereas a large one would leave much larger residuals
-  /// with them.
+  /// Returns the margin by which the criterion with zeros of runs may be larger than with the
+  /// effects, if these zeros are still preferred. It is small for a small effect, which possible
+  /// zeros must not replace; a large effect would leave much larger residuals with them.
   static double as_good_as(double evidence) {
     // docs/dev/constants.md, M30.
     constexpr double share = 0.1;
@@ -268,8 +270,8 @@ class Judge {
     return size > 0.0 ? both.col(0).dot(both.col(1)) / size : 0.0;
   }
 
-  /// Whether an effect varies between readings of a target. One that is constant in time would
-  /// already be visible in the first runs.
+  /// Whether an effect varies between the readings of a target. One that does not vary is visible
+  /// in every run, so it is not a member of a cancelling pair.
   bool in_time(const std::string& name) const {
     const std::size_t e = f_.index_of(name);
     return std::none_of(f_.best.blocks.begin(), f_.best.blocks.end(), [&](std::size_t b) {
@@ -319,8 +321,8 @@ class Judge {
     if (drift < growth) std::iter_swap(drift, growth);
   }
 
-  /// Whether the joint prediction of a cancelling pair, which has no name, has the places of an
-  /// effect.
+  /// Whether the joint prediction of a pair of cancelling effects varies with a factor with which
+  /// this effect varies, and is not negligible compared with this effect.
   bool with_cancelling(const std::string& name) const {
     const auto* own = part_of(name);
     if (own == nullptr) return false;
@@ -526,8 +528,8 @@ class Judge {
     v.false_alarms = alarms / static_cast<double>(named.size());
   }
 
-  /// Adds the place "run" if the zeros of runs cause the residuals, even if waves in time describe
-  /// them with fewer columns.
+  /// Puts the place "run" first among the places where the model fails, because zeros of runs cause
+  /// the residuals, even if waves in time describe them with fewer columns.
   void tell_runs() {
     const auto is_run = [](const Place& place) { return place.where == Where{Factor::run}; };
     auto& told = out_.fails;

@@ -11,7 +11,8 @@ namespace nonio::model {
 
 std::vector<double> weights_without(std::size_t readings, const std::vector<Suspect>& suspects);
 
-/// The repeats, suspect readings, weights and noise of one table.
+/// Properties of the readings of one table that do not depend on the model: which readings repeat
+/// each other, which are suspect and have weight 0, and the correlation of their noise.
 struct Ground {
   Repeats repeats;
   std::vector<Suspect> suspects{};
@@ -48,7 +49,8 @@ Comparison comparison_of(const Part& part, const Repeats& repeats, Fit fit,
 /// Returns, for each term, whether its shapes are searched.
 std::vector<char> searched_in(const std::vector<Term>& terms);
 
-/// Repeats the fit if the zero is a random walk or differs from run to run.
+/// Returns the fit, repeated with the noise that its residuals show if the zero is random or the
+/// correlation of adjacent readings differs.
 Expected<Fit> with_its_zero(const Observations& o, Fit fitted, const std::vector<char>& searched);
 
 /// Returns the comparison with these suspect readings. For a long table, shapes are searched on its
@@ -70,14 +72,17 @@ class PlacesLeft {
   PlaceTests tests_;
 };
 
-/// Returns the smallest set of places that contains the residuals of a fit.
+/// Returns at most three places that together contain the residuals of a fit (`seats_of`), without
+/// those with a share below 2 %.
 std::vector<Place> seats_in(const Part& part, const Repeats& repeats, const Comparison& comparison);
 
-/// Cross-validation: residual of each reading when its run is predicted from the others, with the
-/// given shapes. NaN for readings of a run that the others do not determine; empty with one run.
+/// Returns the residual of each reading when its run is predicted from the others with the given
+/// shapes (cross-validation), m or rad. NaN for readings of a run that the others do not determine;
+/// empty with one run.
 std::vector<double> cross_validated(const Observations& o, const std::vector<Term>& terms,
                                     const std::vector<double>& weight);
-/// Returns the root of the weighted mean square of the finite residuals; none if there are none.
+/// Returns the root of the weighted mean square of the finite residuals; nothing if no residual of
+/// weight above 0 is finite.
 std::optional<double> rms_of(const std::vector<double>& residual,
                              const std::vector<double>& weight);
 

@@ -25,7 +25,7 @@ constexpr double rank_threshold = 1e-12;
 
 struct Design {
   MatrixXd a;                      // whitened rows; zeros of lines first, then terms
-  std::vector<std::string> names;  // name of each column
+  std::vector<std::string> names;  // name of the line or term of each column
   std::vector<Index> first;        // first column of each term, and the end
   std::vector<MatrixXd> blocks;    // columns of each term
   // number of columns of a curve that the readings do not separate from others, per term
@@ -202,7 +202,8 @@ void refine_shapes(const Observations& o, std::vector<Term>& terms,
   }
 }
 
-/// Whether a shape is an unknown of the fit: false if it has its usual or its only value.
+/// Whether shape k is an unknown of the fit. It is not if it takes only discrete values, if it has
+/// its usual value, or if it has a usual value and its grid contains only one value.
 bool estimated(const Observations& o, const Term& term, std::size_t k) {
   const Effect::Shape& shape = term.effect->shapes[k];
   if (!shape.continuous || is_usual(term, term.shape, k)) return false;
@@ -330,8 +331,9 @@ MatrixXd spread(const MatrixXd& design, const MatrixXd& cofactor, const Whitenin
   return math::product(math::transposed_product(map, both), map);
 }
 
-/// Returns s of a fit for uncertainties: if the noise has contributions that the weights do not
-/// contain, from residuals whitened with them.
+/// Returns the standard deviation of a reading that uncertainties are computed from, m or rad; 0
+/// without redundancy. If the noise has contributions that the weights do not contain, it is that
+/// of residuals whitened with these contributions.
 double s_for_uncertainty(const Fit& fit, const Observations& o, const Solution& solution) {
   if (fit.redundancy == 0) return 0.0;
   const auto redundancy = static_cast<double>(fit.redundancy);

@@ -19,8 +19,8 @@ struct TemperatureCourse {
   std::vector<std::uint32_t> known, blank;
 };
 
-/// Consecutive blank rows between two known temperatures, or after the last one, and their
-/// temperature errors, K, for one standard uncertainty of the interpolation.
+/// Consecutive blank rows between two known temperatures, before the first or after the last one,
+/// and their temperature errors, K, for one standard uncertainty of the interpolation.
 struct Gap {
   std::vector<std::uint32_t> row;
   std::vector<double> off;
@@ -162,8 +162,8 @@ Expected<Said> warmed(const Observations& filled, const AxisReadings& r,
   return out;
 }
 
-/// Returns one column per gap: the change of the prediction for one standard uncertainty of its
-/// temperatures.
+/// Returns the change of the prediction, m or rad, for one standard uncertainty of the temperatures
+/// of a gap. Each gap has a column; if there are more than `most_columns`, several share one.
 Expected<MatrixXd> columns_of_gaps(const Observations& filled, const Said& said,
                                    const std::vector<Gap>& gaps) {
   NONIO_TRY(const auto as_fitted, said.of(filled));

@@ -12,8 +12,9 @@
 
 namespace nonio::model {
 
-/// Columns that vary with one factor only. `repeated`: determined by differences between repeats of
-/// one cell (time, run, temperature), else by the cells themselves (position, direction, phase).
+/// Columns that vary only with one factor, or with the product of two. `repeated`: they are
+/// determined by differences between repeats of a cell (time, run, temperature), else by the cells
+/// themselves (position, direction, phase).
 struct FactorColumns {
   Where of;
   MatrixXd columns;
@@ -128,8 +129,8 @@ class Factors {
   }
 
   const std::vector<FactorColumns>& all() const { return all_; }
-  /// Returns the columns of a pair together with those of its first factor; for direction and
-  /// position, which are the cells, with those of both.
+  /// Returns the columns of a pair together with those of its first factor and, unless the pair is
+  /// tested only between repeats, those of its second factor.
   MatrixXd whole(const FactorColumns& f) const {
     if (!is_pair(f)) return f.columns;
     // In space positions belong to lines, so there is no factor of all positions.
@@ -336,7 +337,8 @@ class Cells {
 /// in every run belongs to the cells, even if a wave in time describes it with fewer columns.
 bool separates_repeats(const Cells& cells, const MatrixXd& basis, const VectorXd& residual) {
   // docs/dev/constants.md, M19.
-  constexpr double least = 0.1;  // share of its squares; a linear trend over two runs has a fifth
+  constexpr double least = 0.1;  // least share of the sum of squares; that of a linear trend over
+                                 // two runs is a fifth
   MatrixXd said = math::times(basis, math::transposed_times(basis, residual));
   const double all = said.squaredNorm();
   cells.take_out(said);

@@ -37,19 +37,19 @@ class PlaceTests {
   std::shared_ptr<const Tests> tests_;
 };
 
-/// Returns the smallest set of places that contains the residuals of a model, for structure that no
-/// effect explains: adds places one after the other, each including the effect of its factors alone
-/// ("direction x time" includes "direction"), as long as the evidence exceeds the cost of their
-/// columns.
+/// Returns the smallest set of at most three places that contains the residuals of a model, for
+/// structure that no effect explains. It adds places one after the other, each including the effect
+/// of its factors alone ("direction x time" includes "direction"), as long as the evidence exceeds
+/// the cost of their columns.
 std::vector<Place> seats_of(const Residuals&);
 
-/// Finds the factors with which a term's prediction varies (direction, position, direction x time,
-/// ...): those with at least a twentieth of its sum of squares, alone or as a product with another
-/// factor; largest share first.
+/// Finds the factors, or products of two factors, with which a term's prediction varies (direction,
+/// position, direction x time, ...).
 class FactorsOf {
  public:
   FactorsOf(const Part& part, const Repeats& repeats, const Whitening& white);
-  /// Returns the factors of a whitened prediction.
+  /// Returns the factors whose share of the sum of squares of a whitened prediction exceeds a
+  /// twentieth.
   std::vector<Where> operator()(const VectorXd& signal) const;
 
  private:

@@ -244,7 +244,8 @@ Workbench::State Workbench::state(std::vector<std::size_t> blocks) const {
 
 namespace {
 
-/// Returns t^T S^-1 t of one block; NaN if S is not safely positive definite.
+/// Returns t^T S^-1 t, the decrease of squares by one block with the remaining scalar products `s`;
+/// NaN if `s` is not safely positive definite.
 double fall_of(const MatrixXd& s, const VectorXd& t, double least) {
   const Eigen::LLT<MatrixXd> llt(s);
   if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > std::sqrt(least)))
@@ -466,8 +467,8 @@ Workbench::State Workbench::with(const State& state, const Gains& gains, std::si
   return more;
 }
 
-/// As `with`, for a curve: it counts only as many parameters as it has directions independent of
-/// the state.
+/// Does the same as `with` for a curve, which counts only as many parameters as it has directions
+/// independent of the state.
 Workbench::State Workbench::with_curve(const State& state, const Gains& gains,
                                        std::size_t effect) const {
   State best = state;

@@ -16,7 +16,7 @@ namespace nonio::model {
 /// computed without accessing the readings again. Not thread-safe.
 class Workbench {
  public:
-  /// Columns first .. first + count of an effect with one combination of its shapes.
+  /// Columns `first` to `first + count - 1`: those of an effect with one combination of its shapes.
   struct Block {
     std::size_t effect;
     std::vector<double> shape;
@@ -26,16 +26,16 @@ class Workbench {
     /// For each column of a curve in space 1/(usual size)^2, in the units of its parameter.
     VectorXd prior{};
     Index searched = 0;  ///< number of its shapes that were searched
-    /// 2 ln of the number of independent values from which they were chosen
+    /// 2 ln of the number of independent values from which its shapes were chosen
     double cost_of_shape = 0.0;
   };
   struct Instance {
     Term term;
     std::vector<std::size_t> blocks;  ///< empty: the effect is not identifiable from the readings
     std::string error;
-    bool reducible = false;  ///< result of may_lose
-    /// Number of shape combinations whose shapes in the bit mask (the index) have their usual
-    /// value.
+    bool reducible = false;  ///< whether combinations of its columns may be removed (`may_lose`)
+    /// Indexed by a bit mask of shapes: number of shape combinations in which all shapes of the
+    /// mask have their usual value.
     std::vector<std::size_t> tried{};
     std::vector<char> free{};  ///< for each shape: whether it has more than one value
   };
@@ -87,10 +87,11 @@ class Workbench {
   /// Returns the state with the best block of this effect added; the unchanged blocks if none can
   /// be added.
   State with(const State& state, const Gains& gains, std::size_t effect) const;
-  /// As `with`, but also tries curves with fewer knots, if that is better: an existing curve adapts
-  /// to the new effect, which otherwise could not use the targets that the curve follows.
+  /// Does the same as `with`, but also tries to reduce the knots of a curve in `state`: the curve
+  /// adapts to the new effect, which otherwise could not use the targets that the curve follows.
   State joined(const State& state, const Gains& gains, std::size_t effect) const;
-  /// Searches each effect's shapes again with the others fixed, until nothing improves.
+  /// Searches each effect's shapes again with the others fixed, until nothing improves, at most
+  /// four times. Returns the improved state.
   State settled(State state) const;
   bool holds(const State& state, std::size_t effect) const;
   std::size_t effect_of(std::size_t block) const { return blocks_[block].effect; }
@@ -106,11 +107,12 @@ class Workbench {
 
   /// Returns the indices in `columns()` of a state's blocks.
   std::vector<Index> columns_of_state(const State& state) const;
-  /// `gram`: scalar products of the columns of blocks with each other. `products`: of all columns
-  /// with them.
+  /// `gram` returns the scalar products of the columns of these blocks with each other, `products`
+  /// those of all columns with the columns of these blocks.
   MatrixXd gram(const std::vector<std::size_t>& blocks) const;
   MatrixXd products(const std::vector<std::size_t>& blocks) const;
-  /// Scalar products of the columns of the blocks `of`, concatenated, with those of `with`.
+  /// Returns the scalar products of the columns of the blocks `of`, concatenated, with those of the
+  /// blocks `with`.
   MatrixXd products(const std::vector<std::size_t>& of, const std::vector<std::size_t>& with) const;
 
   /// Returns the cost of an effect with these shapes and this number of linear columns.
@@ -171,12 +173,12 @@ class Workbench {
   double yy_ = 0.0, used_ = 0.0, noise_ = 0.0;
   std::vector<std::uint32_t> target_;
   std::size_t stated_ = 0;
-  // Largest number of columns and searched shapes of position: of a set, with stated terms, of a
-  // curve that is not stated.
+  // Largest numbers of columns and searched shapes that depend only on position: in a set of
+  // effects; in such a set when a term of the model is added; in a curve that is not in the model.
   Index most_of_position_ = 0, most_stated_ = 0, most_of_curve_ = 0;
   Index zeros_ = 0;
   bool several_axes_ = false, reducible_ = false;
-  bool few_ = false;  // there are no repeated readings
+  bool few_ = false;  // there are at most 40 readings, and fewer than 2.5 per target
 };
 
 }  // namespace nonio::model

@@ -18,10 +18,12 @@ namespace {
 
 constexpr std::size_t most_effects = 8;
 // docs/dev/constants.md, M46.
-constexpr double least_joint_rms = 0.1;  ///< relative to the noise: smaller effects are not named
+constexpr double least_joint_rms = 0.1;  ///< smallest RMS of a named effect, as a fraction of the
+                                         ///< noise
 // docs/dev/constants.md, M47.
 constexpr double differs_below = 0.001, as_much_as_noise = 0.01;
-constexpr Index shuffles = 200;  // half of them of stretches, half of whole passes
+constexpr Index shuffles = 200;  // number of flipped copies: half by stretches, half by whole
+                                 // passes
 // With many campaigns, the date of a change is searched in steps, then between them.
 constexpr std::size_t most_dates = 32;
 
@@ -131,8 +133,8 @@ class JointSearch {
     return s.sound ? s.criterion() : std::numeric_limits<double>::infinity();
   }
 
-  /// Searches shapes, and whether an effect is shared, again with the others fixed, until nothing
-  /// changes.
+  /// Searches the shape of each effect, and whether its value is shared, again with the other
+  /// effects fixed, until nothing changes, at most four times.
   void settle() {
     for (int round = 0; round < 4; ++round) {
       bool any = false;
@@ -160,8 +162,8 @@ class JointSearch {
     return now.block != before.block || now.holds != before.holds || now.after != before.after;
   }
 
-  /// Tries one change between two campaigns, in place of a value in each campaign, if that is
-  /// equally good.
+  /// Replaces the separate values of the campaigns by one change between two campaigns, if this
+  /// reduces the criterion and no other difference between campaigns remains significant.
   void look_for_date(std::size_t i) {
     const std::size_t n = r_.members.size();
     const Choice own = choices_[i];
@@ -195,8 +197,8 @@ class JointSearch {
     return math::f_upper((a.squares - b.squares) / q, q, dof_);
   }
 
-  /// Returns p of the F-test of one effect against the noise of the repeats; not corrected for the
-  /// search.
+  /// Returns the p-value of the F-test of one effect against the noise of the repeats. It is
+  /// corrected for the number of possible dates of a change, but not for the search.
   double p_of(const Choices& choices, std::size_t i) const {
     const auto all = system_.solve(choices), rest = system_.solve(without(choices, i));
     const JointBlock& block = r_.blocks[choices[i].block];
@@ -211,8 +213,9 @@ class JointSearch {
     return std::sqrt(std::max(fall, 0.0) * noise2_ / system_.readings());
   }
 
-  /// Returns the residuals, followed by copies with the signs of short stretches or of whole passes
-  /// flipped at random.
+  /// Returns copies of the residuals of each member, one per column, with signs flipped at random:
+  /// of short stretches in even columns, of whole passes in odd ones. They are scaled to the
+  /// expected size of the noise, because the fit makes residuals smaller.
   std::vector<MatrixXd> flipped() const {
     const auto left = system_.residuals(choices_, system_.solve(choices_));
     std::mt19937_64 random(seed_);
@@ -238,9 +241,9 @@ class JointSearch {
     return out;
   }
 
-  /// Returns the equivalent number of independent tests: that with which the smallest p of flipped
-  /// readings agrees at its median and at its lowest twentieth, for stretches or for passes,
-  /// whichever is largest.
+  /// Returns the number of independent tests that the search is equivalent to. It is the largest
+  /// one that explains the median or the 5 % quantile of the smallest p of a flipped copy, with
+  /// flipped stretches or with flipped passes.
   double trials_of(const JointSystem::Gains& gains) const {
     std::vector<double> least[2];
     for (Index k = 0; k < shuffles; ++k) {

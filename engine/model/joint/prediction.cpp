@@ -14,8 +14,8 @@ namespace {
 
 const char* const mark = "unseen ";
 
-/// Joins both tables, so that the knots of curves and the origins of levers are the same in both.
-/// Lines and bodies of the second get names of their own.
+/// Returns one table with the readings of both, so that the knots of curves and the origins of
+/// levers are the same for both. Lines and bodies of `unseen` get new names.
 Expected<Observations> joined(const Observations& seen, const Observations& unseen) {
   Observations out = seen;
   if (seen.angular != unseen.angular) return fail("one is in um, the other in arcsec");

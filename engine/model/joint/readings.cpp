@@ -55,7 +55,8 @@ bool is_of_place(const MatrixXd& columns, const std::vector<std::uint32_t>& cell
   return true;
 }
 
-/// Whether this member has known shapes that differ from these, such as the pitch of another screw.
+/// Whether a shape of the term is known from this member's readings or manifest and differs from
+/// that in `shape`, such as the pitch of another screw.
 bool is_of_another(const Observations& o, const Term& term, const std::vector<double>& shape) {
   for (std::size_t k = 0; k < shape.size(); ++k) {
     const std::vector<double> grid = term.effect->shapes[k].grid(o, term.axis);

@@ -12,7 +12,8 @@ namespace nonio::model {
 /// it.
 struct JointBlock {
   std::string effect;
-  const Effect* is = nullptr;  ///< the effect, as of the first member that has it
+  const Effect* is = nullptr;  ///< the effect, as declared for the member with the most readings
+                               ///< that has it
   Axis axis{};
   std::vector<double> shape{};
   Index count = 0;     ///< number of columns
@@ -29,9 +30,11 @@ struct MemberReadings {
   /// first column of each block; -1: not identifiable from these readings
   std::vector<Index> first;
   std::vector<MatrixXd> own;        ///< scalar products of each block's columns
-  std::vector<std::uint32_t> pass;  ///< pass of each reading
+  std::vector<std::uint32_t> pass;  ///< index of the pass (run in one direction on a line) of each
+                                    ///< reading
   std::vector<std::uint32_t> cell;  ///< cell of each reading: a target approached from one side
-  VectorXd scale;                   ///< factor that converts y to m or rad; 0: not used
+  VectorXd scale;                   ///< factor that converts y to m or rad; 0 for a reading that is
+                                    ///< not used
   std::size_t cells = 0;
   double readings = 0.0;
   Index unknowns = 0;  ///< number of zeros and of parameters of the own model

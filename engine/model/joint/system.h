@@ -36,7 +36,7 @@ class JointSystem {
   std::pair<VectorXd, MatrixXd> values(const std::vector<Choice>& choices, const Solution& s,
                                        std::size_t choice, std::size_t group) const;
 
-  /// Returns the residuals of each member.
+  /// Returns the residuals of each member, in units of the standard deviation of a reading.
   std::vector<VectorXd> residuals(const std::vector<Choice>& choices, const Solution& s) const;
 
   /// Decrease of the squares by one more block, for each block and each column of `y` (one matrix
@@ -44,24 +44,26 @@ class JointSystem {
   struct Gains {
     MatrixXd shared, own;
     std::vector<Index> own_parameters;
-    std::vector<double> own_price;  ///< cost of its parameters
+    std::vector<double> own_price;  ///< cost of the parameters of each block with a separate value
+                                    ///< in each member
   };
   Gains gains(const std::vector<Choice>& choices, const std::vector<MatrixXd>& y) const;
 
   double readings() const;
-  double price_of(const JointBlock& block) const;  ///< cost of its shapes and its name
+  double price_of(const JointBlock& block) const;  ///< cost of the shapes and the name of a block
   std::size_t effects() const;
   const JointReadings& all() const { return r_; }
 
  private:
-  struct Place {  // Place of a member's column in a solution.
+  struct Place {  // where the columns of one choice are in a solution (`at`), and in a member's x
+                  // (`column`)
     bool shared;
     Index at, column, count;
   };
   std::vector<Place> places(const std::vector<Choice>& choices, std::size_t member) const;
   Index shared_columns(const std::vector<Choice>& choices) const;
   struct Split {
-    MatrixXd own, shared;   // columns of one member
+    MatrixXd own, shared;   // columns of one member: with own and with shared coefficients
     std::vector<Index> at;  // indices of its shared columns among all
   };
   Split split(const std::vector<Choice>& choices, std::size_t member) const;

@@ -47,8 +47,8 @@ class Sizes {
     shown_.resize(shown_.size() - shown_.size() / 10);
   }
 
-  /// Returns the RMS of an effect that is detected with probability 0.9, if its shape is any one of
-  /// the grid.
+  /// Returns the RMS, m or rad, with which an effect is detected with a probability of 0.9 on
+  /// average over the shapes of its grid.
   double smallest() const {
     if (shown_.empty()) return 0.0;
     double low = 0.0, high = 1e4;  // size over all readings, in standard deviations of a reading
@@ -62,7 +62,8 @@ class Sizes {
     return high * s_ / std::sqrt(f_.bench->readings());
   }
 
-  /// Returns the mean ratio of found to true size for an effect that is found this large.
+  /// Returns the mean ratio of the found to the true size of an effect: near the detection limit,
+  /// an effect is found only if noise enlarges it.
   double bias(const Workbench::Block& block) const {
     const double fall = f_.bench->without(f_.best, effect_).squares - f_.best.squares;
     const double a = std::sqrt(std::max(fall, 0.0)) / s_;
@@ -99,8 +100,9 @@ class Sizes {
                 : std::max(degrees_of_passes(f_.repeats), 1.0)};
   }
 
-  /// Returns the square root of the smallest decrease of squares with which an effect is named: by
-  /// evidence, by significance, by size.
+  /// Returns the square root of the smallest decrease of squares with which an effect is named, in
+  /// units of the variance of a reading: the largest of the limits of evidence, significance and
+  /// size.
   double wanted(const Workbench::Block& block, double dof) const {
     const double n = f_.bench->readings();
     const auto k = static_cast<double>(Workbench::unknowns_of(block));

@@ -131,8 +131,8 @@ class Finder {
   }
 
   /// Refines each effect of the best explanation alone with the model, because other effects must
-  /// not fit the error of its coarse grid; likewise the causes of the library that explain most,
-  /// whose grids are the coarsest.
+  /// not fit the error of its coarse grid. It does the same for the causes of the library that
+  /// explain most, because their grids are the coarsest. Returns whether a shape was added.
   bool add_refined_alone() {
     constexpr std::size_t causes = 4;  // docs/dev/constants.md, M37
     const Workbench::Gains gains = f_.bench->gains(f_.start);
@@ -159,9 +159,9 @@ class Finder {
     return any;
   }
 
-  /// Returns the better of two searches for the model's shapes: instants and periods depend on each
-  /// other, so they are searched from two starting orders. A curve that is added last leaves to the
-  /// other terms what they need.
+  /// Returns the best state of the model's terms. Their shapes depend on each other, so they are
+  /// searched in the order of the model, and with the term first that explains most. If both fail,
+  /// curves are added last, because they can also fit what other terms explain.
   Expected<State> best_start() const {
     std::vector<std::size_t> written(f_.in_model);
     std::iota(written.begin(), written.end(), std::size_t{0});
@@ -274,7 +274,7 @@ class Finder {
     Suspect worst;
     double least = all;
     std::vector<std::pair<double, std::vector<Term>>> each{{all, terms_of_state(f_.best)}};
-    // one value, and the choice of one of n readings
+    // the cost of the error as one more unknown, and of the choice of one of n readings
     const double price = 3.0 * std::log(static_cast<double>(n));
     for (std::size_t i = 0; i < n; ++i) {
       f_.suspects = {{i, 0.0, 0.0, 0.0}};
@@ -317,7 +317,8 @@ class Finder {
     return Suspect{row, e, e / sigma, least * sigma};
   }
 
-  /// Whether the best explanation leads to other suspect readings than before.
+  /// Determines the suspect readings again, from the residuals of the best explanation; returns
+  /// whether they changed.
   bool suspect_again() {
     const std::size_t n = f_.part.table.size();
     const auto fitted = fit_near(f_.part.table, terms_of_state(f_.best), flags(false), f_.weight);

@@ -16,7 +16,8 @@ namespace nonio::model {
 /// 2 ln 20: explanations are equally good unless the odds are more than 20 to 1
 inline constexpr double alias_evidence = 6.0;
 // docs/dev/constants.md, M3.
-inline constexpr double least_rms = 0.2;  ///< relative to the noise: smaller effects are not named
+inline constexpr double least_rms = 0.2;  ///< smallest RMS of a named effect, as a fraction of the
+                                          ///< noise
 
 // Largest residual at the places of a candidate, as a share of the candidate's own contribution;
 // above, the candidate is in doubt.

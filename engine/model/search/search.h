@@ -13,8 +13,7 @@ namespace nonio::model {
 /// compromise.
 Workbench::State best_explanation(const Workbench& bench, const Workbench::State& start);
 
-/// Significance of an effect that is added to `complete`, given that noise alone can produce
-/// effects anywhere in this search.
+/// Corrects p-values for a search in which noise alone can produce effects anywhere.
 struct Chance {
   double trials = 1.0;  ///< number of independent tests that the search is equivalent to
 
@@ -26,7 +25,7 @@ struct Chance {
 /// flipped at random, so that the correlation within a stretch is preserved, without the components
 /// in the zeros and in a state's columns.
 struct SignFlips {
-  MatrixXd noise;     ///< one column per copy
+  MatrixXd noise;     ///< residuals with flipped signs, one column per copy
   MatrixXd products;  ///< one row per copy: products with all columns of the bench
   /// for all columns: their products with the orthonormal directions of the state
   MatrixXd in_complete;

@@ -12,8 +12,9 @@ std::string text_at(const File& file, const Value* dictionary, const char* key) 
   return value == nullptr ? "" : value->text;
 }
 
-/// Exactly what `reserve` writes: a name that two readers read differently, or a file that one of
-/// them finds elsewhere, would be two files.
+/// Checks that an attachment has the form that `reserve` writes: its two names are equal, and so
+/// are its two references to the content. Otherwise two readers could show different names or
+/// files.
 Expected<void> check_form(const File& file, const Value* specification, const std::string& key,
                           const std::string& name) {
   const Value* files = file.find(specification, "EF");
@@ -49,7 +50,8 @@ Expected<Attachment> attachment_of(const File& file, const std::string& key, con
                     utf8(text_at(file, specification, "Desc")).value_or("")};
 }
 
-/// Files that are in the PDF by any way: as many as are listed, or some are hidden.
+/// Returns the number of all files embedded in the PDF. If it differs from the number of listed
+/// files, some are hidden.
 std::size_t embedded_in(const File& file) {
   std::size_t n = 0;
   for (const Object& object : file.objects) {

@@ -5,7 +5,7 @@ namespace nonio::pdf {
 
 namespace {
 
-/// Pages in their order, each as what is drawn on it.
+/// Reads the uncompressed content of each page, in the order of the pages.
 class Pages {
  public:
   explicit Pages(const File& file) : file_(file) {}

@@ -26,7 +26,7 @@ const Object* File::object(const Value* reference) const {
 const Value* File::resolve(const Value* value) const {
   if (value == nullptr || !value->is(Value::Kind::reference)) return value;
   const Object* target = object(value);
-  // A reference to a reference is nothing that a writer makes.
+  // A reference to a reference is rejected, because no program writes one.
   if (target == nullptr || target->value.is(Value::Kind::reference)) return nullptr;
   return &target->value;
 }
@@ -52,7 +52,8 @@ std::size_t File::first_page() const {
 
 namespace {
 
-/// The parts of a file from its end to its beginning, then its objects.
+/// Reads the parts of a file: the head, the position of the table at the end, the table, and then
+/// the objects.
 class FileReader {
  public:
   explicit FileReader(std::string_view bytes) { file_.bytes = bytes; }
@@ -75,7 +76,7 @@ class FileReader {
     if (!b.starts_with("%PDF-1.") || b.size() < 64 || b[7] < '3' || b[7] > '7' || b[8] != '\n')
       return fail("is not a PDF of version 1.3 to 1.7");
     std::size_t at = 9;
-    if (b[at] == '%') {  // four bytes that state that the file is not text
+    if (b[at] == '%') {  // comment of four bytes above 127: the file is not text
       if (b[at + 5] != '\n') return refuse(at, "expected a comment of four bytes");
       for (std::size_t i = at + 1; i < at + 5; ++i)
         if (static_cast<unsigned char>(b[i]) < 0x80) return refuse(i, "expected a byte above 127");
@@ -202,7 +203,7 @@ class FileReader {
 
   File file_;
   std::size_t tail_ = 0;
-  std::size_t budget_ = 1000000;  ///< values in all objects: far more than a certificate has
+  std::size_t budget_ = 1000000;  ///< values that may still be read in all objects
   std::vector<std::size_t> offsets_;
 };
 
@@ -212,7 +213,7 @@ Expected<File> parse(std::string_view bytes) { return FileReader(bytes).read(); 
 
 namespace {
 
-/// As many bytes as are requested, neither more nor less.
+/// Result of a decompression: success, invalid data, or more bytes than the space for the result.
 enum class Unpacked { well, badly, longer };
 
 Unpacked unpack(std::string_view packed, std::string& into) {
@@ -228,7 +229,8 @@ Unpacked unpack(std::string_view packed, std::string& into) {
   return Unpacked::well;
 }
 
-/// Whether it is packed; an error if in a way that is not read.
+/// Returns whether a stream is compressed. Error: there is no stream, or it is compressed by
+/// another method than FlateDecode.
 Expected<bool> is_packed(const File& file, const Object& object) {
   if (!object.has_stream) return fail("expected a stream");
   const Value* filter = file.find(&object.value, "Filter");
@@ -238,7 +240,8 @@ Expected<bool> is_packed(const File& file, const Object& object) {
   return true;
 }
 
-/// Deflate cannot do better than 1 to 1032: a size beyond it is a trap.
+/// Largest accepted ratio of uncompressed to compressed size. Deflate cannot exceed 1032, so that a
+/// larger stated size is false.
 constexpr std::size_t best_ratio = 1040;
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace nonio::pdf {
 
 namespace {
 
-/// Of a MIME type: "text/csv" becomes /text#2Fcsv.
+/// Returns a text as a PDF name: "text/csv" becomes /text#2Fcsv.
 std::string name_of(std::string_view text) {
   std::string out = "/";
   for (const char c : text) {
@@ -31,8 +31,9 @@ std::string formatted(const char* format, Numbers... numbers) {
   return {text.data(), static_cast<std::size_t>(n)};
 }
 
-/// The file written anew: its own objects unchanged, except two with more entries, then those of
-/// the attachments and of the signature.
+/// Writes the file again with space for a signature. Its objects are unchanged, except that the
+/// page and the catalog get further entries; they are followed by the objects of the attachments
+/// and of the signature.
 class Reservation {
  public:
   Reservation(const File& file, Time time, std::size_t room)
@@ -56,7 +57,7 @@ class Reservation {
                    (frame.empty() ? "[0 0 0 0]" : frame) + "\n" +
                    (frame.empty() ? "" : "/AP << /N " + reference(look) + " >>\n") + "/P " +
                    reference(page) + "\n/V " + reference(signature) + "\n>>");
-    if (!frame.empty())  // what is seen there is drawn by the page itself
+    if (!frame.empty())  // empty appearance: the page itself draws the frame
       put(look, "<<\n/Type /XObject\n/Subtype /Form\n/BBox " + frame +
                     "\n/Length 0\n>>\nstream\n\nendstream");
     put_table();
@@ -65,7 +66,8 @@ class Reservation {
   }
 
  private:
-  /// The frame that the document has for its signature: four whole numbers, unchanged.
+  /// Returns the frame that a page declares for the signature, "[left low right high]"; empty if
+  /// there is none or its numbers are not integers.
   std::string frame_of(std::size_t page) const {
     const Value* frame = file_.objects[page].value.find(signature_key);
     if (frame == nullptr || !frame->is(Value::Kind::array) || frame->items.size() != 4) return {};
@@ -77,7 +79,8 @@ class Reservation {
     return text + "]";
   }
 
-  /// The page with that frame, else the first.
+  /// Returns the object number of the first page that declares a frame for the signature; if there
+  /// is none, of the first page.
   std::size_t page_of_signature() const {
     for (const std::size_t number : file_.order) {
       const Value* type = file_.objects[number].value.find("Type");
@@ -102,7 +105,8 @@ class Reservation {
     return {};
   }
 
-  /// A name tree is sorted by its keys.
+  /// Returns the indices of the attachments sorted by name, because PDF requires sorted keys in a
+  /// name tree.
   static std::vector<std::size_t> in_order_of_names(const std::vector<Attachment>& attachments) {
     std::vector<std::size_t> order(attachments.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -190,7 +194,8 @@ class Reservation {
                 std::string(file_.bytes.substr(value.begin, value.end - value.begin)) + "\n";
     }
     out_ += "/Size " + std::to_string(offsets_.size()) + "\n";
-    // Of what went in, not of the time.
+    // The identifier is computed from the input, not from the time, so that equal input gives equal
+    // bytes.
     const std::string id = hexadecimal(sha256(file_.bytes).substr(0, 16));
     out_ += "/ID [ " + id + " " + id + " ]\n>>\nstartxref\n" + std::to_string(table) + "\n%%EOF\n";
   }
@@ -204,7 +209,7 @@ class Reservation {
   const File& file_;
   const Time time_;
   const std::size_t room_;
-  std::vector<std::size_t> offsets_;  ///< by number, of the new file
+  std::vector<std::size_t> offsets_;  ///< position in the new file by object number
   std::vector<std::pair<std::size_t, std::string>> attached_;
   std::string files_;
   std::set<std::string> names_;

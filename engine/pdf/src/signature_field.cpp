@@ -39,7 +39,8 @@ bool is_lower_hexadecimal(std::string_view text) {
 }  // namespace
 
 Expected<PdfSignature> signature_at_end(std::string_view bytes) {
-  // What follows the signature: its field and the table of at most 100,000 objects.
+  // Largest distance of the signature from the end of the file, bytes: it is followed by its field
+  // and the table of at most 100,000 objects.
   constexpr std::size_t farthest = 3'000'000;
   constexpr std::string_view range = "\n/ByteRange [0 ", then = "]\n/Contents ";
   constexpr std::size_t digits = 10, time_size = 19;
@@ -101,7 +102,7 @@ Expected<PdfSignature> signature_of(const File& file, const Value& dictionary) {
   signature.after = file.bytes.substr(contents->end);
   signature.gap = contents->begin;
   signature.contents = file.bytes.substr(contents->begin + 1, contents->end - contents->begin - 2);
-  // Upper case would be the same content in other bytes: only one form is accepted.
+  // Digits in upper case are rejected: they would be the same signature in other bytes.
   if (!is_lower_hexadecimal(signature.contents))
     return fail("/Contents: expected digits and small letters a to f");
   const Value* time = dictionary.find("M");

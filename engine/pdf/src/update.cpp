@@ -25,9 +25,10 @@ std::optional<std::size_t> number_in(std::string_view text) {
   return number;
 }
 
-/// Of the part that ends there: where its table states that the part before it has its own.
+/// Returns the position of the previous cross-reference table, as stated (/Prev) by the table of
+/// the part that ends at `end`; none if there is no such statement.
 std::optional<std::size_t> table_before(std::string_view bytes, std::size_t end) {
-  constexpr std::size_t longest = 30000;  // a table and a trailer of an update
+  constexpr std::size_t longest = 30000;  // bytes of the table and trailer of an update
   constexpr std::string_view word = "\nstartxref\n", previous = "\n/Prev ";
   const std::string_view part = bytes.substr(0, end);
   if (!part.ends_with(end_of_part)) return std::nullopt;
@@ -99,7 +100,8 @@ std::string list_of(const char* key, const std::vector<std::size_t>& numbers) {
   return out + "]\n";
 }
 
-/// An object of the signed file, with more text at these places of the file.
+/// Returns an object of the signed file with texts inserted; `more`: position in the file and text,
+/// ascending.
 std::string with(const File& file, const Object& object,
                  const std::vector<std::pair<std::size_t, std::string>>& more) {
   std::string out;
@@ -118,7 +120,8 @@ std::string entry(std::size_t place) {
   return text.data();
 }
 
-/// What the form and the page get for each time stamp.
+/// Returns the references to the fields of the time stamps, for the lists in the form and in the
+/// page.
 std::string fields_text(const std::vector<std::size_t>& fields) {
   std::string out;
   for (const std::size_t n : fields) out += " " + reference(n);
@@ -168,7 +171,8 @@ std::string Updater::table(const std::vector<std::pair<std::size_t, std::size_t>
          "\n%%EOF\n";
 }
 
-/// The objects of one update as they are put behind the file.
+/// Collects the objects of one update and their positions in the file to which the update is
+/// appended.
 class Updater::Objects {
  public:
   explicit Objects(Updater& to) : to_(to) {}
@@ -201,7 +205,8 @@ class Updater::Objects {
         reference(to_.page_) + "\n/V " + reference(signature) + "\n>>");
     put(to_.page_, to_.object_of_page());
   }
-  /// With the table, and the range of the time stamp filled in.
+  /// Appends the cross-reference table, sets the /ByteRange of the time stamp, and stores the bytes
+  /// in `out`.
   void finish(Update& out) {
     std::sort(places_.begin(), places_.end());
     const std::size_t at = to_.end_ + bytes_.size();
@@ -221,7 +226,7 @@ class Updater::Objects {
 
  private:
   Updater& to_;
-  std::vector<std::pair<std::size_t, std::size_t>> places_;  ///< number, position
+  std::vector<std::pair<std::size_t, std::size_t>> places_;  ///< object number and position
   std::string bytes_;
   std::size_t range_ = 0, gap_ = 0;
 };
@@ -248,7 +253,7 @@ Expected<Update> Updater::write(const Store& more, bool has_stamp) {
 
 namespace {
 
-/// References to objects from `first` on, which must be the last ones of the list.
+/// Returns how many references under this key name objects with the number `first` or above.
 std::size_t new_ones(const Value& store, const char* key, std::size_t first) {
   const Value* list = store.find(key);
   if (list == nullptr || !list->is(Value::Kind::array)) return 0;
@@ -260,7 +265,8 @@ std::size_t new_ones(const Value& store, const char* key, std::size_t first) {
 
 }  // namespace
 
-/// The streams, then the object that describes them.
+/// Reads the new streams of an update, and then the object that lists them; `at` is moved behind
+/// them. The result is empty if the update has no streams.
 Expected<Store> Updater::read_store(std::string_view bytes, std::size_t& at) const {
   std::vector<std::string> streams;
   std::size_t number = size_;

@@ -22,14 +22,16 @@
 #include "nonio/pdf/text.h"
 #include "nonio/sdk/text.h"
 
-// The one place that knows libharu. Its own text functions are not used: libharu 2.3.0 would parse
-// and compress both fonts again for each document, lose glyphs in silence and write a 128 kB
-// CIDToGIDMap. Here the fonts are built from its objects, with streams that were compressed once.
+// This is the only file that uses libharu. The text functions of libharu 2.3.0 are not used,
+// because they parse and compress the fonts again for each document, omit glyphs without an error
+// and write a CIDToGIDMap of 128 kB. Instead, the fonts are built from objects of libharu with
+// streams that were compressed once.
 
 namespace nonio::pdf {
 namespace {
 
-/// An element, with its list in it if it has one; nothing if there is no text.
+/// Returns an XML element with the text, which is inside an RDF list of the type `list` if one is
+/// given; empty if there is no text.
 std::string element(std::string_view name, std::string_view text, std::string_view list = {}) {
   if (text.empty()) return {};
   const std::string tag(name), kind(list);
@@ -41,8 +43,9 @@ std::string element(std::string_view name, std::string_view text, std::string_vi
          "</" + tag + ">\n";
 }
 
-/// The document's properties as XMP (ISO 16684-1), equal to those of its Info dictionary.
-/// No pdfaid schema: it would claim a conformance that no validator has seen.
+/// Returns the document's properties as XMP (ISO 16684-1), equal to those of its Info dictionary.
+/// The pdfaid schema is omitted, because it would claim a conformance that no validator has
+/// confirmed.
 std::string xmp_packet(const NewFile& file, std::string_view producer) {
   const std::string date = file.date.empty() ? "" : file.date + "T00:00:00Z";
   return "<?xpacket begin=\"\xEF\xBB\xBF\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>\n"
@@ -58,7 +61,8 @@ std::string xmp_packet(const NewFile& file, std::string_view producer) {
          "  </rdf:Description>\n </rdf:RDF>\n</x:xmpmeta>\n<?xpacket end=\"r\"?>\n";
 }
 
-/// The first error of a document; libharu repeats it in every later call.
+/// The first error of a document. Only this one is stored, because libharu repeats it in every
+/// later call.
 struct Failure {
   HPDF_STATUS code = HPDF_OK, detail = HPDF_OK;
 };
@@ -68,8 +72,8 @@ void record(HPDF_STATUS code, HPDF_STATUS detail, void* user) {
   if (failure->code == HPDF_OK) *failure = {code, detail};
 }
 
-/// Whether memory was refused to the document that is written: libharu may report something else
-/// then, which follows from it, or nothing.
+/// Whether an allocation of memory has failed since the document was begun. In this case libharu
+/// may report another error that results from it, or none.
 bool memory_was_refused = false;
 
 void* allocate(HPDF_UINT size) {
@@ -78,7 +82,8 @@ void* allocate(HPDF_UINT size) {
   return memory;
 }
 
-/// Bytes that a stream of the document is written from: libharu's own streams copy byte by byte.
+/// The bytes from which a stream of the document is written. libharu's own memory streams are not
+/// used, because they copy byte by byte.
 struct Source {
   std::string_view bytes;
   std::size_t at = 0;
@@ -86,8 +91,8 @@ struct Source {
 
 struct HaruDocument {
   Failure failure;
-  std::deque<Source> sources;  ///< what they show outlives the document
-  std::string bytes;           ///< as saved
+  std::deque<Source> sources;  ///< sources of the streams; their bytes must outlive `doc`
+  std::string bytes;           ///< the saved PDF
   HPDF_Doc doc = nullptr;
   HaruDocument() {
     memory_was_refused = false;
@@ -123,8 +128,8 @@ HPDF_STATUS append(HPDF_Stream stream, const HPDF_BYTE* bytes, HPDF_UINT size) {
   return HPDF_OK;
 }
 
-/// libharu drops a /Filter that it did not apply itself; what is written here follows the
-/// dictionary's own entries.
+/// Writes the /Filter of a stream after the other entries of its dictionary, because libharu
+/// removes a /Filter that it did not apply itself.
 HPDF_STATUS write_filter(HPDF_Dict, HPDF_Stream stream) {
   return HPDF_Stream_WriteStr(stream, "/Filter /FlateDecode\012");
 }
@@ -139,12 +144,13 @@ HPDF_STATUS write_widths(HPDF_Dict dict, HPDF_Stream stream) {
   return status == HPDF_OK ? HPDF_Stream_WriteStr(stream, "\012") : status;
 }
 
-/// `bytes`, compressed or not, outlive the document.
+/// Sets the content of a stream. `bytes` must outlive the document; `compressed` states whether
+/// they are compressed by Deflate.
 void fill(HaruDocument& pdf, HPDF_Dict dict, const std::string& bytes, bool compressed = true) {
   Source& source = pdf.sources.emplace_back(Source{bytes});
   HPDF_Stream stream = HPDF_CallbackReader_New(pdf.doc->mmgr, read_source, seek_source, nullptr,
                                                size_of_source, &source);
-  if (stream == nullptr) return;  // recorded
+  if (stream == nullptr) return;  // the error was recorded
   HPDF_Stream_Free(dict->stream);
   dict->stream = stream;
   dict->filter = HPDF_STREAM_FILTER_NONE;
@@ -185,7 +191,8 @@ HPDF_Dict add_descriptor(HaruDocument& pdf, const Font& font) {
   return descriptor;
 }
 
-/// What it embeds outlives the document.
+/// Adds a font and returns its dictionary; null if this fails. `font.embedded` must outlive the
+/// document.
 HPDF_Dict add_font(HaruDocument& pdf, const Font& font) {
   HPDF_Doc doc = pdf.doc;
   const EmbeddedFont& embedded = *font.embedded;
@@ -229,7 +236,8 @@ HPDF_Dict add_samples(HaruDocument& pdf, const Picture& picture, const std::stri
   return samples;
 }
 
-/// `picture` outlives the document.
+/// Adds a picture and returns its dictionary; null if this fails. `picture` must outlive the
+/// document.
 HPDF_Dict add_picture(HaruDocument& pdf, const Picture& picture) {
   HPDF_Dict colours = add_samples(pdf, picture, picture.colours, picture.grey);
   if (colours == nullptr) return nullptr;
@@ -239,7 +247,8 @@ HPDF_Dict add_picture(HaruDocument& pdf, const Picture& picture) {
   return colours;
 }
 
-/// One dictionary that all pages share.
+/// Adds the dictionary of fonts, pictures and graphics state, which all pages share; returns null
+/// if this fails.
 HPDF_Dict add_resources(HaruDocument& pdf, const NewFile& file) {
   HPDF_Doc doc = pdf.doc;
   HPDF_Dict resources = new_object(doc, nullptr);
@@ -268,13 +277,14 @@ HPDF_Dict add_resources(HaruDocument& pdf, const NewFile& file) {
 
 void add_property(HPDF_Doc doc, const char* key, std::string_view text) {
   if (text.empty()) return;
-  std::string bytes = utf16(text).value_or("");  // it was checked where it is drawn
+  std::string bytes = utf16(text).value_or("");  // invalid UTF-8 is reported when the text is drawn
   HPDF_Dict_Add(doc->info, key,
                 HPDF_Binary_New(doc->mmgr, reinterpret_cast<HPDF_BYTE*>(bytes.data()),
                                 static_cast<HPDF_UINT>(bytes.size())));
 }
 
-/// A property is a label; the text itself is in the document.
+/// Shortens a property to at most 2000 bytes of whole UTF-8 characters. A property is only a label,
+/// and the document contains the whole text.
 std::string label(std::string text) {
   constexpr std::size_t most = 2000;
   if (text.size() <= most) return text;
@@ -312,12 +322,14 @@ void add_properties(HPDF_Doc doc, const NewFile& file) {
     HPDF_Dict_Add(doc->catalog, "Lang", HPDF_String_New(doc->mmgr, file.language.c_str(), nullptr));
 }
 
-/// What a file that is kept for long states about itself.
+/// Additional data of a PDF that is to be archived: compressed ICC profile, XMP packet, and
+/// identifier of the file.
 struct Kept {
   std::string profile, xmp, identifier;
 };
 
-/// `contents`: the pages, compressed.
+/// Computes the additional data of a PDF that is to be archived. `contents`: the compressed pages,
+/// from which and the XMP packet the identifier is computed.
 Kept kept_of(HPDF_Doc doc, const NewFile& file, const std::vector<std::string>& contents,
              const Deflater& fast) {
   const char* producer = HPDF_GetInfoAttr(doc, HPDF_INFO_PRODUCER);
@@ -333,7 +345,7 @@ void add_kept(HaruDocument& pdf, const Kept& kept) {
   HPDF_Dict profile = new_stream(pdf, kept.profile), metadata = new_stream(pdf, kept.xmp, false);
   HPDF_Dict intent = new_object(doc, "OutputIntent");
   if (profile == nullptr || metadata == nullptr || intent == nullptr) return;
-  HPDF_Dict_AddNumber(profile, "N", 3);  // its colours
+  HPDF_Dict_AddNumber(profile, "N", 3);  // number of colour components
   HPDF_Dict_AddName(metadata, "Type", "Metadata");
   HPDF_Dict_AddName(metadata, "Subtype", "XML");
   HPDF_Dict_Add(doc->catalog, "Metadata", metadata);
@@ -380,9 +392,9 @@ Expected<std::string> write(NewFile file) {
     *text = label(std::move(*text));
   if (!date_of(file.date)) file.date.clear();
   std::vector<std::string> contents;
-  const Deflater fast(1);  // 6 takes three times as long for a few per cent of the file
+  const Deflater fast(1);  // level 6: three times as long, only a few per cent smaller
   for (const std::string& content : file.pages) contents.push_back(fast(content));
-  Kept kept;  // outlives the document, as all that it is written from
+  Kept kept;  // declared before `pdf`, because it must outlive the document
   HaruDocument pdf;
   if (pdf.doc == nullptr) return fail("the PDF could not be begun: out of memory");
   pdf.doc->pdf_version = HPDF_VER_17;

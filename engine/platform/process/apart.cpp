@@ -51,7 +51,7 @@ int end_of(pid_t child, const std::vector<pid_t>& children_before) {
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR)
     ;
-  end_children(children_before);  // processes that plugins have left running
+  end_children(children_before);  // ends processes that plugins have left running
   return status;
 }
 

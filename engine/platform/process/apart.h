@@ -21,8 +21,9 @@ bool is_apart();
 /// whose plugins were tested with it, or this process cannot be restarted.
 bool must_be_tried(const std::filesystem::path& plugin);
 
-/// During its lifetime, plugins are loaded that were not tried. If one of them ends this process or
-/// hangs, the parent starts another process, which tries all plugins first.
+/// States that this process loads plugins that were not tried, during the lifetime of the object.
+/// If one of them ends this process or hangs, the parent starts another process, which tries all
+/// plugins first.
 class LoadingUntried {
  public:
   LoadingUntried();
@@ -31,12 +32,11 @@ class LoadingUntried {
   ~LoadingUntried();
 };
 
-/// Sets the files that plugins cannot read where they are kept apart. Call it before plugins are
-/// loaded.
+/// Sets the files that plugins cannot read if they run in a confined child. Call it before plugins
+/// are loaded.
 void hide_from_plugins(std::vector<std::filesystem::path> secrets);
 
-/// During its lifetime, standard output is redirected to standard error, where plugins are kept
-/// apart.
+/// Redirects standard output to standard error during its lifetime, if plugins are kept apart.
 class Muted {
  public:
   Muted();

@@ -33,22 +33,24 @@ class Handle {
   int fd_ = -1;
 };
 
-/// Returns both ends of a channel between two processes; they are closed when another program is
-/// started. `type`: SOCK_STREAM or SOCK_SEQPACKET. An error names the partner `to_whom`.
+/// Returns both ends of a channel between two processes, of type SOCK_STREAM or SOCK_SEQPACKET.
+/// They are closed when another program is started. An error names the partner `to_whom`.
 Expected<std::array<Handle, 2>> channel_pair(int type, const std::string& to_whom);
 
-/// Write and read a text on a stream, preceded by its length. False if the other process has ended;
-/// `read_text` also if the text is longer than 1 GiB.
+/// Write and read a text on a stream, preceded by its length. They return false if the other
+/// process has ended; `read_text` also if the text is longer than 1 GiB.
 bool write_text(int stream, std::string_view bytes);
 bool read_text(int stream, std::string& bytes);
 
-/// Sends a byte and up to four descriptors over any channel. False if the other process has ended.
+/// Sends a byte and up to four descriptors over any channel. Returns false if the other process has
+/// ended.
 bool send_descriptors(int channel, char word, const std::vector<int>& descriptors);
 
 struct Received {
   char word = 0;
-  std::vector<Handle> descriptors;  ///< closed when another program is started
-  pid_t sender = -1;                ///< process id from the kernel; -1 unless SO_PASSCRED is set
+  /// Received descriptors; they are closed when another program is started.
+  std::vector<Handle> descriptors;
+  pid_t sender = -1;  ///< process id from the kernel; -1 unless SO_PASSCRED is set
 };
 /// Receives what `send_descriptors` sent. An error if the other process has ended.
 Expected<Received> receive_descriptors(int channel);

@@ -14,8 +14,8 @@ namespace nonio::process {
 
 /// How a child process ended.
 struct ChildEnd {
-  bool well = false;  ///< it exited with status 0
-  std::string words;  ///< otherwise the reason: "signal 11 (Segmentation fault)"
+  bool well = false;  ///< the process exited with status 0
+  std::string words;  ///< reason if it did not: "signal 11 (Segmentation fault)"
   bool overdue = false;
 };
 
@@ -33,8 +33,8 @@ class Child {
   };
   /// A program to start in the child, and the descriptors of its standard streams; -1: /dev/null.
   struct Program {
-    std::vector<std::string> command;      ///< the first is the path of the program
-    std::vector<std::string> environment;  ///< "NAME=value"
+    std::vector<std::string> command;      ///< path of the program, followed by its arguments
+    std::vector<std::string> environment;  ///< variables in the form "NAME=value"
     int input = -1, output = -1, errors = -1;
   };
 
@@ -42,9 +42,9 @@ class Child {
   /// Takes ownership of a child that another process has created for this one.
   explicit Child(pid_t pid);
   /// Runs `work` in a child process, which then ends with status 0 (3 if `work` throws). The child
-  /// writes no core file, ends with its parent, and prints to standard error, so that results stay
-  /// clean. An error if the system has no process within two seconds; it names the `purpose`, for
-  /// example "a process that signs".
+  /// writes no core file, ends with its parent, and prints to standard error, so that results
+  /// contain no other text. An error if the system cannot create a process within two seconds; its
+  /// message contains the `purpose`, for example "a process that signs".
   static Expected<Child> start(const std::string& purpose, const Settings& settings,
                                const std::function<void()>& work);
   static Expected<Child> start(const Program& program);
@@ -56,7 +56,7 @@ class Child {
   ~Child() { end(); }
 
   explicit operator bool() const { return pid_ > 0; }
-  pid_t pid() const { return pid_; }  ///< -1: no process
+  pid_t pid() const { return pid_; }  ///< process id of the child; -1: no process
   bool has_ended() const;
   /// Kills the child with its process group and returns how it ended. A process that waits for a
   /// disk in the kernel is left behind after two seconds, because it ends only when the disk

@@ -28,7 +28,7 @@ namespace {
 // ---- files: Landlock (Documentation/userspace-api/landlock.rst)
 
 /// The structure of Landlock ABI 6. An older kernel accepts a structure longer than its own if the
-/// rest is 0.
+/// additional bytes are 0.
 struct Ruleset {
   std::uint64_t files = 0, net = 0, scoped = 0;
 };

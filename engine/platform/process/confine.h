@@ -19,7 +19,7 @@ std::vector<std::string> lacking_confinement();
 /// error.
 std::string confine_loading(const std::vector<std::filesystem::path>& readable);
 
-/// Call when plugins are loaded: forbids opening any file. Returns why the kernel refused, or an
+/// Call after plugins were loaded: forbids opening any file. Returns why the kernel refused, or an
 /// empty text.
 std::string confine_files();
 

@@ -300,7 +300,7 @@ void print_computing() {
   constexpr unsigned flags = 3;
   filter.add(SCMP_ACT_ALLOW, "mmap", masked(flags, MAP_GROWSDOWN, 0));
   filter.add(SCMP_ACT_ALLOW, "prlimit64", is(0, 0), is(2, 0));
-  // tgkill for abort() and raise(), but not to another process
+  // abort() and raise() need tgkill; it is not allowed for other processes.
   filter.add(SCMP_ACT_ALLOW, "tgkill", is(0, own_process));
   filter.add(SCMP_ACT_KILL_PROCESS, "tgkill", is_not(0, own_process));
   filter.add(SCMP_ACT_ERRNO(EAGAIN), "clone");

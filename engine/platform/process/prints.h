@@ -12,11 +12,11 @@ namespace nonio::batch {
 /// 64 kB are kept between two calls of `pass_on`.
 class Prints {
  public:
-  /// Replaces standard output and error of the process; `to`: descriptor to which text is passed
-  /// on.
+  /// Replaces standard output and error of the process. `pass_on` writes to the descriptor `to`.
   explicit Prints(int to);
   bool valid() const { return static_cast<bool>(reading_); }
-  /// Descriptor of the collected text, which another process can read after this one has died.
+  /// Returns the descriptor of the collected text, which another process can read after this one
+  /// has died.
   int reading() const { return reading_.get(); }
   /// Passes on what was printed since the last call, preceded by the name `who`.
   void pass_on(const std::string& who);

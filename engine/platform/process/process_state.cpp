@@ -98,7 +98,8 @@ std::string restore_process_state() {
     say(words, "the signal mask");
     pthread_sigmask(SIG_SETMASK, &kept->signals, nullptr);
   }
-  if (is_computing_confined()) return words;  // a confined process cannot change the rest
+  // A confined process cannot change working folder and umask
+  if (is_computing_confined()) return words;
   if (mode_mask() != kept->mask) {
     say(words, "the umask");
     ::umask(kept->mask);

@@ -23,8 +23,8 @@ namespace nonio::process {
 /// after its death.
 struct SignsOfLife {
   std::atomic<std::uint64_t> beats;
-  std::atomic<std::uint64_t> index;  ///< of the present task
-  std::atomic<bool> reads;           ///< it may be waiting for a disk; otherwise it computes
+  std::atomic<std::uint64_t> index;  ///< number of the task that the child works on
+  std::atomic<bool> reads;           ///< the child may be waiting for a disk; otherwise it computes
   std::array<char, 8192> place;      ///< path that the child is reading
 
   void beat() { ++beats; }
@@ -42,7 +42,8 @@ class Watched {
   using Send = std::function<void(std::string_view)>;
   using Task = std::function<void(SignsOfLife&, const Send&)>;
 
-  /// Starts the task in a child process. `memory_MB`: limit of its private memory; 0: none.
+  /// Starts the task in a child process whose private memory is limited to `memory_MB`; 0 means no
+  /// limit.
   static Expected<Watched> start(const Task& task, double memory_MB = 0.0);
   int channel() const { return channel_.get(); }
   const SignsOfLife& signs() const { return *signs_; }

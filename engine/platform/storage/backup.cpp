@@ -29,8 +29,8 @@ namespace {
 
 Error of_system(const fs::path& path) { return Error{std::strerror(errno), path.string()}; }
 
-/// Whether a file is an SQLite database that is written in place. Packs do not count: they never
-/// change, and their name contains their digest.
+/// Whether a file is an SQLite database that is written in place. Packs are not regarded as
+/// databases: they never change, and their name contains their digest.
 bool is_database(const fs::path& path) {
   constexpr std::string_view magic("SQLite format 3\0", 16);
   std::string head(magic.size(), '\0');
@@ -60,7 +60,8 @@ class Backup {
 
   Expected<BackupSummary> write() {
     if (auto done = list(); !done) return fail(done.error());
-    // The file that states the end of the register comes before the register itself.
+    // A file that names the last entry of a register is copied before the register, so that it
+    // never names an entry that the copy of the register lacks.
     for (const fs::path& path : identities_) {
       const auto state = [&] {
         States one;
@@ -190,7 +191,7 @@ class Backup {
   /// Adds the files of a folder, without subfolders, as they were at one moment.
   Expected<void> add_folder(const fs::path& folder) {
     struct stat of {};
-    if (::lstat(folder.c_str(), &of) != 0) return {};  // removed after it was listed
+    if (::lstat(folder.c_str(), &of) != 0) return {};  // the folder was removed after it was listed
     if (folder != folder_)
       if (auto done = tar_.add({.name = name_of(folder),
                                 .kind = TarEntry::Kind::folder,
@@ -240,8 +241,8 @@ bool is_safe(const std::string& name) {
                       [](const fs::path& part) { return part == ".." || part == "."; });
 }
 
-/// Reads a whole archive and compares each file with its digest. `into`: new folder for the files;
-/// empty: the archive is only checked.
+/// Reads a whole archive and compares each file with its digest. The files are written to the new
+/// folder `into`; if it is empty, the archive is only checked.
 class Restore {
  public:
   Restore(const fs::path& file, fs::path into) : file_(file), into_(std::move(into)) {}

@@ -22,9 +22,10 @@ inline constexpr const char* backup_digests = ".nonio-backup.sha256";
 
 /// Writes a folder into the archive `file`, which appears completely or not at all and is read back
 /// before. Other processes may write into the folder meanwhile: each database is copied as of one
-/// moment, and later the files of each folder as of one moment. The register is copied first, so
-/// its site never refers to an entry that the copy lacks. Locks and temporary files are left out.
-/// Errors: `file` exists or is in the folder; a folder changes all the time; a database is damaged.
+/// moment, and later the files of each folder as of one moment. The files that name the last entry
+/// of a register are copied before the register, so that they never name an entry that its copy
+/// lacks. Locks and temporary files are left out. Errors: `file` exists or is in the folder; a
+/// folder changes all the time; a database is damaged.
 Expected<BackupSummary> write_backup(const std::filesystem::path& folder,
                                      const std::filesystem::path& file);
 

@@ -19,9 +19,10 @@ class Connection;
 
 /// A PostgreSQL database, as `[database]` of site.toml names it.
 struct Server {
-  std::string url;  ///< postgresql://... without a password, in libpq's format
+  std::string url;  ///< address postgresql://... without a password, in libpq's format
   std::string schema;
-  std::filesystem::path password_file;  ///< empty: libpq finds it (service, ~/.pgpass, ...)
+  /// File with the password; empty: libpq finds it (service, ~/.pgpass, ...).
+  std::filesystem::path password_file;
 };
 
 /// Checks that libpq accepts this address and that it contains no password. The error does not

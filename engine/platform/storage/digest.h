@@ -20,14 +20,14 @@ class RunningDigest {
   RunningDigest(const RunningDigest&) = delete;
   RunningDigest& operator=(const RunningDigest&) = delete;
   void add(std::string_view bytes);
-  std::string hex();  ///< lower-case hexadecimal; call it once, at the end
+  std::string hex();  ///< returns the digest in lower-case hexadecimal; call it once, at the end
 
  private:
   struct State;
   std::unique_ptr<State> state_;
 };
 
-/// Returns the SHA-256 in lower-case hexadecimal.
+/// Returns the SHA-256 of the bytes in lower-case hexadecimal.
 std::string sha256(std::string_view bytes);
 /// Returns the HMAC with SHA-256 (RFC 2104) in lower-case hexadecimal.
 std::string hmac_sha256(std::string_view key, std::string_view bytes);

@@ -222,7 +222,7 @@ Expected<std::string> read_file(const fs::path& path) {
   if (auto packed = read_from_pack(path)) return std::move(*packed);
   NONIO_TRY(const auto file, open_regular(path));
   std::string bytes;
-  // One byte more than the size: if it stays empty, the file ends there.
+  // One byte more than the size is read: if it stays empty, the file ends there.
   for (std::size_t size = 0, room = std::min(file.size, most_at_once) + 1;; room *= 2) {
     bytes.resize(room);
     NONIO_TRY(const auto read,
@@ -477,7 +477,7 @@ Expected<bool> disk_gives_back(const fs::path& path, std::uint64_t size, std::st
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (!file) return system_error("cannot read", path);
   ::posix_fadvise(file.get(), 0, 0, POSIX_FADV_DONTNEED);
-  // One byte more than expected: if it stays empty, the file ends there.
+  // One byte more than expected is read: if it stays empty, the file ends there.
   std::string buffer(std::min<std::uint64_t>(size + 1, 1 << 20), '\0');
   RunningDigest digest;
   std::uint64_t seen = 0;

@@ -109,8 +109,8 @@ Expected<bool> disk_gives_back(const std::filesystem::path& path, std::uint64_t 
                                std::string_view sha256);
 
 /// Renames a file. On a network file system the reply may be lost, and the repeated request then
-/// finds no file `from`; in this case `to` is checked. `is_ours`: whether `to` has the expected
-/// bytes; without it the inodes are compared.
+/// finds no file `from`; in this case `is_ours` states whether `to` has the expected bytes. Without
+/// `is_ours` the inodes are compared.
 Expected<void> rename_file(const std::filesystem::path& from, const std::filesystem::path& to,
                            const std::function<bool()>& is_ours = {});
 
@@ -128,7 +128,8 @@ bool is_temporary_name(std::string_view name);
 /// Removes the temporary files of these names without listing the folder.
 void remove_temporaries(const std::filesystem::path& folder, const std::vector<std::string>& names);
 
-/// Removes the incomplete files of killed processes from a folder.
+/// Removes the files that `temporaries` finds in a folder: incomplete files that a killed process
+/// has left.
 void remove_leftovers(const std::filesystem::path& folder);
 
 }  // namespace nonio::storage

@@ -51,7 +51,8 @@ inline std::string key(const std::string& name, Quantity q) {
   return name + std::string(unit_of(q).suffix);
 }
 
-/// Adds a value in its unit; a missing or non-finite value is left out.
+/// Adds a value to an object in the unit of its quantity; a missing or non-finite value is left
+/// out.
 inline void put(Json& json, const std::string& name, const std::optional<double>& value,
                 Quantity q) {
   if (!value) return;

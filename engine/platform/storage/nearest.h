@@ -15,7 +15,7 @@ std::string suggestion(std::string_view found, const std::vector<std::string>& c
 std::string listed(const std::vector<std::string>& names);
 
 /// Returns the message for a value that is not one of the choices: "expected one of a, b; found
-/// "c"", and the nearest choice. `list`: text for the choices; empty: their names.
+/// "c"", and the nearest choice. If `list` is not empty, it replaces the names of the choices.
 std::string not_one_of(const std::vector<std::string>& choices, std::string_view found,
                        std::string list = {});
 

@@ -124,7 +124,8 @@ void Catalogue::each(const std::function<void(std::string_view, const PackFile&)
 }
 
 Expected<void> Catalogue::publish_with(const fs::path& out, const std::vector<Entry>& more) const {
-  std::map<std::string, std::size_t> number;  // by name, for packs that contain a campaign
+  // Number of each pack that contains a campaign, by its name
+  std::map<std::string, std::size_t> number;
   std::string packs, rows;
   const auto add = [&](std::string_view id, const PackFile& pack) {
     const auto [at, is_new] = number.emplace(pack.name, number.size());
@@ -153,7 +154,8 @@ namespace {
 /// The catalogue as it was last read; it is read again if the file has changed.
 struct KnownCatalogue {
   struct stat at {};
-  std::shared_ptr<const Catalogue> catalogue;  ///< null: it cannot be read
+  /// Content of the catalogue; null: it cannot be read.
+  std::shared_ptr<const Catalogue> catalogue;
 };
 
 struct Known {

@@ -26,18 +26,20 @@ inline constexpr const char* hashed_mark = ".nonio/hashed";
 /// error when it is read; the campaign is not treated as one without results.
 std::filesystem::path results_folder(const std::filesystem::path& out, const std::string& id);
 /// Calls `take` with every folder and every address in a pack that may contain results of a
-/// campaign, in no order. The last part of the path is the campaign's id. A missing output folder
-/// has none.
+/// campaign, in no particular order. The last part of the path is the id of the campaign. If the
+/// output folder is missing, `take` is not called.
 Expected<void> each_results_folder(const std::filesystem::path& out,
                                    const std::function<void(const std::filesystem::path&)>& take);
 
-/// The file of the disk that has a file of results, or all of them: the path itself, or the pack that an address leads into.
+/// Returns the file on the disk that contains a file or folder of results: the pack, if the path is
+/// an address in a pack, otherwise the path itself.
 std::filesystem::path stored_in(const std::filesystem::path& path);
-/// Names that the store itself has of a campaign. A folder has none of its own: people may put files into it.
+/// Returns the names of the files that a pack contains for a campaign. Empty if the results are in
+/// a folder of their own, because people may put other files into it.
 Expected<std::vector<std::string>> names_in_store(const std::filesystem::path& results);
 
 struct PackFile {
-  std::string name;  ///< in OUT/.nonio/packs
+  std::string name;  ///< name of the file in OUT/.nonio/packs
   std::uint64_t size = 0;
   std::string sha256;
 };
@@ -53,7 +55,8 @@ class Catalogue {
   const PackFile* find(std::string_view id) const;
   void each(const std::function<void(std::string_view id, const PackFile& pack)>& take) const;
 
-  /// Writes the catalogue. The entries `more`, sorted by id, replace those of the same campaigns.
+  /// An entry that `publish_with` adds to the catalogue when it writes it. The entries, sorted by
+  /// id, replace those of the same campaigns.
   struct Entry {
     std::string id;
     const PackFile* pack;
@@ -65,7 +68,7 @@ class Catalogue {
   static Expected<Catalogue> parse(const std::string& text);
   const PackFile* pack_in(std::string_view row) const;
   std::vector<PackFile> packs_{};
-  std::string rows_{};  ///< "id\tnumber of the pack\n", in order
+  std::string rows_{};  ///< lines "id\tnumber of the pack\n", sorted by id
 };
 
 /// Whether this is a plain file name with the suffix of a pack.

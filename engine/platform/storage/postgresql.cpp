@@ -26,7 +26,8 @@ struct Clear {
 };
 using Result = std::unique_ptr<PGresult, Clear>;
 
-constexpr int oldest_server = 120000;  // the first that writes doubles in the fewest digits
+// Oldest version of the server: the first that writes doubles in the fewest digits
+constexpr int oldest_server = 120000;
 constexpr const char* connect_seconds = "10";
 /// Number of statements that are sent before their answers are read. The answers fit into the
 /// buffers between server and program, so that neither waits for the other.
@@ -182,7 +183,7 @@ class Postgresql final : public Connection {
         server_.get(), [](void*, const char*) {}, nullptr);
     if (::PQserverVersion(server_.get()) < oldest_server)
       return name_ + ": expected PostgreSQL 12 or newer";
-    // settings that a role or a database may have changed
+    // These are settings that a role or a database may have changed.
     return script("SET search_path TO \"" + schema_ +
                   "\"; SET extra_float_digits TO 1; SET bytea_output TO hex; "
                   "SET standard_conforming_strings TO on; SET lock_timeout TO " +
@@ -235,7 +236,7 @@ class Postgresql final : public Connection {
     for (bool synced = false; !synced;) {
       const Result result(::PQgetResult(server_.get()));
       if (!result) {
-        // end of the answers of one statement, or of the connection
+        // No result: the answers of one statement are complete, or the connection is lost.
         if (::PQstatus(server_.get()) == CONNECTION_OK) continue;
         if (trouble.empty()) trouble = own_error();
         break;
@@ -258,7 +259,8 @@ class Postgresql final : public Connection {
   }
 
   std::unique_ptr<PGconn, Finish> server_;
-  std::map<std::string, std::string, std::less<>> names_;  ///< of prepared statements, by SQL
+  /// Names of prepared statements, by their SQL.
+  std::map<std::string, std::string, std::less<>> names_;
   std::string schema_, name_;
   int under_way_ = 0;
   bool was_there_ = false;

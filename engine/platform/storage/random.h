@@ -18,7 +18,8 @@ class Random {
   Random(std::uint64_t seed, std::uint64_t stream)
       : engine_(SplitMix64::mixed(SplitMix64::mixed(seed) + stream)) {}
 
-  double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }  ///< in [0, 1)
+  /// Returns a number in [0, 1).
+  double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   /// Returns a standard normal random number (Box and Muller).
   double normal() {

@@ -198,8 +198,8 @@ std::string pack(const T&... values) {
   return writer.take();
 }
 
-/// Reads values that `pack` has written. False if the bytes are not a result of `pack` for these
-/// types.
+/// Reads values that `pack` has written. Returns false if the bytes are not a result of `pack` for
+/// these types.
 template <class... T>
 bool unpack(std::string_view bytes, T&... values) {
   ValueReader reader(bytes);

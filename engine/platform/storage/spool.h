@@ -10,8 +10,8 @@
 
 namespace nonio::storage {
 
-/// Writes a text that may be too long for memory to a file. `flush` returns the first error of any
-/// call, also of texts that were added.
+/// Writes a text that may be too long for memory to a file. `flush` returns the first error of all
+/// calls, including those of `add`.
 class Spool {
  public:
   /// Creates a file at a path, where it remains.

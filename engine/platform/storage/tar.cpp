@@ -96,7 +96,7 @@ std::uint64_t padding_of(std::uint64_t size) { return (block - size % block) % b
 }  // namespace
 
 Expected<TarWriter> TarWriter::create(const std::filesystem::path& path) {
-  ::unlink(path.c_str());  // it may belong to another user
+  ::unlink(path.c_str());  // a file that already exists may belong to another user
   const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600);
   if (fd < 0) return fail(Error{std::strerror(errno), path.string()});
   return TarWriter(fd, path.string());

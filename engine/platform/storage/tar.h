@@ -14,12 +14,12 @@ namespace nonio::storage {
 
 struct TarEntry {
   enum class Kind : char { file = '0', link = '2', folder = '5' };
-  std::string name;  ///< relative, without a slash at its end
+  std::string name;  ///< relative path without a slash at its end
   Kind kind = Kind::file;
-  unsigned mode = 0;         ///< permissions
-  std::uint64_t size = 0;    ///< bytes of a file
-  std::int64_t changed = 0;  ///< seconds since 1970
-  std::string target{};      ///< of a link
+  unsigned mode = 0;         ///< permission bits
+  std::uint64_t size = 0;    ///< size of a file in bytes
+  std::int64_t changed = 0;  ///< time of the last change, seconds since 1970
+  std::string target{};      ///< path to which a link leads
 };
 
 class TarWriter {

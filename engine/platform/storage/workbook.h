@@ -27,8 +27,8 @@ struct Chart {
   struct Curve {
     std::string name, sheet;
     std::size_t position_column = 0, value_column = 0, first_row = 0, last_row = 0;
-    bool line = true;              ///< false: points without a line
-    std::optional<double> U = {};  ///< drawn as error bars
+    bool line = true;              ///< true: the points are connected by a line
+    std::optional<double> U = {};  ///< expanded uncertainty, drawn as error bars; none: no bars
   };
   std::string title, position_name, value_name;
   std::vector<Curve> curves;
@@ -38,14 +38,14 @@ struct Sheet {
   /// `xlsx_bytes` changes it to a name that spreadsheets accept; see `sheet_name`
   std::string name;
   std::vector<std::vector<Cell>> rows{};
-  std::vector<std::size_t> headings{};  ///< rows in bold
-  std::size_t frozen = 0;               ///< rows that stay visible
-  std::vector<Chart> charts{};          ///< placed one below another, below the rows
+  std::vector<std::size_t> headings{};  ///< numbers of the rows in bold, from 0
+  std::size_t frozen = 0;               ///< number of rows at the top that stay visible
+  std::vector<Chart> charts{};          ///< charts, placed one below another and below the rows
 };
 
 struct Workbook {
   std::string title;
-  std::string date;  ///< YYYY-MM-DD in the properties; the same workbook has the same bytes
+  std::string date;  ///< date in the properties, YYYY-MM-DD; the same workbook has the same bytes
   std::vector<Sheet> sheets;
 };
 

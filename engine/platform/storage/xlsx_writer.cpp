@@ -19,7 +19,7 @@ namespace {
 constexpr std::time_t no_day = 315532800;
 constexpr std::array<lxw_color_t, 6> colours{0x1B6CA8, 0xC8553D, 0x4D8B31,
                                              0x7A4FA3, 0x8A6D1D, 0x4A4A4A};
-constexpr std::size_t chart_rows = 22;  ///< of the usual height
+constexpr std::size_t chart_rows = 22;  ///< height of a chart in rows of the usual height
 constexpr std::uint16_t chart_width = 900, chart_height = 420;
 
 /// Parses a date; none unless it is a day from 1900-03-01 on, because spreadsheets count a day

@@ -70,7 +70,8 @@ void JsonWriter::value(std::string_view text) {
   quoted(text);
 }
 
-/// Writes the shortest number that parses to the same double, with ".0" if it is an integer.
+/// Writes the shortest number that parses to the same double, with ".0" if it is an integer below
+/// 1e15.
 void JsonWriter::value(double number) {
   if (!std::isfinite(number)) return null();
   const double size = std::fabs(number);

@@ -59,7 +59,7 @@ std::string evidence_text(const Number& n) {
     return value < 1e-4 ? "p < 0.0001" : "p = " + short_text(value, 2);
   const bool deviation =
       n.quantity == Quantity::deviation || n.quantity == Quantity::angular_deviation;
-  // no exponent for rounding errors
+  // a rounding error is written as 0.000, not as a number with an exponent
   if (deviation && std::fabs(value) < 5e-4) return fixed_text(0.0, 3);
   if (n.quantity != Quantity::length && n.quantity != Quantity::angle) return short_text(value);
   std::string text = fixed_text(value, 4);

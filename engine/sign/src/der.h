@@ -21,7 +21,7 @@ struct Der {
 
   /// Removes the first element from `rest` and returns it; none if it is malformed.
   static std::optional<Der> take(std::string_view& rest);
-  /// Does the same if the element has this tag; otherwise none.
+  /// Does the same as `take(rest)` if the element has this tag; otherwise returns none.
   static std::optional<Der> take(std::string_view& rest, std::uint8_t tag);
   /// Whether the whole text consists of DER elements, down to the innermost ones. Sequences, sets
   /// and constructed elements of other classes must consist of elements, and every other universal

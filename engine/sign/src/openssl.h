@@ -61,14 +61,14 @@ inline constexpr const char* too_large = "is larger than 100 MB";
 std::string sha256(std::string_view one, std::string_view other = {});
 std::string hex(std::string_view bytes);
 std::string subject_of(const X509* certificate);
-/// Converts a time; 0 if it is invalid.
+/// Returns the time in seconds since 1970-01-01 UTC; 0 if it is invalid.
 Time time_of(const ASN1_TIME* time);
 /// Returns the name of a key's algorithm, such as "RSA-3072" or "P-256"; an error for keys that are
 /// too weak or cannot be used in a CMS. `old`: accept RSA-2048 for existing signatures.
 Expected<std::string> algorithm_of(EVP_PKEY* key, bool old);
 
-/// Returns all certificates of a PEM text. An error if there is none, or if it contains anything
-/// else.
+/// Returns all certificates of a PEM text. An error if there is none, or if one of them cannot be
+/// read.
 Expected<std::vector<CertificatePtr>> certificates_of(const std::string& pem);
 
 }  // namespace nonio::sign

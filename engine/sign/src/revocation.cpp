@@ -87,7 +87,7 @@ bool leaves_stamps_good(const X509_REVOKED* entry) {
 /// Entry of a revocation list or an OCSP answer for one certificate.
 struct Said {
   Time made = 0, next = 0;
-  Time revoked = 0;  ///< 0: not revoked
+  Time revoked = 0;  ///< time of the revocation; 0: not revoked
   bool leaves_stamps_good = false;
 };
 
@@ -187,7 +187,8 @@ Expected<std::optional<Said>> heard(const Statement& s, X509* one, X509* issuer)
 
 std::string kind_of(const Statement& s) { return s.answer ? "answer (OCSP)" : "list"; }
 
-/// Why an entry cannot prove that the certificate was good at `at`; empty if it can.
+/// Returns why an entry cannot prove that the certificate was good at `at`; returns an empty text
+/// if it can.
 std::string why_not(const Said& said, X509* one, X509* issuer, Time at, Time seen) {
   const std::string whose = " for " + quoted(subject_of(one));
   if (said.made > seen + clock_tolerance)

@@ -16,9 +16,9 @@ using OcspPtr = std::unique_ptr<OCSP_BASICRESP, Freed<OCSP_BASICRESP_free>>;
 /// Revocation data of an authority: a revocation list or an OCSP answer (RFC 6960).
 struct Statement {
   std::string der;
-  RevocationPtr list;  ///< exactly one of list and answer is set
+  RevocationPtr list;  ///< revocation list; exactly one of `list` and `answer` is set
   OcspPtr answer;
-  Time seen = 0;  ///< time at which it is proved to have existed
+  Time seen = 0;  ///< time at which the statement is proved to have existed
   mutable bool used = false;
 
   static Expected<Statement> of_list(std::string_view der);
@@ -28,8 +28,8 @@ struct Statement {
 /// Times and role for which revocation is checked.
 struct Revocation {
   enum class Of { signer, time_server };
-  Time at;   ///< when the certificates were used
-  Time now;  ///< when they are checked: given lists must be current at this time
+  Time at;   ///< time at which the certificates were used
+  Time now;  ///< time of the check, at which given lists must be current
   Of of;
   /// Time at which signatures or stamps made with them are proved to have existed: a later
   /// revocation has no effect.

@@ -35,14 +35,14 @@ class SignedData {
   /// 5035).
   Expected<void> check_certificate_named() const;
 
-  /// All certificates in the structure, not checked yet.
+  /// Returns all certificates in the structure, which are not checked yet.
   const std::vector<CertificatePtr>& certificates() const { return certificates_; }
   X509* certificate() const { return signer_certificate_; }
   std::string_view certificate_der() const { return signer_der_; }
   std::string_view signature() const { return signature_; }
-  /// Content of a time stamp: TSTInfo.
+  /// Returns the content of a time stamp: TSTInfo.
   std::string_view content() const { return content_; }
-  /// Time-stamp token of a signature; empty if there is none.
+  /// Returns the time-stamp token of a signature; empty if there is none.
   std::string_view time_stamp() const { return token_; }
 
  private:

@@ -14,7 +14,7 @@ Expected<std::string> ask_for_time_stamp(const TimeStamping& stamping, std::stri
 struct Stamp {
   Time time = 0;
   std::string by;
-  std::string nonce;  ///< as in the token; empty if it has none
+  std::string nonce;  ///< nonce of the token; empty if it has none
   std::vector<CertificatePtr> chain{};
 };
 /// Checks a time stamp: it covers this SHA-256, comes from a trusted authority whose certificate

@@ -15,16 +15,17 @@ struct Added {
   std::vector<Statement> statements;
   /// For each statement, the index of the first stamp that covers it; `stamps.size()`: none does.
   std::vector<std::size_t> covered;
-  std::vector<std::string> certificates;  ///< DER
+  std::vector<std::string> certificates;  ///< certificates in DER
 };
 
-/// Reads the updates of a file. An error if anything else was appended. `ends`: from
-/// `pdf::ends_of_parts`; `updater`: of the signed file, afterwards ready to write another update.
+/// Reads the updates of a file. An error if anything else was appended. `ends` is the result of
+/// `pdf::ends_of_parts`. `updater` must be that of the signed file; afterwards it can write another
+/// update.
 Expected<Added> read_updates(std::string_view bytes, const std::vector<std::size_t>& ends,
                              pdf::Updater& updater);
 
-/// Checks the stamps: the newest at the present time, each older one at the time of the next. Adds
-/// the statements to `known`, each with the time at which it is proved to have existed.
+/// Checks the stamps, the newest first; the time of each stamp proves that the older ones existed
+/// then. Adds the statements to `known`, each with the time at which it is proved to have existed.
 Expected<std::vector<Stamp>> check_document_stamps(Added& added, Trusted& known, Time now);
 
 /// Checks that every statement and every certificate is needed for one of the chains, and that none

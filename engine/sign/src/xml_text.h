@@ -15,18 +15,18 @@ inline constexpr std::string_view xml_head = "<?xml version=\"1.0\" encoding=\"U
 /// The content of an enveloped XML signature of Nonio (XML-DSig; XAdES B-B, with `token` B-T). It
 /// has exactly one serialisation, so that a reader can write it again and compare.
 struct XmlSignature {
-  bool rsa = false;        ///< otherwise ECDSA
+  bool rsa = false;        ///< whether the signature is RSA; otherwise it is ECDSA
   std::string content;     ///< SHA-256 of the document's canonical form without signature
   std::string properties;  ///< SHA-256 of `signed_properties`
   std::string value;       ///< signature over `signed_info`
-  std::vector<std::string> certificates;  ///< DER, the signer's certificate first
-  std::string time;                       ///< stated by the signer, for example
+  std::vector<std::string> certificates;  ///< certificates in DER, the signer's first
+  std::string time;                       ///< time stated by the signer, for example
                                           ///< 2026-11-22T14:20:00Z
   std::string certificate;                ///< SHA-256 of the signer's certificate, which is signed
                                           ///< too
   std::string token{};                    ///< RFC 3161 time stamp over `value_element`; empty: none
 
-  std::string text() const;  ///< the complete element
+  std::string text() const;  ///< returns the complete element
   // Parts of the element in exclusive canonical form, as they are signed or stamped.
   std::string signed_info() const;
   std::string signed_properties() const;

@@ -15,13 +15,13 @@ namespace {
 
 /// Limits beyond which readings are not those of a machine tool, or are in another unit.
 struct Bounds {
-  double slope = 0.02;        ///< slope of the deviation over the travel
-  double share = 0.002;       ///< range as a share of the travel, if it is also more than `size`
-  double size, most;          ///< of the range of the deviations
-  double small_share = 0.05;  ///< the same for a short travel, if it is also more than `small_size`
-  double small_size;          ///< smaller ranges are plausible on any short travel
-  double scatter;             ///< standard deviation of repeated readings
-  double least;               ///< range that no machine keeps over a travel of `least_travel`
+  double slope = 0.02;   ///< largest slope of the deviation over the travel, m/m or rad/rad
+  double share = 0.002;  ///< largest range as a share of the travel, for ranges above `size`
+  double size, most;     ///< ranges of the deviations; no range above `most` is plausible, m or rad
+  double small_share = 0.05;  ///< largest share of a short travel, for ranges above `small_size`
+  double small_size;          ///< range that is plausible on any short travel, m or rad
+  double scatter;             ///< largest standard deviation of repeated readings, m or rad
+  double least;               ///< smallest range over a travel of `least_travel`, m or rad
   double least_travel;
 };
 constexpr double um = 1e-6, arcsec = 1.0 / arcsec_per_rad;
@@ -38,7 +38,8 @@ constexpr Bounds of_angles{.size = 600 * arcsec,
                            .least = 0.02 * arcsec,
                            .least_travel = 0.1};
 constexpr double least_of_travel = 0.05, most_of_travel = 1.2;
-constexpr double least_pitch = 1e-3;  ///< m; finer periods are those of a scale
+/// Smallest pitch of a screw, m; finer periods are those of a scale.
+constexpr double least_pitch = 1e-3;
 
 bool along_one_axis(const Measurement& m) {
   return m.kind == "axis" || m.kind == "straightness" || m.kind == "angle";
@@ -94,7 +95,7 @@ std::vector<Cell> cells_of(const Observations& o, const std::vector<double>& tar
   return out;
 }
 
-/// Checks whether deviations, their slope and their scatter have a plausible size.
+/// Reports deviations whose size, slope or scatter is not plausible.
 class Size {
  public:
   Size(const Campaign& campaign, const Measurement& m, const Observations& o)
@@ -257,8 +258,8 @@ double span_along(const Observations& o, const std::string& axis) {
 
 bool near_ratio(double ratio, double wanted) { return std::fabs(ratio / wanted - 1.0) < 0.02; }
 
-/// Compares the range of the targets with the travel, the pitch and other measurements of the same
-/// axis.
+/// Reports a range of the targets that contradicts the travel, the pitch or other measurements of
+/// the same axis.
 void implausible_span(const Campaign& campaign, const Measurement& m, const Observations& o,
                       const std::vector<Observations>& all, std::vector<Finding>& out) {
   const Axis* axis = campaign.machine.axis(m.axis);
@@ -274,7 +275,8 @@ void implausible_span(const Campaign& campaign, const Measurement& m, const Obse
                           .attention = true,
                           .evidence = {{"span", span, position}, {"other", widest, position}}});
   if (axis->travel || axis->rotary) {
-    // One turn, if the travel is not stated. A table that may turn further is measured over one.
+    // The travel is one turn if it is not stated, or if the table can turn further but was measured
+    // over no more than about one turn.
     const double turn = 360.0 / deg_per_rad,
                  stated = axis->travel ? axis->travel->second - axis->travel->first : turn;
     const double travel =
@@ -294,7 +296,8 @@ void implausible_span(const Campaign& campaign, const Measurement& m, const Obse
          .evidence = {{"span", span, position}, {"pitch", *axis->screw_pitch, Quantity::length}}});
 }
 
-/// Reports targets outside the travel, which means that one of them was counted from another zero.
+/// Reports targets outside the travel: the travel and the targets are then counted from different
+/// zeros.
 void beyond_travel(const Campaign& campaign, const Observations& o, std::vector<Finding>& out) {
   constexpr double spare_share = 0.02;
   for (const auto& column : o.axes) {
@@ -365,8 +368,8 @@ void uncertain(const std::vector<Results::Analysed>& analyses, const std::string
   }
 }
 
-/// Returns the findings about the readings of a measurement. `all`: the observations of all
-/// measurements of the campaign.
+/// Returns the findings about the readings of the measurement with this index. `all` contains the
+/// observations of all measurements of the campaign.
 std::vector<Finding> implausible_readings(const Campaign& campaign, std::size_t measurement,
                                           const std::vector<Observations>& all,
                                           const Passes& passes) {

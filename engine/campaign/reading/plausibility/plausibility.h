@@ -17,8 +17,9 @@ namespace nonio::reading {
 
 inline constexpr std::string_view plausibility_name = "plausibility";
 inline constexpr std::string_view plausibility_prefix = "plausibility.";
-/// Key of the text of a finding with the reason why a person accepts it for tables. Outputs that
-/// write for controls without being tables read it. The second constant is its name in version 0.1.
+/// Key of the text of a finding that contains the reason why a person accepts the finding for
+/// tables. Outputs that write files for controls other than tables read it. The second constant is
+/// its name in version 0.1.
 inline constexpr const char* accepted_because = "accepted";
 inline constexpr const char* formerly_accepted_because = "stands";
 inline constexpr std::string_view file_of_another_campaign =
@@ -33,7 +34,8 @@ std::vector<Results::Analysed> implausible(const ReadCampaign& read, const Conte
 /// Records in `inputs` which of the files another campaign contains too.
 void note_shared(const Twins& twins, Inputs& inputs);
 
-/// Returns the findings about the manifest alone. `today`: YYYY-MM-DD; empty: no date is too late.
+/// Returns the findings about the manifest alone. `today` is the date YYYY-MM-DD; if it is empty,
+/// no date is regarded as too late.
 std::vector<Finding> implausible_campaign(const config::Manifest& manifest,
                                           const std::string& today);
 

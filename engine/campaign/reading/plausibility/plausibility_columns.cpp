@@ -28,12 +28,13 @@ Climate climate_of(const std::vector<double>& column) {
 }
 
 void implausible_air(const Observations& o, std::vector<Finding>& out) {
-  constexpr double coldest = 5.0, hottest = 45.0, driest = 3.0;  // degC, %
+  // Limits: temperatures in degC, humidity in %
+  constexpr double coldest = 5.0, hottest = 45.0, driest = 3.0;
   struct Column {
     const char* name;
     const std::vector<double>& values;
     Quantity mean, range;
-    double most;  ///< range within one measurement
+    double most;  ///< largest plausible range within one measurement
   };
   for (const Column& c :
        {Column{"material_c", o.material, Quantity::temperature, Quantity::temperature_difference,
@@ -62,12 +63,12 @@ void implausible_air(const Observations& o, std::vector<Finding>& out) {
   }
 }
 
-/// Compares the times with the distances moved, and with the order of the rows.
+/// Reports times that contradict the distances moved or the order of the rows.
 void implausible_times(const Measurement& m, const std::vector<Stroke>& strokes,
                        const Observations& o, std::vector<Finding>& out) {
-  constexpr double slowest = 3600.0;                      // s for a reading
-  constexpr double fastest = 5.0, fastest_angle = 600.0;  // m/s, rad/s
-  std::vector<std::pair<double, double>> taken;           // time, position
+  constexpr double slowest = 3600.0;  // longest plausible time for one reading, s
+  constexpr double fastest = 5.0, fastest_angle = 600.0;  // largest plausible speeds, m/s and rad/s
+  std::vector<std::pair<double, double>> taken;           // time and position of each reading
   const auto& axis = o.axes.front();
   for (std::size_t i = 0; i < o.time.size(); ++i)
     if (std::isfinite(o.time[i])) taken.emplace_back(o.time[i], axis.position[i]);
@@ -79,7 +80,8 @@ void implausible_times(const Measurement& m, const std::vector<Stroke>& strokes,
     way += std::fabs(taken[i].second - taken[i - 1].second);
   const double lasted = taken.back().first - taken.front().first;
   const double each = lasted / static_cast<double>(taken.size() - 1);
-  // shorter than the dwell at each target, or faster than the feed
+  // The time per reading is shorter than the dwell at a target, or the motion is faster than the
+  // feed.
   constexpr double shorter = 0.9, faster = 1.1;
   if (lasted > 0.0 &&
       ((m.dwell && each < shorter * *m.dwell) || (m.feed && way > faster * *m.feed * lasted)))
@@ -152,7 +154,7 @@ void implausible_columns(const Measurement& m, const Passes& passes, const Obser
 }
 
 void implausible_centres(const Measurement& m, const Observations& o, std::vector<Finding>& out) {
-  constexpr double nearest = 0.04, farthest = 10.0;  // m
+  constexpr double nearest = 0.04, farthest = 10.0;  // plausible distances between ball centres, m
   constexpr std::size_t most = 200;
   auto centres = centres_of(o);
   if (centres.size() < 3) return;
@@ -170,7 +172,7 @@ void implausible_centres(const Measurement& m, const Observations& o, std::vecto
   const std::size_t named = m.axis.empty() ? std::string::npos : std::string("ABC").find(m.axis[0]);
   if (named == std::string::npos || !math::other_turning_axis(o).empty()) return;
   const double cosine = std::fabs(normal_of(centres)[named]);
-  constexpr double least = 0.5;  // 60 deg; swivelling axes are mounted at 45 deg
+  constexpr double least = 0.5;  // cosine of 60 deg; swivelling axes are mounted at 45 deg
   if (cosine < least)
     out.push_back({.id = "plausibility.axis-direction",
                    .attention = true,

@@ -145,7 +145,8 @@ class Copies {
         for (const auto& [a, b] : both) apart.push_back(b - a);
         for (const double shift : {0.0, middle_of(apart)}) {
           const auto [m, values] = agreeing(both, shift, tolerance);
-          const bool shifted = shift != 0.0;  // one of the readings has set the shift
+          // One reading agrees by definition, because it set the shift.
+          const bool shifted = shift != 0.0;
           if (values < 3 || m < 4.0 ||
               pairs * (shifted ? n * likely(n - 1.0, m - 1.0) : likely(n, m)) > chance)
             continue;
@@ -174,7 +175,8 @@ class Copies {
       readings += s.deviation.size();
     }
     if (repeated == 0 || step_ <= 0.0) return false;
-    // digits coarser than the machine's scatter repeat by themselves
+    // If the digits are coarser than the machine's scatter, readings repeat although they are not
+    // copies.
     constexpr double chance = 1e-7, least_of_range = 0.01;
     double low = 0.0, high = 0.0;
     bool any = false;
@@ -193,7 +195,7 @@ class Copies {
   /// copies. The shift of each pass is subtracted, because successive passes share their drift.
   void scatter() {
     std::map<std::tuple<std::uint32_t, int, double>, std::pair<double, double>>
-        cells;  // sum, count
+        cells;  // sum and count of the readings
     for (const auto& one : groups_) {
       const Stroke& s = *one.second.front();
       for (std::size_t i = 0; i < s.target.size(); ++i) {
@@ -239,7 +241,7 @@ bool distinguishes(const std::vector<double>& readings, double step) {
 
 /// A reading with its place: run, direction and target.
 using Place = std::tuple<std::uint32_t, int, double>;
-using Cells = std::vector<std::pair<Place, double>>;  // sorted
+using Cells = std::vector<std::pair<Place, double>>;  // pairs of place and reading, sorted by place
 
 /// Returns the readings of all strokes sorted by place; of repeated readings the last one.
 Cells cells_by_run(const std::vector<Stroke>& strokes) {
@@ -316,7 +318,8 @@ std::vector<Finding> passes_of_another_measurement(const Campaign& campaign,
                                                    const std::vector<Observations>& all,
                                                    const std::vector<Passes>& passes) {
   std::vector<Finding> out;
-  std::map<std::vector<double>, std::size_t> seen;  // measurement by readings
+  // Index of the first measurement with these readings
+  std::map<std::vector<double>, std::size_t> seen;
   std::vector<Cells> cells(all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].size() == 0 || all[i].axes.empty()) continue;

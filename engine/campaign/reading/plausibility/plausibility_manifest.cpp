@@ -11,8 +11,8 @@ namespace {
 
 constexpr double micrometre = 1e-6, arc_second = 1.0 / arcsec_per_rad;
 
-/// A stated value with the usual range of such values; 0 is a statement too. Confidence of the
-/// bounds: inferred; see docs/dev/wrong-inputs.md.
+/// A stated value with the usual range of such values. A value of 0 is also regarded as stated.
+/// Confidence of the bounds: inferred; see docs/dev/wrong-inputs.md.
 struct Statement {
   std::string key;
   std::optional<double> value;
@@ -43,7 +43,8 @@ void axis_statements(const Axis& a, std::vector<Statement>& all) {
                      Quantity::deviation});
 }
 
-/// Adds the tolerances of one measurement: 0.1 to 600 arcsec, or 0.1 to 1000 um, um/m or urad.
+/// Adds the tolerances of one measurement with their usual range: 0.1 to 600 arcsec, or 0.1 to 1000
+/// um, um/m or urad.
 void tolerance_statements(const Measurement& m, std::vector<Statement>& all) {
   for (const Tolerance& t : m.tolerances) {
     const bool angle = t.quantity == Quantity::angular_deviation;
@@ -67,7 +68,8 @@ void test_statements(const Campaign& c, const Measurement& m, std::vector<Statem
     all.push_back({key + "over_travel_mm", m.over_travel, 0.01 * mm, 500 * mm, Quantity::length});
   }
   if (!m.feed) return;
-  const double feed = *m.feed * minute * (rotary ? deg_per_rad : 1e3);  // as the key states it
+  // Feed in the unit of the key, mm/min or deg/min
+  const double feed = *m.feed * minute * (rotary ? deg_per_rad : 1e3);
   all.push_back({key + (rotary ? "feed_deg_per_min" : "feed_mm_per_min"), feed, 1.0,
                  rotary ? 720000.0 : 200000.0, Quantity::number});
 }

@@ -94,7 +94,8 @@ void swapped(const Passes& passes, Quantity deviation, std::vector<Finding>& out
     mean /= n;
     own_mean /= n;
     const double s = std::max(std::sqrt(freedom > 0.0 ? scatter / freedom : turned / n), step);
-    // With its sign changed, the run agrees with the others as they agree with each other.
+    // The run is reported if it agrees with the others after its sign is changed as well as they
+    // agree with each other.
     if (step <= 0.0 || kept < 25.0 * turned || turned / n > 9.0 * s * s ||
         std::fabs(mean) < 5.0 * s / std::sqrt(n))
       continue;

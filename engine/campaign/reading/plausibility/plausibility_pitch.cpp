@@ -11,7 +11,7 @@ namespace nonio::reading {
 namespace {
 
 constexpr double mm_per_inch = 25.4, most_in_inch = 2.0;
-// most_in_inch: from this number on, a stated pitch is taken to be in mm.
+// A stated pitch of `most_in_inch` or more is assumed to be in mm.
 
 /// Returns the share (0 to 1) of the sum of squares about a line that a wave of this period
 /// explains.
@@ -43,7 +43,7 @@ void implausible_pitch(const Campaign& c, std::vector<Finding>& out) {
   const auto near = [](double a, double b) { return std::fabs(a / b - 1.0) < nearly; };
   for (const Axis& axis : c.machine.axes) {
     if (!axis.screw_pitch || axis.rotary) continue;
-    const double pitch = 1e3 * *axis.screw_pitch;  // as written, mm
+    const double pitch = 1e3 * *axis.screw_pitch;  // pitch as it is stated in the manifest, mm
     if (pitch <= 0.0 || pitch >= most_in_inch) continue;
     const double decade = std::pow(10.0, std::floor(std::log10(pitch)) - 1.0);
     const double two_digits = decade * std::round(pitch / decade);
@@ -72,7 +72,8 @@ void period_against_pitch(const Axis& axis, const Observations& o, std::vector<F
   if (!axis.screw_pitch || axis.rotary || o.axes.size() != 1) return;
   const double pitch = *axis.screw_pitch, period = mm_per_inch * pitch;
   if (pitch <= 0.0 || 1e3 * pitch >= most_in_inch) return;
-  std::map<double, std::pair<double, double>> cells;  // sum, count
+  // Sum and count of the deviations at each target
+  std::map<double, std::pair<double, double>> cells;
   for (std::size_t i = 0; i < o.size(); ++i) {
     auto& cell = cells[o.axes.front().position[i]];
     cell.first += o.deviation[i], cell.second += 1.0;

@@ -90,7 +90,7 @@ std::vector<Stroke> strokes_of(const Observations& o) {
     s.sense = sense_of_targets(s.target);
     count_backwards(s);
     s.as_taken = s.deviation;
-    // from here on sorted by target, so that a copy is found in either direction
+    // From here on the readings are sorted by target, so that a copy is found in either direction.
     std::vector<std::pair<double, double>> rows;
     for (std::size_t i = 0; i < s.target.size(); ++i)
       rows.emplace_back(s.target[i], s.deviation[i]);

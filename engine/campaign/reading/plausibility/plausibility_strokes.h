@@ -19,10 +19,10 @@ struct Stroke {
   std::vector<double> as_taken;     ///< deviations in the order of measurement
   std::size_t first = 0, last = 0;  ///< first and last row, in the order of measurement
   int sense = 0;                    ///< +1: targets rise, -1: they fall; 0: neither
-  std::size_t backwards = 0;        ///< steps against the direction of most steps
-  double turns_at = 0.0;            ///< lower target of the first of these steps
-  bool alone = false;               ///< no row of another stroke is between its rows
-  bool alone_in_file = false;       ///< the same for the order in the file
+  std::size_t backwards = 0;        ///< number of steps against the direction of most steps
+  double turns_at = 0.0;            ///< lower target of the first of these steps, m or rad
+  bool alone = false;  ///< no row of another stroke is between its rows in the order of measurement
+  bool alone_in_file = false;  ///< no row of another stroke is between its rows in the file
 };
 
 /// All strokes of a measurement, in the order in which they began. The readings of each are sorted
@@ -65,8 +65,8 @@ void shifted_rows(const Passes& passes, Quantity deviation, std::vector<Finding>
 /// Reports passes in which more readings are equal than chance allows.
 void implausible_copies(const Passes& passes, const Observations& o, std::vector<Finding>& out);
 
-/// Reports passes that an earlier measurement of the campaign contains too. `passes`: of each
-/// measurement.
+/// Reports passes that an earlier measurement of the campaign contains too. `passes` contains the
+/// strokes of each measurement.
 std::vector<Finding> passes_of_another_measurement(const Campaign& campaign,
                                                    const std::vector<Observations>& all,
                                                    const std::vector<Passes>& passes);

@@ -148,8 +148,9 @@ Pair in_common(const Curve& one, const Curve& other) {
   return p;
 }
 
-/// Returns how the first curve must be turned to agree with the second. with_line: the line of each
-/// curve is subtracted, otherwise only its mean.
+/// Returns how the first curve must be turned to agree with the second. If `with_line`, the line of
+/// each curve is subtracted first, otherwise only its mean. `noise` is the variance of the
+/// difference at a target.
 Turned turned_as(Pair p, double noise, bool with_line) {
   std::vector<double> from_the_end(p.a.rbegin(), p.a.rend());
   const auto bare = [&](std::vector<double>& v) {
@@ -176,8 +177,9 @@ Turned turned_as(Pair p, double noise, bool with_line) {
 
 constexpr std::size_t fewest_compared = 7;
 
-/// Returns how `one` must be turned to agree with `other`. scatter: of readings about the mean of
-/// their target and direction.
+/// Returns how `one` must be turned to agree with `other`. `scatter` is that of readings about the
+/// mean of their target and direction. If `without_line_only`, the curves are compared only without
+/// their lines.
 Turned turned(const Curve& one, const Curve& other, const Scatter& scatter, double step,
               bool without_line_only) {
   const Pair pair = in_common(one, other);
@@ -240,8 +242,8 @@ std::vector<Shapes> elastic_shapes(const std::vector<double>& at, bool rotary) {
   return {powers, wave};
 }
 
-/// Returns the odd part about the middle of the targets, with one value per pair of targets and the
-/// same variance.
+/// Returns the odd part of the values about the middle of the targets, with one value per pair of
+/// targets and the same variance as the values.
 std::vector<double> odd(const std::vector<double>& values) {
   std::vector<double> out;
   for (std::size_t i = 0; i < values.size() / 2; ++i)
@@ -258,7 +260,7 @@ double square_sum(const std::vector<double>& values) {
 /// Returns how all passes of direction - must be turned to agree with those of direction +.
 Turned turned_direction(const Curve& minus, const Curve& plus, const Scatter& scatter, double step,
                         bool rotary) {
-  constexpr double least_travel = 1e-3;  // m
+  constexpr double least_travel = 1e-3;  // smallest range of the targets that is examined, m
   constexpr double ratio = 9.0, ratio_of_odd = 5.0, chance = 1e-5;
   const Pair p = in_common(minus, plus);
   const std::size_t n = p.at.size();
@@ -289,7 +291,8 @@ Turned turned_direction(const Curve& minus, const Curve& plus, const Scatter& sc
   return sign ? Turned::sign : Turned::not_at_all;
 }
 
-/// Returns the curve of the other pass, if a direction has two passes.
+/// Returns the means of all passes of the direction of `own` except `own`. It is used for
+/// directions with two passes.
 Curve the_other(const Stroke& own, const std::vector<Stroke>& strokes) {
   Curve other;
   for (const Stroke& s : strokes)
@@ -297,8 +300,8 @@ Curve the_other(const Stroke& own, const std::vector<Stroke>& strokes) {
   return other;
 }
 
-/// Whether `own`, of two passes of a direction that contradict each other, is the one that differs
-/// more from the opposite direction.
+/// Whether `own` differs more than `other` from the curve of the opposite direction, where both are
+/// passes of one direction that contradict each other.
 bool the_farther(const Curve& own, const Curve& other, const Curve& opposite) {
   const auto apart = [&](const Curve& one) {
     Pair p = in_common(one, opposite);
@@ -310,8 +313,8 @@ bool the_farther(const Curve& own, const Curve& other, const Curve& opposite) {
   return apart(own) >= apart(other);
 }
 
-/// Whether the curves of both directions are opposed including their slopes. A common slope shows
-/// that there was no mistake.
+/// Whether the curves of both directions are opposed including their slopes. If both have the same
+/// slope, they were not turned by mistake.
 bool opposed(const Pair& p, Turned how, double noise) {
   const auto n = static_cast<double>(p.a.size());
   double sum = 0.0, squares = 0.0;

@@ -15,10 +15,11 @@ namespace {
 /// Readings by run and target, for targets that every run contains: the mean of both directions,
 /// and their difference.
 struct Grid {
-  std::vector<std::uint32_t> runs;            ///< in the order in which they were begun
-  std::vector<double> targets;                ///< rising
-  std::vector<std::vector<double>> mean;      ///< [run][target]
-  std::vector<std::vector<double>> reversal;  ///< [run][target]; empty with one direction
+  std::vector<std::uint32_t> runs;        ///< runs in the order in which they were begun
+  std::vector<double> targets;            ///< targets in ascending order, m or rad
+  std::vector<std::vector<double>> mean;  ///< mean of both directions, [run][target]
+  /// Difference of the directions, [run][target]; empty with one direction.
+  std::vector<std::vector<double>> reversal;
 };
 
 /// Returns the last reading of a pass at each of these targets, all of which the pass must contain.
@@ -84,12 +85,13 @@ struct Group {
     for (std::size_t r = from; r < to; ++r)
       for (std::size_t i = 0; i < mean.size(); ++i)
         squares += (curves[r][i] - mean[i]) * (curves[r][i] - mean[i]);
-    freedom = (n - 1.0) * (static_cast<double>(mean.size()) - 2.0);  // a line of each run is out
+    // Each run has two degrees of freedom fewer, because its line is subtracted.
+    freedom = (n - 1.0) * (static_cast<double>(mean.size()) - 2.0);
   }
 };
 
-/// Running sums may differ from a direct computation by this share at most. If they indicate a
-/// finding, it is computed directly.
+/// Factor for limits that running sums are compared with, because they differ from a direct
+/// computation by up to 1e-6. If they indicate a finding, it is computed directly.
 constexpr double nearly = 1.0 - 1e-6;
 
 /// Returns the sums of squares of the first k curves about their mean, for k = 0, 1, 2, ...
@@ -120,8 +122,8 @@ class Parted {
   /// Moves curves[k - 1] to the first group; call it for k = 1, 2, ... in this order.
   void take(const std::vector<double>& curve) { add(curve, first_), ++taken_; }
 
-  /// Whether the two groups may be different curves. skipped: curves between them that belong to
-  /// neither.
+  /// Whether the two groups may be different curves. The curves in `skipped` are between the groups
+  /// and belong to neither.
   bool may_be_two(std::span<const std::vector<double>> skipped, double least_scatter,
                   double squares, double of_curve) const {
     const std::size_t behind = before_.size() - 1 - taken_ - skipped.size();

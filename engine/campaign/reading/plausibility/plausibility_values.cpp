@@ -160,9 +160,9 @@ void marks(const std::vector<Stroke>& strokes, double step, Quantity deviation,
     for (const double v : one.second) apart.push_back(std::fabs(v - middle));
   }
   if (apart.empty()) return;
-  constexpr double of_normal = 1.4826;  // from the median of |x| to the standard deviation
+  constexpr double of_normal = 1.4826;  // factor from the median of |x| to the standard deviation
   const double far = std::max(sigmas * of_normal * middle_value(apart), steps * step);
-  std::map<double, std::set<double>> targets;  // by value
+  std::map<double, std::set<double>> targets;  // targets at which each value occurs
   std::map<double, double> outside, all;
   for (const auto& [at, values] : cells) {
     if (values.size() < fewest) continue;
@@ -185,16 +185,18 @@ void marks(const std::vector<Stroke>& strokes, double step, Quantity deviation,
   }
 }
 
-/// Reports a reading that is farther from the others of its target (from all, if the target has no
-/// others) than 30 times the range of the readings: a table of means would contain a tenth of that
-/// error.
+/// Reports a reading whose distance from the median of its target (of all readings, if the target
+/// has fewer than three) is more than 0.3 mm or 600 arcsec and more than 30 times the range of the
+/// readings. The range excludes a tenth of the readings at each end. A table of means would contain
+/// a tenth of that error or more.
 void far_off(const Observations& o, std::vector<Finding>& out) {
   constexpr double ranges = 30.0, length = 300e-6, angle = 600.0 / arcsec_per_rad;
   constexpr std::size_t fewest_readings = 8, fewest_here = 3;
   if (o.size() < fewest_readings) return;
   std::vector<double> all = o.deviation;
   std::sort(all.begin(), all.end());
-  const std::size_t tail = all.size() / 10;  // share that may be misread at each end
+  // Number of readings at each end that may be misreadings
+  const std::size_t tail = all.size() / 10;
   const double range = all[all.size() - 1 - tail] - all[tail], middle = all[all.size() / 2];
   const auto& axis = o.axes.front();
   const auto at = [&](std::size_t i) {

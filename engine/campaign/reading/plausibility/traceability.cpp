@@ -8,7 +8,7 @@ namespace {
 
 /// An instrument or sensor, as a finding names it.
 struct Calibrated {
-  std::string key;  ///< "instrument", "sensor pressure"
+  std::string key;  ///< name in findings: "instrument", "sensor pressure"
   const std::string &serial, &calibrated, &valid_until;
 };
 

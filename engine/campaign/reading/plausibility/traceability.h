@@ -15,7 +15,8 @@ namespace nonio::reading {
 /// Validity of a calibration in years, if its last day is not stated.
 inline constexpr int unstated_validity = 2;
 
-/// Returns the last day on which a calibration is valid; empty if its day is not stated.
+/// Returns the last day on which a calibration is valid: `valid_until`, otherwise the day
+/// `unstated_validity` years after `calibrated`; empty if neither is stated.
 std::string last_valid_day(const std::string& calibrated, const std::string& valid_until);
 
 /// Returns findings about instruments that were calibrated after the measurement or whose

@@ -21,10 +21,11 @@ struct NoiseFloor {
   double dof = 0.0;  ///< degrees of freedom
 };
 
-/// F-test of the model against the cell means. e: weighted residuals of a fit of redundancy dof1 +
-/// r; r: degrees of freedom of the repeats; s: their floor. Absent without repeats.
+/// F-test of the model against the cell means; absent without repeats. e are the weighted residuals
+/// of a fit of redundancy dof1 + r, r is the number of degrees of freedom of the repeated readings,
+/// s is their standard deviation, and dof2 is the number of degrees of freedom of s.
 ///
-///     F = (sum e^2 - r s^2)/(dof1 s^2)      dof2: that of s; F >= 0
+///     F = (sum e^2 - r s^2)/(dof1 s^2)      F >= 0
 struct LackOfFit {
   double F = 0.0, p = 1.0, dof1 = 0.0, dof2 = 0.0;
 };
@@ -64,8 +65,9 @@ struct Place {
   /// The position, if it occurs mainly at one: a target (m or rad), a run, an instant (s).
   std::optional<double> at{};
   Quantity at_quantity = Quantity::number;
-  std::string line{};     ///< line along which "position" is counted, in space
-  bool together = false;  ///< for two factors: including the effect of each alone
+  std::string line{};     ///< in space: name of the line along which the position is counted
+  bool together = false;  ///< for two factors: whether `share` includes the effect of each factor
+                          ///< alone
 };
 
 /// A reading that contradicts other readings; it is kept, with weight 0, until the user excludes
@@ -88,8 +90,8 @@ struct Comparison {
   std::optional<NoiseFloor> floor{};
   std::optional<LackOfFit> lack_of_fit{};
   std::vector<Place> places{};  ///< all tested places, largest share first
-  /// If the model fails: the smallest set of places that contains the residuals. Each share is in
-  /// addition to those of earlier ones, and at least 2 %.
+  /// If the model fails: the smallest set of at most three places that contains the residuals. The
+  /// share of each place is in addition to the shares of those before it, and is at least 2 %.
   std::vector<Place> seats{};
   std::size_t means = 0;  ///< for long tables: number of means on which places were tested; else 0
   std::vector<Suspect> suspects{};

@@ -34,7 +34,8 @@ struct Candidate {
   /// smaller residuals comes first.
   double score = 0.0;
   double alone = 0.0;  ///< 2 ln of the evidence as the only addition to the model
-  /// 2 ln of the evidence lost without it, for a member of the best set; else that of adding it
+  /// 2 ln of the evidence: for a member of the best set, that lost without it; for another effect,
+  /// that gained by adding it to the best set or by replacing a member
   double within = 0.0;
   std::vector<Parameter> parameters;
   std::vector<std::string> aliases;  ///< effects that these readings do not separate from it
@@ -44,7 +45,8 @@ struct Candidate {
   /// only if noise enlarges it. 1 if there is no such bias.
   double bias = 1.0;
   std::vector<std::uint32_t> rows{};  ///< if not visible: rows of the part's table that prevent it
-  /// Descriptions of position with which its evidence was found; empty: with the model alone.
+  /// Names of the descriptions of position that were in the model when its evidence was found;
+  /// empty: the evidence was found with the model alone.
   std::vector<std::string> with_descriptions{};
 };
 
@@ -93,15 +95,15 @@ struct Verdict {
   bool below_scatter = false;
 };
 
-/// A description added to the model, the significant effects and earlier descriptions. It states
-/// the shape of the residuals, not their cause.
+/// A description that is added to the model together with the significant effects and earlier
+/// descriptions. It states the shape of the residuals, not their cause.
 struct Description {
   enum class What { value_at_targets, reversal_at_targets, course };
   Term term;         ///< the description with the shapes found
   double rms = 0.0;  ///< rms of the residuals with it, m or rad
   What what = What::course;
-  /// Smallest, largest and mean value, m or rad: over targets (values minus their mean), else over
-  /// readings.
+  /// Smallest and largest value minus the mean (for reversals: the values themselves), and the
+  /// mean, m or rad: over targets, or for a course over readings.
   double low = 0.0, high = 0.0, mean = 0.0;
 };
 
@@ -115,7 +117,8 @@ struct Statement {
   /// total drift or mean reversal, and its standard uncertainty, m or rad
   double value = 0.0, u = 0.0;
   double low = 0.0, high = 0.0;  ///< smallest and largest reversal of a target
-  /// for reversals that of the least significant target, corrected for their number
+  /// p-value; for reversals that of the least significant target, corrected for the number of
+  /// targets
   double p = 1.0;
 };
 
@@ -144,7 +147,8 @@ struct Sensors {
 
 struct Explanation {
   Comparison comparison;
-  std::vector<Candidate> candidates;  ///< best first
+  std::vector<Candidate> candidates;  ///< effects that can be added to the model, largest evidence
+                                      ///< first
   std::vector<std::string> together;  ///< effects that the best explanation adds to the model
   bool explains_all = false;  ///< the best explanation leaves no significant structure in any place
   double best_rms = 0.0;      ///< rms of the residuals of the best explanation, m or rad
@@ -155,15 +159,18 @@ struct Explanation {
   /// Position on the axis, m, of the fixed point of a single growth that is equivalent to the
   /// growth and drift in `together`.
   std::optional<double> one_growth{};
-  /// for `unknown`: rms with the significant effects in the model, m or rad
+  /// if the verdict is `unknown`: rms with the significant effects in the model, m or rad
   double significant_rms = 0.0;
-  /// for `unknown`: descriptions of the residuals that the significant effects leave
+  /// if the verdict is `unknown`: descriptions of the residuals that the significant effects leave
   std::vector<Description> descriptions;
-  /// for `unknown` of an axis: statements that hold whatever repeats at each target
+  /// if the verdict on an axis is `unknown`: statements that are true whatever error repeats at
+  /// each target
   std::vector<Statement> statements;
-  /// places of the residuals: for `unknown` of the best explanation, else of the model
+  /// places of the structure in the residuals of the model; for `unknown` the smallest set of
+  /// places that contains it or, if none does, the places of the best explanation
   std::vector<Place> fails;
-  /// measurements that separate the aliases of the verdict, cheapest first
+  /// at most three measurements that would separate the verdict's effect from its aliases, or two
+  /// effects that cancel each other
   std::vector<Plan> plans;
   /// owner of effects that are not in the catalogue but are referenced by terms
   std::shared_ptr<const void> keeps{};

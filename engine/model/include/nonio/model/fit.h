@@ -37,8 +37,8 @@ struct Term {
   /// If set, the linear parameters exist once per group, in the order of the groups; null: they are
   /// the same for all lines.
   std::shared_ptr<const Grouping> grouping{};
-  /// The parameters are the differences of all groups except the first, in addition to the same
-  /// effect without groups.
+  /// True if the parameters are differences: one for each group except the first, in addition to
+  /// the same effect without groups.
   bool differences = false;
   /// 2 ln of the prior odds against it: rare causes need more evidence.
   double price = 0.0;
@@ -85,22 +85,25 @@ struct Noise {
   double p = 1.0;           ///< probability that independent readings show such a correlation
   double in_repeats = 0.0;  ///< correlation used in the search and in tests: 0 if repeats show none
   double u_neighbours = 0.0;  ///< standard uncertainty of `in_repeats`, if it is used
-  double neighbours = 0.0;    ///< correlation used for values and u of a fit
+  double neighbours = 0.0;    ///< correlation of adjacent readings used for values and u of a fit
   Zero zero = Zero::steady;
-  /// standard deviation of a zero, or of a step of the random walk, relative to s, for u
+  /// standard deviation of a zero, or of a step of the random walk, relative to that of a reading;
+  /// it affects only u
   double zero_size = 0.0;
   double zero_found = 0.0;  ///< most likely value of `zero_size`
   bool zero_open = false;   ///< the readings do not bound the size of the zero
   double digit = 0.0;       ///< step of the last digit of the readings, m or rad
   std::optional<Stretch> stretch{};
   std::vector<double> rough{};  ///< standard deviation of each reading relative to s; empty: 1
-  std::vector<std::uint32_t> pass{};  ///< pass of each reading
+  std::vector<std::uint32_t> pass{};  ///< index of the pass (run in one direction on a line) of
+                                      ///< each reading
   bool independent() const { return !(neighbours > 0.0) && zero == Zero::steady; }
 };
 
 struct Fit {
   std::vector<Term> terms;            ///< terms of the model, with the shapes that were found
-  std::vector<Parameter> parameters;  ///< term by term: linear ones, then shapes
+  std::vector<Parameter> parameters;  ///< parameters of the terms, in their order: of each term the
+                                      ///< linear ones, then the shapes
   std::vector<std::vector<double>> correlation;  ///< correlation matrix of `parameters`
   std::vector<double> zero;                      ///< zero of each line, m or rad
   std::vector<double> residual;                  ///< residual of each reading, m or rad
@@ -111,26 +114,28 @@ struct Fit {
   /// those terms.
   std::vector<std::size_t> lost{};
   double rms = 0.0;  ///< rms of the weighted residuals, m or rad
-  double s = 0.0;    ///< standard deviation of a reading, from residuals and redundancy
-  /// standard deviation of a reading without the contribution of the zeros of `noise`
+  double s = 0.0;    ///< standard deviation of a reading, from residuals and redundancy, m or rad
+  /// standard deviation of a reading without the contribution of the zeros of `noise`, m or rad
   double s_noise = 0.0;
   std::size_t redundancy = 0;  ///< number of readings minus number of unknowns
   Noise noise{};               ///< noise used for the weights and u
 };
 
-/// Weighted least squares: deviation = zero of its line + sum of columns * parameters + e, by QR
-/// with pivoting on columns of unit length. Shapes that are not given are searched on their grids,
-/// one after the other until nothing improves, then between grid values; their uncertainty is that
-/// of the linearised problem. `weight` (0..1 per reading, or empty) is for suspect readings. Error:
-/// names of parameters that the readings do not separate; there is no minimum-norm solution.
-/// Source: GUM-6:2020 9 for the covariance. If repeats show correlated noise, generalised least
-/// squares: all rows are whitened first; other properties of the noise affect only u. `thin`: means
-/// of adjacent readings of a long table, if they already exist.
+/// Fits the terms by weighted least squares: deviation = zero of its line + sum of columns *
+/// parameters + e, by QR with pivoting on columns of unit length. Shapes that are not given are
+/// searched on their grids, one after the other until nothing improves, then between grid values;
+/// their uncertainty is that of the linearised problem. `weight` (0..1 per reading, or empty) is
+/// for suspect readings. Error: names of parameters that the readings do not separate; there is no
+/// minimum-norm solution. If repeats show correlated noise, all rows are whitened first
+/// (generalised least squares); other properties of the noise affect only u. `thin`: means of
+/// adjacent readings of a long table, if they already exist. Source: GUM-6:2020 9 for the
+/// covariance.
 Expected<Fit> fit(const Observations& observations, std::vector<Term> terms,
                   std::vector<double> weight = {}, const Noise& noise = {},
                   const Observations* thin = nullptr);
 
-/// Returns the prediction of a term with one parameter for each reading, m or rad.
+/// Returns the prediction for each reading, m or rad, of a term that has one parameter with the
+/// value `value`, SI.
 Expected<std::vector<double>> said_by(const Observations& observations, const Term& term,
                                       double value);
 

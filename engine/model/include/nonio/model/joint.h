@@ -17,7 +17,8 @@ namespace nonio::model {
 struct Member {
   std::string campaign;
   const Part* part = nullptr;
-  std::vector<Term> model;      ///< terms fitted with values of this campaign's own
+  std::vector<Term> model;      ///< terms of the model, fitted with separate values for this
+                                ///< campaign
   std::vector<Term> catalogue;  ///< terms that are searched
 };
 
@@ -35,9 +36,9 @@ struct JointEffect {
   /// campaign for `own` (empty if its readings do not determine the effect).
   std::vector<std::vector<Parameter>> groups{};
   double evidence = 0.0;  ///< decrease of -2 ln likelihood minus the cost of parameters and names
-  double p = 1.0;         ///< corrected for the search
+  double p = 1.0;         ///< p-value of the effect, corrected for the search
   double rms = 0.0;   ///< rms of the residuals with this effect alone added to the models, m or rad
-  double size = 0.0;  ///< RMS of what it explains, m or rad
+  double size = 0.0;  ///< rms of the part of the readings that this effect explains, m or rad
   /// effects that explain the readings equally well in its place
   std::vector<std::string> aliases{};
 };
@@ -62,10 +63,11 @@ struct JointExplanation {
   double trials = 1.0;       ///< number of independent tests that the search is equivalent to
 };
 
-/// Least squares over all members; each reading is weighted by the noise floor of its campaign.
-/// Errors: fewer than two members; a member without a noise floor whose model leaves no redundancy.
-/// Evidence and p-values as in `explain`: the signs of stretches and of whole passes of the
-/// residuals are flipped 200 times. Source: docs/dev/model-evidence.md, several campaigns.
+/// Explains the readings of all members together by least squares; each reading is weighted by the
+/// noise floor of its campaign. Errors: fewer than two members; a member without a noise floor
+/// whose model leaves no redundancy. Evidence and p-values are determined as in `explain`: the
+/// signs of stretches and of whole passes of the residuals are flipped 200 times. Source:
+/// docs/dev/model-evidence.md, several campaigns.
 Expected<JointExplanation> explain_together(const std::vector<Member>& members, std::uint64_t seed);
 
 }  // namespace nonio::model

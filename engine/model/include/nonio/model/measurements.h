@@ -20,13 +20,13 @@ namespace nonio::model {
 struct TimeConstant {
   enum class State {
     known,
-    none,          ///< no test determines one
-    contradictory  ///< two tests give significantly different ones
+    none,          ///< no thermal test determines a time constant
+    contradictory  ///< two tests determine significantly different time constants
   };
   std::string axis;
   std::vector<std::string> measurements;  ///< tests that determine it; for `none` all tests
   State state = State::none;
-  double tau = 0.0, u = 0.0;  ///< s
+  double tau = 0.0, u = 0.0;  ///< time constant and its standard uncertainty, s
 };
 
 /// Two time constants are contradictory if their logarithms differ by at least this multiple of the
@@ -43,7 +43,8 @@ struct Part {
   };
   std::string name;                       ///< "X", "XY", "EYX", "C centres", "warm/x1"
   std::vector<std::string> measurements;  ///< ids of the measurements
-  std::vector<Axis> axes;                 ///< one for `axis` and `balls`; else the linear axes
+  std::vector<Axis> axes;                 ///< axes of the part: one for `axis` and `balls`, else
+                                          ///< the linear axes
   Observations table;                     ///< lines named by their measurements
   Kind kind = Kind::axis;
   std::vector<std::uint32_t> measurement{};  ///< index into `measurements` of each reading
@@ -53,12 +54,13 @@ struct Part {
   /// Measurements of an axis for which the cycle of ISO 230-2 is assumed, because the order of the
   /// file is impossible.
   std::vector<std::string> order_assumed{};
-  std::vector<TimeConstant> time_constants{};  ///< time constants of its axes
+  std::vector<TimeConstant> time_constants{};  ///< time constants of the growth of its axes, from
+                                               ///< thermal tests
   /// Groupings of the lines of an axis; empty for a single measurement.
   std::vector<std::shared_ptr<const Grouping>> groupings{};
 
   // The members below apply to a course.
-  std::string displacement{};   ///< name of the displacement
+  std::string displacement{};   ///< name of the displacement, such as "x1"
   std::size_t displacements{};  ///< number of displacements of the measurement
   /// Displacements of the same measurement that move together with this one, at the same times, m.
   /// Their effects are searched together, but each displacement has parameters of its own.
@@ -94,8 +96,9 @@ std::vector<Term> catalogue(const Part& part, const std::vector<Effect>& effects
 /// Returns the names of an effect in this part: "backlash:X", "straightness:EYX".
 std::vector<std::string> names_of(const Part& part, const Effect& effect);
 
-/// Returns an effect of the model as the manifest writes it for this part: for a course that is one
-/// of several displacements "heat:t4/x1" or "heat:t4/x1+x2" (only for these), else its name.
+/// Returns an effect of the model as the manifest writes it for this part: its name, followed by
+/// the displacements of the part if the measurement has others that do not move together with them:
+/// "heat:t4/x1", "heat:t4/x1+x2".
 std::string written_for(const Part& part, const std::string& effect);
 /// Whether an effect, as the manifest writes it, applies to this part by its list of displacements.
 bool is_for(const Part& part, const std::string& effect);

@@ -16,15 +16,15 @@ struct Prediction {
   double rms = 0.0;           ///< rms of `error`, m or rad
   double sd = 0.0;      ///< standard deviation of the readings, m or rad: the error without a model
   double inside = 0.0;  ///< share of the readings with |error| <= 2 u
-  /// s: from this time on the errors exceed their expanded uncertainty
+  /// time, s, from which on the errors exceed their expanded uncertainty
   std::optional<double> fails_from{};
-  bool outside = false;  ///< a channel or an axis leaves the range of the fit
+  bool outside = false;  ///< whether a channel or an axis leaves the range of the fit
 };
 
 /// Predicts a displacement over time. `seen`: the part that the terms are fitted to; `unseen`: the
 /// same displacement at another time; `zero_kept`: the zero is that of the fit, not a new unknown.
-/// The uncertainty is estimated from blocks of `seen` that are predicted from the others, enlarged
-/// if `unseen` depends more on the parameters (docs/model.md, "Heat and time").
+/// The uncertainty combines the scatter that the terms leave in `seen`, the uncertainties of the
+/// parameters and, if `zero_kept`, that of the zero (docs/model.md, "Heat and time").
 Expected<Prediction> predict(const Part& seen, const std::vector<Term>& model, const Part& unseen,
                              bool zero_kept);
 

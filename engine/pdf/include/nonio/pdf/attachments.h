@@ -9,23 +9,27 @@
 
 namespace nonio::pdf {
 
-/// A file inside the PDF.
+/// A file that is embedded in a PDF.
 struct Attachment {
-  std::string name;  ///< with folders, "data/x.csv"
+  std::string name;  ///< file name with its folders: "data/x.csv"
   std::string bytes;
-  std::string type;      ///< "text/csv"
-  std::string relation;  ///< PDF 2.0 /AFRelationship: Source, Data, Supplement, Alternative
-  std::string says;      ///< one line for people
+  std::string type;  ///< MIME type: "text/csv"
+  /// Relation to the document, /AFRelationship of PDF 2.0: Source, Data, Supplement or Alternative.
+  std::string relation;
+  std::string says;  ///< description for readers, one line
 };
 
-/// The embedded files of a PDF in the order of their names.
+/// Returns the embedded files of a PDF, sorted by name. Error: the PDF embeds other files than it
+/// lists, or a file in another form than `reserve` writes.
 Expected<std::vector<Attachment>> attachments_of(const File& file);
 
-/// What is drawn on each page, uncompressed, as the writer of the PDF put it down.
+/// Returns the uncompressed content of each page, in the order of the pages. If the content of a
+/// page consists of several streams, they are joined.
 Expected<std::vector<std::string>> page_contents(std::string_view pdf);
 
-/// Whether two PDFs of `reserve`, one of them signed, have the same objects, streams uncompressed;
-/// only the signature itself and the identifier that is made from the whole file may differ.
+/// Checks that two PDFs made by `reserve`, of which the first is signed, contain the same objects;
+/// streams are compared uncompressed. Only the signature (/ByteRange and /Contents), the compressed
+/// lengths and the identifier of the file (/ID) may differ. The error states what differs.
 Expected<void> same_pdf(std::string_view signed_pdf, std::string_view reserved);
 
 }  // namespace nonio::pdf

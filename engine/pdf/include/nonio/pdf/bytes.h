@@ -8,7 +8,8 @@ struct libdeflate_compressor;
 
 namespace nonio::pdf {
 
-/// Into zlib's format; level 1 (fast) to 12 (small).
+/// Compresses bytes to the zlib format, at a level from 1 (fastest) to 12 (smallest result). The
+/// result is empty if there is not enough memory.
 class Deflater {
  public:
   explicit Deflater(int level);
@@ -22,13 +23,15 @@ class Deflater {
 };
 inline std::string deflated(std::string_view bytes, int level) { return Deflater(level)(bytes); }
 
-/// 32 bytes.
+/// Returns the SHA-256 digest of the bytes, 32 bytes.
 std::string sha256(std::string_view bytes);
 
-/// Decimal digits of an integer.
+/// Appends an integer to `out` in decimal digits.
 void append_int(std::string& out, long long value);
 
-/// With at most two decimals, as PDF operands; the size is limited to 30000, as PDF readers do.
+/// Appends a number to `out` as an operand of a PDF, with at most two decimals, and then the
+/// character `after`. Values beyond +-30000 are replaced by this limit, because PDF readers limit
+/// them too.
 void append_real(std::string& out, double value, char after);
 
 }  // namespace nonio::pdf

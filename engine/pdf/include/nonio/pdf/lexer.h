@@ -9,12 +9,12 @@
 
 namespace nonio::pdf {
 
-/// Reads tokens and values from front to back. Comments are refused: nothing that signs or is
-/// signed here writes any behind the head of a file.
+/// Reads the tokens and values of a PDF from front to back. Comments are rejected, because the PDFs
+/// that Nonio signs or verifies contain none after the head of the file.
 class Lexer {
  public:
   Lexer(std::string_view bytes, std::size_t at) : bytes_(bytes), at_(at) {}
-  /// `budget`: values that may still be read, here and by others who share it.
+  /// `budget`: number of values that may still be read; several lexers can share it.
   Lexer(std::string_view bytes, std::size_t at, std::size_t& budget)
       : bytes_(bytes), at_(at), budget_(&budget) {}
 
@@ -25,7 +25,7 @@ class Lexer {
   /// Reads a number of 1 to `most` digits without superfluous leading zeros; false if there is
   /// none.
   bool take_number(std::size_t& number, std::size_t most);
-  /// Exactly `count` digits.
+  /// Reads a number of exactly `count` digits; returns false if there are fewer.
   bool take_digits(std::size_t& number, std::size_t count);
   Expected<Value> value();
 

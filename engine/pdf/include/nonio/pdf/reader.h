@@ -10,15 +10,16 @@
 
 #include "nonio/sdk/error.h"
 
-/// A security boundary. Untrusted bytes enter here in two places: the file that a user gives to
-/// `verify`, and the file that the process with the plugins sends to be signed (`reserve`). A
-/// library that repairs what it reads takes a file that two readers read differently: with an
-/// update that hides an object, or a second table. So this reader is our own, repairs nothing, and
-/// costs no more than the size of the file allows. Nothing else of Nonio reads a PDF.
+/// Reads a PDF at a security boundary. Untrusted bytes enter in two places: the file that a user
+/// gives to `verify`, and the file that the process with the plugins sends to be signed
+/// (`reserve`). A library that repairs damaged files also accepts files that two readers interpret
+/// differently, for example with an update that hides an object, or with a second table. Nonio
+/// therefore has a reader of its own, which repairs nothing and whose cost is limited by the size
+/// of the file.
 ///
-/// PDF as narrowly as a certificate needs it: one revision, one plain cross-reference table, whole
-/// objects one after the other with nothing between them. Whatever is more is refused, because what
-/// a reader would have to guess, two readers may guess differently.
+/// The reader accepts only what a certificate requires: one revision, one plain cross-reference
+/// table, and whole objects one after the other with nothing between them. Everything else is
+/// rejected, because two readers may interpret it differently.
 namespace nonio::pdf {
 
 struct Value {
@@ -34,48 +35,57 @@ struct Value {
     reference
   };
   Kind kind = Kind::null;
-  std::int64_t integer = 0;         ///< of an integer; of a reference: the object's number
-  std::string text{};               ///< of a string or name, decoded
-  std::vector<Value> items{};       ///< of an array; of a dictionary: the values of `keys`
-  std::vector<std::string> keys{};  ///< of a dictionary
-  std::size_t begin = 0, end = 0;   ///< its position in the file
-  bool hexadecimal = false;         ///< of a string: written as <...>
+  std::int64_t integer = 0;         ///< value of an integer, or object number of a reference
+  std::string text{};               ///< decoded text of a string or name
+  std::vector<Value> items{};       ///< elements of an array, or values that belong to `keys`
+  std::vector<std::string> keys{};  ///< keys of a dictionary
+  std::size_t begin = 0, end = 0;   ///< positions in the file: first byte, and byte after the last
+  bool hexadecimal = false;         ///< whether a string is written in hexadecimal digits, <...>
 
   bool is(Kind k) const { return kind == k; }
   bool is_name(std::string_view name) const { return kind == Kind::name && text == name; }
-  const Value* find(std::string_view key) const;  ///< of a dictionary; null if it is missing
+  /// Returns the value of this key of a dictionary; null if the key is missing or the value is not
+  /// a dictionary.
+  const Value* find(std::string_view key) const;
 };
 
 struct Object {
   Value value;
-  std::size_t begin = 0, end = 0;  ///< from its number to the end of "endobj" and the line's end
+  /// Positions in the file: the first byte of the object, which is that of its number, and the byte
+  /// after "endobj" and the white space that follows it.
+  std::size_t begin = 0, end = 0;
   bool has_stream = false;
-  std::string_view stream{};  ///< as in the file
+  std::string_view stream{};  ///< bytes of the stream as in the file, not uncompressed
 };
 
 struct File {
   std::string_view bytes;
-  std::vector<Object> objects;     ///< by number; 0 is nothing
-  std::vector<std::size_t> order;  ///< numbers as they follow in the file
+  std::vector<Object> objects;     ///< objects by their number; entry 0 is not used
+  std::vector<std::size_t> order;  ///< object numbers in the order of the file
   Value trailer;
-  std::size_t body = 0, xref = 0;  ///< where the objects begin, and the table behind them
+  std::size_t body = 0, xref = 0;  ///< positions of the first object and of the table, bytes
 
-  /// What a value is after a reference was followed; null if there is none.
+  /// Returns the value, or if it is a reference, the value of the object to which it refers. Null
+  /// if the object does not exist, or if it is a reference itself.
   const Value* resolve(const Value* value) const;
   const Value* find(const Value* dictionary, std::string_view key) const;
-  /// The object that a reference names; null if it is no reference.
+  /// Returns the object to which a reference refers; null if the value is not a reference, or the
+  /// object does not exist.
   const Object* object(const Value* reference) const;
   const Value* catalog() const { return find(&trailer, "Root"); }
-  /// The number of the first page's object; 0 if there is none.
+  /// Returns the object number of the first page; 0 if there is no page.
   std::size_t first_page() const;
 };
 
-/// `bytes` must outlive the file.
+/// Parses a PDF. `bytes` must outlive the result, which refers to them. Error: the PDF contains
+/// anything that this reader does not accept.
 Expected<File> parse(std::string_view bytes);
 
-/// The content of a stream, uncompressed; `size` is what it must be. Only /FlateDecode or none.
+/// Returns the uncompressed content of a stream. Error: it does not have exactly `size` bytes, or
+/// it is compressed by another method than /FlateDecode.
 Expected<std::string> content(const File& file, const Object& object, std::size_t size);
-/// Of a stream whose size is not known; `most` bytes at the most.
+/// Returns the uncompressed content of a stream whose size is not known. Error: it has more than
+/// `most` bytes, or it is compressed by another method than /FlateDecode.
 Expected<std::string> content_up_to(const File& file, const Object& object, std::size_t most);
 
 }  // namespace nonio::pdf

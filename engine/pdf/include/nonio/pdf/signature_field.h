@@ -9,45 +9,52 @@
 #include "nonio/pdf/reader.h"
 #include "nonio/pdf/text.h"
 
-/// The place of a signature in a PDF: made by `reserve`, found again by its form near the end.
+/// Functions that reserve space for a signature in a PDF, and that find the signature again.
 namespace nonio::pdf {
 
 inline constexpr std::string_view sub_filter = "ETSI.CAdES.detached";
-inline constexpr std::size_t max_room = 32000;  ///< a PDF string may have 65535 bytes
-/// A file, and the same with its attachments uncompressed: what is larger is neither signed nor
-/// looked at.
+/// Largest space for a signature, bytes. Its hexadecimal digits fit into a PDF string, which may
+/// have 65535 bytes.
+inline constexpr std::size_t max_room = 32000;
+/// Largest size of a file, and of a file with its uncompressed attachments, bytes. Larger files are
+/// neither signed nor verified.
 inline constexpr std::size_t max_file = 100'000'000;
 
-/// Bytes for the CMS object if nothing else is stated: enough for a time stamp with a long chain.
+/// Default space for the CMS object of a signature, bytes. It is sufficient for a time stamp with a
+/// long certificate chain.
 inline constexpr std::size_t usual_room = 16384;
 
-/// `pdf` with attachments, a signature field in the frame that a page has for it (`signature_key`),
-/// else without appearance on its first page, and `room` bytes of zeros for the signature. Same
-/// input, same bytes. `pdf` is read strictly (reader.h): it comes from plugins.
+/// Returns `pdf` with the attachments, a signature field, and space for a signature of `room`
+/// bytes, which is filled with zeros. The field is in the frame that a page declares for it
+/// (`signature_key`); if there is none, it is on the first page and invisible. Equal input gives
+/// equal bytes. `pdf` is parsed strictly (reader.h), because plugins create it.
 Expected<std::string> reserve(std::string_view pdf, const std::vector<Attachment>& attachments,
                               Time time, std::size_t room = usual_room);
 
-/// The one signature of a file.
+/// The signature of a file, and the bytes that it signs.
 struct PdfSignature {
   const Value* dictionary = nullptr;
-  std::string_view before, after;  ///< what is signed
-  std::size_t gap = 0;             ///< position of the signature's "<"
-  std::string_view contents;       ///< its hexadecimal digits
-  Time time = 0;                   ///< as the signer states; not confirmed by others
+  std::string_view before, after;  ///< signed bytes before and after the signature
+  std::size_t gap = 0;             ///< position of the signature's "<" in the file, bytes
+  std::string_view contents;       ///< hexadecimal digits of the signature
+  Time time = 0;                   ///< time of signing, stated by the signer alone
 
   std::size_t room() const { return contents.size() / 2; }
 };
 
-/// Finds the signature near the end of a file by the form that `reserve` gives it. The rest of the
-/// file is parsed only after the signature was verified.
+/// Returns the signature near the end of a file, which is found by the form that `reserve` writes;
+/// an error if there is none. The rest of the file is not parsed, because that is done only after
+/// the signature has been verified.
 Expected<PdfSignature> signature_at_end(std::string_view bytes);
-/// When a signed PDF states that it was signed (/M); an error if it states it in another way than
-/// `reserve` does.
+/// Returns the time of signing that a signed PDF states (/M); an error if the PDF does not state it
+/// in the form that `reserve` writes.
 Expected<Time> stated_time(std::string_view pdf);
 
-/// Exactly one signature field, reachable from the form, on the first page.
+/// Returns the signature dictionary of a file. Error unless its form has exactly one field, which
+/// is a signature of the type `sub_filter`, and no second signature dictionary exists.
 Expected<const Value*> find_signature(const File& file);
-/// Its dictionary's /ByteRange covers the whole file but for /Contents.
+/// Returns the signature that this dictionary describes. Error unless its /ByteRange covers the
+/// whole file except /Contents.
 Expected<PdfSignature> signature_of(const File& file, const Value& dictionary);
 
 }  // namespace nonio::pdf

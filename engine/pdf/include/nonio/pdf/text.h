@@ -7,13 +7,13 @@
 
 #include "nonio/sdk/error.h"
 
-/// Text, names and times in the forms that a PDF has for them.
+/// Converts text, names and times to the forms that a PDF uses, and back.
 namespace nonio::pdf {
 
-/// Seconds since 1970-01-01 UTC.
+/// A point in time, in seconds since 1970-01-01 00:00 UTC.
 using Time = std::int64_t;
 
-/// A time taken apart, UTC.
+/// Date and time of day, UTC.
 struct Calendar {
   int year;
   unsigned month, day;
@@ -21,23 +21,26 @@ struct Calendar {
 };
 Calendar calendar(Time time);
 
-/// "(D:20261121150007Z)".
+/// Returns the time as a PDF states it: "(D:20261121150007Z)".
 std::string date_text(Time time);
-/// The same as a time; an error for any other form.
+/// Returns the time that a text in the form of `date_text` states. Error: the text has another
+/// form, or this time does not exist.
 Expected<Time> time_in(std::string_view text);
 
-/// UTF-16 with a byte-order mark, from UTF-8; an error if it is none.
+/// Converts UTF-8 to UTF-16 with a byte-order mark. Error: the text is not UTF-8.
 Expected<std::string> utf16(std::string_view text);
-/// UTF-16 with a byte-order mark as UTF-8; an error for anything else, and for control characters.
+/// Converts UTF-16 with a byte-order mark to UTF-8. Error: the text is not UTF-16 with this mark,
+/// or it contains control characters.
 Expected<std::string> utf8(std::string_view text);
 
-/// A string as "<0af3>": lower-case hexadecimal.
+/// Returns the bytes as a PDF string in lower-case hexadecimal digits: "<0af3>".
 std::string hexadecimal(std::string_view bytes);
-/// "12 0 R".
+/// Returns a reference to the object with this number: "12 0 R".
 std::string reference(std::size_t number);
-/// The name of an attachment in letters that every reader shows; others become "_".
+/// Returns the name of an attachment in characters that every PDF reader shows: letters, digits,
+/// space and - _ . /. Every other byte is replaced by "_".
 std::string plain_name(std::string_view name);
-/// Text out of an untrusted file, in a message: in quotes, at most 200 bytes of it.
+/// Returns text from an untrusted file for a message: in quotes, and cut off after 200 bytes.
 std::string quoted(std::string_view text);
 
 }  // namespace nonio::pdf

@@ -8,44 +8,51 @@
 #include "nonio/pdf/reader.h"
 #include "nonio/sdk/error.h"
 
-/// What may be added to a signed file: revocation data and time stamps over all bytes before them
-/// (EN 319 142-1, B-LT and B-LTA), each time as an incremental update of one form. What is read is
-/// written again and compared byte by byte, so that an update contains nothing else.
+/// Incremental updates of a signed file. An update adds revocation data, or a time stamp over all
+/// bytes before it, or both (EN 319 142-1, levels B-LT and B-LTA), and always has the form that
+/// `Updater` writes. To check an update of a file, it is written again and compared byte by byte,
+/// so that it cannot contain anything else.
 namespace nonio::pdf {
 
-/// DER, as the document security store holds them.
+/// Revocation data in DER, as in the document security store of a PDF: certificates, OCSP responses
+/// (`answers`) and revocation lists (`lists`).
 struct Store {
   std::vector<std::string> certificates, answers, lists;
   bool empty() const { return certificates.empty() && answers.empty() && lists.empty(); }
 };
 
-/// An update at the end of a file, present or planned.
+/// An incremental update, which was read from a file or is to be appended to it.
 struct Update {
-  Store store;  ///< what is new in it
+  Store store;  ///< revocation data that this update adds
   bool has_stamp = false;
-  std::string bytes;  ///< of a time stamp, zeros
-  std::size_t gap = 0,
-              after = 0;  ///< in the file: position of the stamp's "<", and of what follows its ">"
+  /// Bytes of the update. `write` sets the space for the time stamp to zeros.
+  std::string bytes;
+  /// Positions in the file, bytes: the "<" of the time stamp, and the byte after its ">".
+  std::size_t gap = 0, after = 0;
 };
 
 inline constexpr std::size_t most_updates = 20, most_stored = 100;
-/// Of all updates of a file together.
+/// Largest size of all updates of a file together, bytes.
 inline constexpr std::size_t most_update_bytes = 10'000'000;
 
-/// Where the file as it was signed ends, then each update. By the tables at the end of each;
-/// nothing else is read. What cannot be taken apart is one part.
+/// Returns the positions in bytes at which the signed file and each of its updates end; the last
+/// one is the size of the file. Only the cross-reference tables at the end of each part are read.
+/// If they do not divide the file, it is one part.
 std::vector<std::size_t> ends_of_parts(std::string_view bytes);
 
-/// Writes updates of one file, one after the other.
+/// Writes or reads the updates of one signed file, one after the other.
 class Updater {
  public:
-  /// `signed_file` must outlive it. An error if it is not as `reserve` makes it.
+  /// Returns the updater of a file, which must outlive it. Error: the file does not have the form
+  /// that `reserve` writes.
   static Expected<Updater> of(const File& signed_file);
 
-  /// What follows at this place of the file. An error if there is nothing to write, or too much.
+  /// Returns the next update, to be appended to the file: it adds `more` to the stored revocation
+  /// data and, if `has_stamp`, space for a time stamp. Error: there is nothing to add, or more than
+  /// `most_stored` items would be stored.
   Expected<Update> write(const Store& more, bool has_stamp);
-  /// The next update, which ends at `end`: the same, but for the time stamp, as `write` would have
-  /// written it.
+  /// Returns the next update, which ends at byte `end`. Error: apart from the time stamp, it
+  /// differs from what `write` would have written.
   Expected<Update> read(std::string_view bytes, std::size_t end);
 
  private:
@@ -59,9 +66,11 @@ class Updater {
 
   const File* file_;
   std::size_t catalogue_ = 0, page_ = 0;
-  std::size_t end_ = 0, last_table_ = 0;  ///< of what precedes the next update
-  std::size_t size_ = 0;                  ///< the first number that is free
-  std::size_t store_ = 0;                 ///< the object with the whole store; 0: there is none
+  /// Positions, bytes: the end of the file so far, which is the start of the next update, and the
+  /// last cross-reference table.
+  std::size_t end_ = 0, last_table_ = 0;
+  std::size_t size_ = 0;   ///< smallest unused object number
+  std::size_t store_ = 0;  ///< number of the object that lists all revocation data; 0: none
   std::vector<std::size_t> certificates_, answers_, lists_, fields_;
 };
 

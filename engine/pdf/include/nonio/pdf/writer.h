@@ -9,54 +9,63 @@
 
 #include "nonio/sdk/error.h"
 
-/// A new PDF from pages that are drawn already. libharu has its one home here.
+/// Writes a new PDF from pages whose content streams already exist. Only this part of Nonio uses
+/// libharu.
 namespace nonio::pdf {
 
-/// What a document embeds of a font; glyphs have the same numbers in every one of its subsets.
+/// The subset of a font that a document embeds. A glyph has the same number in all subsets of its
+/// font.
 struct EmbeddedFont {
-  std::string name;                 ///< of the PDF's BaseFont: "ABCDEF+LiberationSans-Bold"
-  std::size_t size = 0;             ///< of the file before it was compressed
-  std::string file_deflated;        ///< FontFile2
-  std::string widths;               ///< the PDF's W array
-  std::string to_unicode_deflated;  ///< ToUnicode
+  std::string name;                 ///< /BaseFont of the PDF: "ABCDEF+LiberationSans-Bold"
+  std::size_t size = 0;             ///< size of the font file before compression, bytes
+  std::string file_deflated;        ///< compressed font file, /FontFile2
+  std::string widths;               ///< widths of the glyphs as the array /W of the PDF
+  std::string to_unicode_deflated;  ///< compressed map from glyphs to characters, /ToUnicode
 };
 
 struct Font {
-  const EmbeddedFont* embedded = nullptr;  ///< outlives the call; null: there is no such font
-  std::array<int, 4> box{};                ///< 1/1000 of the font size, as the next three
+  /// Font data, which must outlive the call of `write`; null: the document does not have this font.
+  const EmbeddedFont* embedded = nullptr;
+  /// Bounding box of all glyphs (left, bottom, right, top), and then the heights above and below
+  /// the base line, all in 1/1000 of the font size.
+  std::array<int, 4> box{};
   int ascent = 0, descent = 0, cap_height = 0;
   int stem = 80;  ///< thickness of vertical strokes, 1/1000 of the font size
 };
 
-/// A PNG or JPEG file as documents hold it: decoded and compressed once, then only copied.
+/// An image from a PNG or JPEG file in the form that documents embed. It is prepared once, and then
+/// copied to each document.
 struct Picture {
   unsigned width = 0, height = 0;  ///< pixels
-  bool grey = false;               ///< else red, green, blue; 8 bits each
-  bool jpeg = false;               ///< `colours` is the file; else deflated rows
+  bool grey = false;               ///< true: grey; false: red, green, blue; 8 bits each
+  bool jpeg = false;               ///< whether `colours` is a JPEG file; else compressed rows
   std::string colours;
-  std::string opacity;  ///< deflated rows of 8 bits; empty where nothing shines through
+  /// Compressed rows of 8-bit opacity values; empty if the whole image is opaque.
+  std::string opacity;
 };
 
-/// Where a signature is shown, pt. It is in the page's dictionary (`signature_key`), for `reserve`.
+/// The frame in which a signature is shown: index of the page, and edges in pt. The frame is
+/// written to the dictionary of the page (`signature_key`), where `reserve` finds it.
 struct SignaturePlace {
   std::size_t page = 0;
   double left = 0.0, low = 0.0, right = 0.0, high = 0.0;
 };
-/// Of the page's dictionary: the corners of the frame, [left low right high] in pt.
+/// Key in the dictionary of a page for the frame of the signature, [left low right high] in pt.
 inline constexpr const char* signature_key = "NonioSignature";
 
-/// Pages as content streams; fonts are /F1 (regular), /F2 (bold) and /F3 (wide) with glyph numbers
-/// of two bytes, /P0, /P1, ... are pictures, and /G1 is the graphics state for see-through areas.
+/// The content of a new PDF. `pages` are content streams: in them, fonts are /F1 (regular), /F2
+/// (bold) and /F3 (wide) with glyph numbers of two bytes, pictures are /P0, /P1, ..., and /G1 is
+/// the graphics state for translucent areas.
 struct NewFile {
   std::string title, author, subject, language;
-  std::string date;  ///< YYYY-MM-DD or empty
+  std::string date;  ///< date of creation, YYYY-MM-DD; empty: not stated
   double width = 0.0, height = 0.0;
-  double see_through = 1.0;  ///< opacity of areas drawn under /G1
+  double see_through = 1.0;  ///< opacity of areas drawn with /G1, 0 to 1
   std::array<Font, 3> fonts{};
   std::vector<std::shared_ptr<const Picture>> pictures;
   std::vector<std::string> pages;
-  /// An ICC profile of sRGB: the file is to be kept for long, and states its colours, its
-  /// properties also as XMP, and an identifier.
+  /// ICC profile of sRGB, for a PDF that is to be archived. If it is given, the PDF contains the
+  /// profile, its properties also as XMP, and an identifier.
   std::string profile{};
   std::optional<SignaturePlace> signature{};
 };

@@ -71,10 +71,10 @@ Expected<AxisReadings> readings_of(const Observations& o, const Axis& axis);
 /// Whether some positions were reached from below and some from above.
 bool from_both_directions(const AxisReadings& r);
 
-/// Candidate positions of the fixed point of a screw or scale, in m from the middle of the measured
-/// stretch. The manifest's value if it is stated; else the middle alone (rotary axes, several
-/// axes); else seven positions, the middle and positions inside and outside of the stretch, chosen
-/// about 20 deg apart in the angle between the common and the fanning part of the expansion.
+/// Returns candidate positions of the fixed point of a screw or scale, in m from the middle of the
+/// measured stretch (rad for a rotary axis). If the manifest states one, only that; for a rotary
+/// axis or several axes only the middle; otherwise seven positions up to 1.5 times the length of
+/// the stretch from its middle. Empty if the readings do not move the axis.
 std::vector<double> fixed_points(const Observations& o, const Axis& axis);
 
 Effect::Shape fixed_point_shape();
@@ -87,8 +87,8 @@ WhyNot no_order(const Observations& o, const Axis& axis);
 /// id. For effects that need both directions.
 WhyNot one_direction(const Observations& o, const Axis& axis);
 
-/// The distinct measured positions, ascending, relative to the middle of the stretch, m or rad.
-/// Positions closer than 1e-9 of the length are one target.
+/// Returns the distinct measured positions, ascending, relative to the middle of the stretch, m or
+/// rad. Positions closer than 1e-9 of the length are one target.
 std::vector<double> targets_of(const AxisReadings& r);
 
 /// Computes one column for each function in `values`, called as value(readings, row) for the rows

@@ -13,7 +13,7 @@ namespace nonio {
 
 /// How the errors of one input quantity are correlated between readings.
 enum class Correlation {
-  readings,  ///< independent in each reading (mean)
+  readings,  ///< independent in each reading, so that a mean of readings reduces them
   walk,      ///< a random walk along each line, independent between lines
   lines,     ///< the same for all readings of a line, independent between lines
   device,    ///< the same for all readings of the instrument: fully correlated

@@ -26,8 +26,9 @@ struct Axis {
   std::optional<double> fixed_point{};
   std::map<std::string, double> tolerance{};  ///< upper limit of a result, by its name: m or rad
   std::string slave{};  ///< for a gantry: name of the control's axis that drives the second side
-  /// Compensation that was active in the control while the axis was measured; none: not stated.
-  /// files of the active table; empty: no table was active
+  /// `active_table` and `active_backlash` state the compensation that was active in the control
+  /// while the axis was measured; without a value it is not stated. `active_table` contains the
+  /// files of the active table, and is empty if no table was active.
   std::optional<std::string> active_table{};
   std::optional<double> active_backlash{};  ///< active backlash value, m or rad; 0: none was active
 };
@@ -36,7 +37,8 @@ struct Machine {
   std::string maker, model, serial;
   /// kind of machine, such as "gantry milling machine"; its condition at the calibration
   std::string description, condition;
-  std::string structure;  ///< gantry, single-column, bridge, other; empty if not stated
+  std::string structure;  ///< kind of structure: gantry, single-column, bridge, other; empty if not
+                          ///< stated
   std::string control;    ///< name of the controller plugin that writes its tables; empty: any
   std::vector<Axis> axes;
   std::string asset{};  ///< the owner's inventory number; empty if not stated
@@ -53,7 +55,7 @@ struct Instrument {
   std::string maker, model, serial, calibrated, certificate;
   std::optional<double> U_fixed;       ///< part of U that does not depend on length, m
   std::optional<double> U_per_length;  ///< part of U proportional to length, m/m
-  std::optional<double> U_angle;       ///< U of an angle, rad
+  std::optional<double> U_angle;       ///< expanded uncertainty (k = 2) of an angle, rad
   /// For a probe: full range of the form error of its ball, and of the error of the probe itself,
   /// m.
   std::optional<double> sphere{}, probe{};
@@ -132,8 +134,8 @@ struct CertificateTexts {
 
 /// An upper tolerance limit of the magnitude of one result.
 struct Tolerance {
-  std::string result;  ///< name of the result
-  double limit = 0.0;  ///< the limit, SI
+  std::string result;  ///< name of the result that it limits
+  double limit = 0.0;  ///< largest allowed magnitude of the result, SI
   Quantity quantity = Quantity::deviation;
 };
 
@@ -194,7 +196,8 @@ struct Measurement {
   /// in.
   Settings settings{};
   std::string method{};  ///< name of the method, the key `kind`; empty: it is `kind`
-  /// What its readings follow: which of them repeat at targets, and whether effects of a model apply.
+  /// Motion of the machine during the measurement. It decides which readings repeat at targets, and
+  /// whether effects of a model apply.
   enum class Motion {
     targets,     ///< stops at targets, which the runs share
     path,        ///< without stops, over an angle: a circle
@@ -202,7 +205,7 @@ struct Measurement {
     placements,  ///< features of an artefact in several placements
     none         ///< no axis of the machine moved
   };
-  Motion motion = Motion::targets;  ///< as the method declares it
+  Motion motion = Motion::targets;  ///< motion during the measurement, as the method declares it
 };
 
 inline const std::string& method_name(const Measurement& m) {
@@ -218,8 +221,8 @@ inline std::string state_of(const Measurement& m) {
   return space == std::string::npos ? std::string() : m.id.substr(space + 1);
 }
 
-/// Name of the control's axis whose scale was measured: on the second side of a gantry the slave
-/// axis, otherwise the axis itself.
+/// Returns the name of the control's axis whose scale was measured: on the second side of a gantry
+/// the slave axis, otherwise the axis itself.
 inline std::string control_axis(const Machine& machine, const Measurement& m) {
   const Axis* axis = machine.axis(m.axis);
   return m.side == "slave" && axis != nullptr ? axis->slave : m.axis;

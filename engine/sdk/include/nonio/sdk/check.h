@@ -13,8 +13,9 @@
 namespace nonio {
 
 /// Checks readings: columns have one length; deviations, positions and directions of sensing are
-/// finite; approaches are -1, 0 or +1; uncertainties are above 0; there is at least one line, and
-/// each reading belongs to a line; `doubts` are findings `plausibility.*` with attention set.
+/// finite; approaches are -1, 0 or +1; uncertainties are above 0; each channel has finite values at
+/// ascending times; each reading belongs to an existing line; `doubts` are findings
+/// `plausibility.*` with attention set.
 Expected<void> check(const Observations& o);
 
 /// Checks results: values, uncertainties, coverage factors and evidence are finite, the columns of

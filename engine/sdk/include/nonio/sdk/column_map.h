@@ -43,8 +43,8 @@ inline std::int8_t direction_of(Way way, int listed) {
   return static_cast<std::int8_t>(sign);
 }
 
-/// Returns the SI value (m, rad) of one unit of length (of angle); nothing if the name is not a
-/// unit.
+/// Returns the SI value of one unit of length in m, or of one unit of angle in rad if `angle`;
+/// nothing if the name is not a unit.
 inline std::optional<double> unit_named(std::string_view name, bool angle) {
   constexpr std::pair<std::string_view, double> lengths[] = {
       {"inch", 0.0254}, {"m", 1.0}, {"mm", 1e-3}, {"nm", 1e-9}, {"um", 1e-6}};
@@ -102,11 +102,12 @@ inline std::optional<RowRange> row_range_of(std::string_view text) {
 /// The parsed options of `table_map_options`.
 struct TableMap {
   char separator = ' ';
-  double target_unit = 0.0, value_unit = 0.0;  ///< SI value of one unit
+  double target_unit = 0.0, value_unit = 0.0;  ///< SI value of 1 in the file: m or rad
   bool positions = false;                      ///< values are actual positions, else deviations
   double sign = 1.0;                           ///< sign of the deviations: +1 or -1
   double factor = 1.0, offset = 0.0;  ///< value = factor * number + offset; the offset in SI
-  std::vector<RowRange> tables;       ///< at least one range, in the order of the file
+  std::vector<RowRange> tables;       ///< lines of each table, in the order of the file; at least
+                                      ///< one range
 
   /// Returns the deviation, SI, of a number as in the file, at a target in SI.
   double deviation(double read, double target) const {
@@ -156,7 +157,9 @@ inline std::vector<Option> table_map_options() {
        "all of it: \"12-36 forward\", \"41-65 reverse\" (or +, -)."}};
 }
 
-/// Returns the lines of each table. Error: the tables overlap, or are not in the order of the file.
+/// Returns the lines of each table, from the options `tables`, or `first_line` and `last_line`.
+/// Error: a range is malformed, both forms are used, or the tables overlap or are not in the order
+/// of the file.
 inline Expected<std::vector<RowRange>> tables_of(const Settings& options) {
   std::vector<RowRange> tables;
   const RowRange all{static_cast<std::uint64_t>(options.integer("first_line", 1)),

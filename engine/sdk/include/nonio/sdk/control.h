@@ -20,10 +20,11 @@
 namespace nonio {
 
 /// Format of the tables of one control. A unit is the SI value (m, rad) of 1 in the file; a step is
-/// the smallest difference of two numbers in the file. A limit of 0 is not known.
+/// the smallest difference of two numbers in the file, m or rad. A limit of 0 means that the limit
+/// is not known.
 struct ControlTable {
   enum class Sign { error, correction };               ///< entries are +e, or -e
-  enum class Entry { absolute, increment, position };  ///< position: nominal plus the entry
+  enum class Entry { absolute, increment, position };  ///< position: nominal plus the value
   enum class Grid { even, listed };
   /// Position at which the entry must be 0. `free`: none is required (the compensation is 0 at the
   /// reference point nevertheless). `reference`: the reference point, at any position. `first`: the
@@ -40,7 +41,7 @@ struct ControlTable {
     /// name of the property, "sign"; if it is not documented, tables have a note <plugin>.<id>
     std::string id;
     Confidence confidence = Confidence::documented;
-    std::string description;  ///< one sentence, English
+    std::string description;  ///< one English sentence that states the fact
   };
 
   std::string name;  ///< name of the format as its maker gives it: "kw.ssfk"
@@ -66,8 +67,8 @@ struct ControlTable {
   std::vector<Fact> facts{};
 };
 
-/// A table as its control applies it: c, which the control adds to the position of `output`. SI.
-/// Range: what `validate_table` (math/loaded_table.h) accepts.
+/// A table as its control applies it: c, which the control adds to the position of `output`. All
+/// values are SI. `validate_table` (math/loaded_table.h) defines which tables are valid.
 struct LoadedTable {
   enum class Outside { holds, zero, repeats, continues };
   std::string output;  ///< compensated axis; the name in the file if the axis is not known

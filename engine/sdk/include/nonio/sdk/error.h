@@ -14,7 +14,7 @@ struct Error {
   std::string message;
   /// relative to the campaign's directory; empty if the error is not in a file
   std::string file{};
-  std::uint64_t line = 0;  ///< 1-based; 0 if the error is not in a line
+  std::uint64_t line = 0;  ///< line of the file, 1-based; 0 if the error is not in a line
   std::string column{};    ///< name of the column, empty if none
   /// The plugin option (`axes`) or manifest key (`campaign.customer`) that caused the error; the
   /// host adds its file and line. Empty if none.

@@ -25,7 +25,8 @@ enum class DecimalMark : std::uint8_t { none, point, comma };
 struct Field {
   enum class Kind : std::uint8_t {
     taken,      ///< a finite number below 1e19 in size
-    not_taken,  ///< blank, nan, n/a, #N/A (#N/D, #NV), infinite, or 1e19 and more in size
+    not_taken,  ///< blank, nan, n/a, #N/A (#N/D, #NV), "over range" and the like, infinite, or at
+                ///< least 1e19 in size
     bad,        ///< any other text
   };
   Kind kind = Kind::bad;
@@ -250,7 +251,7 @@ inline std::string shown(std::string_view text) {
   return out + (part.size() < text.size() ? "...\"" : "\"");
 }
 
-/// Levenshtein distance: the number of bytes to replace, insert or delete.
+/// Returns the Levenshtein distance: the least number of bytes to replace, insert or delete.
 inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});

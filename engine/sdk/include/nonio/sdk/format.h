@@ -16,7 +16,7 @@
 /// Formats numbers and texts for people and programs, independently of the locale of the process.
 namespace nonio {
 
-/// digits * 10^-places, exactly; places is 0 to 22.
+/// A decimal number: exactly digits * 10^-places, with places from 0 to 22.
 struct Decimal {
   std::int64_t digits;
   int places;
@@ -38,8 +38,8 @@ std::string fixed_text(double value, int decimals);
 /// Returns the number that `fixed_text` prints.
 double rounded_to_places(double value, int decimals);
 
-/// The same result as `fixed_text` for every finite value, always by decimal digits: a reference
-/// for its faster method.
+/// Returns the same text as `fixed_text` for every finite value, but always computes it from
+/// decimal digits; it is the reference for the faster method of `fixed_text`.
 std::string fixed_text_by_digits(double value, int decimals);
 
 /// Returns the power of ten of the second significant digit, after rounding to two digits: 0.0996
@@ -86,8 +86,8 @@ std::string localised(std::string number, std::string_view language);
 /// none.
 std::string words(const Templates& templates, std::string_view language, std::string_view name);
 
-/// Writes a number of a finding for a sentence: counts as integers, positions with all their
-/// digits, and a probability as "p = 0.0021", or "p < ..." below the smallest printed value.
+/// Writes a number of a finding for a sentence: counts as integers, positions with at most 4
+/// decimals, and a probability as "p = 0.0021", or "p < ..." below the smallest printed value.
 std::string evidence_text(const Number& n);
 
 /// Replaces each `{name}` in `text` by the finding's evidence of that name. A number whose
@@ -95,8 +95,8 @@ std::string evidence_text(const Number& n);
 /// unit is added. A placeholder without evidence is kept, so that the error is visible.
 std::string filled(std::string_view text, const Finding& finding, std::string_view language);
 
-/// Translates texts of a finding that are names of a list, if the language has the text
-/// `term.<key>.<text>` of templates/words.
+/// Returns the evidence texts of a finding, translated. A text, or each part of a text separated by
+/// ", ", is replaced by `term.<key>.<text>` of templates/words if the language has it.
 std::vector<std::pair<std::string, std::string>> said(
     const Templates& templates, std::string_view language,
     std::vector<std::pair<std::string, std::string>> texts);
@@ -105,7 +105,7 @@ std::vector<std::pair<std::string, std::string>> said(
 std::string finding_text(const Templates& templates, std::string_view language,
                          const Finding& finding, std::string_view part);
 
-/// Returns the text of a remark; `english` if the language has none.
+/// Returns the text of a remark in this language, else in English, else `Remark::english`.
 std::string remark_text(const Templates& templates, std::string_view language,
                         const Remark& remark);
 

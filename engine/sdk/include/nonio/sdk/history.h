@@ -33,13 +33,14 @@ struct HistorySegment {
 };
 
 struct HistoryChange {
-  std::string after, before;  ///< day of the last campaign before the change; of the first after it
-  double size = 0.0, u = 0.0, p = 1.0;  ///< p: adjusted for all tests of the run
+  std::string after, before;  ///< day of the last campaign before the change, and of the first one
+                              ///< after it
+  double size = 0.0, u = 0.0, p = 1.0;  ///< p: p-value adjusted for all tests of the run
   std::string cause;                    ///< undeclared, event, instrument, table
   std::string event{};
   std::string after_campaign{}, before_campaign{};
   double p_alone = 1.0;  ///< p-value of this test without adjustment
-  bool mailed = true;    ///< significant enough for a mail
+  bool mailed = true;    ///< whether it is significant enough to be sent by mail
 };
 
 struct HistoryForecast {
@@ -59,7 +60,8 @@ struct HistorySeries {
   std::vector<HistoryChange> changes{};
   std::optional<double> smallest_change{}, limit{};
   std::optional<HistoryForecast> forecast{};
-  bool ended = false;  ///< later campaigns use another method, in a series of their own
+  bool ended = false;  ///< whether later campaigns use another method and therefore form another
+                       ///< series
   /// Range of the axis over which the model compares campaigns with different targets; the points
   /// themselves are evaluated at their own targets. None: points are compared directly.
   struct Over {

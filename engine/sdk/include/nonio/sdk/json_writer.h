@@ -41,7 +41,8 @@ class JsonWriter {
     value(of);
   }
 
-  /// An array of what `put` writes of each item.
+  /// Writes a member `name` whose value is an array. `put` is called for each item and writes one
+  /// element of the array.
   template <class Items, class Put>
   void list(std::string_view name, const Items& items, const Put& put) {
     key(name);
@@ -49,7 +50,8 @@ class JsonWriter {
     for (const auto& item : items) put(item);
     end_array();
   }
-  /// An array of objects, of which `put` writes the members.
+  /// Writes a member `name` whose value is an array of objects. `put` is called for each item and
+  /// writes the members of its object.
   template <class Items, class Put>
   void objects(std::string_view name, const Items& items, const Put& put) {
     list(name, items, [&](const auto& item) {

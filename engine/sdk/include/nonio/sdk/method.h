@@ -9,7 +9,7 @@
 /// Functions that apply a measuring method: readings to observations, and back.
 namespace nonio {
 
-/// Name of a column in a file, including its unit: "target_mm".
+/// Returns the name of a column in a file, including its unit: "target_mm".
 std::string name_in_file(const Method::Column& column);
 
 /// Checks that the declaration is complete and consistent: names, quantities that match the roles;

@@ -11,8 +11,8 @@
 
 namespace nonio {
 
-/// Index of the coordinate along which a linear axis moves: 0, 1, 2 for X, Y, Z (and X1, Y2, ...);
-/// 3 if the name does not state it.
+/// Returns the index of the coordinate along which a linear axis moves: 0, 1, 2 for X, Y, Z (and
+/// X1, Y2, ...); 3 if the name does not state it.
 inline std::size_t coordinate_of(std::string_view axis) {
   const std::size_t at =
       axis.empty() ? std::string_view::npos : std::string_view("XYZ").find(axis[0]);
@@ -31,7 +31,7 @@ struct Observations {
   struct AxisColumn {
     std::string axis;
     bool rotary = false;
-    std::vector<double> position;       ///< m, or rad
+    std::vector<double> position;       ///< commanded position at each reading, m or rad
     std::vector<std::int8_t> approach;  ///< +1, -1; empty if the axis did not move
   };
   /// Readings of one line share one unknown zero and one direction of sensing.
@@ -50,7 +50,7 @@ struct Observations {
   struct Channel {
     std::string name;           ///< name of its column without the unit: "t4", "speed"
     std::string unit;           ///< "degC", "rpm", "%", "kW", "A"
-    std::vector<double> time;   ///< s, ascending
+    std::vector<double> time;   ///< time of each value, s, ascending
     std::vector<double> value;  ///< finite, in `unit`
     /// place and role that the manifest states (`Measurement::Channel`)
     std::string place{}, role{};
@@ -68,9 +68,10 @@ struct Observations {
   std::vector<std::uint32_t> run;          ///< number of the run in the file, from 1
   std::vector<std::uint32_t> line;         ///< index into `lines`; empty: all in lines[0]
   std::vector<std::uint32_t> source_line;  ///< line of the file, 1-based
-  std::vector<double> time;                ///< s; NaN where blank
-  std::vector<double> material, air;       ///< degC; NaN where blank
-  std::vector<double> pressure, humidity;  ///< hPa, % ; NaN where blank
+  std::vector<double> time;                ///< time of each reading, s; NaN where blank
+  std::vector<double> material, air;       ///< temperatures of material and air, degC; NaN where
+                                           ///< blank
+  std::vector<double> pressure, humidity;  ///< air pressure, hPa, and humidity, %; NaN where blank
 
   std::vector<Channel> channels{};  ///< recorded channels of a measurement over time
 
@@ -83,7 +84,7 @@ struct Observations {
   /// False: the order in which the rows were taken is not known (manifest, `order = "unknown"`).
   bool order_known = true;
 
-  std::uint64_t missing = 0;  ///< readings that were not taken
+  std::uint64_t missing = 0;  ///< number of readings that were not taken
   std::vector<Remark> notes;  ///< remarks of the reader that concern the user
   /// Contradictions between file and manifest: findings `plausibility.*`. While they exist, no
   /// table is written until a person states a reason to accept them.
@@ -100,7 +101,7 @@ struct Observations {
       if (a.axis == name) return &a;
     return nullptr;
   }
-  /// Values of a reading with their defaults, if the file does not contain the column.
+  /// Return the value of a reading, or its default if the file does not contain the column.
   std::uint32_t line_of(std::size_t i) const { return line.empty() ? 0 : line[i]; }
   std::uint32_t run_of(std::size_t i) const { return run.empty() ? 1 : run[i]; }
   std::uint32_t source_line_of(std::size_t i) const {

@@ -29,7 +29,8 @@ struct HistorySoFar;
 /// range and choices and fills in the default.
 struct Option {
   std::string name;
-  Setting default_value;               ///< its type is the type of the option
+  Setting default_value;               ///< value if the option is not stated; its type is the type
+                                       ///< of the option
   std::string unit;                    ///< "" if none
   std::string help;                    ///< one sentence of help
   std::vector<std::string> choices{};  ///< allowed values of a text option; empty: any
@@ -39,7 +40,7 @@ struct Option {
 
   // The members below apply to keys that a method declares.
   bool required = false;
-  /// named in the message if the key is missing: "the plane of the circle, \"XY\""
+  /// text that the message names if the key is missing: "the plane of the circle, \"XY\""
   std::string missing{};
   std::string expected{};   ///< message if the value is invalid: "expected a length above 0"
   std::string forbidden{};  ///< characters that a text must not contain
@@ -158,9 +159,10 @@ struct Method {
   /// analyses, checks, tables and histories of that kind then apply to this one. Empty: a kind of
   /// its own.
   std::string observed_as{};
-  /// Of a kind of its own.
+  /// Motion during the measurement, for a method whose `observed_as` is empty.
   Measurement::Motion motion = Measurement::Motion::targets;
-  std::vector<Column> columns{};  ///< none: its files are read by readers of its own
+  std::vector<Column> columns{};  ///< columns of its files; empty: its files are read by readers
+                                  ///< made for it
   /// Optional: converts readings to observations. Without it, the roles of the columns determine
   /// them (`observe` in sdk/method.h).
   Expected<Observations> (*observe)(const MethodInput&) = nullptr;
@@ -169,8 +171,9 @@ struct Method {
   Expected<Readings> (*simulate)(const SimulationInput&) = nullptr;
 };
 
-/// Reason why an effect is no candidate for these readings: the name of a text ("unseen.<id>"),
-/// empty if the effect does not concern this axis at all; and the rows that prevent it.
+/// Reason why an effect is no candidate for these readings: the name of a text ("unseen.<id>";
+/// empty if the effect does not concern this axis at all), and the rows of the readings that cause
+/// it.
 struct WhyNot {
   std::string id;
   std::vector<std::uint32_t> rows{};
@@ -202,8 +205,9 @@ struct Effect {
   Info info;                      ///< name: the kind without the axis, such as "backlash"
   std::vector<Parameter> linear;  ///< for a curve: one, which describes all of its columns
   std::vector<Shape> shapes;
-  bool curve = false;        ///< a smooth curve: its first shape is the number of its columns
-  bool compensable = false;  ///< a table in the controller can compensate it
+  bool curve = false;        ///< whether it is a smooth curve, whose first shape is the number of
+                             ///< its columns
+  bool compensable = false;  ///< whether a table in the controller can compensate it
   std::function<bool(const Observations&, const Axis&)> applies;
   /// Returns columns of length observations.size(), in the unit of the deviation divided by that of
   /// the parameter.

@@ -16,7 +16,7 @@ namespace nonio {
 /// A named number. As evidence it is printed with its unit in the name: mean becomes mean_um.
 struct Number {
   std::string name;
-  double value = 0.0;  ///< SI
+  double value = 0.0;  ///< the number, SI
   Quantity quantity = Quantity::number;
 };
 
@@ -35,7 +35,7 @@ struct Value {
   std::string name;  ///< symbol of the standard: A, R+, Ps_max
   double value = 0.0;
   Quantity quantity = Quantity::number;
-  std::optional<double> U{};  ///< expanded uncertainty
+  std::optional<double> U{};  ///< expanded uncertainty with coverage factor `k`, SI
   double k = 2.0;             ///< coverage factor of `U` or of `repeatability`
   /// Replaces U if a contribution was not stated: the expanded scatter of the fit alone, SI.
   std::optional<double> repeatability{};
@@ -73,7 +73,7 @@ struct PointTable {
     std::vector<double> values;
     std::optional<double> U{};  ///< upper bound of the expanded uncertainty (k = 2) of each value
   };
-  std::vector<Column> columns;  ///< all of the same length
+  std::vector<Column> columns;  ///< columns with equal numbers of values
 
   const Column* column(std::string_view name) const {
     for (const Column& c : columns)
@@ -90,7 +90,8 @@ struct Series {
   Quantity quantity = Quantity::deviation;
   std::vector<double> position, value, U;
   double k = 2.0;                       ///< coverage factor of U or of `repeatability`
-  std::vector<double> repeatability{};  ///< replaces U, as in Value
+  std::vector<double> repeatability{};  ///< expanded scatter of the fit alone, SI, which replaces U
+                                        ///< as in Value
 };
 
 /// The results of an analysis for one measurement or for the campaign.
@@ -125,13 +126,15 @@ struct OutputResult {
   std::vector<Artifact> artifacts;
   std::vector<Prediction> predictions;
   std::vector<Finding> findings;
-  std::vector<Remark> notes;  ///< such as a property of a format that is only inferred
+  std::vector<Remark> notes;  ///< remarks, such as about a property of a format that is only
+                              ///< inferred
 };
 
 /// One difference between two versions of a file: a key of a TOML file or a line of readings.
 /// `before` is absent if it was added, `after` if it was removed.
 struct Change {
-  std::string key;  ///< "machine.axes.X.tolerance_um.B"; empty: a line
+  std::string key;  ///< key of a TOML file, "machine.axes.X.tolerance_um.B"; empty for a line of
+                    ///< readings
   /// 1-based line in the present file; of a removed entry: in the former file
   std::uint64_t line = 0;
   std::optional<std::string> before{}, after{};
@@ -153,8 +156,9 @@ struct Issue {
   std::vector<FileChange> changes;  ///< differences from the replaced document's input
   std::string readings_sha256;      ///< digest of the files of readings, concatenated
   std::string replaces_readings{};  ///< readings_sha256 of the replaced document
-  std::string replaces_file{};      ///< a file of the replaced document: its DCC if it has one,
-  std::string replaces_sha256{};    ///< digest of that file
+  std::string replaces_file{};      ///< name of a file of the replaced document, which is its DCC
+                                    ///< if it has one
+  std::string replaces_sha256{};    ///< digest of the file `replaces_file`
   std::string why{};                ///< reason for the replacement
   /// person who approved it; empty: the laboratory's rules for automatic approval
   std::string released_by{};
@@ -162,7 +166,7 @@ struct Issue {
   /// Reason for issuing it despite a finding that a certificate states, such as an expired
   /// calibration.
   struct Reason {
-    std::string finding, text, by;  ///< id of the finding; the reason; person who stated it
+    std::string finding, text, by;  ///< id of the finding; reason; person who stated the reason
   };
   std::vector<Reason> reasons{};
   /// Identity of the register, which is unique; the entry that assigned the number; and the digest
@@ -193,8 +197,8 @@ struct Conformity {
 };
 
 /// A model compared with the readings of one part of the machine, such as an axis, for the figures
-/// and tables of documents. SI. Columns have one entry per reading, or none if the files do not
-/// contain them; the prediction is deviation - residual.
+/// and tables of documents. All values are SI. Columns have one entry per reading, or none if the
+/// files do not contain them; the prediction is deviation - residual.
 struct ModelFit {
   /// Size of a curve, m or rad: its rms, smallest and largest value, and the places of these (m or
   /// rad along their line).
@@ -234,8 +238,8 @@ struct ModelFit {
     std::vector<std::string> aliases;  ///< effects that these readings do not separate from it
     bool certain = false;              ///< significant, whatever causes the remaining residuals
   };
-  /// The error as the model grows: first without any effect, then with one more effect at a time,
-  /// the most effective first.
+  /// One step of building the model: the first step has no effect, and each further one adds the
+  /// most effective of the remaining effects.
   struct Step {
     std::string effect;  ///< the effect added in this step; empty for the first
     double rms = 0.0;
@@ -255,8 +259,8 @@ struct ModelFit {
   std::string part;                       ///< usable in a file name: "X"
   std::vector<std::string> measurements;  ///< ids of the measurements
   std::string axis;
-  bool rotary = false;   ///< positions are angles, in rad
-  bool angular = false;  ///< deviations are angles, in rad
+  bool rotary = false;   ///< whether positions are angles, in rad
+  bool angular = false;  ///< whether deviations are angles, in rad
   /// period of the drive: screw pitch in m, or rad between two teeth
   std::optional<double> period{};
 
@@ -265,25 +269,28 @@ struct ModelFit {
   std::vector<std::uint32_t> run;          ///< number of the run in the file, from 1
   std::vector<double> target;
   std::vector<std::int8_t> direction;  ///< direction of approach: +1, -1; 0 if not known
-  std::vector<double> time;            ///< s; NaN where blank
+  std::vector<double> time;            ///< time of each reading, s; NaN where blank
   std::vector<double> temperature;     ///< material temperature, degC; NaN where blank
   std::vector<double> deviation, residual;
-  std::vector<double> weight;  ///< 0..1: small for a reading that is suspect
+  std::vector<double> weight;  ///< weight of each reading, 0..1: small for a suspect reading
   /// residual when its run is predicted from the other runs; none with one run
   std::vector<double> cv_residual;
 
   std::vector<Effect> effects;  ///< effects of the model, in its order
   std::vector<Parameter> parameters;
   std::vector<std::vector<double>> correlation;  ///< correlation matrix of `parameters`
-  std::vector<Step> steps;                       ///< the last one is the model
+  std::vector<Step> steps;                       ///< steps of building the model; the last one is
+                                                 ///< the complete model
   /// standard deviation of repeated readings, and its standard uncertainty
   std::optional<double> floor{}, floor_u{};
   std::vector<Suspect> suspects;
-  std::vector<Finding> diagnosis;       ///< the verdict, then other predictions of the model
-  std::vector<Without> without{};       ///< one for each effect that can be removed from the model
+  std::vector<Finding> diagnosis;       ///< verdict about the model, then findings about its
+                                        ///< residuals and the false-alarm rate
+  std::vector<Without> without{};       ///< fits without one effect, one for each effect that can
+                                        ///< be removed
   std::vector<Candidate> candidates{};  ///< ordered by evidence, largest first
-  /// One sentence about the other effects: "No sign of A (would be seen from 1 um)", "B (2 um)",
-  /// ...
+  /// The effects without evidence, each with the size from which it would be detected. Their texts
+  /// form one sentence: "No sign of A (would be seen from 1 um)", "B (2 um)", ...
   std::vector<Finding> no_sign{};
   std::vector<Finding> next{};  ///< recommended next measurements
   std::vector<Channel> channels{};

@@ -43,21 +43,22 @@ struct SpaceReadings {
   }
 };
 
-/// Computes positions from the commanded positions of the readings. There are no errors:
-/// coordinates that are not stated are NaN.
+/// Returns the positions relative to the corner, computed from the commanded positions of the
+/// readings; NaN for a coordinate that is not stated.
 SpaceReadings space_of(const Observations& o);
 
-/// Whether the readings are centres of a ball that turns with a rotary axis: lengths over an angle.
+/// Returns whether the readings are the centres of a ball that turns with a rotary axis: they are
+/// lengths, measured over an angle.
 bool of_ball_centres(const Observations& o);
 
-/// Whether coordinate k varies within a line whose readings sense direction `error`. If it does
-/// not, the zero of each line absorbs everything that depends on k. `away`: considers only readings
-/// away from the corner along this coordinate.
+/// Returns whether coordinate k varies within a line whose readings sense direction `error`. If it
+/// does not, the zero of each line absorbs everything that depends on k. If `away` is set, only
+/// readings whose coordinate `*away` is above that of the corner are considered.
 bool varies_where_sensed(const Observations& o, const SpaceReadings& s, std::size_t k,
                          std::size_t error, std::optional<std::size_t> away = std::nullopt);
 
-/// The distinct measured positions of coordinate k, ascending, m from the corner. Positions closer
-/// than 1e-9 of the length are one.
+/// Returns the distinct measured positions of coordinate k, ascending, m from the corner. Positions
+/// closer than 1e-9 of the length are one.
 std::vector<double> places_of(const SpaceReadings& s, std::size_t k);
 
 /// Returns numbers of knots to try for a smooth curve: at most 10, and at least two places for each
@@ -82,8 +83,8 @@ struct SpaceLine {
   static Vector cross(const Vector& a, const Vector& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   }
-  /// Whether it is a step diagonal: it moves both perpendicular to the direction of sensing (along
-  /// the flat mirror) and along it.
+  /// Returns whether the line is a step diagonal: it moves both perpendicular to the direction of
+  /// sensing (along the flat mirror) and along it.
   bool is_stepwise() const { return !straight && std::fabs(dot(farthest, sense)) > 0.5 * length; }
 };
 

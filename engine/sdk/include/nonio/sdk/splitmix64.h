@@ -10,7 +10,7 @@ class SplitMix64 {
  public:
   explicit constexpr SplitMix64(std::uint64_t seed) : state_(seed) {}
 
-  /// Returns the output for state z; each bit of z influences all 64 bits of it.
+  /// Returns the output for state z; each bit of z influences all 64 bits of the output.
   static constexpr std::uint64_t mixed(std::uint64_t z) {
     z += step;
     z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;

@@ -6,8 +6,9 @@
 
 namespace nonio {
 
-/// Whether a name, number or reason contains a letter or digit of any script: "", "  ", "-", "—"
-/// and "?" do not. `text` is UTF-8.
+/// Returns whether `text` (UTF-8), such as a name, number or reason, contains an ASCII letter or
+/// digit, or a character outside of ASCII that is not punctuation. False for "", "  ", "-", "—" and
+/// "?".
 inline bool has_content(std::string_view text) {
   // Punctuation: Latin-1 A0 to BF, general punctuation, minus, CJK punctuation, full-width hyphen.
   const auto is_mark = [](std::string_view c) {

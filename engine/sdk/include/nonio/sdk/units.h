@@ -126,7 +126,8 @@ constexpr Unit unit_of(Quantity q) {
   return {"", "", 1.0};
 }
 
-/// Quantities of an axis by its kind: position, deviation, and slope (deviation per position).
+/// Return the quantities of a linear or rotary axis: of a position, of a deviation, and of a slope
+/// (deviation per position).
 constexpr Quantity position_of(bool rotary) { return rotary ? Quantity::angle : Quantity::length; }
 constexpr Quantity deviation_of(bool rotary) {
   return rotary ? Quantity::angular_deviation : Quantity::deviation;

@@ -12,9 +12,9 @@ namespace nonio::sign {
 
 /// One value of a digital calibration certificate, in the units of results.json.
 struct DccValue {
-  std::string analysis;  ///< for example "iso230-2 of X"
-  std::string name;      ///< for example "R+"
-  std::string unit;      ///< for example "um"
+  std::string analysis;  ///< analysis that states the value, for example "iso230-2 of X"
+  std::string name;      ///< name of the value, for example "R+"
+  std::string unit;      ///< unit of the value, for example "um"
   double value = 0.0;
   std::optional<double> U{};
   double k = 2.0;  ///< coverage factor of U

@@ -16,8 +16,8 @@ struct Prolonging {
   Verifier verifier{};  ///< trusted roots and expected signers; available revocation lists
   std::vector<std::string> answers{};  ///< available OCSP answers, DER
   TimeStamping stamping{};             ///< no time stamp if the address is empty
-  bool fetch = true;  ///< request missing data from the addresses in the certificates
-  int seconds = 10;   ///< time limit for an answer
+  bool fetch = true;  ///< whether to request missing data from the addresses in the certificates
+  int seconds = 10;   ///< time limit for an answer, s
 };
 
 struct Prolonged {

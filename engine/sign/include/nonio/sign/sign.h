@@ -15,8 +15,8 @@
 ///
 ///   pdf::reserve(pdf, attachments, time)  adds the attachments and an empty signature to the PDF,
 ///                                         in its single revision; needs no key
-///   Key::sign(bytes, stamp)               fills in the signature, in the process that holds the
-/// key
+///   Key::sign(bytes, stamp)               fills in the signature; is called in the process that
+///                                         has opened the key
 ///
 /// The PDF must have one revision with a plain cross-reference table (as made by reports::pdf), no
 /// form and no attachments of its own. An XML document is signed as it is; its signature becomes
@@ -26,12 +26,13 @@ namespace nonio::sign {
 /// Seconds since 1970-01-01 UTC. Signatures and their checks get the time as an argument; only a
 /// time-stamp server reads a clock.
 using pdf::Time;
-std::string text_of(Time time);  ///< for example "2026-11-21 15:00:07 UTC"
+std::string text_of(Time time);  ///< returns, for example, "2026-11-21 15:00:07 UTC"
 
 /// Location of a key: either a PKCS#12 file or a token.
 struct KeyPlace {
-  std::string pkcs12{};  ///< path of the file
-  std::string pkcs11{};  ///< pkcs11:token=...;object=... of the key and its certificate
+  std::string pkcs12{};  ///< path of the PKCS#12 file
+  std::string pkcs11{};  ///< URI of the key and its certificate in the token:
+                         ///< pkcs11:token=...;object=...
   std::string module{};  ///< path of the token's PKCS#11 library
   std::string
       certificates{};  ///< PEM file with the certificates from the signer's up to the root; or
@@ -39,18 +40,18 @@ struct KeyPlace {
 };
 
 struct Identity {
-  std::string subject;    ///< RFC 2253, for example "CN=Ada,O=Lab"
-  std::string sha256;     ///< of the certificate, lower-case hexadecimal
-  std::string algorithm;  ///< for example "RSA-3072", "P-256"
+  std::string subject;    ///< subject of the certificate (RFC 2253), for example "CN=Ada,O=Lab"
+  std::string sha256;     ///< SHA-256 of the certificate in lower-case hexadecimal digits
+  std::string algorithm;  ///< algorithm of the key, for example "RSA-3072", "P-256"
   Time not_before = 0, not_after = 0;
 };
 
 /// An RFC 3161 time-stamp server; none if the address is empty.
 struct TimeStamping {
-  std::string url{};     ///< http://host[:port]/path
+  std::string url{};     ///< address of the server: http://host[:port]/path
   bool required = true;  ///< true: without an answer nothing is signed; false: signed without time
                          ///< stamp
-  int seconds = 10;      ///< time limit for an answer
+  int seconds = 10;      ///< time limit for an answer, s
   std::string trust{};   ///< PEM of the trusted roots of the server's certificate
   /// Set when the server did not answer, so that it is not contacted again. May be null.
   std::shared_ptr<std::string> away{};

@@ -17,7 +17,7 @@ inline constexpr std::size_t max_bytes = pdf::max_file;
 
 struct Check {
   enum class State { holds, fails, not_checked };
-  std::string id;  ///< for example "signature.digest"
+  std::string id;  ///< id of the check, for example "signature.digest"
   State state = State::not_checked;
   std::string says;
   /// Whether the file proves nothing without this check, so that "not checked" is as bad as
@@ -25,18 +25,18 @@ struct Check {
   bool essential = true;
 };
 
-/// A signer who is accepted, and the period.
+/// A signer who is accepted, and the period for which the signer is accepted.
 struct ExpectedSigner {
   std::string who;               ///< subject of the certificate, or its SHA-256
-  Time from = 0;                 ///< 0: from the beginning of the certificate's validity
-  std::optional<Time> before{};  ///< none: until its end
+  Time from = 0;                 ///< beginning of the period; 0: that of the certificate's validity
+  std::optional<Time> before{};  ///< end of the period; none: that of the certificate's validity
 };
 
 struct Verifier {
   /// PEM: trusted roots of signers, and trusted roots of time servers. They are separate, because a
   /// time server must not be able to certify signers.
   std::string signer_roots{}, time_stamp_roots{};
-  std::optional<std::string> revocation{};  ///< PEM: revocation lists
+  std::optional<std::string> revocation{};  ///< revocation lists in PEM
   std::vector<ExpectedSigner> signers{};
   /// Statement that a register contains this very file as issued; empty: none does. With it, the
   /// signer need not be among `signers`.
@@ -58,7 +58,7 @@ struct Verified {
   std::size_t issued = 0;
   std::vector<pdf::Attachment> attachments;  ///< attachments of a PDF, if it could be read
 
-  bool holds() const;  ///< whether no check failed and every essential one was made
+  bool holds() const;  ///< returns whether no check failed and every essential one was made
 };
 
 /// Returns an error if the roots or the revocation lists contain none: a file of 0 bytes, such as a

@@ -12,7 +12,7 @@
 ///     xm_i+-  = sum_j x_ij/n                              m or rad, one direction
 ///     xm_i    = (xm_i+ + xm_i-)/2;  B_i = xm_i+ - xm_i-
 ///     s_i+-   = sqrt(sum_j (x_ij - xm_i)^2/(n - 1))
-///     low, high: smallest and largest x_ij; first: of the earliest run
+///     low, high: smallest and largest x_ij;  first: x_ij of the earliest run
 ///
 /// Source: ISO 230-2:2014 clause 2 (symbols). Range: any test. No errors: a value that the readings
 /// do not determine is NaN (s with one reading; all values of a direction from which a target was
@@ -53,9 +53,9 @@ class Extent {
   double low_ = INFINITY, high_ = -INFINITY;
 };
 
-/// Slopes over the targets of the bidirectional means (of the means of one direction, if only one
-/// was measured), m/m or rad/rad: of the least-squares line, and from the first target to the last.
-/// NaN with fewer than two targets.
+/// Slopes of the means over the targets, m/m or rad/rad: of the least-squares line, and from the
+/// first target to the last. The means are those of both directions, or of the only direction that
+/// was measured at every target. NaN if there is no such direction, or with fewer than two targets.
 struct Slopes {
   double least_squares, end_points;
 };

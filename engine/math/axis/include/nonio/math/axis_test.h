@@ -19,13 +19,13 @@ namespace nonio::math {
 class AxisTest {
  public:
   struct Reading {
-    double deviation;  ///< m or rad
+    double deviation;  ///< deviation x_ij, m or rad
     std::uint32_t run;
     std::uint32_t row;  ///< row in the observations
   };
 
   bool rotary = false;
-  std::vector<double> targets;  ///< m or rad, strictly ascending
+  std::vector<double> targets;  ///< target positions, m or rad, strictly ascending
 
   std::span<const Reading> plus(std::size_t i) const { return part(2 * i); }
   std::span<const Reading> minus(std::size_t i) const { return part(2 * i + 1); }
@@ -36,11 +36,11 @@ class AxisTest {
   bool bidirectional() const { return has_plus_ && has_minus_; }
   /// Whether every target has readings from every direction that occurs.
   bool complete() const;
-  /// Smallest and largest number of readings at a target from one direction, over the directions
-  /// that occur; least is 0 if some target was not reached from one of them.
+  /// Return the smallest and the largest number of readings at one target from one direction, over
+  /// all directions that occur. The smallest is 0 if a target was not approached from one of them.
   std::size_t least_approaches() const;
   std::size_t most_approaches() const;
-  /// Distance from the first target to the last, m or rad.
+  /// Returns the distance from the first target to the last, m or rad.
   double length() const { return targets.empty() ? 0.0 : targets.back() - targets.front(); }
 
   /// Returns the test with these targets only (ascending indices, each below targets.size()).

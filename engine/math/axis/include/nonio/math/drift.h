@@ -23,7 +23,7 @@ struct Drift {
   struct Part {
     bool known = false;
     double per_run = 0.0, total = 0.0;  ///< change per run; total: from the first run to the last
-    double u = 0.0;          ///< standard uncertainty of per_run, from readings or from passes
+    double u = 0.0;          ///< standard uncertainty of per_run: larger of readings and passes
     double p_scatter = 1.0;  ///< p of per_run, from the scatter within the passes
     double p_passes = 1.0;   ///< p of the slope of the line through the single passes
     double p_runs = 1.0;    ///< p of the slope of the line through the runs; 1 for fewer than three
@@ -36,8 +36,8 @@ struct Drift {
   std::size_t runs = 0;     ///< number of runs with readings
   std::vector<double> lag;  ///< lag_i of each target; empty if measured from one direction
 
-  /// Fraction of the predicted variation b_i of the reversal along the axis that is observed, and
-  /// its p.
+  /// Fraction of the variation of the reversal along the axis predicted by b_i that is observed,
+  /// and p of the test that it is 0.
   double seen_in_reversal = 0.0, p_reversal = 1.0;
 
   double per_run_at(double x) const { return offset.per_run + slope.per_run * (x - middle); }
@@ -45,9 +45,9 @@ struct Drift {
 };
 Drift estimate_drift(const AxisTest&);
 
-/// Possible contribution of drift that was not excluded, and of repetition, to these values;
-/// expanded (k = 2), m or rad. The estimated drift is not subtracted from the values, so it is
-/// included in full.
+/// Possible contributions of drift, as far as the readings do not exclude it, and of repetition to
+/// the results of a test; expanded (k = 2), m or rad. The estimated drift is not subtracted from
+/// the results, so it is included in full.
 struct DriftShare {
   double B = 0.0;       ///< contribution to the reversal of the worst target
   double B_mean = 0.0;  ///< contribution to the mean reversal

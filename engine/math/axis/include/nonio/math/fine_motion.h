@@ -13,8 +13,8 @@ namespace nonio::math {
 
 /// One pass in one direction.
 struct Pass {
-  std::vector<double> position;   ///< m or rad, in order of motion
-  std::vector<double> deviation;  ///< m or rad
+  std::vector<double> position;   ///< positions in the order of motion, m or rad
+  std::vector<double> deviation;  ///< deviation at each position, m or rad
 };
 
 /// Periodic error over a declared period p, of passes in one direction:
@@ -23,15 +23,15 @@ struct Pass {
 ///     folded(j) = mean of d(x) - a_q - b_q x over the readings whose phase is j/n, j = 0..n-1
 ///     range = max folded - min folded;  c_k = sqrt(C_k^2 + S_k^2), peak to valley 2 c_k
 ///
-/// By least squares of all passes together, so that a line does not absorb a part of a wave. Noise
-/// of c_k: white with a slow part, from the residuals, including higher harmonics; noise of the
-/// folded means: the scatter about them. Source: ASME B5.54 and the annex of ISO 230-2 on dense
-/// runs, as interpreted in docs/formulas.md. Range: every pass over two periods with steps of p/20
-/// at most.
+/// All passes are fitted together by least squares, so that no line absorbs a part of a wave. The
+/// uncertainty of c_k is that of white noise with a slow part, estimated from the residuals, which
+/// include higher harmonics. The uncertainty of the folded means is estimated from the scatter
+/// about them. Source: ASME B5.54 and the annex of ISO 230-2 on dense runs, as interpreted in
+/// docs/formulas.md. Range: every pass covers at least two periods, in steps of at most p/20.
 struct PeriodicError {
   enum class Answer { given, no_pass, too_short, too_coarse };
   struct Harmonic {
-    double amplitude = 0.0;  ///< c_k, m or rad
+    double amplitude = 0.0;  ///< amplitude c_k, m or rad
     double phase = 0.0;      ///< rad, 0..2 pi: the first maximum is at phase p/(2 pi k)
     double u = 0.0;          ///< standard uncertainty of the amplitude
   };
@@ -39,7 +39,7 @@ struct PeriodicError {
   double periods = 0.0;  ///< number of periods in the shortest pass
   double step = 0.0;     ///< widest step of all passes, m or rad
   std::array<Harmonic, 2> harmonics{};
-  std::vector<double> folded;  ///< m or rad, n values over one period
+  std::vector<double> folded;  ///< folded means, m or rad: n values over one period
   double range = 0.0;
   double s = 0.0;         ///< standard deviation of a reading about the folded mean; NaN with dof 0
   double u_folded = 0.0;  ///< standard uncertainty of a folded mean
@@ -52,7 +52,7 @@ PeriodicError periodic_error(std::span<const Pass>, double period);
 ///
 ///     step_j = d_(j+1) - d_j, in the direction of motion   deviation of the step, m
 ///     first  = deviation of the step in which the direction reverses: from the last target of one
-///              direction to the next one of the other, where only one of them has that last target
+///              direction to the first target of the other, if they are one step apart
 ///
 /// A step is not followed if the axis moves less than half of the commanded distance. The order of
 /// the readings is ignored: passes run in their direction. Source: laboratory method; the tests of
@@ -65,7 +65,7 @@ struct SmallSteps {
     std::uint32_t run = 0;
     double position = 0.0;        ///< position at its end, m
     int direction = 0;            ///< direction of motion: 1, -1
-    double from = 0.0, to = 0.0;  ///< deviations at its start and end
+    double from = 0.0, to = 0.0;  ///< deviations at its start and end, m
   };
   Answer answer = Answer::too_few;
   double commanded = 0.0;  ///< commanded size of a step, m
@@ -74,9 +74,9 @@ struct SmallSteps {
   std::size_t largest = 0, least = 0;
   /// index of the smallest error among first steps after a reversal; steps.size() if there is none
   std::size_t least_first = 0;
-  /// number of steps not followed, without those directly after a reversal
+  /// number of steps that the axis did not follow, not including those directly after a reversal
   std::size_t not_followed = 0;
-  double s = 0.0;  ///< standard deviation of one step about the mean of its place
+  double s = 0.0;  ///< standard deviation of a step about the mean of its repetitions, m
   /// degrees of freedom of s; 0: no step was repeated at the same place and direction
   double dof = 0.0;
 };

@@ -50,7 +50,8 @@ const PositioningRule* positioning_rule(std::string_view name);
 /// The constant that rules "without offset" subtract: mean of the bidirectional means, that of the
 /// first target, or the middle between the largest and the smallest of them.
 enum class Offset { mean_of_all, first_target, mid_range };
-/// Returns the constant, m or rad; NaN if a target lacks a bidirectional mean.
+/// Returns this constant, m or rad. If only one direction was measured, its means replace the
+/// bidirectional ones. NaN if a target lacks such a mean.
 double offset_of(const AxisStatistics&, Offset);
 
 /// Composition of the uncertainty of a value: U^2 = S^2 (if systematic) + means U_EVE^2/n +
@@ -69,7 +70,7 @@ struct RuleValue {
   std::string_view name;  ///< symbol of the rule: A+, P; "+-" precedes a half range
   double value;           ///< m or rad; NaN if the readings do not determine it
   RuleShare share;
-  /// an interpretation of this program, whatever the confidence of the rule
+  /// whether this value is an interpretation made for this program, even if the rule itself is not
   bool inferred = false;
 };
 
@@ -77,8 +78,9 @@ struct RuleValue {
 std::vector<RuleValue> evaluate_rule(const PositioningRule&, const AxisStatistics&,
                                      Offset = Offset::mean_of_all);
 
-/// Converts a value to another number of standard deviations, if no readings are needed for this:
-/// R+ and R- are 2 k s. Nothing for A, R, P and other values that contain means.
+/// Returns the value of R+ or R-, which are 2 k s, for k_to instead of k_from standard deviations.
+/// Nothing for all other values, because they contain means and cannot be converted without the
+/// readings.
 std::optional<double> converted(std::string_view name, double value, double k_from, double k_to);
 
 }  // namespace nonio::math

@@ -17,7 +17,7 @@ namespace nonio::math {
 /// docs/dev/constants.md A3 to A5).
 struct Reversal {
   enum class Kind {
-    unknown,      ///< not measured from both directions at every target, or no scatter is known
+    unknown,      ///< not both directions at every target, or one run does not allow a decision
     none,         ///< not distinguishable from zero
     lost_motion,  ///< constant and negative: one value compensates it
     over_compensated,  ///< constant and positive, whatever the cause

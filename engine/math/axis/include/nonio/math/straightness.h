@@ -28,12 +28,14 @@ struct Straightness {
   double b = 0.0;            ///< slope of the reference line, rad
   std::vector<double> rest;  ///< deviations from the reference line, d_i, m
   double width = 0.0;        ///< straightness W, m
-  /// Derivatives dW/de_i and db/de_i for the points of contact of these readings.
+  /// Derivatives dW/de_i and db/de_i of the width and the slope by each deviation. They are valid
+  /// as long as the same points determine both.
   std::vector<double> width_by, slope_by;
 };
 
-/// Computes straightness. x: ascending, at least three; e: as many. Errors: fewer, not ascending,
-/// not finite.
+/// Computes the straightness of the deviations `e` at the positions `x`, m. Error: fewer than three
+/// positions, another number of deviations, positions that do not ascend, or values that are not
+/// finite.
 Expected<Straightness> straightness_about(StraightLine, std::span<const double> x,
                                           std::span<const double> e);
 

@@ -39,10 +39,13 @@ struct CircleReading {
   std::uint32_t run = 1;
 };
 
-/// A path relative to one centre, which is given in m from the commanded one; radii minus R.
+/// Distances of the readings of a path from one centre, m. The centre is relative to the commanded
+/// one.
 struct PathCircle {
   std::array<double, 2> centre{};
-  double radius = 0.0;              ///< radius of the least-squares circle, minus R
+  /// Mean distance from the centre, minus R. For the least-squares circle, it is the deviation of
+  /// its radius.
+  double radius = 0.0;
   double inner = 0.0, outer = 0.0;  ///< smallest and largest distance from the centre, minus R
   std::size_t innermost = 0, outermost = 0;  ///< indices of the nearest and the farthest reading
   double width() const { return outer - inner; }
@@ -52,11 +55,12 @@ struct PathCircle {
 PathCircle least_squares_circle(std::span<const CircleReading>, double R);
 /// Returns the pair of concentric circles with the smallest radial distance that contains the path.
 PathCircle minimum_zone(std::span<const CircleReading>, double R);
-/// Returns the distances from a given centre.
+/// Returns the mean, smallest and largest distance of the path from a given centre.
 PathCircle about(std::span<const CircleReading>, double R, std::array<double, 2> centre);
 
-/// H: largest distance of the two paths at one angle, about one centre, m, and its angle. Absent if
-/// no angle has readings of both. `step`: widest gap of readings that is interpolated, rad.
+/// H, m: largest difference between the radii of the two directions at one angle, and this angle,
+/// rad. `circular_hysteresis` returns nothing if no angle has radii of both directions. It
+/// interpolates between readings that are at most `step`, rad, apart.
 struct Hysteresis {
   double H = 0.0, angle = 0.0;
 };
@@ -110,7 +114,8 @@ struct CauseFit {
     std::vector<double> by_bin{};  ///< derivative of the value by the mean of each bin
   };
   std::array<Value, cause_count> of;
-  /// Fitted means, counter-clockwise first, each direction in the order of travel.
+  /// Mean of the readings within one degree. Bins of the counter-clockwise path come first; each
+  /// direction is in the order of travel.
   struct Bin {
     double angle = 0.0, deviation = 0.0, residual = 0.0;
     int direction = 1;
@@ -122,8 +127,8 @@ struct CauseFit {
   double correlation = 0.0;  ///< correlation of adjacent bins (1 deg apart)
   double dof = 0.0;          ///< effective degrees of freedom, smallest of all causes
   double covariance(Cause a, Cause b) const;
-  /// Returns the radial deviation predicted by the fitted causes, m; `u_at` its standard
-  /// uncertainty.
+  /// `radius_at` returns the radial deviation that the fitted causes predict, m, and `u_at` its
+  /// standard uncertainty.
   double radius_at(const CircleModel&, double angle, int direction) const;
   double u_at(const CircleModel&, double angle, int direction) const;
   std::vector<double> covariance_of{};  ///< cause_count x cause_count; 0 for causes not fitted
@@ -155,10 +160,10 @@ class CircleNoise {
 
  private:
   struct From {
-    std::size_t first = 0, count = 0, place = 0;  ///< range and index in residuals_
+    std::size_t first = 0, count = 0, place = 0;  ///< range of residuals_, index in this range
   };
   std::vector<CircleReading> truth_;
-  std::vector<From> from_;  ///< one entry per reading
+  std::vector<From> from_;  ///< residual of each reading in residuals_
   std::vector<double> residuals_;
 };
 
@@ -174,8 +179,9 @@ struct Spike {
 std::vector<Spike> reversal_spikes(std::span<const CircleReading>, const CircleModel&,
                                    const CauseFit&);
 
-/// Fits the causes with a zone around reversals that is widened from `model.leave_out` up to
-/// `most`, rad, until no spike above 6 u remains outside of it. Stores the zone in the model.
+/// Fits the causes with a zone around reversals that is widened in steps of 1 deg from
+/// `model.leave_out` up to `most`, rad, as long as reversal spikes extend significantly beyond it.
+/// Stores the zone in `model.leave_out`.
 Expected<CauseFit> fit_causes_without_spikes(std::span<const CircleReading>, CircleModel& model,
                                              double most);
 

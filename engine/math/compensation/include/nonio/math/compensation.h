@@ -44,7 +44,7 @@ ErrorCurve error_curve(const AxisTest& test);
 std::optional<ErrorCurve> closed_turn(const ErrorCurve& curve);
 
 struct Grid {
-  double first = 0.0, step = 0.0;  ///< m or rad
+  double first = 0.0, step = 0.0;  ///< first position and interval of the points, m or rad
   std::size_t points = 0;
   double position(std::size_t i) const { return first + step * static_cast<double>(i); }
   double last() const { return points == 0 ? first : position(points - 1); }
@@ -58,8 +58,8 @@ struct GridRule {
   std::optional<double> first;  ///< first point requested by the user; else the start of the curve
   /// position that must be a point of the grid (a reference position)
   std::optional<double> anchor;
-  bool turn = false;          ///< the curve is a closed turn and the step divides it
-  bool power_of_two = false;  ///< step = unit times a power of two
+  bool turn = false;          ///< whether the curve is a closed turn, which the step must divide
+  bool power_of_two = false;  ///< whether the step must be `unit` times a power of two
   bool rotary = false;        ///< for error messages: deg instead of mm
   std::string axis;           ///< for error messages: name of the axis
 };
@@ -83,7 +83,7 @@ using Correction = std::function<double(double x, int direction)>;
 
 /// Mean deviations at the positions of a curve, and their values according to ISO 230-2.
 struct MeanDeviations {
-  std::vector<double> plus, minus;  ///< empty if not measured
+  std::vector<double> plus, minus;  ///< deviations by direction, m or rad; empty if not measured
   double E() const;                 ///< range of both directions, or of the single direction
   double M() const;                 ///< range of the mean of both; NaN for one direction
   double B() const;                 ///< max |plus - minus|; NaN for one direction

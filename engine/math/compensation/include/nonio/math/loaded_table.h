@@ -29,15 +29,16 @@ double added(const LoadedTable& table, std::span<const double> at, int direction
 double added(const std::vector<LoadedTable>& tables, std::string_view output,
              const std::map<std::string, double>& at, const std::map<std::string, int>& direction);
 
-/// Returns the sum of the tables of one axis over itself, plus half of the backlash value in each
-/// direction of travel: a constant common to both directions affects no range of deviations.
-/// `present`: backlash value in the control if no table sets it. Nothing if there is no table of
-/// this axis.
+/// Returns the correction of one axis as a function of its own position: the sum of its tables,
+/// plus half of the backlash value for motion in direction +, minus half of it for motion in
+/// direction -. `present`: backlash value in the control if no table sets it. Nothing if there is
+/// no table of this axis.
 std::optional<Correction> correction_of(const std::vector<LoadedTable>& tables,
                                         std::string_view axis, double present = 0.0);
 
-/// Checks that positions rise, numbers are finite, the number of values matches the points, and a
-/// table that repeats has equal ends. The error names the table's output.
+/// Checks that positions ascend, all numbers are finite, the number of values matches the points,
+/// and a table with one input that repeats has equal values at its ends. The error names the output
+/// of the table.
 Expected<void> validate_table(const LoadedTable& table);
 
 }  // namespace nonio::math

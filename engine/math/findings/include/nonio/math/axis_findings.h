@@ -17,21 +17,23 @@
 /// gives no finding. Evidence is SI.
 namespace nonio::math {
 
-/// Returns all findings that do not depend on the standard: drift, reversal, scatter, suspect
-/// readings, readings not taken, and deviations from the test plan of ISO 230-2. U_mean: expanded
-/// uncertainty of the mean reversal by the budget, m or rad; 0: not known.
+/// Returns all findings that do not depend on the standard: about drift, reversal, scatter, suspect
+/// readings, a rotary axis after a whole turn, an offset common to all targets, and deviations from
+/// the test plan of ISO 230-2. U_mean: expanded uncertainty of the mean reversal by the budget, m
+/// or rad; 0: not known.
 std::vector<Finding> axis_findings(const AxisTest&, const Observations&, const Axis* axis,
                                    double U_mean = 0.0);
 
 /// Append the findings of one topic each.
 void drift_findings(const AxisTest&, std::vector<Finding>&);
-/// active: backlash value of the control during the measurement, m or rad, if it is stated.
+/// Appends the findings about the reversal. `active`: backlash value of the control during the
+/// measurement, m or rad, if it is stated.
 void reversal_findings(const AxisTest&, std::vector<Finding>&,
                        std::optional<double> active = std::nullopt, double U_mean = 0.0);
 void scatter_findings(const AxisTest&, std::vector<Finding>&);
 void suspect_findings(const AxisTest&, std::vector<Finding>&);
-/// For rotary axes: tests whether a position that is approached again after a whole turn has the
-/// same deviation.
+/// Appends a finding if a position of a rotary axis has another deviation when it is approached
+/// again after a whole turn.
 void turn_findings(const AxisTest&, std::vector<Finding>&);
 void plan_findings(const AxisTest&, const Observations&, const Axis* axis, std::vector<Finding>&);
 
@@ -39,30 +41,32 @@ void plan_findings(const AxisTest&, const Observations&, const Axis* axis, std::
 /// determined).
 bool matters(const AxisTest&, double size);
 
-/// Whether a backlash value derived from this mean reversal improves more than its uncertainty may
-/// impair: U is less than half of the mean.
+/// Whether the expanded uncertainty U is less than half of the mean reversal. Only then does a
+/// backlash value derived from it improve the machine more than its error can impair it.
 bool is_reversal_known(double mean, double U);
 
 /// Whether the scatter of the two directions differs significantly (see repeatability.asymmetric).
 bool scatter_is_asymmetric(const AxisTest&);
 
-/// Indices of targets that do not contribute to every value: unpaired, not approached from each
-/// direction that occurs; single, approached once while others were approached more often.
+/// Indices of targets that do not contribute to every value. `unpaired`: not approached from every
+/// direction that occurs. `single`: approached only once from a direction, in a test with repeated
+/// approaches.
 struct Incomplete {
   std::vector<std::size_t> unpaired, single;
   bool any() const { return !unpaired.empty() || !single.empty(); }
 };
 Incomplete incomplete_targets(const AxisTest&);
 
-/// Returns the test to be evaluated: all targets, or (`leave_out`) the complete ones; adds a
-/// finding that lists the affected targets and their treatment.
+/// Returns the test to be evaluated. It contains all targets, or if `leave_out`, only those that
+/// contribute to every value, provided that at least two of them exist. If there are others,
+/// findings are added that list them and state their treatment.
 AxisTest choose_targets(const AxisTest&, bool leave_out, std::vector<Finding>&);
 
-/// Returns the finding `uncertainty.budget` with its contributions, or `uncertainty.no-data` with
-/// the missing keys.
+/// Returns the finding `uncertainty.budget` (`uncertainty.budget-angle` for a rotary axis) with the
+/// contributions, or if there is no budget, `uncertainty.no-data` with the missing keys.
 Finding budget_finding(const BudgetOrGap&, bool rotary);
 
-/// Returns the positions of targets as text: "100, 250 mm".
+/// Returns the positions of these targets, of at most the first 12, as text: "100; 250 mm".
 std::string target_list(const AxisTest&, const std::vector<std::size_t>& targets);
 
 }  // namespace nonio::math

@@ -9,9 +9,9 @@
 #include "nonio/sdk/campaign.h"
 #include "nonio/sdk/units.h"
 
-/// Quantities of one campaign that are followed over the campaigns of a machine. They are linear in
-/// the readings, so that, unlike a largest deviation, they do not grow with the number of targets
-/// and runs.
+/// Followed quantities: results of one campaign that are compared with those of other campaigns of
+/// the same machine, to detect changes. They are linear in the readings, so that, unlike a largest
+/// deviation, they do not grow with the number of targets and runs.
 ///
 /// With m_i the mean deviation at target x_i, both directions averaged, B_i the mean from the +
 /// direction minus that from the - direction, and z = 2 (x - middle)/length:
@@ -68,7 +68,8 @@ struct TargetFit {
   /// Covariance matrices of the coefficients, row by row: from the readings, and from independent
   /// values with variance 1 at the targets.
   std::vector<double> covariance{}, share{};
-  /// Coefficient of cos or sin of each sinusoid, with these two variances.
+  /// Coefficient of cos or sin of a sinusoid; its variance by the readings, and its variance if the
+  /// values at the targets are independent with variance 1 (`share`).
   struct Sinusoid {
     double value = 0.0, variance = 0.0, share = 0.0;
   };
@@ -95,9 +96,9 @@ struct FollowedAxis {
 
 enum class Across : bool { no, yes };  ///< yes: deviations across the axis, a straightness
 
-/// Computes the followed quantities. No errors: with fewer than two runs or three targets the
-/// result is empty. material: mean temperature of the machine during the test, degC, if the file
-/// contains it.
+/// Computes the followed quantities. No errors: the result is empty if there are fewer than two
+/// complete runs or three targets, or if the readings do not scatter. material: mean temperature of
+/// the machine during the test, degC, if the file contains it.
 FollowedAxis followed_quantities(const AxisTest&, const Campaign&, const std::string& axis,
                                  std::optional<double> material, Across = Across::no);
 

@@ -32,7 +32,7 @@
 namespace nonio::math {
 
 struct LengthLimit {
-  double A = 0.0;  ///< m
+  double A = 0.0;  ///< constant part of the limit, m
   double K = 0.0;  ///< in L/K: length for each m of error; 0: no such term
   double B = 0.0;  ///< upper bound, m; 0: none
   bool stated() const { return A > 0.0 || K > 0.0 || B > 0.0; }
@@ -42,7 +42,7 @@ struct LengthLimit {
 struct LengthError {
   double L = 0.0, E = 0.0;
   std::uint32_t repeat = 1;
-  std::size_t line = 0;  ///< index of the position in the volume
+  std::size_t line = 0;  ///< index of the measuring line, a position in the volume
 };
 
 struct LengthAnswer {
@@ -61,7 +61,8 @@ LengthAnswer judge_lengths(const std::vector<LengthError>& all, const LengthLimi
                            const std::vector<double>& U, bool by_2001,
                            std::string_view rule = "iso14253-1");
 
-/// Returns the largest range of the first three repeats of a length, m; none if no length has two.
+/// The largest range of the first three repeats of a length, m, and the indices of its smallest and
+/// largest error. `repeat_range` returns none if no length has two repeats.
 struct RepeatRange {
   double range = 0.0;
   std::size_t low = 0, high = 0;
@@ -77,8 +78,8 @@ struct LengthPlan {
 };
 LengthPlan length_plan(const std::vector<LengthError>& all);
 
-/// Fits a least-squares sphere (Gauss-Newton on radial distances); none for fewer than five points
-/// or points in a plane.
+/// The least-squares sphere of points, by Gauss-Newton on the radial distances; lengths in m.
+/// `form_of_sphere` returns none for fewer than five points or points in a plane.
 struct FormOfSphere {
   std::array<double, 3> centre{};
   double radius = 0.0, P = 0.0;

@@ -19,10 +19,11 @@
 ///     fixed sensitive direction     r = X  (tool at rest: turning)
 ///     rotating sensitive direction  r = X cos t + Y sin t  (tool turns: milling)
 ///
-/// Donaldson reversal: ball and sensor turned by half a turn, S = (T1 - T2)/2, P = (T1 + T2)/2; a
-/// reading is positive if the surface of the ball moves towards the sensor. Multi-step: ball turned
-/// to K positions k 360/K, sensor at rest: S = mean of the T_k; components of the ball with K, 2K,
-/// ... waves per turn remain in S.
+/// Donaldson reversal: T1 is read before and T2 after ball and sensor are turned by half a turn.
+/// The error of the spindle is S = (T1 - T2)/2 and that of the ball P = (T1 + T2)/2; a reading is
+/// positive if the surface of the ball moves towards the sensor. Multi-step: the ball is turned to
+/// K positions k 360/K while the sensor is at rest, and S is the mean of the readings T_k;
+/// components of the ball with K, 2K, ... waves per turn remain in S.
 ///
 /// Symbols: r, a, b in m, t in rad. Source: ISO 230-7, ASME B89.3.4 (names; definitions from
 /// general knowledge, the text was not available); Donaldson 1972; multi-step: Estler, Evans, Shao
@@ -82,9 +83,9 @@ Separated multi_step(std::span<const std::vector<double>> T);
 ///     f = |(aX + bY) + i (bX - aY)|/2     it turns from X to Y    a, b of r = a cos t + b sin t
 ///     g = |(aX - bY) + i (bX + aY)|/2     it turns from X to -Y
 ///
-/// +1 if f >= 3 g, -1 if g >= 3 f; 0 (not known) otherwise, or if the larger one does not exceed
-/// the range of the synchronous motion, because an error of two waves per turn contributes to it as
-/// well.
+/// +1 if f >= 3 g, -1 if g >= 3 f; 0 (not known) otherwise. It is also 0 if the larger one does not
+/// exceed the range of the synchronous motion, because an error of two waves per turn contributes
+/// to it as well, or if it does not exceed four times its standard uncertainty.
 int sense_of(const ErrorMotion& X, const ErrorMotion& Y);
 
 double range_of(std::span<const double>);

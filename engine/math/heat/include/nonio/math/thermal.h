@@ -16,16 +16,17 @@
 ///     time constants        d(t) = d0 + sum_k c_k (1 - exp(-t/tau_k)), one or two
 ///     warm-up time          smallest t after which abs(sum_k c_k exp(-t/tau_k)) <= rest
 ///
-/// Symbols: d, c_k, rest in m; t, w, tau_k in s. Sources: ISO 230-3 (ranges over the test and in
-/// its first 60 min; text not available); the largest range in any window: according to ASME B5.54,
-/// environmental tests (inferred); time constants: a body that is heated evenly and cools by its
-/// surface (Newton's law of cooling). Range: times ascending, all finite.
+/// Symbols: d, c_k in m; t, w, tau_k in s; rest: permitted distance from the final value, m.
+/// Sources: ISO 230-3 (ranges over the test and in its first 60 min; text not available); the
+/// largest range in any window: according to ASME B5.54, environmental tests (inferred); time
+/// constants: a body that is heated evenly and cools by its surface (Newton's law of cooling).
+/// Range: times ascending, all finite.
 namespace nonio::math {
 
 /// Readings of one sensor, in ascending order of time.
 struct Track {
-  std::vector<double> time;  ///< s
-  std::vector<double> d;     ///< m
+  std::vector<double> time;  ///< time of each reading, s
+  std::vector<double> d;     ///< displacement at each time, m
   std::size_t size() const { return time.size(); }
 };
 
@@ -52,15 +53,16 @@ struct ReadingNoise {
 };
 ReadingNoise reading_noise(const Track&);
 
-/// Returns by how much a range grows if noise of standard deviation s is added once more. The noise
-/// already present has increased the range by up to 1/(sqrt 2 - 1) times this result, because the
-/// extreme of many readings grows with their scatter. Deterministic.
+/// Returns by how much, m, the range of `d` grows if noise of standard deviation s, m, is added to
+/// it once more. The noise that `d` already contains has increased its range by up to 1/(sqrt 2 -
+/// 1) times this result, because the extreme of many readings grows with their scatter. Equal input
+/// gives an equal result.
 double range_excess(std::span<const double> d, double s);
 
 struct TimeConstants {
   enum class Answer {
     resolved,
-    too_few,     ///< fewer than twelve readings
+    too_few,     ///< fewer than twelve readings, or intervals with readings
     none,        ///< the displacement is not exponential: c is not significant
     too_short,   ///< a time constant is above half of the test
     unresolved,  ///< u of a time constant is above a quarter of it
@@ -81,8 +83,8 @@ struct TimeConstants {
   double at(double t) const;
   /// Returns the distance from the final value: sum c exp(-t/tau), m.
   double rest(double t) const;
-  /// Returns the time after which abs(rest) remains below `limit`, with its standard uncertainty; 0
-  /// if from the start.
+  /// A time and its standard uncertainty, s. `settled` returns the time after which abs(rest)
+  /// remains below `limit`; 0 if it is below from the start.
   struct Time {
     double t = 0.0, u = 0.0;
   };
@@ -95,7 +97,7 @@ TimeConstants time_constants(const Track&);
 
 /// Readings of an axis that moves in cycles: one target from one side, over the cycles.
 struct Visits {
-  double position = 0.0;  ///< m
+  double position = 0.0;  ///< position of the target, m
   int direction = 1;
   Track track;
 };

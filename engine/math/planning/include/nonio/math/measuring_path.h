@@ -27,7 +27,8 @@ struct MeasuringPath {
 struct MeasuringRequest {
   int runs = 5;
   double dwell = 5.0;  ///< time at each target, s
-  /// motion beyond both ends, so that every target is approached from one side
+  /// distance of travel beyond both ends, m or rad, so that the end targets too are approached in
+  /// the direction of each pass
   double over_travel = 0.0;
   bool both_directions = true;
   double resolution = 1e-6;  ///< the over-travel is an integer multiple of it
@@ -37,14 +38,15 @@ struct MeasuringRequest {
 /// interval. With `scatter`, r_i is random, uniform within +- min(period, 0.3 p), at the ends only
 /// inwards, because evenly spaced targets would not detect an error with the period of the screw or
 /// scale. All are multiples of `resolution` between first and last; the same seed gives the same
-/// targets on every computer. Values of `among` in the range replace the nearest target. Source:
-/// ISO 230-2:2014, test plan; the 30 % for an unknown period is common practice. Range: points >=
-/// 2, last > first, resolution > 0. Error: two targets would be closer than twice the resolution.
+/// targets on every computer. Each value of `among`, which must be in this range, replaces the
+/// nearest target. Source: ISO 230-2:2014, test plan; the 30 % for an unknown period is common
+/// practice. Range: points >= 2, last > first, resolution > 0. Error: the even interval p is not
+/// larger than twice the resolution.
 struct AxisTargets {
   double first = 0.0, last = 0.0;
   int points = 5;
   bool scatter = false;
-  double period = 0.0;  ///< expected period of an error; 0: not known
+  double period = 0.0;  ///< expected period of an error, m or rad; 0: not known
   double resolution = 1e-6;
   std::uint64_t seed = 1;
   std::vector<double> among{};

@@ -33,7 +33,7 @@
 namespace nonio::math {
 
 struct Triple {
-  std::int64_t a = 0, b = 0, c = 0;  ///< a^2 + b^2 = c^2
+  std::int64_t a = 0, b = 0, c = 0;  ///< legs a and b, hypotenuse c: a^2 + b^2 = c^2
 };
 
 /// Returns all primitive triples with a < b and c <= `hypotenuse`, sorted by c, then a.
@@ -87,8 +87,8 @@ struct TriplePlan {
   double step_x = 0.0, step_y = 0.0, step_d = 0.0;  ///< steps along X, Y and the diagonal, m
   /// measured lengths along X, Y and the diagonal, m
   double length_x = 0.0, length_y = 0.0, length_d = 0.0;
-  double cover_x = 0.0, cover_y = 0.0;  ///< fraction of the usable length
-  bool dense = false;                   ///< whether it is a sampling of ISO 230-2
+  double cover_x = 0.0, cover_y = 0.0;  ///< measured fraction of the usable length of X and of Y
+  bool dense = false;                   ///< whether the stops are as dense as ISO 230-2 requires
   std::vector<TripleReason> reasons;
 
   bool even() const { return n % 2 == 0; }
@@ -127,8 +127,8 @@ Expected<TriplePlans> plan_triples(const TripleRequest& wish);
 
 /// Parameters of the duration of a measurement.
 struct MeasuringCost {
-  std::int64_t runs = 5;   ///< runs in both directions
-  double feed = 2.0 / 60;  ///< m/s
+  std::int64_t runs = 5;   ///< number of runs; each is in both directions
+  double feed = 2.0 / 60;  ///< speed of travel, m/s
   double dwell = 5.0;      ///< time at each stop, s
 };
 /// Returns the duration of measuring X, Y and both diagonals, forward and back in each run, s.

@@ -32,7 +32,7 @@ namespace nonio::math {
 using Vector3 = std::array<double, 3>;
 
 struct BallCentre {
-  Vector3 at{};         ///< m
+  Vector3 at{};         ///< position of the centre, m
   double angle = 0.0;   ///< angle of the rotary axis, rad
   double weight = 1.0;  ///< number of readings in the mean, above 0
 };
@@ -96,8 +96,8 @@ double expansion_factor(int dof);
 ///
 ///     distance = |(q - p).(m x n)| / |m x n|     angle = atan2(|m x n|, m.n)
 struct LineRelation {
-  double distance = 0.0, u_distance = 0.0;  ///< m
-  double angle = 0.0, u_angle = 0.0;        ///< rad
+  double distance = 0.0, u_distance = 0.0;  ///< shortest distance and its u, m
+  double angle = 0.0, u_angle = 0.0;        ///< angle between the directions and its u, rad
   /// Derivatives by centre (0..2) and direction (3..5) of each line.
   std::array<double, 6> distance_by_a{}, distance_by_b{}, angle_by_a{}, angle_by_b{};
 };

@@ -36,7 +36,7 @@ namespace nonio::math {
 inline constexpr double chain_rank = 1e-6;
 
 struct ChainReading {
-  Vector3 at{};               ///< m
+  Vector3 at{};               ///< reading of the linear axes, m
   std::vector<double> angle;  ///< angle of each axis of the chain, rad
   double weight = 1.0;        ///< number of readings in the mean, above 0
   std::size_t ball = 0, tool = 0;
@@ -88,11 +88,11 @@ struct ChainFit {
   struct Followed {
     double along = 0.0, rest = 0.0, dof_along = 0.0, dof_rest = 0.0;
   };
-  std::vector<Followed> followed;  ///< one entry per axis
+  std::vector<Followed> followed;  ///< residuals along the path of each axis
 
   /// unit vectors of scaled unknowns that change no reading
   std::vector<std::vector<double>> null_space;
-  std::vector<double> scale;  ///< scale of each unknown
+  std::vector<double> scale;  ///< factor from each scaled unknown to the unknown
 };
 
 tl::expected<ChainFit, ChainRefusal> fit_chain(const std::vector<ChainReading>&, const ChainOrder&);

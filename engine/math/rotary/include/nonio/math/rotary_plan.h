@@ -22,8 +22,8 @@ namespace nonio::math {
 
 struct RotaryPlan {
   std::size_t balls = 4;
-  double radius = 0.5;  ///< m
-  /// rad; a full turn has equal steps without a position at its end
+  double radius = 0.5;  ///< distance of the ball from the axis, m
+  /// angle covered by the positions, rad; a full turn has equal steps without a position at its end
   double arc = 6.283185307179586;
   double sigma = 1e-6;  ///< standard uncertainty of a coordinate, m
 };
@@ -42,7 +42,8 @@ struct RotaryPlanU {
 /// Determines the uncertainties from `trials` simulated measurements, each evaluated by fit_rotary.
 /// Errors: fewer than three balls, an invalid arc, a radius not much larger than sigma.
 Expected<RotaryPlanU> simulated(const RotaryPlan&, std::size_t trials, std::uint64_t seed);
-/// Computes the uncertainties from the covariance of the fit; the means are 0.
+/// Computes the uncertainties from the covariance of the fit. It does not compute centre_mean and
+/// direction_mean, which are 0.
 Expected<RotaryPlanU> expected_of(const RotaryPlan&);
 
 /// Returns the smallest number of balls with which 2 u of the centre (across) and of the direction

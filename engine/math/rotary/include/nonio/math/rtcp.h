@@ -29,7 +29,7 @@
 namespace nonio::math {
 
 struct RtcpReading {
-  double angle = 0.0;  ///< rad
+  double angle = 0.0;  ///< angle of the rotary axis, rad
   Vector3 at{};        ///< commanded positions of X, Y, Z, m
   Vector3 sense{};     ///< direction of sensing, unit vector
   double deviation = 0.0;
@@ -38,7 +38,8 @@ struct RtcpReading {
 };
 
 enum class RtcpRefusal {
-  /// in no line do the commanded positions follow a circle, so the control's axis is not known
+  /// the commanded positions follow a circle in no line, or with a head not in every line, so that
+  /// the axis of the control is not known
   none_go_round,
   /// commanded positions differ from the control's circle by more than `rtcp_circle`
   not_a_circle,
@@ -63,7 +64,8 @@ struct RtcpFit {
   /// Derivatives of a, b, p, q by the readings.
   std::array<std::vector<double>, 4> by{};
   std::vector<double> residual;
-  std::vector<std::vector<double>> residual_by;  ///< derivatives of each residual by the readings
+  /// Derivatives of each residual by the readings; empty above 1000 readings.
+  std::vector<std::vector<double>> residual_by;
   /// Change of each reading per 1 m of the ball's position along X, Y and Z, with the axis at 0.
   std::array<std::vector<double>, 3> by_ball{};
   std::vector<std::size_t> ball;  ///< index of the ball of each line

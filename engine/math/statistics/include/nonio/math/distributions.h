@@ -3,11 +3,11 @@
 
 namespace nonio::math {
 
-/// Returns P(F > f) of Fisher's distribution; 1 if a degree of freedom is not positive (nothing was
-/// tested). NaN if f or a degree of freedom is NaN.
+/// Returns P(F > f) of Fisher's distribution; 1 if a degree of freedom is not positive or not
+/// finite, because nothing was tested. NaN if f or a degree of freedom is NaN.
 double f_upper(double f, double dof1, double dof2);
-/// Returns P(|T| > |t|) of Student's distribution; 1 if the degree of freedom is not positive, NaN
-/// if an argument is NaN.
+/// Returns P(|T| > |t|) of Student's distribution; 1 if the degree of freedom is not positive or
+/// not finite, NaN if an argument is NaN.
 double t_two_sided(double t, double dof);
 /// Returns P(chi-square > chi2); 1 if the degree of freedom is not positive.
 double chi2_upper(double chi2, double dof);

@@ -7,8 +7,9 @@
 
 namespace nonio::math {
 
-/// Basis of smooth curves without constant and slope, for the remainder of a straight-line fit
-/// (pitch curve, straightness): values at `x` of `knots` basis functions, one vector for each.
+/// Returns the values at `x` of a basis of `knots` smooth functions without constant and slope, one
+/// vector for each function. They represent the remainder of a straight-line fit (pitch curve,
+/// straightness).
 ///
 /// Cubic splines on `knots` equally spaced knots, the first and the last at the ends of `targets`,
 /// have knots + 2 free values; removing constant and slope leaves `knots`. Over the targets (each

@@ -13,7 +13,7 @@ namespace nonio::math {
 /// Returns the axes whose ends differ, sorted by name; for a face of a volume the third axis does
 /// not move.
 std::vector<std::string> moving_axes(const Measurement&);
-/// Returns the unit vector from corner to corner, by moving axis.
+/// Returns the components of the unit vector from `from` to `to`, in the order of `moving_axes`.
 std::vector<double> direction_along(const Measurement&);
 /// Converts the readings to those of one axis along the diagonal; + is from its first corner to its
 /// second.

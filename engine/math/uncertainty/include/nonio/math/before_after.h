@@ -44,14 +44,16 @@ struct BeforeAfter {
   Answer answer = Answer::cannot_tell;
   std::array<double, 3> p{};  ///< p-values of f = 0, 1, 2
   double f = 0.0, u_f = 0.0;
-  /// for f = 0, at every stop: predicted value, rest, u of the rest; 0 at the first one
+  /// for f = 0, at every stop: predicted value after compensation, difference r from it, and
+  /// standard uncertainty of r; all are 0 at the first stop
   std::vector<double> predicted, rest, u;
-  std::size_t worst = 0;  ///< index of the stop with the largest ratio of rest to u
+  std::size_t worst = 0;  ///< index of the stop with the largest ratio of abs(r) to its u
 };
 
-/// Performs the test. model: contains the line before and then the line after, one reading for each
-/// mean; dof: degrees of freedom of the repetition; entry_step: q, 0 if the control is not known.
-/// `cannot_tell`: the errors before compensation are too small.
+/// Tests the means of a line before and after compensation. model: contains the line before and
+/// then the line after, with one reading for each mean; dof: degrees of freedom of the repetition;
+/// entry_step: q, 0 if the control is not known. The answer is `cannot_tell` if several values of f
+/// fit, because the errors before compensation are too small.
 BeforeAfter before_after(std::span<const double> before, std::span<const double> after,
                          const ReadingModel& model, double dof, double entry_step = 0.0);
 

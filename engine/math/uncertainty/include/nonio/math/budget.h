@@ -84,7 +84,8 @@ struct Shares {
   double dof = 0.0;
 };
 
-/// Errors of readings that are known apart from their repeatability.
+/// The errors of readings except their repetition: the lines to which the readings belong, and the
+/// input quantities that cause the errors.
 struct ReadingModel {
   struct Input {
     Contribution is;
@@ -155,7 +156,8 @@ class BudgetOf {
   /// Returns a value with U and k, or with its repeatability if U is not known, and records it in
   /// the budget.
   Value value(std::string name, double v, Quantity, double u_repetition, const Shares&);
-  /// Sets the uncertainty of a curve with one k for all points, the largest.
+  /// Sets the uncertainty of each point of a curve. All points have the same coverage factor, the
+  /// largest of all.
   void put(Series&, std::span<const double> u_repetition, std::span<const Shares>) const;
 
   const UncertaintyBudget& budget() const { return budget_; }

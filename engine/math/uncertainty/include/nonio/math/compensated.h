@@ -12,8 +12,9 @@ struct CompensatedUncertainty {
   double B_mean = 0.0, E = 0.0, M = 0.0;
 };
 
-/// Computes them from the budget of the campaign and, if `has_drift`, from drift and repetition in
-/// the readings (false if a model has removed the drift). docs/dev/constants.md, A28.
+/// Computes the uncertainties from the budget of the campaign and, if `has_drift`, also from drift
+/// and repetition in the readings. `has_drift` is false if a model has removed the drift.
+/// docs/dev/constants.md, A28.
 CompensatedUncertainty compensated_uncertainty(const Campaign&, const Measurement&,
                                                const Observations&, const AxisTest&,
                                                bool has_drift);

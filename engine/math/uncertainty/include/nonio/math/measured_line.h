@@ -24,7 +24,8 @@ struct MeasuredLine {
     std::size_t n_plus = 0, n_minus = 0;
     std::vector<double> at_plus, at_minus;  ///< time of each reading, 0 to 1 over the file
     std::uint32_t source_line = 0;          ///< line of one reading in the file; 0: not known
-    /// Returns the mean of the readings from one direction, or (0) of both.
+    /// Returns the mean of the readings from one direction, or if `direction` is 0, the mean of
+    /// both means.
     double mean(int direction = 0) const {
       return direction > 0 ? plus : direction < 0 ? minus : (plus + minus) / 2.0;
     }
@@ -36,15 +37,17 @@ struct MeasuredLine {
   std::size_t dof = 0;      ///< degrees of freedom of s
   bool zeroed = false;      ///< whether every reading at the first stop is 0
 
-  /// Whether every stop was read from this direction, or (0) from both.
+  /// Whether every stop was read from this direction, or if `direction` is 0, from both directions.
   bool has(int direction) const;
-  /// 0 if every stop was read from both directions, else the one from which every stop was read.
+  /// Returns 0 if every stop was read from both directions, else the direction from which every
+  /// stop was read; nothing if there is none.
   std::optional<int> direction() const;
-  /// Returns the standard uncertainty of the mean of this direction, or (0) of both; 0 if unknown.
+  /// Returns the standard uncertainty of the mean from this direction, or if `direction` is 0, of
+  /// the mean of both directions, at the stop with the fewest readings; 0 if it is not known.
   double u_mean(int direction = 0) const;
   double mean_reversal() const;
-  /// Returns the visits that contribute to the means of this direction, or (0) of both, sorted by
-  /// time.
+  /// Returns the visits that contribute to the means from this direction, or if `direction` is 0,
+  /// to the means of both directions, sorted by time.
   std::vector<BudgetLine::Visit> visits(int direction) const;
   /// Returns the index of the stop at this position; the number of stops if there is none.
   std::size_t find(double position) const;

@@ -37,7 +37,8 @@ struct SquareLines {
   std::vector<std::size_t> all() const;
 };
 
-/// Returns the sets of lines, in the order of the manifest.
+/// Returns the lines of straightness that were measured against squares, grouped by square, state
+/// and plane, in the order of the manifest.
 std::vector<SquareLines> squares_of(const Campaign&);
 
 struct Squareness {

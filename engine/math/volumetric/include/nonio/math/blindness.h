@@ -24,7 +24,7 @@
 /// transforms by every combination.
 namespace nonio::math {
 
-using Corner = std::array<double, 3>;  ///< m
+using Corner = std::array<double, 3>;  ///< coordinates X, Y, Z of a point, m
 
 struct ThroughVolume {
   Corner from{}, to{};
@@ -37,8 +37,8 @@ struct Blindness {
   std::vector<std::vector<std::pair<std::string, double>>> combinations;
 };
 
-/// Returns the result for these lines. The volume is the box that contains all lines; an axis that
-/// does not move has no errors.
+/// Returns the errors that these lines do not determine. The volume is the box that contains all
+/// lines; an axis that does not move has no errors.
 Blindness blind_to(const std::vector<ThroughVolume>& lines);
 
 }  // namespace nonio::math

@@ -123,7 +123,7 @@ struct Agreement {
 };
 
 struct DiagonalResult {
-  double C0Y = 0.0, u_C0Y = 0.0, gain_C0Y = 0.0;  ///< end-point gauge; gain in 1/m
+  double C0Y = 0.0, u_C0Y = 0.0, gain_C0Y = 0.0;  ///< squareness, rad, end-point gauge; gain, 1/m
   Shares shares_C0Y;
   std::size_t unknowns = 0, rank = 0;
   std::size_t nullity() const { return unknowns - rank; }
@@ -142,7 +142,7 @@ struct DiagonalResult {
     std::size_t high = 0, low = 0;  ///< grid points of its largest and smallest value
     Shares shares;
   };
-  std::optional<Racking> racking;  ///< only with two lines
+  std::optional<Racking> racking;  ///< only if X was measured on two lines
   Closure closure;
   /// For a direct straightness that is not `whole`, if there is a model of the readings.
   std::optional<Agreement> EYX_agrees, EXY_agrees;

@@ -24,9 +24,9 @@
 /// of them. If nothing is stated, the artefact shows how the errors change from place to place, but
 /// not the scales.
 ///
-/// m. First order in the errors: w is at most the errors divided by the size of the artefact, and
-/// w^2/2 of that size is neglected (0.04 um for 0.2 mm on 0.5 m). Derived; tests compare with exact
-/// transforms. docs/formulas.md.
+/// Lengths in m. The equations are of first order in the errors: w is at most the errors divided by
+/// the size of the artefact, and w^2/2 of that size is neglected (0.04 um for 0.2 mm on 0.5 m).
+/// Derived; tests compare with exact transforms. docs/formulas.md.
 namespace nonio::math {
 
 struct ArtefactBall {
@@ -45,7 +45,7 @@ struct ArtefactLength {
 struct ArtefactPlacement {
   std::string name;
   std::vector<std::size_t> ball;
-  std::vector<Corner> at;  ///< positions shown by the axes
+  std::vector<Corner> at;  ///< positions of the balls as shown by the axes, m
   /// A coordinate that was not measured gives no reading; `at` then contains the axis position, or
   /// NaN.
   std::array<bool, 3> measured{true, true, true};
@@ -75,20 +75,21 @@ struct ArtefactLines {
 struct ArtefactRefusal {
   enum class Why {
     not_linked,  ///< no common balls link a placement or ball with the others
-    /// a ball is farther than `artefact_limit` from the position derived from the others
+    /// a ball is farther than `artefact_limit` from the position derived from the others, or a
+    /// length differs by more than this limit
     does_not_fit
   };
   Why why = Why::not_linked;
   std::string placement, ball;
-  double distance = 0.0;  ///< distance of the ball from that position, m
+  double distance = 0.0;  ///< distance of the ball from that position, or error of the length, m
 };
 
 /// Largest plausible distance, m, of a ball from its expected position; beyond it, it is another
 /// ball, or another artefact. docs/dev/constants.md, A22.
 inline constexpr double artefact_limit = 0.3e-3;
 
-/// Returns the lines. `first`: index of its first shared unknown; `group`: scatter group of its
-/// readings.
+/// Returns the lines of an artefact for the fit of all errors. `first`: index of its first shared
+/// unknown; `group`: scatter group of its readings.
 tl::expected<ArtefactLines, ArtefactRefusal> artefact_lines(const Artefact&, std::size_t first,
                                                             std::size_t group);
 

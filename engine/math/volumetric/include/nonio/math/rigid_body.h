@@ -53,7 +53,7 @@ struct RigidReading {
   Corner at{};         ///< position of the axes, m
   Corner sense{};      ///< direction of sensing, unit vector; all 0 for an angle
   int way = 0;         ///< direction of motion along its line, +1 or -1
-  double value = 0.0;  ///< m or rad
+  double value = 0.0;  ///< reading, m or rad
   double u = 0.0;      ///< for a stated value: its standard uncertainty
 };
 
@@ -107,7 +107,9 @@ struct RigidCurve {
 using Combination = std::vector<std::pair<std::string, double>>;
 
 struct RigidSolution {
-  std::size_t degree = 0, unknowns = 0, rank = 0, readings = 0;  ///< stated values are not counted
+  /// Degree of the polynomials, number of unknowns and of identifiable combinations of them, and
+  /// number of readings, which does not include stated values.
+  std::size_t degree = 0, unknowns = 0, rank = 0, readings = 0;
   /// singular values relative to the largest, descending, of all unknowns
   std::vector<double> singular;
   std::vector<std::string> unseen;  ///< errors that affect no reading
@@ -116,7 +118,7 @@ struct RigidSolution {
   /// standard deviation of each group and its degrees of freedom; 0 if not estimated
   std::vector<double> scatter, dof;
   std::vector<RigidCurve> curves;  ///< curves that the readings determine
-  /// names of curves and squarenesses that they do not determine
+  /// names of curves and squarenesses that the readings do not determine
   std::vector<std::string> withheld;
   std::vector<std::pair<std::string, RigidValue>> squareness;  ///< C0Y, B0Z, A0Z, if identifiable
   VolumeMap map;
@@ -125,9 +127,10 @@ struct RigidSolution {
 /// Returns the names of the 21 errors.
 const std::vector<std::string>& rigid_errors();
 
-/// Solves for the errors. Error: fewer readings than unknowns of the set-up, or an unknown name.
-/// The lines of the model, if there is one, must be those given, in their order; it then also
-/// contains the inputs of stated values, and u of the results is that of the repetition alone.
+/// Solves for the errors. Error: there are no more readings than unknowns of the set-up and
+/// identifiable combinations, or a requested name is unknown. If there is a model, its lines must
+/// be those given, in their order. It then also contains the inputs of stated values, and u of the
+/// results is that of the repetition alone.
 Expected<RigidSolution> solve_rigid_body(const std::vector<RigidLine>&, const RigidWish&,
                                          const ReadingModel* = nullptr);
 

@@ -57,9 +57,9 @@ inline constexpr std::size_t most_diagonal_steps = 100;
 struct StepDiagonals {
   struct Pass {
     std::array<int, 3> sign{1, 1, 1};
-    std::vector<double> reading;  ///< after each of the 3n moves, m; NaN: not taken
+    std::vector<double> reading;  ///< reading after each of the 3n moves, m; NaN: not taken
   };
-  std::array<double, 3> low{}, travel{};      ///< m, travel > 0
+  std::array<double, 3> low{}, travel{};      ///< start and length of travel of each axis, m
   std::array<std::size_t, 3> order{0, 1, 2};  ///< order in which the axes move
   std::size_t n = 0;
   std::vector<Pass> passes;
@@ -75,7 +75,7 @@ struct StepDiagonals {
 /// Positioning of one axis measured separately, on a line through the middle of the volume.
 struct AxisSeries {
   std::size_t axis = 0;
-  std::vector<double> position, deviation;  ///< m
+  std::vector<double> position, deviation;  ///< positions and their deviations, m
   double u = 0.0;  ///< standard uncertainty of one deviation; 0: that of the diagonal's readings
   /// visits that contribute to the deviations, sorted by time; may be empty
   std::vector<BudgetLine::Visit> visits{};
@@ -98,11 +98,11 @@ struct Estimated {
 };
 
 struct StepCurve {
-  std::string name;  ///< ISO 230-1 name: EYX
+  std::string name;  ///< ISO 230-1 name of the error, such as EYX
   std::size_t axis = 0;
   /// for positioning: false if it is given minus its end-point line, because the scale is not known
   bool known = true;
-  std::vector<double> position, value, u;  ///< m
+  std::vector<double> position, value, u;  ///< positions, errors and their u by noise, m
   std::vector<Shares> shares;
 };
 
@@ -123,7 +123,7 @@ struct StepSolution {
   double dof = 0.0;        ///< degrees of freedom of u_reading, if from the residuals
   /// Set-up angle of each pass, rad; empty if it is not separable from the scales.
   std::vector<double> set_up;
-  std::vector<ShapeContrast> shapes;  ///< one per axis series
+  std::vector<ShapeContrast> shapes;  ///< comparison with each axis series
   bool scales_known() const { return curves[0].known && curves[4].known && curves[8].known; }
 };
 
