@@ -28,7 +28,7 @@ enum class Found { conforms, undecided, fails };
 
 /// Halves the interval after a failure, and extends it after a success so that both balance at the
 /// target: (1 + a)^R (1/2)^(1-R) = 1, so 1 + a = 2^((1-R)/R) (3.7 % at 95 %), at most 2. An
-/// indeterminate result leaves the interval unchanged. `why` is "passed", "failed" or "undecided";
+/// indeterminate result leaves the interval unchanged. `why` names that case;
 /// no interval is proposed for "no-interval" and "no-target".
 Proposal staircase(double months, Found, double target = 0.95);
 

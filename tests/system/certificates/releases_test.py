@@ -117,8 +117,8 @@ class Releases(NumberedTest):
         done = self.release_verb("--by", "B", expect=1, known=())
         self.assertIn("X: " + KNOWN + " requires a reason", done.stderr)
         done = self.release_verb("--by", "B", expect=1)
-        self.assertIn("X: tolerance.X.E.iso230-2 requires action", done.stderr)
-        self.assertNotIn("X: " + KNOWN + " requires action", done.stderr)
+        self.assertIn("X: tolerance.X.E.iso230-2 requires a reason", done.stderr)
+        self.assertNotIn("X: " + KNOWN + " requires a reason", done.stderr)
         self.assertEqual(self.entries(), [])
         for wrong in (["--reason", "nonsense=x"], ["--reason", "x"], ["--reason", "tolerance.X.E.iso230-2= "]):
             self.release_verb("--by", "B", *wrong, expect=2)

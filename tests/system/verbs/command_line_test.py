@@ -152,8 +152,8 @@ class Mistyped(VerbTest):
                                (["new", "capmaign", "x"], "campaign")):
             self.assertIn(f'(nearest: "{nearest}")', self.refused(*words), words)
 
-    def test_what_is_nothing_like_a_verb_gets_the_list(self):
-        self.assertIn("there are new, ", self.refused("xyzzyxyzzy"))
+    def test_what_is_nothing_like_a_command_leads_to_the_list(self):
+        self.assertIn("`nonio help` lists the commands", self.refused("xyzzyxyzzy"))
         self.assertIn("expected one of triples, program, rotary, table", self.refused("plan"))
         self.assertIn("there is no command below it", self.refused("help", "run", "x"))
 
