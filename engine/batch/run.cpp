@@ -193,7 +193,8 @@ Expected<void> close_run(RunResult& run, const RunOptions& options, const RunEve
   return end_run(options.out, state, {state.of(), run.campaigns.size(), run.failed()});
 }
 
-/// Reports vanished campaigns as messages, at most 100 of them; the summary lists all.
+/// Reports campaigns and parts of the site that have vanished, with at most 100 messages;
+/// summary.json lists all.
 void tell_vanished(const RunResult& run, const RunEvents& events) {
   constexpr std::size_t most = 100;
   for (std::size_t i = 0; i < std::min(most, run.vanished.size()); ++i) {

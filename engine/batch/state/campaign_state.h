@@ -27,7 +27,9 @@ struct CampaignState {
   bool named_by_folder = false;                          ///< whether the id was made from the
                                                          ///< folder's name, because the manifest
                                                          ///< states none
-  bool is_campaign = true;     ///< false: this entry is a folder that could not be listed
+  bool is_campaign = true;     ///< false: the entry is a folder that could not be listed, or
+                               ///< a campaign of another shard, listed because it shares
+                               ///< files of readings
   bool shows_history = false;  ///< whether a document shows the machine's history
 
   using Twin = std::pair<std::uint64_t, std::uint32_t>;

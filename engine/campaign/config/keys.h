@@ -26,7 +26,8 @@ struct When {
   std::span<const std::string_view> values{};
 };
 
-/// The characters that a text may have. An empty text is always accepted.
+/// Rules for the characters, the length and the beginning of a text, with texts that are refused.
+/// An empty text is always accepted.
 struct TextRule {
   std::string_view letters{};      ///< allowed characters: "a-z0-9._-"; empty: all
   std::string_view not_letters{};  ///< characters that are not allowed
@@ -141,8 +142,9 @@ const Key& campaign_file();
 const Key& site_file();
 /// Returns the declaration of SITE/machines/<asset>.toml.
 const Key& machine_file();
-/// Return the declarations of SITE/events.toml, acknowledged.toml and forgotten.toml, which contain
-/// entries of people about machines.
+/// Return the declarations of files in which people make entries: SITE/events.toml (events of
+/// machines), acknowledged.toml (findings that are known) and forgotten.toml (campaigns and files
+/// that were removed on purpose).
 const Key& events_file();
 const Key& acknowledged_file();
 const Key& forgotten_file();

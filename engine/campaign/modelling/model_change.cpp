@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Compares the part that shows an effect with this model; none if no measurement shows it. The
-/// catalogue, which finds the part, is only made if the model does not contain the effect.
+/// catalogue of possible effects takes time, so it is made only for parts to which the model cannot
+/// be fitted, or if the model does not contain the effect and the catalogue has to find the part.
 Expected<std::optional<Compared>> compare_axis(const reading::ReadCampaign& read,
                                                const std::vector<std::string>& effects,
                                                const std::string& effect) {

@@ -21,7 +21,8 @@ struct Compared {
 struct Change {
   ModelStep step;
   std::vector<std::string> effects;  ///< all effects of the model after the change
-  /// Comparisons of the part before and after the change; none: the model could not be fitted.
+  /// Comparisons of the part before and after the change; none if the model cannot be fitted or no
+  /// measurement shows the effect.
   std::optional<Compared> before, after;
   std::string no_before;  ///< why there is no `before`
 };

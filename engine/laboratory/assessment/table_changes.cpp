@@ -53,7 +53,9 @@ struct Taken {
   kernel::MeasuredCurve curve;
   std::optional<kernel::TableCurve> active, written;
   std::vector<Known> recorded;
-  double u_slope = 0.0;  ///< standard uncertainty of the slope, um/mm or arcsec/deg
+  /// Standard uncertainty of the slope without the contributions of the instrument, um/mm or
+  /// arcsec/deg.
+  double u_slope = 0.0;
 };
 
 std::optional<Taken> taken(const AssessedMachine& m, const StoredTables& stored) {

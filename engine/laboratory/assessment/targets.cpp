@@ -130,10 +130,11 @@ double of_few(double variance, double dof) {
   return variance * dof / z2 * std::expm1(z2 / dof);
 }
 
-/// Returns the variance at each point that comes from the choice of targets, at most `beyond`: half
-/// the variance of the differences between successive points of equal kind. The estimate is the
-/// mean of the median over all pairs, which a change of the machine does not affect, and of the
-/// values of the two neighbours. `beyond` is returned for groups of fewer than four points.
+/// Returns for each point of a history the variance due to the choice of its targets, at most
+/// `beyond`. Each pair of successive points of equal kind gives one estimate (`half_difference`).
+/// The variance of a point is the mean of two values, enlarged by `of_few`: the median over all
+/// pairs, which a single change of the machine hardly affects, and the mean over the two points
+/// nearest to it. A kind with fewer than four points gets `beyond`.
 std::vector<double> drawn_anew(const std::vector<PointTargets>& targets, double beyond) {
   constexpr std::size_t fewest = 4;
   std::map<Kind, std::vector<std::size_t>> kinds;

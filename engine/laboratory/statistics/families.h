@@ -10,7 +10,8 @@ namespace nonio::statistics {
 /// Benjamini and Hochberg 1995: limits the mean share of false ones among the significant tests,
 /// for tests that are independent or positively correlated.
 std::vector<double> benjamini_hochberg(const std::vector<double>& p);
-/// Holm 1979: limits the probability of any false significant test.
+/// Returns the adjusted p according to Holm (1979). They limit the probability that any
+/// of the tests is significant by chance.
 std::vector<double> holm(const std::vector<double>& p);
 
 }  // namespace nonio::statistics

@@ -388,7 +388,7 @@ std::optional<Slope> slope_with_steps(const Series& given) {
 
 double spread_of_slopes(const std::vector<Slope>& slopes) {
   // Bound, mean and variance of min(z^2, 9).
-  constexpr double most = 9.0, expected = 0.99501, variance = 1.855;
+  constexpr double most = 9.0, expected = 0.99501, variance = 1.90145;
   if (slopes.size() < 3) return 0.0;
   const auto n = static_cast<double>(slopes.size());
   const auto mean = [&](double sigma) {

@@ -45,7 +45,9 @@ std::optional<RangeOf> first_range(const Track& k, double w) {
 
 std::optional<RangeOf> largest_range(const Track& k, double w) {
   if (k.size() < 2 || k.time.back() - k.time.front() < w - time_slack) return {};
-  std::deque<std::size_t> low, high;  // candidates: ascending, descending values
+  // Indices of readings that may become the smallest or the largest of a window. In both, the index
+  // ascends; the values ascend in `low` and descend in `high`.
+  std::deque<std::size_t> low, high;
   std::optional<RangeOf> best;
   std::size_t first = 0;
   for (std::size_t i = 0; i < k.size(); ++i) {

@@ -356,7 +356,9 @@ KnownCurve known(const Solution& s, const Functional& h) {
     out.shares.push_back(s.shares(row));
     sum += s.gain(row) * s.gain(row);
   }
-  out.gain = std::sqrt(sum / static_cast<double>(h.size() - 2));  // both ends are 0
+  // The rms is over the inner points, because a curve minus its end-point line is 0 at both ends. A
+  // curve minus its least-squares line is not, so its gain is larger than the rms, but is not used.
+  out.gain = std::sqrt(sum / static_cast<double>(h.size() - 2));
   return out;
 }
 

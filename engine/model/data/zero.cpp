@@ -199,7 +199,7 @@ class Search {
   const Noise& noise_;
   Noise best_;
   double least_;
-  std::vector<Tried> likely_;  // likely sizes of the best kind
+  std::vector<Tried> likely_;  // sizes tried for the kind of zero in `best_`
   bool whole_ = false;
 };
 

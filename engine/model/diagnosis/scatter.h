@@ -8,8 +8,9 @@
 /// Tests of the scatter of the residuals of an explanation that no effect can cause.
 namespace nonio::model {
 
-/// Whether the repeats of targets fall into two groups with a gap between them, which noise does
-/// not cause. Adjacent digits of a display do not count.
+/// Whether the readings at single targets fall into two groups with a gap between them, which noise
+/// does not cause. Groups less than 1.6 `digit` apart are ignored, because the rounding of the
+/// display causes them. False for fewer than 40 readings.
 bool two_valued(const Repeats& repeats, const std::vector<double>& residual,
                 const std::vector<double>& weight, double digit);
 

@@ -244,8 +244,10 @@ Workbench::State Workbench::state(std::vector<std::size_t> blocks) const {
 
 namespace {
 
-/// Returns t^T S^-1 t, the decrease of squares by one block with the remaining scalar products `s`;
-/// NaN if `s` is not safely positive definite.
+/// Returns t^T s^-1 t, by which one more block of columns reduces the residual sum of squares. The
+/// part of the block that the state explains has been removed from `s`, the scalar products of its
+/// columns, and from `t`, their products with the deviations. NaN if `s` is not safely positive
+/// definite.
 double fall_of(const MatrixXd& s, const VectorXd& t, double least) {
   const Eigen::LLT<MatrixXd> llt(s);
   if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > std::sqrt(least)))

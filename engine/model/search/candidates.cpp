@@ -41,7 +41,8 @@ class Sizes {
       shown_.push_back({std::max((1.0 - hidden) * seen, 1e-12), wanted(block, dof),
                         static_cast<double>(Workbench::unknowns_of(block))});
     }
-    // Shapes that these readings hardly show (a step before the last reading) are not counted.
+    // A tenth of the shapes is not counted: those that these readings show least, such as a step
+    // before the last reading.
     std::sort(shown_.begin(), shown_.end(),
               [](const Shown& a, const Shown& b) { return a.visible > b.visible; });
     shown_.resize(shown_.size() - shown_.size() / 10);

@@ -31,7 +31,7 @@ std::optional<Decimal> quick_decimal(double size) {
   if (!(size >= 1e-11 && size < 1e12)) return std::nullopt;
   int places = 11;
   while (size >= exact_powers_of_10[static_cast<std::size_t>(12 - places)]) --places;
-  if (places == 11)  // below 10: it may also be below 1
+  if (places == 11)  // the size is below 10, perhaps even below 1
     while (size * exact_powers_of_10[static_cast<std::size_t>(places - 11)] < 1.0) ++places;
   const auto digits = quickly_rounded(size, places);
   return digits ? std::optional(Decimal{*digits, places}) : std::nullopt;

@@ -89,14 +89,14 @@ struct VdiUncertainty {
 };
 VdiUncertainty vdi3441_uncertainty(const Budget&, std::size_t n);
 
-/// Returns the expanded uncertainty of a value of any rule of positioning (positioning.h): derived
-/// by the rules of the GUM.
+/// Returns the expanded uncertainty (k = 2) of a value of any rule of positioning (positioning.h),
+/// derived according to the GUM. The members of RuleShare are its coefficients:
 ///
-///     U^2 = S^2 (where systematic) + means U_EVE^2/n + (scatter U_EVE)^2 + band E_VE^2
-///           + D^2 of the reversal and the scatter (where not systematic)
+///     U^2 = means U_EVE^2/n + (scatter U_EVE)^2 + band E_VE^2 + (B D_B)^2 + (B_mean D_mean)^2
+///           + S^2 if `systematic`, otherwise + (2 scatter D_s)^2
 ///
-/// The error of a difference of two readings is at most the range of the environment E_VE =
-/// U_EVE/0.6.
+/// E_VE = U_EVE/0.6 is the range of the environment, which limits the error of a difference of two
+/// readings.
 double rule_uncertainty(const Budget&, std::size_t n, const RuleShare&);
 
 /// Returns U of a slope of means over the length: U(M)/L of `slope_budget`, an upper bound for a

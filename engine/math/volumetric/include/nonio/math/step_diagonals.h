@@ -117,7 +117,8 @@ struct ShapeContrast {
 struct StepSolution {
   std::array<StepCurve, 9> curves;      ///< EXX EYX EZX EXY EYY EZY EXZ EYZ EZZ
   std::array<Estimated, 3> squareness;  ///< C0Y, B0Z, A0Z, rad
-  /// unknowns: function values and set-up angles; rank at most 9n + 8
+  /// Number of unknowns, which are function values and set-up angles, and their rank, which is at
+  /// most 9n + 8 for n steps along each axis.
   std::size_t unknowns = 0, rank = 0;
   double u_reading = 0.0;  ///< standard uncertainty of a reading that was used, m
   double dof = 0.0;        ///< degrees of freedom of u_reading, if from the residuals
