@@ -308,7 +308,8 @@ class Composer {
     }
   }
 
-  /// Adds the deviations of an axis and their means by direction to a chart.
+  /// Adds a chart with the deviations of an axis and their means by direction; none if the analysis
+  /// does not have the means of both directions.
   void add_means(const Json& analysis, std::size_t first) {
     const Json& units = analysis.at("point_units");
     const std::size_t count = analysis.at("points").size();
@@ -385,7 +386,7 @@ class Composer {
     std::move(charts.begin(), charts.end(), std::back_inserter(charts_));
   }
 
-  /// Adds a curve to the chart of the same axis and units.
+  /// Adds a curve to the chart of the same axis and units, which is made if there is none.
   static void add_curve(std::vector<Chart>& charts, const std::string& title,
                         const std::string& name, const Json& s,
                         std::pair<std::size_t, std::size_t> rows) {

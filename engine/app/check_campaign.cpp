@@ -71,8 +71,8 @@ std::string backlash_text(double value, bool rotary) {
   return text;
 }
 
-/// Returns the manifest of the check campaign: the text of the original with single lines changed
-/// and the other measurements removed.
+/// Returns the manifest of the check campaign: the text of the original with single lines changed,
+/// without the other measurements and without the tables [model] and [accept].
 std::string check_text(std::string_view text, const std::string& id, const CheckCampaign& check,
                        bool rotary) {
   auto sections = sections_of(text);
@@ -114,7 +114,8 @@ std::string check_text(std::string_view text, const std::string& id, const Check
   return out;
 }
 
-/// Whether the changed manifest states what was intended, and everything else is as before.
+/// Whether the changed manifest states what was intended, with the same machine, control and
+/// targets of the measurement as before.
 bool is_meant(const config::Manifest& read, const config::Manifest& before, const std::string& id,
               const CheckCampaign& check) {
   const Campaign& c = read.campaign;

@@ -26,7 +26,7 @@ constexpr std::size_t most_rows = 6, most_points = 20'000;
 /// Result of reading the file.
 struct Read {
   const Reader* reader = nullptr;
-  std::string axis{};  ///< name of the axis under which it was read
+  std::string axis{};  ///< name of the axis with which the file was read
   Observations readings{};
 };
 
@@ -53,8 +53,8 @@ class FileCheck {
   }
 
  private:
-  /// Returns the reader that recognises the file; with stated columns, or if none recognises it,
-  /// the one that can show the rows of its table.
+  /// Returns the reader that recognises the file; with stated columns, the one that can show the
+  /// rows of its table. Null if there is none.
   const Reader* reader_of(std::string_view bytes,
                           const std::optional<reading::StatedTable>& table) const {
     if (!columns_.empty()) return table ? table->reader : nullptr;

@@ -114,8 +114,8 @@ struct Program {
 };
 
 /// Parses the arguments and runs the command. Help is printed on stdout, errors on stderr with the
-/// command or option that may be meant. Returns the exit status: that of the command, 0 for help, 2
-/// for a usage error.
+/// command or option that may be meant. Returns the exit status: that of the command, 0 for help
+/// and version, 2 for a usage error, 1 if the command throws an exception.
 int run(const Program& program, int argc, const char* const* argv);
 /// Returns the words with which the running command was called, for example "nonio model add".
 const std::string& command_words();

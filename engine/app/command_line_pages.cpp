@@ -55,7 +55,7 @@ void write_roff_examples(std::ostream& out, const std::vector<std::string>& exam
   out << ".fi\n";
 }
 
-/// Writes the paragraphs of a footer; lines that begin with a space are kept unchanged.
+/// Writes the paragraphs of a footer; each line of the text begins a new line of the page.
 void write_roff_paragraphs(std::ostream& out, const std::string& text) {
   if (!text.empty()) out << ".PP\n" << roff(replaced(text, '\n', "\n.br\n")) << "\n";
 }

@@ -22,7 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t most_candidates = 5;
 
-/// Returns the campaigns at or below a folder, sorted by path. Links are not followed.
+/// Returns the campaigns at or below a folder, sorted by path. Links and hidden folders are not
+/// followed.
 std::vector<fs::path> campaigns_in(const fs::path& folder) {
   std::error_code error;
   if (fs::exists(folder / config::manifest_name, error)) return {folder};
@@ -167,7 +168,8 @@ class ExplainTogether {
   const Common& common_;
   std::uint64_t seed_;
   std::unique_ptr<reading::Workplace> place_;
-  std::vector<std::unique_ptr<reading::Workplace>> earlier_;  ///< kept because their effects are in
+  std::vector<std::unique_ptr<reading::Workplace>> earlier_;  ///< workplaces of earlier folders,
+                                                              ///< kept because their effects are in
                                                               ///< use
   fs::path parent_;
   std::set<std::string> seen_;

@@ -17,7 +17,8 @@ struct TogetherOptions {
                                      ///< limit
 };
 
-/// Whether only one campaign is given, without further conditions.
+/// Whether only one folder is given, without a machine or days, and it is a campaign or contains no
+/// campaigns.
 bool is_single(const TogetherOptions& options);
 
 /// Fits the campaigns together and prints the result. Returns the exit status.

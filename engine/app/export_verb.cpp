@@ -82,8 +82,8 @@ void print_list(const std::string& id, const fs::path& folder,
     std::cout << "  " << f.sha256 << "  " << f.size << "  " << f.name << "\n";
 }
 
-/// Writes all files into a folder, or none. An existing file must have the same bytes; it is never
-/// replaced. Returns the number of files written.
+/// Writes the files into a folder and returns the number of files written. An existing file with
+/// the same bytes is skipped; if one has other bytes, nothing is written.
 Expected<std::size_t> write_out(const fs::path& from, const fs::path& to,
                                 const std::vector<evaluation::RecordedFile>& files) {
   const std::string below = std::string(evaluation::last_good_name) + "/";
@@ -110,8 +110,8 @@ Expected<std::size_t> write_out(const fs::path& from, const fs::path& to,
   return good.size() + own.size();
 }
 
-/// Exports one campaign. Returns false, after printing an error, if a file is damaged or another
-/// file is in its place.
+/// Exports one campaign, or prints its files with --list. Returns false, after printing an error,
+/// if a file is damaged or another file is in its place.
 bool get_one(const GetWish& wish, const std::string& id, const Common& common) {
   fs::path folder;
   const auto files = files_of(wish, id, folder);

@@ -300,8 +300,8 @@ std::size_t count_changes(const reports::MachineHistory& m, bool undeclared) {
   return n;
 }
 
-/// Returns a table with one line per machine: number of followed quantities, of changes, of changes
-/// with a known cause, and the due date.
+/// Returns a table with one line per machine: number of followed quantities, of undeclared changes,
+/// of changes with a known cause, and the due date.
 std::string machines_table(const reports::SiteHistory& site, const HistoryWords& with) {
   const reports::Wording& words = with.words;
   std::vector<std::array<std::string, 5>> rows{
@@ -330,10 +330,10 @@ std::string machines_table(const reports::SiteHistory& site, const HistoryWords&
   return out;
 }
 
-/// Returns the charts of all series of a machine. Each campaign has one line with a bar of value ±
-/// U; changes and events are between them; slope, detection limit and forecast are below. The
-/// scatter of the readings is followed as a logarithm and printed as a scatter, its changes as
-/// factors.
+/// Returns the name of a machine, the day of its next calibration if known, and the charts of its
+/// series that have points. Each campaign has one line with a bar of value ± U; changes and events
+/// are between them; slope, detection limit and forecast are below. The scatter of the readings is
+/// followed as a logarithm and printed as a scatter, its changes as factors.
 std::string machine_chart(const reports::MachineHistory& machine, const HistoryWords& with) {
   std::string name = printable(machine.id);
   for (const std::string* more :

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -8,6 +10,7 @@
 #include "laboratory/store/identity.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
+#include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -68,50 +71,56 @@ void print_import_json(const importing::ImportReport& report, bool dry_run) {
                   {"unmatched", json_of(report.unmatched)}});
 }
 
+void print_line(std::size_t indent, const std::string& text) {
+  std::cout << wrapped(text, indent, sentence_width(STDOUT_FILENO), 2);
+}
+
 void print(const char* title, const std::vector<importing::ImportReport::Passed>& list) {
   constexpr std::size_t most = 20;
-  if (!list.empty()) std::cout << title << "\n";
+  if (!list.empty()) print_line(0, title);
   for (std::size_t i = 0; i < std::min(list.size(), most); ++i)
-    std::cout << "  " << list[i].file << ": " << list[i].why << "\n";
+    print_line(2, list[i].file + ": " + list[i].why);
   if (list.size() > most)
-    std::cout << "  and " << list.size() - most << " more (--json lists them all)\n";
+    print_line(2, "and " + std::to_string(list.size() - most) + " more (--json lists them all)");
 }
 
 void print(const importing::ImportReport& report) {
   for (const importing::ImportedCampaign& c : report.campaigns) {
     if (c.there) {
-      std::cout << c.id << ": imported before, nothing to do\n";
+      print_line(0, c.id + ": imported before, nothing to do");
       continue;
     }
-    std::cout << c.id
-              << (c.written   ? ": written"
-                  : c.whole() ? ": complete"
-                              : ": not written")
-              << (c.whole() ? "" : ", something is missing") << "\n";
-    for (const std::string& lack : c.lacks) std::cout << "  expected: " << lack << "\n";
+    print_line(0, c.id +
+                      (c.written   ? ": written"
+                       : c.whole() ? ": complete"
+                                   : ": not written") +
+                      (c.whole() ? "" : ", something is missing"));
+    for (const std::string& lack : c.lacks) print_line(2, "expected: " + lack);
     if (machine_name(c).empty())
-      std::cout << "  belongs to no machine, so it has no history: state --asset, or --maker and "
-                   "--serial\n";
+      print_line(
+          2, "belongs to no machine, so it has no history: state --asset, or --maker and --serial");
     for (const importing::ImportedFile& f : c.files) {
       // A copy is reported once, without further messages about this file.
       if (!f.same_as.empty()) {
-        std::cout << "  " << f.file << ": " << f.lacks.front() << "\n";
+        print_line(2, f.file + ": " + f.lacks.front());
         continue;
       }
-      std::cout << "  " << f.file << ": measurement " << f.measurement << ", axis "
-                << (f.axis.empty() ? "?" : f.axis) << ", reader "
-                << (f.reader.empty() ? "?" : f.reader) << ", " << f.readings << " readings, "
-                << f.missing << " not taken\n";
-      for (const std::string& what : f.assumed) std::cout << "    assumed: " << what << "\n";
-      for (const std::string& lack : f.lacks) std::cout << "    expected: " << lack << "\n";
+      print_line(2, f.file + ": measurement " + f.measurement + ", axis " +
+                        (f.axis.empty() ? "?" : f.axis) + ", reader " +
+                        (f.reader.empty() ? "?" : f.reader) + ", " + std::to_string(f.readings) +
+                        " readings, " + std::to_string(f.missing) + " not taken");
+      for (const std::string& what : f.assumed) print_line(4, "assumed: " + what);
+      for (const std::string& lack : f.lacks) print_line(4, "expected: " + lack);
     }
   }
   print("The same as another, left out:", report.duplicates);
   print("Excluded by the rule:", report.excluded);
   print("Not imported:", report.unmatched);
   if (!report.campaigns.empty())
-    std::cout << "Axes are taken from the file names and signs from the files: verify both on the "
-                 "machine before a table is loaded.\n";
+    print_line(
+        0,
+        "Axes are taken from the file names and signs from the files: verify both on the machine "
+        "before a table is loaded.");
 }
 
 int import_files(const ImportArguments& arguments, const Common& common) {

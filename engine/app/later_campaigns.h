@@ -16,8 +16,9 @@ struct LaterCampaign {
 };
 
 /// Returns the campaigns of this machine and axis with readings and a later date, or with the same
-/// date and the purpose "check"; sorted by date. Without site.toml and machines/, only campaigns in
-/// the same folder are searched. Manifests that cannot be read are skipped.
+/// date and the purpose "check"; sorted by date. If the campaign belongs to no site, only the
+/// folders next to it are searched. Manifests that cannot be read are skipped; empty if this
+/// campaign states no date.
 std::vector<LaterCampaign> later_campaigns(const OpenCampaign& open, const std::string& axis);
 
 }  // namespace nonio::app

@@ -27,7 +27,8 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-/// Returns the line `key = "text"`; without a text, a comment with `example` in its place.
+/// Returns the line `key = "text"`; without a text, a comment with `example` in its place. A
+/// `comment` is appended, from column 44 on if the line is shorter.
 std::string text_line(const std::string& key, const std::string& text, const std::string& example,
                       const std::string& comment = {}) {
   std::string line =
@@ -39,14 +40,15 @@ std::string text_line(const std::string& key, const std::string& text, const std
   return line + "\n";
 }
 
-/// Returns a key as a comment with an example and its description from the table of keys.
+/// Returns a key as a TOML comment, with an example and its description from the table of keys.
 std::string offered(const std::string& table, const std::string& key, const std::string& example) {
   std::string help = schema::campaign_key_help(table + "." + key);
   if (help.empty()) help = schema::site_key_help(table + "." + key);
   return "# " + key + " = " + example + "  # " + help + "\n";
 }
 
-/// Returns optional keys of a measurement that a certificate states.
+/// Returns, as TOML comments with examples, the optional keys of a measurement that a certificate
+/// states.
 std::string test_text(const NewAxis& a) {
   const bool rotary = a.axis.rotary;
   const auto line = [](const char* key, const char* example) {
@@ -58,7 +60,8 @@ std::string test_text(const NewAxis& a) {
          line("compensation", "\"off\"");
 }
 
-/// Returns optional keys of a campaign that a certificate requires.
+/// Returns, as TOML comments with examples, optional keys of a campaign for further statements of
+/// its certificate.
 std::string certificate_text() {
   return "\n"
          "# Further statements of the certificate: docs/howto-certificate.md\n"

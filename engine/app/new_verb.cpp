@@ -54,7 +54,8 @@ std::optional<fs::path> site_above(const fs::path& folder) {
   return std::nullopt;
 }
 
-/// Returns the folder of the site's campaign with this id; empty if there is none.
+/// Returns the folder of the site's campaign with this id; empty if there is none, or if the folder
+/// has no site.toml.
 fs::path holder_of(const std::string& id, const fs::path& site) {
   std::error_code error;
   // Without site.toml it may be a home folder, which is not searched.
@@ -194,7 +195,8 @@ std::string um_text(const std::optional<double>& m) {
   return text;
 }
 
-/// Returns the keys of the last campaign's instrument, if it is the same model.
+/// Returns the values that describe the last campaign's instrument, by their keys; none if its
+/// model is not `model`.
 Values known_instrument(const std::optional<Campaign>& last, const std::string& model) {
   if (!last || last->instrument.model.empty() || last->instrument.model != model) return {};
   const Instrument& i = last->instrument;
@@ -206,7 +208,8 @@ Values known_instrument(const std::optional<Campaign>& last, const std::string& 
           {"instrument.U_per_m_um", um_text(i.U_per_length)}};
 }
 
-/// Asks for the keys that a certificate requires, only if the site issues certificates.
+/// Asks for the keys that a certificate requires, only if the site issues certificates; for those
+/// of the instrument only if an instrument is stated.
 Expected<void> ask_for_certificate(const NewCampaign& c, const fs::path& site, Values& values,
                                    Questions& ask) {
   std::string digest;
@@ -357,7 +360,8 @@ std::vector<Error> mistakes(const std::vector<Artifact>& files, const std::strin
       .results.errors;
 }
 
-/// Returns an error if the folder exists and is not empty; otherwise empty.
+/// Returns an error if the folder exists and is not empty, or is not a folder; otherwise an empty
+/// text.
 std::string in_the_way(const fs::path& folder) {
   std::error_code error;
   if (!fs::exists(fs::symlink_status(folder, error))) return {};

@@ -36,7 +36,8 @@ struct TableWish {
   bool fits() const { return !x.empty() || !y.empty(); }
 };
 
-/// A triple, and its plan if travels were given (with an optional, GCC 12 gives a false warning).
+/// A triple, and its plan if travels were given; otherwise the plan is empty (n = 0). An optional
+/// plan would cause a false warning of GCC 12.
 struct TableRow {
   math::Triple triple;
   math::TriplePlan plan{};

@@ -31,14 +31,15 @@ std::string writer_for(const std::string& control, const loader::Plugins& plugin
   return "gcode";
 }
 
-/// Whether the control runs G-code; if not, the moves are printed on the terminal.
+/// Whether the control runs G-code; true for an unknown control.
 bool runs_gcode(const std::string& control, const loader::Plugins& plugins) {
   for (const Controller& c : plugins.controllers())
     if (c.info.name == control) return c.table.runs_gcode;
   return true;
 }
 
-/// Returns the statements of options and of the machine's record about its axes.
+/// Returns the table options of the campaign's control, with what the site, the manifest and the
+/// machine record state about its axes; empty if the control is unknown or the options are invalid.
 Settings said_of_axes(const OpenCampaign& open) {
   for (const Controller& o : open.place->plugins.controllers())
     if (o.info.name == open.campaign().machine.control)
@@ -164,11 +165,12 @@ Json probe_json(const tables::SignProbe& p, const std::string& file) {
 
 void print_probe(const tables::SignProbe& p, const std::string& file) {
   const Quantity q = deviation_of(p.rotary), at = position_of(p.rotary);
-  std::cout << "axis " << p.axis << ", measurement " << p.measurement << "\n  move to "
-            << with_unit(p.from, at) << " coming from " << with_unit(p.start, at)
-            << ", set the instrument to zero, move to " << with_unit(p.to, at)
-            << " and read actual - nominal:\n"
-            << "    " << with_unit(p.difference, q) << "  no table is active\n"
+  std::cout << "axis " << p.axis << ", measurement " << p.measurement << "\n";
+  sentence(std::cout, 2,
+           "move to " + with_unit(p.from, at) + " coming from " + with_unit(p.start, at) +
+               ", set the instrument to zero, move to " + with_unit(p.to, at) +
+               " and read actual - nominal:");
+  std::cout << "    " << with_unit(p.difference, q) << "  no table is active\n"
             << "    " << with_unit(0.0, q) << "  the table has the right sign\n"
             << "    " << with_unit(2.0 * p.difference, q) << "  the table has the wrong sign\n";
   if (std::fabs(p.as_measured - p.difference) > 1e-12)

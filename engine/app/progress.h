@@ -10,8 +10,9 @@
 
 namespace nonio::app {
 
-/// Shows the progress of a run: a bar on stderr if that is a terminal, otherwise one line for each
-/// failed campaign; with --json one event per line on stdout; with --quiet only failures.
+/// Shows the progress of a run on stderr: notes, one line for each failed campaign, and a bar if
+/// stderr is a terminal. With --quiet, only notes and failures; with --json one event per line on
+/// stdout instead.
 class Progress {
  public:
   Progress(const Common& common, bool quiet, bool json);

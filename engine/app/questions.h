@@ -11,14 +11,16 @@
 namespace nonio::app {
 
 /// Asks on stderr, with the default in brackets, for values that are still empty. An empty line
-/// takes the default. An error if the input has ended (^D).
+/// takes the default, and so does an object that does not ask. An error if the input has ended
+/// (^D).
 class Questions {
  public:
   explicit Questions(bool asks) : asks_(asks) {}
   /// Whether stdin and stderr are a terminal, so that a person can answer.
   static bool on_terminal() { return ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1; }
   bool asks() const { return asks_; }
-  /// Returns the exit status of a command that ends with an error.
+  /// Returns the exit status of a command that ends with an error: interrupted if the input has
+  /// ended, otherwise that of a usage error.
   int status() const { return ended_ ? exit_interrupted : exit_usage; }
 
   Expected<void> text(const char* question, std::string& to, const std::string& otherwise) {

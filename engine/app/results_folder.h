@@ -12,10 +12,11 @@ namespace nonio::app {
 enum class Holds { campaign, results, run, nothing };
 Holds what_holds(const std::filesystem::path& folder);
 
-/// Returns the folder of results OUT/ID, or the path inside the pack that contains them.
+/// Returns the path inside the pack that contains the results OUT/ID, if the folder itself contains
+/// none; otherwise returns the folder unchanged.
 std::filesystem::path results_at(const std::filesystem::path& folder);
-/// Returns the error message for a folder that contains neither results.json, summary.json nor
-/// campaign.toml.
+/// Returns the error message for a folder that does not exist, or contains neither results.json,
+/// summary.json nor campaign.toml.
 std::string holds_nothing(const std::filesystem::path& folder);
 
 /// Returns the id that a run would give to a campaign, even if other parts of the manifest have

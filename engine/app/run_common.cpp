@@ -32,7 +32,8 @@ std::string judged_value(const Json& line, const std::string& language) {
   return " " + localised(shown, language) + (unit.empty() ? "" : " " + unit);
 }
 
-/// Prints one line per campaign that requires action, at most 20 of them.
+/// Prints one line per campaign that has new actions other than failures and information: at most
+/// 20 campaigns, then the number of the others.
 void print_actions(const std::string& actions, const config::TerminalWords& words) {
   constexpr std::size_t most_campaigns = 20;
   const Json lines = storage::parse_or_discard(actions);

@@ -16,7 +16,8 @@ void prepare_run(batch::RunOptions& options, const std::string& site, const std:
                  const Common& common);
 /// Returns the exit status of a run, or of a part of it, that did not complete; none if it did.
 std::optional<int> exit_of_unfinished(const batch::RunResult& run);
-/// Prints the counts of a run, the actions required, and the path of its summary.
+/// Prints the counts of a run, the actions required, and the path of its summary. With `json`,
+/// prints one event with the counts and the path.
 void print_summary(const batch::RunResult& run, const std::filesystem::path& out,
                    const config::TerminalWords& words, bool json);
 

@@ -190,8 +190,9 @@ class Session {
     return true;
   }
 
-  /// Sets the day of loading to the first day on which the record states the new table in the
-  /// control.
+  /// Sets the day of loading to that of --loaded, otherwise to the first day, not before the
+  /// measurement, on which the record states the new table in the control. Without such a day it
+  /// remains empty.
   void day_of_loading() {
     loaded_ = w_.loaded;
     if (!loaded_.empty() || !open_->read.machine) return;

@@ -167,7 +167,8 @@ class Page {
     return say_("measurement.range", {{"from", text(least)}, {"to", text(most)}, {"unit", unit}});
   }
 
-  /// Returns the names of other measurements that an analysis used, at most 4 of them.
+  /// Returns the names of other measurements that an analysis used: at most 4, then the number of
+  /// the others.
   std::string others(const Json& a) const {
     constexpr std::size_t most = 4;
     auto names = a.value("uses", std::vector<std::string>());
@@ -204,8 +205,9 @@ class Page {
     notes(a);
   }
 
-  /// Returns a value rounded to the second significant digit of U; without U with one to three
-  /// decimals, or up to seven for values without a unit (a direction).
+  /// Returns a value rounded to the second significant digit of U; without U with three decimals,
+  /// or seven for values without a unit (a direction). An integer is not rounded; a missing value
+  /// gives an empty text.
   std::string number(const Json& of, const char* key) const {
     if (!of.contains(key)) return {};
     const double value = of.at(key), U = of.value("U", 0.0);
@@ -215,7 +217,8 @@ class Page {
         fixed_text(value, std::clamp(1 - static_cast<int>(std::floor(std::log10(U))), 0, 12)));
   }
 
-  /// Returns value, U and unit, for example "4.82 ± 1.00 um".
+  /// Returns value, U and unit, for example "4.82 ± 1.00 um". A value without U and unit is
+  /// returned as a whole number, or with four digits.
   std::string result(const Json& v) const {
     const std::string U = number(v, "U"), unit = v.value("unit", "");
     if (U.empty() && unit.empty() && v.at("value").is_number_float()) {
@@ -365,7 +368,8 @@ class Page {
     }
   }
 
-  /// Prints the predicted result of each table, by measurement, and its number of files.
+  /// Prints the number of files of each table and its predicted result by measurement. Tables
+  /// without files are printed only with --all.
   void compensation(const Json& tables, const Json& written) {
     bool is_first = true;
     for (const Json& t : tables) {

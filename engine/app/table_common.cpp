@@ -11,7 +11,8 @@
 
 namespace nonio::app {
 
-/// Puts a number in its printed unit, with the unit appended to the name: "largest_um".
+/// Adds a number in its printed unit, with the unit appended to the name: "largest_um". A number
+/// that is not finite is left out.
 void put(TableJson& json, const std::string& name, double si, Quantity q) {
   if (std::isfinite(si)) json[name + std::string(unit_of(q).suffix)] = printed(si, q);
 }
@@ -37,30 +38,27 @@ TableJson difference_json(const tables::TableDifference& d) {
 }
 
 static void print_shape(const char* name, const std::optional<tables::TableShape>& s, bool rotary) {
-  std::cout << "  " << name << ": ";
-  if (!s) {
-    std::cout << "no table\n";
-    return;
-  }
-  std::cout << "adds up to " << with_unit(s->largest, deviation_of(rotary)) << ", largest step "
-            << with_unit(s->step, deviation_of(rotary)) << " from "
-            << with_unit(s->step_at, position_of(rotary)) << " on, largest slope "
-            << with_unit(s->slope, slope_of(rotary));
-  if (s->backlash) std::cout << ", backlash " << with_unit(*s->backlash, deviation_of(rotary));
-  std::cout << "\n";
+  std::string text = std::string(name) + ": ";
+  if (!s) return sentence(std::cout, 2, text + "no table");
+  text += "adds up to " + with_unit(s->largest, deviation_of(rotary)) + ", largest step " +
+          with_unit(s->step, deviation_of(rotary)) + " from " +
+          with_unit(s->step_at, position_of(rotary)) + " on, largest slope " +
+          with_unit(s->slope, slope_of(rotary));
+  if (s->backlash) text += ", backlash " + with_unit(*s->backlash, deviation_of(rotary));
+  sentence(std::cout, 2, text);
 }
 
 void print_difference(const tables::TableDifference& d, bool compared) {
-  std::cout << "axis " << d.output;
+  std::string text = "axis " + d.output;
   if (d.input.size() != 1 || d.input.front() != d.output) {
-    std::cout << " by the position of";
-    for (const std::string& in : d.input) std::cout << " " << in;
+    text += " by the position of";
+    for (const std::string& in : d.input) text += " " + in;
   }
   if (compared)
-    std::cout << ": they differ by up to " << with_unit(d.largest, deviation_of(d.rotary))
-              << " (at " << with_unit(d.at, position_of(d.rotary)) << "), range "
-              << with_unit(d.range, deviation_of(d.rotary));
-  std::cout << "\n";
+    text += ": they differ by up to " + with_unit(d.largest, deviation_of(d.rotary)) + " (at " +
+            with_unit(d.at, position_of(d.rotary)) + "), range " +
+            with_unit(d.range, deviation_of(d.rotary));
+  sentence(std::cout, 0, text);
   print_shape("present", d.present, d.rotary);
   if (compared) print_shape("new    ", d.next, d.rotary);
 }

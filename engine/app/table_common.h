@@ -16,7 +16,8 @@ namespace nonio::app {
 using TableJson = storage::Json;
 using Texts = std::map<std::string, std::string>;
 
-/// Puts a number in its printed unit, with the unit appended to the name: "largest_um".
+/// Adds a number in its printed unit, with the unit appended to the name: "largest_um". A number
+/// that is not finite is left out.
 void put(TableJson& json, const std::string& name, double si, Quantity q);
 TableJson difference_json(const tables::TableDifference& d);
 /// Prints a difference. `compared` is false if the argument describes a single file, not a
@@ -52,7 +53,7 @@ config::Checked<Settings> campaign_options(const OpenCampaign& open, const Info&
 /// measured.
 Expected<void> knows_active(const Campaign& campaign, const Measurement& m);
 
-/// Prints the findings of a refused table on stderr.
+/// Prints the findings with severity warning on stderr.
 void tell_findings(const OpenCampaign& open, const std::vector<Finding>& findings);
 
 }  // namespace nonio::app

@@ -38,7 +38,8 @@ Campaign machine_of(const std::vector<std::string>& axes) {
   return campaign;
 }
 
-/// Sets the number of each axis to its position in `names`, which `--axis` states.
+/// Sets the number of each axis to its position in `names`, which `--axis` states, unless its
+/// number is stated already. Does nothing if the control has no option `axes`.
 void number_axes(const std::vector<std::string>& names, Settings& options) {
   if (!options.has("axes")) return;
   NumberTables axes = options.tables("axes");
@@ -60,7 +61,7 @@ int tell_differences(const std::string& control, const std::vector<tables::Table
 }
 
 /// Compares the tables in the control with those that the campaign would write, for the axes of the
-/// campaign only.
+/// campaign only. Returns the exit status.
 int diff_with_campaign(const std::string& backup, const std::string& folder, const TableWish& w,
                        const Texts& settings, const Common& common) {
   auto opened = open_campaign(folder, common);
@@ -87,8 +88,8 @@ int diff_with_campaign(const std::string& backup, const std::string& folder, con
   return tell_differences(present->control->info.name, all, common);
 }
 
-/// Gives both tables the same axis: if each is in a single file that states no axis, they are named
-/// by their files, and belong to one axis.
+/// Gives both tables the same axis if each side has a single table that is named by its file,
+/// because the file states no axis.
 void join_unnamed(const Loaded& was, Loaded& will) {
   const auto only_unnamed = [](const Loaded& l) {
     return l.tables.size() == 1 &&
@@ -116,7 +117,7 @@ struct AxisPairs {
   }
 
   /// Keeps only the tables of the pairs that depend on their own position, and names them by the
-  /// pair. An error if a pair has no such table.
+  /// pair; without pairs, all tables are kept. An error if a pair has no such table.
   Expected<void> join(std::vector<LoadedTable>& was, std::vector<LoadedTable>& will) const {
     if (pairs.empty()) return {};
     std::vector<LoadedTable> of[2];

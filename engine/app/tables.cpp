@@ -267,7 +267,7 @@ void print_advice(std::ostream& out, const modelling::Explained& e, const std::s
 }
 
 /// Prints the limitations of the verdict. Without `all`, effects that could not be tested are
-/// listed by name only.
+/// listed by name only; those that need a longer test are left out.
 void print_limits(std::ostream& out, const modelling::Explained& e, const Campaign& campaign,
                   bool all, const modelling::ModelWords& words) {
   const config::TerminalWords say = words.terminal();

@@ -23,17 +23,19 @@ void print_comparison(std::ostream& out, const modelling::Compared& compared,
 void print_explanation(std::ostream& out, const modelling::Explained& explained,
                        const Campaign& campaign, const std::string& folder, bool all,
                        const modelling::ModelWords& words);
-/// Prints values before and after a change as bars; "|" marks the noise floor.
+/// Prints values before and after a change as numbers and as bars, in which "|" marks the noise
+/// floor; then, if the changed model was fitted, its parameters.
 void print_change(std::ostream& out, const modelling::Change& change,
                   const modelling::ModelWords& words);
 /// Prints the effects with their values, and the residuals.
 void print_model(std::ostream& out, const modelling::Compared& compared,
                  const modelling::ModelWords& words);
-/// Prints how one more run would change the uncertainties of the model and the evidence.
+/// Prints how one more run, or other further readings, would change the uncertainties of the model
+/// and the evidence.
 void print_foresight(std::ostream& out, const modelling::Explained& e,
                      const config::TerminalWords& say);
-/// Prints a step of the model's history in one line, for example excluded readings or a changed
-/// period.
+/// Prints excluded readings or a changed period, which are steps of the model's history, in one
+/// line; for other steps, an empty line.
 void print_step(std::ostream& out, const modelling::ModelStep& step,
                 const config::TerminalWords& say);
 void print_history(std::ostream& out, const std::vector<modelling::ModelStep>& history,

@@ -22,7 +22,7 @@ std::size_t sentence_width(int descriptor);
 
 /// Returns the lines of `text`, broken at spaces to at most `width` columns and indented by
 /// `indent` spaces. Continuation lines are indented by `hanging` more spaces. A line that begins
-/// with a space is kept unchanged. The result ends with a line feed.
+/// with a space is indented and not broken. The result ends with a line feed.
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t width,
                     std::size_t hanging = 0);
 

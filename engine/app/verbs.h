@@ -63,8 +63,8 @@ int check_templates(const std::string& site, const Common& common);
 struct WorklistWish {
   std::string out, since, customer, language, site, page;
 };
-/// Prints the actions that the last run requires, one line each. Returns the exit status: 1 if
-/// action is required.
+/// Prints the actions that the last run requires, one line each, or the page that `wish` names.
+/// Returns the exit status: 1 if action is required.
 int print_worklist(const WorklistWish& wish, const Common& common);
 
 }  // namespace nonio::app

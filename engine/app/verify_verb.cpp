@@ -90,7 +90,7 @@ int exit_of(const std::vector<Verdict>& verdicts) {
 }
 
 /// Prints the verdict first, so that no text of the file can precede or imitate it; then the failed
-/// checks, or all of them if `verbose`.
+/// checks, or all of them if `verbose`. If `quiet`, prints only the verdict.
 void print(std::ostream& out, const std::string& file, const sign::Verified& v, bool quiet,
            bool verbose) {
   const std::string name = printable(file);

@@ -27,7 +27,7 @@ void keep_lines(const WorklistWish& wish, reports::SiteHistory& site) {
   });
 }
 
-/// Prints one page of the site with its present content on stdout.
+/// Prints one page of the site with its present content on stdout. Returns the exit status.
 int print_page(const WorklistWish& wish, const Templates& templates, const std::string& language,
                assessment::Assessment& assessment) {
   const reports::SiteHistory& site = assessment.site();

@@ -40,8 +40,9 @@ using Action = CampaignState::Action;
 
 bool is_todo(const CampaignState& c) { return c.action == Action::todo; }
 
-/// Returns why `out` cannot be the output folder: it is the site itself, or it is inside a
-/// campaign, whose files could be replaced by results. Returns an empty text if `out` can be used.
+/// Returns why `out` cannot be the output folder: it is the site itself, or it is a campaign's
+/// folder or inside one, where results could replace the campaign's files. Returns an empty text if
+/// `out` can be used.
 std::string unfit_output(const fs::path& site, const fs::path& out) {
   std::error_code error;
   const fs::path root = fs::weakly_canonical(site, error);
@@ -72,9 +73,10 @@ Expected<std::string> look_at_site(const RunOptions& options) {
                                  });
 }
 
-/// Lists the certificates issued since the previous run, in the order of their numbers, and the
-/// drafts. An error if the register cannot be read: otherwise the summary would wrongly state that
-/// nothing was issued.
+/// Lists in `run` the certificates issued since the previous run, and the drafts of campaigns of
+/// this run that have not failed. If the register is locked, this is noted and the next run lists
+/// them. Any other failure to read the register is an error: otherwise the summary would wrongly
+/// state that nothing was issued.
 Expected<void> note_certificates(RunResult& run, const RunOptions& options,
                                  const reading::Context& context, RunState& state) {
   NONIO_TRY(auto known, known_of(options, context, Look::again));
@@ -108,8 +110,8 @@ void leave_out_forgotten(RunResult& run, const Expected<store::SiteRecords>& rec
   });
 }
 
-/// Makes the worklist and its pages. If this fails, the run does not fail: the error is noted, and
-/// the next run makes them from the results.
+/// Makes the worklist and its pages. If this fails, the run does not fail: unless it is being
+/// stopped, the error is noted, and the next run makes them from the results.
 WorklistPages worklist_of(RunResult& run, const RunOptions& options, const RunEvents& events,
                           const reading::Context& context) {
   auto made = make_worklist(options, context, last_run_of(run, options.out, context.templates));
@@ -125,7 +127,8 @@ WorklistPages worklist_of(RunResult& run, const RunOptions& options, const RunEv
   return {};
 }
 
-/// Sends the mail of the run. If it cannot be sent, the error is noted in the summary.
+/// Sends the mail of the run, unless its text is empty or a stop is requested. If the mail cannot
+/// be sent, the error is noted in the summary.
 void write_mail(RunResult& run, const RunOptions& options, const RunEvents& events,
                 const reading::Context& context, const WorklistPages& worklist) {
   if (worklist.mail.empty() || process::is_stop_requested()) return;
@@ -175,7 +178,8 @@ void post_news(RunResult& run, const RunOptions& options, const RunEvents& event
     events.note(kept.error().message);
 }
 
-/// Removes leftovers, lists certificates, makes the worklist, and writes the summary last.
+/// Removes leftovers, lists the certificates, makes the worklist, sends mail and webhook (not for a
+/// reopened run), writes the summary, and records that the run has ended.
 Expected<void> close_run(RunResult& run, const RunOptions& options, const RunEvents& events,
                          const SetUp& place, RunState& state) {
   const reading::Context& context = place.context;
@@ -233,7 +237,8 @@ Expected<void> survey_site(const RunOptions& options, const reading::Context& co
   return {};
 }
 
-/// Reports keys with former names in manifests, at most 20 of them.
+/// Reports keys with former names in manifests: the first 20 one by one, then the number of the
+/// others.
 void report_former_keys(const RunResult& run, const RunEvents& events) {
   constexpr std::size_t most = 20;
   std::size_t count = 0;
@@ -290,7 +295,9 @@ void tell_stage(const RunEvents& events, const char* name) {
   if (events.stage) events.stage(name);
 }
 
-/// Restores the plan of a run that was done in shards, with the results of its shards in `run`.
+/// Restores the plan of a run that was done in shards; `run` contains the results of the shards
+/// already. Checks the certificate numbers if the register could not be read when the plan was
+/// made, and enters failures into the register.
 Expected<Plan> planned_run_of(const RunOptions& options, const RunEvents& events,
                               const SetUp& place, const RunPlan& planned,
                               const std::optional<Known>& known, RunResult& run) {

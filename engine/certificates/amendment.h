@@ -16,7 +16,8 @@ FileChange change_of(const std::string& file, const std::string* before, const s
 inline constexpr std::size_t most_changes = 40;
 
 /// Returns the keys of a TOML text with their values: "machine.axes.X.tolerance_um.B" -> "3".
-/// Tables of a list are named by their `id`: "measurement.X.file". Empty if the text is not TOML.
+/// Tables of a list are named by their `id`, for example "measurement.X.file", or without one by
+/// their position, counted from 1. Empty if the text is not TOML.
 std::map<std::string, std::string> flat_toml(std::string_view text);
 
 /// Key for the reason why an earlier certificate is replaced. If only this key has changed, the

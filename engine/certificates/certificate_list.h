@@ -15,7 +15,7 @@ Expected<config::Numbering> numbering_of(const std::filesystem::path& site);
 Expected<std::vector<RegisterEntry>> certificates_of(const std::filesystem::path& site,
                                                      const config::Numbering& numbering);
 
-/// Withdraws a number. The register keeps `why` and `by` (may be empty).
+/// Withdraws a number. The register keeps the reason `why` and the name `by`, which may be empty.
 Expected<void> withdraw(const std::filesystem::path& site, const config::Numbering& numbering,
                         const std::string& number, const std::string& why,
                         const std::string& by = {});
@@ -23,7 +23,8 @@ Expected<void> withdraw(const std::filesystem::path& site, const config::Numberi
 /// Checks that the register was not changed outside of this program; an error if it cannot be read.
 Expected<Audit> audit(const std::filesystem::path& site, const config::Numbering& numbering);
 
-/// Writes all issued files into a folder: NUMBER.pdf, NUMBER-dcc.xml.
+/// Writes all issued files into a folder: NUMBER.pdf and NUMBER-dcc.xml, and for files of other
+/// outputs NUMBER-OUTPUT-NAME.
 Expected<void> export_certificates(const std::filesystem::path& site,
                                    const config::Numbering& numbering,
                                    const std::filesystem::path& folder);

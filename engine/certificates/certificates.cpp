@@ -217,8 +217,9 @@ void remove_unsigned(evaluation::Evaluated& evaluated) {
 
 namespace {
 
-/// Keeps only the pages of a draft, under a name that marks them as a draft. Signed files are made
-/// only when the certificate has a number.
+/// Keeps only the PDFs of the certificate's output, unsigned and with names that mark them as
+/// drafts, and removes the files of other outputs that are to be signed. Signed files are made only
+/// when the certificate has a number.
 void keep_draft(evaluation::Evaluated& evaluated) {
   for (Results::Written& w : evaluated.results.outputs) {
     auto& artifacts = w.result.artifacts;

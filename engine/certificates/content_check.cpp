@@ -312,13 +312,14 @@ class Again {
   std::optional<std::vector<std::string>> strange_;  ///< attached templates that differ from the
                                                      ///< installed ones; none: not compared
   std::string missing_;                              ///< a font that is missing, so that nothing
-                                                     ///< can be drawn
+                                                     ///< can be drawn; empty: none
 };
 
 constexpr std::array check_ids = {"content.values", "content.attachments", "content.templates",
                                   words_check, "content.printed"};
 
-/// Returns the result of a check as one line for the waiting process.
+/// Returns the result of a check as one line for the waiting process; its text is cut after 900
+/// bytes.
 std::string line_of(const sign::Check& check) {
   constexpr std::size_t most = 900;
   std::string text = check.says.substr(0, most);

@@ -20,7 +20,7 @@ std::vector<sign::Check> check_content(const sign::Verified& verified, std::stri
 
 inline constexpr const char* words_check = "content.words";
 
-/// Whether an attachment is a DCC.
+/// Whether an attachment is a DCC, according to its name (*.xml) and its media type.
 bool is_document(const pdf::Attachment& attachment);
 const pdf::Attachment* find_attachment(const sign::Verified& verified, std::string_view name);
 

@@ -18,8 +18,8 @@ class Journal {
   struct Entry {
     std::int64_t place = 0;  ///< position in the journal, counted from 1 without gaps
     std::string at;          ///< time in UTC, for example "2026-11-22T14:21:33Z"
-    std::string what;        ///< kind of the event: made, carried-over, drawn, approved, issued,
-                             ///< withdrawn
+    std::string what;        ///< kind of the event: made, drawn, approved, issued, withdrawn, or
+                             ///< second (a second approval, which has no effect)
     std::string number;      ///< certificate number that the entry concerns; empty: none
     std::string says;        ///< details as JSON
     std::string sha256;

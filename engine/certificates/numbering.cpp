@@ -84,7 +84,8 @@ Expected<Files> current_files(const evaluation::Evaluated& evaluated,
   return files;
 }
 
-/// Returns the changes in the order of `now`, followed by removed files.
+/// Returns the changes in the order of `now`, followed by removed files. TOML files in which only
+/// comments or the reason for the amendment have changed are left out.
 std::vector<FileChange> changes_of(const Files& then, const Files& now) {
   std::vector<FileChange> all;
   for (const auto& [name, bytes] : now) {
@@ -100,7 +101,8 @@ std::vector<FileChange> changes_of(const Files& then, const Files& now) {
   return all;
 }
 
-/// Replaces the files that were made now by those in the register.
+/// Replaces the files that were made now by those in the register, and removes the others that were
+/// to be signed.
 void take_issued(evaluation::Evaluated& evaluated) {
   for (Results::Written& w : evaluated.results.outputs)
     for (const evaluation::IssuedFile& f : evaluated.certificate->files) {

@@ -45,13 +45,14 @@ class Numbers {
   /// drawn.
   bool held_up(const evaluation::Evaluated& evaluated) const;
   /// Has to be called after signing. Enters the certificate into the register and replaces the
-  /// campaign's files by those of the register. Adds a finding if an earlier certificate's values
-  /// would be different now. A draft is entered as waiting for the approval of `folder` (relative
-  /// to the site).
+  /// campaign's files by those of the register; does nothing without a certificate or if the
+  /// evaluation failed. Adds a finding if an earlier certificate's values would be different now,
+  /// or if a file has no time stamp. A draft is entered as waiting for the approval of `folder`
+  /// (relative to the site).
   Expected<void> issue(evaluation::Evaluated& evaluated, const std::string& folder) const;
-  /// Removes files that were to be signed without approval by a person or by the site's rules.
-  /// Documents that are not part of a certificate need no person's approval; if the rules do not
-  /// allow them, they are omitted with a finding.
+  /// Removes files that were to be signed if there is no certificate and the rules of the site do
+  /// not allow to issue, and adds a finding for each output that has lost files. Nothing is removed
+  /// for a certificate, or if a person approves.
   void hold_unreleased(evaluation::Evaluated& evaluated) const;
   /// Records why a number that was drawn for a campaign is not issued. Errors are ignored, because
   /// no caller could handle them.

@@ -19,7 +19,8 @@ Expected<std::string> password_hash(std::string_view password);
 /// would need more than 1 GiB of memory is rejected.
 bool is_password_hash(const std::string& text);
 /// Whether the password matches the hash. Takes a tenth of a second, even for an empty hash, which
-/// matches no password, so that the time does not show whether a user exists.
+/// matches no password, so that the time does not show whether a user exists. Passwords of more
+/// than 200 bytes are rejected at once.
 bool fits_password(std::string_view password, const std::string& hash);
 
 }  // namespace nonio::certificates

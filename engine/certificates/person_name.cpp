@@ -25,8 +25,8 @@ bool in(Code c, const std::array<Range, N>& ranges) {
                      [c](const Range& r) { return c >= r.from && c <= r.to; });
 }
 
-/// Characters that are variants of others: ligatures, full width, mathematical letters, circled,
-/// raised.
+/// Characters that are variants of others: ligatures, letters of full width, mathematical letters,
+/// and circled, raised or lowered characters.
 constexpr std::array<Range, 10> forms{{{0x2070, 0x209F},
                                        {0x2100, 0x214F},
                                        {0x2460, 0x24FF},
@@ -63,7 +63,8 @@ Alphabet alphabet_of(Code c) {
   return Alphabet::none;
 }
 
-/// Small Greek and Cyrillic letters, and the Latin ones that they or their capitals look like.
+/// Small Greek and Cyrillic letters and the dotless i, each with the Latin letter that it or its
+/// capital looks like.
 constexpr std::array<std::pair<Code, char>, 37> look_alikes{
     {{0x3B1, 'a'}, {0x3B2, 'b'}, {0x3B5, 'e'}, {0x3B6, 'z'}, {0x3B7, 'h'}, {0x3B9, 'i'},
      {0x3BA, 'k'}, {0x3BC, 'm'}, {0x3BD, 'n'}, {0x3BF, 'o'}, {0x3C1, 'p'}, {0x3C4, 't'},
@@ -73,7 +74,8 @@ constexpr std::array<std::pair<Code, char>, 37> look_alikes{
      {0x458, 'j'}, {0x4AF, 'y'}, {0x4BB, 'h'}, {0x501, 'd'}, {0x51B, 'q'}, {0x51D, 'w'},
      {0x131, 'i'}}};
 
-/// Returns the small letter of a Latin, Greek or Cyrillic letter.
+/// Returns the small letter of a Latin, Greek or Cyrillic letter; other characters are returned
+/// unchanged.
 Code small(Code c) {
   if (c >= 'A' && c <= 'Z') return c + 32;
   if (c >= 0xC0 && c <= 0xDE && c != 0xD7) return c + 32;

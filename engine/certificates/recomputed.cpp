@@ -17,8 +17,8 @@ namespace {
 constexpr const char* no_results =
     "the attached results.json is none, or has a key twice in one object";
 
-/// Whether two numbers are equal apart from the last of 12 printed digits, which may depend on the
-/// processor.
+/// Whether two numbers differ by no more than 1e-9 plus 1e-9 of the larger one, because their last
+/// printed digits may depend on the processor.
 bool same(double a, double b) {
   return std::fabs(a - b) <= 1e-9 + 1e-9 * std::max(std::fabs(a), std::fabs(b));
 }
@@ -63,7 +63,8 @@ class Comparison {
   }
 };
 
-/// Returns the numerical members of an analysis.
+/// Returns the members of an analysis that contain its numbers and their units; missing ones are
+/// left out.
 storage::Json values_of(const storage::Json& analysis) {
   storage::Json out = storage::Json::object();
   for (const char* key :

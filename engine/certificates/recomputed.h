@@ -15,7 +15,7 @@ namespace nonio::certificates {
 /// difference.
 Expected<std::string> same_values(std::string_view attached, std::string_view recomputed);
 
-/// Checks that two results.json of one version of Nonio are equal, except for the last digit of
+/// Checks that two results.json of one version of Nonio are equal, except for the last digits of
 /// numbers and for digests of files that are not among `attached`.
 Expected<void> same_results(std::string_view results, std::string_view recomputed,
                             const std::vector<std::string>& attached);

@@ -408,8 +408,9 @@ Expected<evaluation::Certificate> Register::draw(const std::string& campaign,
 
 namespace {
 
-/// Returns the signer's certificate of the files, because keys are replaced while their signatures
-/// remain valid.
+/// Returns subject, SHA-256 and validity of the signer's certificate in the first signed PDF of the
+/// files; an empty object if there is none. They are recorded because keys are replaced while their
+/// signatures remain valid.
 storage::Json signer_json(const std::vector<evaluation::IssuedFile>& files) {
   for (const evaluation::IssuedFile& f : files) {
     if (!f.bytes.starts_with("%PDF-")) continue;

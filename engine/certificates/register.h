@@ -52,7 +52,8 @@ struct Approval {
   std::string user{};     ///< account of users.toml whose password was given; empty: none
 };
 
-/// A draft that a run has made and no person has approved yet.
+/// A draft that a run has made and that waits for approval; its author may have approved it
+/// already.
 struct WaitingDraft {
   std::string campaign, folder;  ///< id of the campaign, and its folder relative to the site
   std::string out;               ///< output folder of the run
@@ -96,7 +97,8 @@ class Register {
   /// Opens the register even if it was damaged or restored to an older state.
   static Expected<Register> open_to_audit(const std::filesystem::path& site,
                                           const config::Numbering& numbering);
-  /// Opens the register without writing, even if its tables are those of an older version.
+  /// Opens an existing register and changes no entry in it, even if its tables are those of an
+  /// older version.
   static Expected<Register> open_to_read(const std::filesystem::path& site,
                                          const config::Numbering& numbering);
   /// Returns all numbers in the order in which they were drawn; empty if there is no register yet.
@@ -111,9 +113,11 @@ class Register {
   ~Register();
 
   Expected<std::vector<RegisterEntry>> all();
-  /// Adds the persons who approved and withdrew the entries, from the journal.
+  /// Adds to the entries, from the journal, who approved and withdrew them, and the signer of their
+  /// files.
   Expected<void> note_persons(std::vector<RegisterEntry>& entries);
-  /// Returns the id of the register, which is unique; a copy has the id of its original.
+  /// Returns the id of the register, which is unique; a copy has the id of its original. Empty for
+  /// a register of an older version.
   std::string id();
   /// Returns the number of each issued file, by the file's SHA-256.
   Expected<std::map<std::string, std::string>> issued_digests();
@@ -128,7 +132,7 @@ class Register {
                                          const std::string& today);
   /// Issues a certificate that was drawn and signed, and removes the campaign's draft. Returns the
   /// entry that is valid from now on: if another process was faster with the same data, the entry
-  /// of that process; if both are approvals by persons, an error that names the first one.
+  /// of that process. With `approved`, an error that names the first approval in that case.
   Expected<evaluation::Certificate> issue(const evaluation::Certificate& certificate,
                                           const std::string& campaign, const reading::Inputs& data,
                                           const Approved* approved = nullptr);

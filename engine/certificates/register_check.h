@@ -25,7 +25,8 @@ struct RegisterRows {
                                               ///< files
 };
 
-/// Reads the site's register; does nothing if `site` is empty.
+/// Reads the site's register; returns empty rows if `site` is empty. If the register cannot be
+/// read, `no_answer` states why.
 RegisterRows register_rows(const std::filesystem::path& site);
 
 /// Returns the message "no verdict on FILE, because the register cannot be read: ...".

@@ -48,7 +48,8 @@ struct Identity {
 
 constexpr std::string_view entry_key = "entry ";
 
-/// Reads the identity file: "UUID", and on a second line "entry 17 SHA-256".
+/// Reads the identity file: "UUID", and on a second line "entry 17 SHA-256". Without a file,
+/// returns an empty identity.
 Expected<Identity> identity_in(const RegisterPlace& place) {
   NONIO_TRY(const auto there, storage::is_there(place.identity));
   if (!there) return Identity{};
@@ -111,7 +112,8 @@ Expected<void> check_state(Database& database, const RegisterPlace& place, const
 }
 
 /// Checks that the register belongs to this site, so that two sites, or a site and a copy of it,
-/// never draw numbers from one register.
+/// never draw numbers from one register. If the site knows no register yet, an empty one, or any
+/// that is a file, becomes its own; this is noted if `may_write`.
 Expected<void> check_identity(Database& database, const RegisterPlace& place, bool may_write) {
   const std::string id = database.first("SELECT id FROM site");
   const bool is_new = database.first("SELECT count(*) FROM certificates") == "0";

@@ -23,7 +23,8 @@ struct RegisterPlace {
   std::filesystem::path other{};  ///< path of a register of the other kind; it must not exist
 };
 
-/// Writes the last journal entry to the identity file.
+/// Writes the last journal entry to the identity file, unless that states this entry or a later
+/// one.
 Expected<void> note_state(storage::Database& database, const RegisterPlace& place);
 
 Expected<RegisterPlace> register_place(const std::filesystem::path& site,

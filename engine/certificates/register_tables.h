@@ -22,7 +22,8 @@ bool has_tables(storage::Database& database);
 /// Whether the register has the tables of this version.
 bool is_of_this_version(storage::Database& database);
 
-/// Returns what was issued under a number as the journal states it: digests without contents.
+/// Returns what the tables contain about an issued certificate, in the form that the journal
+/// states: digests without contents.
 storage::Json issued_json(storage::Database& database, std::int64_t id);
 
 }  // namespace nonio::certificates

@@ -38,7 +38,8 @@ std::vector<sign::ExpectedSigner> signers_of(const config::Signing& signing) {
   return signers;
 }
 
-/// Reads a file of roots; an empty file is an error, because it cannot be intended.
+/// Reads a file of roots; an empty path gives an empty text. An empty file is an error, because it
+/// cannot be intended.
 Expected<std::string> text_at(const fs::path& path) {
   if (path.empty()) return std::string();
   auto text = storage::read_file(path);

@@ -32,7 +32,7 @@ inline constexpr const char* users_name = "users.toml";
 /// Parses users.toml; an error states the first mistake with its line. No account may occur twice,
 /// and no two accounts may have the same name, because two approvals must come from two persons.
 Expected<std::vector<User>> parse_users(std::string_view text);
-/// Reads the file of a site. A symbolic link, or a file above 1 MB, is refused.
+/// Reads the file of a site; a file above 1 MB is refused.
 Expected<std::vector<User>> read_users(const std::filesystem::path& site);
 /// Returns the user with this account; none if there is no such user.
 std::optional<User> user_with(const std::vector<User>& users, const std::string& account);

@@ -13,15 +13,16 @@
 
 namespace nonio::certificates {
 
-/// Loads plugins and templates, including those of `site` if it is not empty. Neither its site.toml
-/// nor the current folder is read.
+/// Loads plugins and templates, including the templates of `site` if that is not empty. Neither its
+/// site.toml nor the current folder is read.
 Expected<std::unique_ptr<reading::Workplace>> open_to_verify(
     const std::vector<std::filesystem::path>& plugin_folders,
     std::vector<std::filesystem::path> template_folders, const std::filesystem::path& site,
     const std::string& version);
 
-/// Reads a file that may be a certificate. A file that is too large is refused by its size, or when
-/// more bytes than allowed are read, without reading all of it.
+/// Reads a file that may be a certificate; an error if it is not a regular file. A file that is too
+/// large is refused by its size, or when more bytes than allowed are read, without reading all of
+/// it.
 Expected<std::string> read_bounded(const std::filesystem::path& path);
 
 /// Loads plugins and templates at the first call, because a file without a valid signature needs
@@ -42,17 +43,18 @@ enum class Verdict {
   valid,         ///< every check was made and passed
   incomplete,    ///< every check that was made passed; some could not be made (`not_made`)
   untrusted,     ///< intact, but the signer is not trusted or not expected
-  not_in_force,  ///< intact and trusted, but not in force according to the register of the site
+  not_in_force,  ///< intact and trusted, but not in force according to the register of the site, or
+                 ///< the site has no register
   other_words,   ///< intact, trusted and in force, but with other words or another layout than the
                  ///< installed ones
   altered,       ///< changed after signing, or damaged
   no_certificate,  ///< no signature, or not a certificate of Nonio
-  no_file          ///< does not exist, or cannot be read
+  no_file          ///< the file does not exist, or cannot be read
 };
 Verdict verdict_of(const sign::Verified& verified);
-/// Returns the verdict for programs: "valid", "no-certificate".
+/// Returns the verdict as a word for programs, for example "valid" or "no-certificate".
 std::string id_of(Verdict verdict);
-/// Returns the verdict for people: "VALID", "NOT A CERTIFICATE".
+/// Returns the verdict as a text for people, for example "VALID" or "NOT A CERTIFICATE".
 std::string text_of(Verdict verdict);
 /// Returns the ids of the checks that could not be made, except that of the DCC, because a
 /// certificate need not have one.

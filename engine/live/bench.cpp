@@ -50,7 +50,7 @@ class SharedColumn {
   double* data_ = nullptr;
 };
 
-/// Residuals of the last fits of each part, by trial; the oldest are dropped.
+/// Residuals of the last eight fits of one part, by the key of the trial; the oldest are dropped.
 class FittedBefore {
  public:
   std::shared_ptr<SharedColumn> find(const std::string& key) const {
@@ -145,8 +145,8 @@ std::string answer_of(Bench& bench, const Job& job, std::span<double> residual, 
 
 bool is_slow(const Job& job) { return job.kind == "explain" || job.kind == "without"; }
 
-/// Returns the priority of a job as a nice value: a picture that a person waits for goes before
-/// background work.
+/// Returns the nice value of a job: 10 for slow jobs, 5 for jobs that no person has requested and
+/// for fits of parts with more than 100,000 readings, otherwise 0.
 int niceness(const Job& job, const Bench& bench) {
   constexpr std::size_t takes_seconds = 100000;  // number of readings from which on a fit takes
                                                  // seconds

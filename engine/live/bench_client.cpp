@@ -81,7 +81,7 @@ bool BenchClient::connect() {
     return false;
   }
   const std::lock_guard lock(mutex_);
-  if (over_) return false;  // close() has run already, so nothing would end this process
+  if (over_) return false;  // the destructor has begun already, so nothing would end this process
   channel_ = std::move(*channel);
   for (const auto& [job, text] : unsent_) send("do", job, text);
   unsent_.clear();

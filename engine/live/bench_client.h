@@ -16,7 +16,8 @@
 namespace nonio::live {
 
 /// Controls a bench process from the server: numbers the requests, and receives the answers in a
-/// thread of its own. If the bench process dies, its requests fail and it is restarted.
+/// thread of its own. If the bench process dies, its requests fail and it is restarted; one that
+/// died within 2 s of its start is restarted only by the next request.
 class BenchClient {
  public:
   /// Receives the number of the job (0: the campaign itself), one of `job_state`, and a text. It is

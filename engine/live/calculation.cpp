@@ -248,7 +248,8 @@ Expected<std::string> page_data(const Bench& bench, const PartModel& part, const
   return data;
 }
 
-/// Returns the prepared matrices of the part; null if they are for other readings.
+/// Returns the prepared matrices of the part; null if they are for other readings, or not prepared
+/// yet.
 const model::Groundwork* groundwork_of(const Bench& bench, const Tried& tried) {
   if (tried.own) return nullptr;
   const auto found = bench.groundwork.find(tried.part().part.name);

@@ -19,7 +19,8 @@ struct DroppedFile {
 /// or a file name that a campaign must not contain.
 tl::expected<DroppedFile, Answer> dropped_file(const std::string& body);
 
-/// Returns the options --column=... for the member `columns` and --axis for `axis`.
+/// Returns the options --column=... for the member `columns`, and --axis if the member `axis` is
+/// the name of an axis.
 tl::expected<std::vector<std::string>, Answer> file_options(const storage::Json& form);
 
 /// Returns the form as options. An error is the refusal of a value that does not have the form its

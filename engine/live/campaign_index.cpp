@@ -102,8 +102,8 @@ int severity(std::string_view decision) {
   return decision.empty() ? 0 : decision == "conforms" ? 1 : decision == "does not conform" ? 3 : 2;
 }
 
-/// Returns the worst decision in results.json; if there are tests before and after an adjustment,
-/// those before it are ignored.
+/// Returns the worst decision in results.json, empty if there is none; if there are tests before
+/// and after an adjustment, those before it are ignored.
 std::string verdict_of(const std::string& results, const Campaign* campaign) {
   bool has_after = false;
   std::vector<std::string> before;

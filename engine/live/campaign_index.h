@@ -56,7 +56,8 @@ struct CampaignPage {
 class CampaignIndex {
  public:
   /// `changed` is called when campaigns or results have changed. `is_watched` returns whether a
-  /// page is open; while none is, no files are read. `pause`: shortest time between two looks.
+  /// page is open; while none is, files are read only on request. `pause`: shortest time between
+  /// two looks.
   CampaignIndex(std::filesystem::path site, std::filesystem::path out,
                 std::function<void()> changed, std::function<bool()> is_watched,
                 std::chrono::duration<double> pause = std::chrono::seconds(5));
@@ -64,7 +65,8 @@ class CampaignIndex {
   CampaignIndex& operator=(const CampaignIndex&) = delete;
   ~CampaignIndex();
 
-  /// Returns matching campaigns by day, the newest first, then by id.
+  /// Returns one page of the matching campaigns by day, the newest first, then by id; beyond the
+  /// last page, the last page.
   CampaignPage find(const CampaignQuery& query) const;
   /// Calls `take` for all campaigns in the order of `find`; `take` must not call the index.
   void each(const std::function<void(const ListedCampaign&)>& take) const;
@@ -86,7 +88,7 @@ class CampaignIndex {
   Seen read(const std::string& folder) const;
   void run();
   /// Reads all campaigns whose files have changed, and removes those that no longer exist. Returns
-  /// false if nothing has changed.
+  /// whether anything has changed; true for the first complete look, and false if the index ends.
   bool look_at_all();
   bool is_over() const;
 

@@ -71,8 +71,8 @@ Expected<Shells> shells_of(const LiveWish& wish) {
                 Sentences(workbench::words(templates, language)), settings->limits.seconds};
 }
 
-/// Whether users sign in at this server and not at a proxy. An error if users.toml states no
-/// password.
+/// Whether users sign in at this server and not at a proxy; false also if there is no users.toml.
+/// An error if users.toml cannot be read, or if it is needed for signing in and states no password.
 Expected<bool> requires_sign_in(const LiveWish& wish) {
   NONIO_TRY(const auto there, storage::is_there(wish.folder / certificates::users_name));
   if (!there && wish.user_header.empty()) return false;

@@ -16,7 +16,8 @@ class Starting : public Service {
   virtual Expected<void> begin() = 0;
 };
 
-/// Returns the folders with a campaign.toml below a site, relative to it and sorted.
+/// Returns the folders with a campaign.toml, the site itself or up to four levels below it,
+/// relative to the site and sorted.
 std::vector<std::string> campaigns_in(const std::filesystem::path& site);
 
 /// HTML of the pages and the sentences that they show, in the language of the site.

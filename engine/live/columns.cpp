@@ -118,8 +118,7 @@ struct Extremes {
 /// Readings of a range: reduced to columns of pixels, and as single readings if they are few.
 struct Binned {
   std::vector<Extremes> columns;
-  std::vector<std::size_t> rows;  ///< rows in the range; more than `few` mean that not all are
-                                  ///< listed
+  std::vector<std::size_t> rows;  ///< rows in the range, at most `few` + 1 of them
   std::size_t count = 0;
 };
 

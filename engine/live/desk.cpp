@@ -141,7 +141,8 @@ Json Desk::steps() const {
   return list;
 }
 
-/// Returns the command that makes the trial on a terminal.
+/// Returns the command that makes the trial on a terminal; if the trial is saved already, the
+/// command that compares its models.
 std::string Desk::command() const {
   const std::string change = command_of(name_, session_.saved(), session_.trial());
   return change.empty() ? "nonio model compare " + quoted_for_shell(name_) : change;
@@ -193,8 +194,8 @@ Answer Desk::state(bool may_write) {
   return {200, json_type, storage::dump_line(json)};
 }
 
-/// Returns the fit of a part and waits for it if necessary. If `picture`, a fit whose places are
-/// not computed yet is accepted as well.
+/// Returns the fit of a part and waits for it, at most 2 s; the status is 409 if it is not ready
+/// then. If `picture`, a fit whose places are not computed yet is accepted as well.
 Answer Desk::fit(const std::string& part, const Request& request, bool picture) {
   std::unique_lock lock(mutex_);
   const auto is_known = [&] {

@@ -26,7 +26,7 @@ struct PartState {
     /// they are {"explain": ...} and {"fingerprints": ...}; the second may come later.
     std::string head, rest;
   };
-  std::string key;  ///< key of the trial that this belongs to
+  std::string key;  ///< key of the trial to which `fit` and `explain` belong
   Work fit, explain;
 };
 
@@ -70,7 +70,7 @@ class Desk {
   /// Answers a request. `what`: the path after "/api/" with placeholders, for example "state" or
   /// "parts/{part}/fit".
   Answer answer(const std::string& what, const std::string& part, const Request& request);
-  /// Whether the model or the excluded readings differ from what was saved.
+  /// Whether the model, the excluded readings or the periods differ from what was saved.
   bool has_unsaved() const;
   void close();
 
@@ -129,7 +129,8 @@ class Desk {
   /// Ends the search with an error: a text of the program, or the name of a sentence of the page.
   void fail_search(const std::string& words, const std::string& name = "");
   void end_search();
-  /// Sends a request and waits for its answer; `lock` is released meanwhile.
+  /// Cancels an older request with the key `replaces`, sends this one and waits for its answer, at
+  /// most 120 s; `lock` is released meanwhile.
   Waiting wait_for(std::unique_lock<std::mutex>& lock, const Json& request,
                    const std::string& replaces);
   void publish(const char* type, const std::string& about, Json data);

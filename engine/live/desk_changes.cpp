@@ -258,7 +258,8 @@ void Desk::end_search() {
   if (searching_) search_ended("cancelled", "");
 }
 
-/// When all parts are explained, adds the next effect or ends the search.
+/// When all parts are explained, adds the next effect or ends the search. If a part fails that had
+/// not failed before, the last effect is removed and the search ends.
 void Desk::search_on() {
   while (searching_ && is_explained()) {
     std::vector<modelling::PartVerdict> verdicts;

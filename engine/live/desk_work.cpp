@@ -23,7 +23,8 @@ std::string now() {
   return text;
 }
 
-/// Returns RMS and similar values of a fit, with their units.
+/// Returns the RMS values, cross-validation RMS values and noise floor of a fit's answer, by names
+/// that contain the units.
 Json figures_of(const std::string& head) {
   Json out = Json::object();
   const Json all = storage::parse_or_discard("{" + head + "}");

@@ -21,7 +21,7 @@ std::vector<std::string> model_in(const Json& request) {
 }
 
 /// Converts excluded rows into lines of the file. An error if only a part of a line's readings is
-/// excluded, because campaign.toml can exclude whole lines only.
+/// excluded, because campaign.toml can exclude whole lines only, or if the reader states no line.
 Expected<modelling::Exclusion> exclusion_of(const Bench& bench, const Json& one) {
   modelling::Exclusion out{
       one.at("measurement").get<std::string>(), {}, one.at("why").get<std::string>()};

@@ -45,8 +45,9 @@ std::optional<Authority> authority_of(std::string_view text) {
   return out;
 }
 
-/// Returns whether the authority is an address of this server. `scheme` is that of an Origin
-/// header, in which the default port is left out; it is empty for a Host header.
+/// Returns whether the authority is an address of this server or a host stated with --host.
+/// `scheme` is that of an Origin header, in which the default port is left out; it is empty for a
+/// Host header.
 bool is_ours(std::string_view text, const Post& post, std::string_view scheme) {
   const auto given = authority_of(text);
   if (!given) return false;

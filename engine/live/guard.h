@@ -80,7 +80,7 @@ int head_status(std::string_view bytes);
 /// Returns the route, or the first check that failed. Order of the checks: size of the head (414,
 /// 431), Host (421), Sec-Fetch-Site and Origin (403), method (405), token (403), path (404, 405),
 /// --edit (403), announced length of the body (400, 413), content type (415). Open routes need
-/// neither token nor --edit.
+/// neither token nor --edit; with `sign_in`, no token is checked.
 Verdict judge(const Head& head, const Post& post, const std::vector<Route>& routes);
 
 /// Returns the address of the page without the token, for example "http://127.0.0.1:4711/".

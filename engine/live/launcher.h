@@ -17,8 +17,8 @@ class Launcher {
 
   /// Starts a bench process for this campaign and returns the channel to it.
   Expected<process::Handle> open(const std::filesystem::path& campaign);
-  /// Runs this program with other arguments (tool.h) and returns the channel to it. `input`: a line
-  /// for its standard input.
+  /// Runs this program with other arguments (tool.h) and returns the channel to it. The program is
+  /// terminated after `seconds` (s). `input`: a line for its standard input.
   Expected<process::Handle> run(const std::vector<std::string>& arguments, double seconds,
                                 const std::string& input = {});
 

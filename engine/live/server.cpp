@@ -59,8 +59,8 @@ class Front {
   std::uint16_t port() const { return port_; }
 
   /// Passes each socket to `take` with its complete head still unread, or with the status of a
-  /// refusal (408: too slow, 431: too large). Runs until `is_over`, which is called several times
-  /// per second, returns true.
+  /// refusal (400: not a request, 408: too slow, 414 or 431: too large). Runs until `is_over`,
+  /// which is called several times per second, returns true.
   void serve(const std::function<void(process::Handle, int refused)>& take,
              const std::function<bool()>& is_over);
 
@@ -267,7 +267,7 @@ class Handler : public net::HTTPRequestHandler {
     out << answer.body << std::flush;
   }
 
-  /// Sends events until the page or the server closes the connection.
+  /// Sends events until the page or the server closes the connection, or the user's session ends.
   void stream(const Answer& answer, net::HTTPServerResponse& response) {
     response.setChunkedTransferEncoding(true);
     std::ostream& out = response.send();
@@ -307,7 +307,7 @@ void set_timeout(int socket, int option, long seconds, long microseconds) {
 }
 
 /// Reads what the client still sends, because otherwise the connection could be reset before the
-/// client has read the answer.
+/// client has read the answer. Ends after 64 reads, or if nothing arrives within 0.2 s.
 void part_from(int socket) {
   constexpr int most = 64;
   constexpr long soon = 200'000;  // time limit of one read, us
@@ -318,7 +318,8 @@ void part_from(int socket) {
     ;
 }
 
-/// Answers bytes that are not a request, or a request that came too slowly.
+/// Answers bytes that are not a request, and requests that came too slowly or have a too large
+/// head.
 void refuse(int socket, int status, const Sentences& sentences) {
   const Answer answer = sentences.spelled(
       status == 431

@@ -41,7 +41,8 @@ struct Answer {
                                        ///< the user's session has ended
 };
 
-/// Returns {"error": sentence, "id": name, "status": status}; `name` without the prefix "refused.".
+/// Returns a refusal with the sentence "refused." + `name`. `Sentences::spelled` makes its body
+/// from this: {"error": sentence, "id": name, "status": status}.
 Answer refused(int status, const std::string& name,
                std::vector<std::pair<std::string, std::string>> places = {});
 /// Returns a refusal with a text made by the caller.
@@ -54,9 +55,11 @@ Answer json_answer(int status, const storage::Json& json);
 class Sentences {
  public:
   explicit Sentences(std::map<std::string, std::string> all) : all_(std::move(all)) {}
-  /// Returns the sentence; the name itself if there is no such sentence.
+  /// Returns the sentence with the values of its placeholders; the name itself if there is no such
+  /// sentence.
   std::string operator()(const Said& said) const;
-  /// Replaces the id of a refusal by its text in the site's language, as JSON body.
+  /// Writes the sentence of a refusal in the site's language into its JSON body; other answers are
+  /// returned unchanged.
   Answer spelled(Answer answer) const;
 
  private:
@@ -68,7 +71,8 @@ class Service {
   virtual ~Service() = default;
   virtual const std::vector<Route>& routes() const = 0;
   virtual Answer answer(const Request& request) = 0;
-  /// Refuses a request before its body is read, if the user is not signed in.
+  /// Returns the refusal of a request before its body is read, if the user is not known; otherwise
+  /// none. A service without users refuses nothing.
   virtual std::optional<Answer> before_body(const Head&, const Route&) { return std::nullopt; }
   /// Returns the sentences for refusals.
   virtual const Sentences& sentences() const = 0;
@@ -78,7 +82,7 @@ class Service {
   virtual void close() = 0;
 };
 
-/// Routes of the page's own files, which contain no data.
+/// Returns the routes of the page's own files, which contain no data.
 std::vector<Route> shell_routes();
 /// Returns one of the page's own files; for a path that ends with "/", the page itself, which is
 /// `shell`. Status 404 if there is no such file. Handles If-None-Match.

@@ -18,8 +18,8 @@ struct Excluded {
   std::string part;
   std::size_t row = 0;
   std::string measurement, file;
-  std::uint32_t measurement_row = 0;  ///< row in the table of the measurement
-  std::uint64_t line = 0;             ///< line of the file; 0: unknown
+  std::uint32_t measurement_row = 0;  ///< row of the reading in the table of the measurement
+  std::uint64_t line = 0;             ///< line of the reading in its file; 0: unknown
   std::string why;
   bool operator==(const Excluded&) const = default;
 };
@@ -27,7 +27,7 @@ struct Excluded {
 /// Everything that a fit depends on apart from the files.
 struct Trial {
   std::vector<std::string> model;           ///< effects in the order in which they would be saved
-  std::vector<Excluded> excluded;           ///< sorted by part and row
+  std::vector<Excluded> excluded;           ///< excluded readings, sorted by part and row
   std::map<std::string, double> period_mm;  ///< tried periods in mm, by axis
   bool operator==(const Trial&) const = default;
 };
@@ -71,7 +71,7 @@ class Session {
   /// Sets the period of an axis; 0: that of campaign.toml.
   Done period(const std::string& axis, double period_mm);
 
-  /// Has to be called when the model was written to campaign.toml or read from it again.
+  /// Has to be called when the model was written to campaign.toml.
   void was_saved(const std::vector<std::string>& model);
   /// Has to be called when the files were read again. No reading is excluded any more, because
   /// readings may have changed; model and periods are those of the file.

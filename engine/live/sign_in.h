@@ -27,8 +27,8 @@ class SignIn {
   /// Result of checking a password.
   struct Checked {
     bool fits = false;
-    int wait_s = 0;  ///< seconds to wait after wrong passwords, if the password was not checked;
-                     ///< otherwise 0
+    int wait_s = 0;  ///< time to wait in s if the password was not checked, after wrong passwords
+                     ///< or because too many checks wait; otherwise 0
   };
   /// Checks a password. Checks run one after the other, so that guessing uses at most one
   /// processor, and only a few may wait. After wrong passwords the account is not checked for 1, 2,
@@ -39,8 +39,8 @@ class SignIn {
 
   /// Starts a session and returns the value of Set-Cookie. `secure`: send the cookie over TLS only.
   Expected<std::string> begin(const certificates::User& user, bool secure);
-  /// Returns the user of the request's session; none if there is no session, or the password has
-  /// changed since.
+  /// Returns the user of the request's session; none if there is no session or it has ended: after
+  /// 12 h, with a change of the password, or with the removal of the user.
   std::optional<certificates::User> user_of(const Head& head,
                                             const std::vector<certificates::User>& users);
   /// Ends the session and returns the value of Set-Cookie that removes the cookie.

@@ -52,7 +52,7 @@ bool is_by_proxy(const Head& head) {
   return !host.starts_with("127.0.0.1") && !host.starts_with("localhost");
 }
 
-/// Whether two names agree apart from blanks and capital letters.
+/// Whether two names count as one person according to `likeness_of`.
 bool is_same_name(const std::string& one, const std::string& other) {
   return certificates::likeness_of(one) == certificates::likeness_of(other);
 }
@@ -139,7 +139,7 @@ Answer SiteService::verify(const Request& request) {
 }
 
 /// Starts `nonio run`: with `campaign` for that campaign only (--only), otherwise for all changed
-/// campaigns.
+/// campaigns. The first run of a site includes all campaigns in any case.
 Answer SiteService::run(const Json& body) {
   if (wish_.out.empty()) return refused(409, "no_out");
   std::vector<std::string> arguments{"run", verb_option("out", wish_.out.string())};

@@ -152,8 +152,8 @@ Answer SiteCampaigns::machines() const {
   return json_answer(200, {{"schema", "nonio-live-machines/1"}, {"machines", std::move(all)}});
 }
 
-/// Lists the instruments by name, each with its newest calibration and the newest campaigns that
-/// used it.
+/// Lists the instruments by name, each with its newest calibration and at most 20 of the newest
+/// campaigns that used it.
 Answer SiteCampaigns::instruments() const {
   struct Instrument {
     Json json;

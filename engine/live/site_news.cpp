@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Returns a text that changes when the file is written or replaced.
+/// Returns a text that changes when the file is written or replaced; "-" if it does not exist.
 std::string news_stamp(const fs::path& path) {
   struct stat s {};
   if (::stat(path.c_str(), &s) != 0) return "-";

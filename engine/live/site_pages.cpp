@@ -100,7 +100,8 @@ Answer SiteService::state(const User* user) {
   return json_answer(200, json);
 }
 
-/// Returns the settings of site.toml and users.toml without secrets.
+/// Returns the settings of site.toml without secrets; for administrators, also the users of
+/// users.toml.
 Answer SiteService::settings(const User* user) const {
   std::string digest;
   const auto site = config::read_site(wish_.folder, digest);

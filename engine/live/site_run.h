@@ -40,7 +40,7 @@ class SiteRun {
   bool is_running() const;
   /// Returns the state of the last run; null if there was none.
   storage::Json now() const;
-  /// Ends the present run.
+  /// Ends the present run and prevents new ones.
   void close();
 
  private:

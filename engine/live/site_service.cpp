@@ -108,7 +108,7 @@ bool SiteService::is_campaign(const std::string& folder) const {
   return fs::is_regular_file(*path / config::manifest_name, error);
 }
 
-/// Returns the id that the manifest states; empty if it states none.
+/// Returns the id that the manifest states; empty if it states none or cannot be read.
 std::string SiteService::id_of(const std::string& folder) const {
   const auto text = storage::read_small_file(wish_.folder / folder / config::manifest_name);
   return text ? config::extract_id(*text) : "";
@@ -183,7 +183,8 @@ Answer SiteService::answer(const Request& request) {
   return out;
 }
 
-/// Carries out a request that may change something, and records it in the audit log.
+/// Records in the audit log a request that may change something or that the user's role forbids,
+/// and carries it out if `may`. Without a record, it is refused.
 Answer SiteService::recorded(const Request& request, const User& user, bool may) {
   const std::string& path = request.route.path;
   Json entry = {{"account", user.account},

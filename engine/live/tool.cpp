@@ -41,7 +41,8 @@ int exit_status_of(const process::Child& child) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : by_signal;
 }
 
-/// Sends the complete lines of `text` from `sent` on.
+/// Sends the complete lines of `text` from `sent` on, and advances `sent` to the first line that is
+/// not complete.
 void tell_lines(const std::string& text, std::size_t& sent, int channel) {
   for (std::size_t end; (end = text.find('\n', sent)) != std::string::npos; sent = end + 1) {
     process::write_text(channel, storage::pack(is_line, text.substr(sent, end - sent)));

@@ -37,7 +37,7 @@ using kit::Verdict;
 using CheckState = PluginCheck::State;
 
 constexpr double scan_seconds = 1.0;
-// Checks of one plugin that reach the time limit; then no more are tried
+// Number of checks of one plugin that may reach the time limit before its other checks are skipped.
 constexpr std::size_t most_hanging = 2;
 
 bool went_well(const PluginCheck& c) {
@@ -93,7 +93,8 @@ void set_zone(const char* zone) {
   ::tzset();
 }
 
-/// Sets the home, user and temporary folder to a folder that does not exist, and changes to /usr.
+/// Sets the environment variables HOME, TMPDIR, USER and PWD to a path that does not exist, and
+/// changes the working folder to /usr.
 void go_elsewhere() {
   for (const char* name : {"HOME", "TMPDIR", "USER", "PWD"}) ::setenv(name, "/elsewhere", 1);
   if (::chdir("/usr") != 0) throw std::runtime_error("no folder /usr");
@@ -127,7 +128,8 @@ std::vector<fs::path> files_with(const fs::path& folder, const std::string& endi
   return found;
 }
 
-/// Reads all campaigns below a folder, with the files next to each campaign.toml.
+/// Reads all campaigns below a folder, with the files next to each campaign.toml and its
+/// expected/values.csv.
 Expected<std::vector<kit::Source>> sources_below(const fs::path& folder) {
   std::vector<kit::Source> sources;
   for (const fs::path& manifest : files_with(folder, std::string("/") + config::manifest_name)) {
@@ -303,9 +305,9 @@ class Checker {
       run(plugin, c.name, [&](Bench& b) { return c.run((brought_.*kind)[index], b); });
   }
 
-  /// Runs one check in a child process. `list` receives the text of a passed check. With `always`
-  /// the check runs although it was not requested, because others need it; then only a failure is
-  /// reported.
+  /// Runs one check in a child process, for a plugin once per seed until it fails. `list` receives
+  /// the text of a passed check. With `always` the check runs although it was not requested,
+  /// because others need it; then only a failure is reported.
   bool run(const std::string& plugin, const std::string& name,
            const std::function<Verdict(Bench&)>& work, std::string* list = nullptr,
            bool always = false) {

@@ -33,7 +33,7 @@ struct PluginCheckRequest {
   std::string plugin;       ///< the one plugin to check, by name; empty: all
   std::uint64_t seed = 1;   ///< first seed of the samples
   std::uint64_t seeds = 3;  ///< number of seeds: seed, seed + 1, ...
-  double seconds = 20.0;    ///< processor time per check, s
+  double seconds = 20.0;    ///< limit of processor time per check, s; its duration: ten times this
   double memory_MB = 2000.0;
   /// the program's plugins, which read and evaluate the samples
   std::filesystem::path own_plugins;

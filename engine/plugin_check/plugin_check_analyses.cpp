@@ -144,7 +144,8 @@ double size_of(const Sample& s) {
   return size;
 }
 
-/// Returns the first difference between the names in two lists in words; empty if they are equal.
+/// Returns the first difference between the names in two lists in words, or that only one of the
+/// two evaluations failed; empty if there is no difference.
 std::string same_names(const Said& one, const Said& two) {
   if (one.failed() != two.failed())
     return "it fails on one of both: " + (one.failed() ? one : two).error;
@@ -282,7 +283,8 @@ std::optional<int> power_of(Quantity q) {
   }
 }
 
-/// Check: doubling all deviations doubles the results, for an instrument without uncertainty.
+/// Check: for an instrument without uncertainty, doubling all deviations doubles results that are
+/// deviations, slopes or drifts, and leaves positions, times and numbers of readings unchanged.
 Verdict analysis_scale(const Analysis& a, const Bench& bench) {
   return each_sample(a, bench, of_deviations, [&](const Sample& given) -> std::string {
     Sample s = given;

@@ -392,7 +392,7 @@ bool describes(const model::Explanation& x, const std::string& name) {
 }
 
 /// Check: `explain` names the effect that is planted in the first sample of an axis, or of space,
-/// that determines it.
+/// that determines it, or uses it to describe the deviations.
 Verdict effect_explained(const Effect& e, const Bench& bench) {
   if (e.is_nuisance) return skipped("it is in every model and never a candidate");
   if (e.of_channels)

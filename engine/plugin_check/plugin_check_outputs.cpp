@@ -153,7 +153,7 @@ void replace_texts(Campaign& c, const std::string& text) {
 }
 
 /// Returns the part of a text that the host accepts as id of a measurement: at most 50 bytes,
-/// without slashes and control characters.
+/// without slashes and control characters, and without points and blanks at the beginning.
 std::string id_of(const std::string& text) {
   std::string id;
   for (const char c : text)

@@ -346,7 +346,8 @@ Verdict reader_truth(const Reader& r, const Bench& bench) {
   return v;
 }
 
-/// Check: the reader does not recognise files of other formats.
+/// Check: the reader does not recognise files of other formats. If it reads one all the same, it
+/// returns an error or sound observations.
 Verdict reader_foreign(const Reader& r, const Bench& bench) {
   storage::Random random = bench.random(9);
   if (!r.recognises || !r.reads || !r.read) return failed("recognises, reads or read is missing");

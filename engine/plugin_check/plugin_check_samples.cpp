@@ -39,7 +39,8 @@ Waves waves(storage::Random& random, double size, double over) {
   return w;
 }
 
-/// How a line is measured: number of intervals and runs, directions, reversal and noise (m).
+/// How a line is measured: number of intervals and runs, directions, and reversal and noise (m; rad
+/// on a rotary axis).
 struct Pass {
   int intervals = 20, runs = 3;
   bool plus = true, minus = true, timed = false, uneven = false;
@@ -138,8 +139,8 @@ class MadeMachine {
     return out;
   }
 
-  /// Returns a file with readings of a gauge on a table, along its radius and along its axis. The
-  /// control assumes a position that is 20 um from the true one.
+  /// Returns a file with readings of a gauge on a table, along its radius and along its axis: 20 um
+  /// and 40 um times 1 - cos(angle), with noise.
   std::string tool_centre(int n) {
     std::string out = "angle_deg,x_mm,y_mm,z_mm,tx,ty,tz,deviation_um,line\n";
     for (const bool along : {false, true})

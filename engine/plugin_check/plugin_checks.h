@@ -44,12 +44,14 @@ struct Sample {
 std::vector<Source> made_sources(std::uint64_t seed);
 /// Returns the method of a measurement; null if `methods` does not contain it.
 const Method* method_of(const Measurement& m, const std::vector<Method>& methods);
-/// Reads a source; each file is read by the first reader that recognises it. An error names the
-/// sample and the file.
+/// Reads a source; each file is read by the reader that its measurement names, otherwise the first
+/// that recognises it, otherwise one for the columns of its method. Axes without a stated
+/// compensation get none, because controllers require it. An error names the sample and the file.
 Expected<Sample> open_source(const Source& source, const std::vector<Reader>& readers,
                              const std::vector<Method>& methods);
 
-/// The inputs of every check: a seed, samples and all plugins.
+/// The inputs of every check: a seed, samples, templates, and the plugins that read and evaluate
+/// samples.
 struct Bench {
   std::uint64_t seed = 1;
   std::vector<Source> sources;
@@ -117,14 +119,14 @@ std::string unsound(const What& what) {
 }
 /// Returns the row numbers 0 to n - 1 in random order.
 std::vector<std::uint32_t> shuffled(std::size_t n, storage::Random& random);
-/// Returns variants of `o` with unusual readings, each with its name: none, one, one target, huge
-/// positions, missing channels.
+/// Returns variants of `o` with unusual readings, each with its name: none, one, one target, one
+/// direction, positions only, huge positions, missing times and temperatures.
 std::vector<std::pair<std::string, Observations>> odd_tables(const Observations& o);
 /// Returns the plugin's default options, replaced by those that the sample sets.
 Settings settings_for(const Info& info, const Sample& sample);
 Settings settings_for(const Output& output, const Sample& sample);
-/// Returns the options of a controller for a sample, including the numbers of the axes in order,
-/// which many controllers require.
+/// Returns the options of a controller for a sample, including the numbers of the axes in order and
+/// encoder counts, which some controllers require.
 Settings settings_for(const Controller& controller, const Sample& sample);
 /// Returns all results of the analyses and the model for a sample; computes them unless the sample
 /// contains them.

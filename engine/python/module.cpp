@@ -25,8 +25,8 @@ namespace nonio::python {
 
 namespace {
 
-/// Becomes the Python exception nonio.Error. Unlike a Python exception, it can also be thrown while
-/// Python's lock is released.
+/// An error that becomes the Python exception nonio.Error. Unlike a Python exception, it can also
+/// be thrown while Python's lock is released.
 struct Failure {
   Error error;
 };

@@ -121,8 +121,8 @@ std::vector<double> deviation_of_columns(const EffectSpec& e, const Effect::Colu
   return sum;
 }
 
-/// Returns the shape as specified; if it is not given, the only value that readings and manifest
-/// allow, or else the usual one.
+/// Returns the shapes as specified; a shape that is not given has the only value that readings and
+/// manifest allow, or else its usual value. Error: a shape has neither.
 Expected<std::vector<double>> shape_of(const EffectSpec& e, const Observations& o,
                                        const Axis& place) {
   std::vector<double> shape;
@@ -214,7 +214,8 @@ void preset(const CycleSpec& c, Observations& o) {
   for (std::size_t i = o.size(); i-- > 0;) o.deviation[i] -= o.deviation[i - i % each];
 }
 
-/// Returns the file of one measurement; records simulated misreadings in `truth`.
+/// Returns the content of the file of one measurement, with noise and misreadings; records its id,
+/// its file, its noise and its misreadings in `truth`.
 Expected<std::string> readings(const Specification& s, std::size_t k, const Observations& o,
                                Json& truth) {
   const CycleSpec& c = s.cycles[k];
@@ -269,7 +270,8 @@ void tell_things(const Specification& s, Json& truth) {
         {{"name", q.name}, {"error_urad", q.error * 1e6}, {"set_up_urad", q.set_up * 1e6}});
 }
 
-/// Returns the manifest lines of the specification, with at most one empty line in a row.
+/// Returns `simulated_mark` and the manifest lines of the specification, with at most one empty
+/// line in a row.
 std::string manifest_text(const std::string& lines) {
   std::string text = std::string(simulated_mark) + "\n";
   for (const char c : lines)

@@ -190,8 +190,9 @@ Expected<Observations> on_circle(const CycleSpec& c) {
   return o;
 }
 
-/// Adds the slopes measured against a square: the set-up on the line of the first axis; the error
-/// of the square minus the set-up on that of the other (math/square.h: b1 + b2 = t + g).
+/// Adds the slope measured against the square of the measurement: the set-up on the line of the
+/// first axis; on that of the other the error of the square (negative if it was turned over) minus
+/// the set-up (math/square.h: b1 + b2 = t + g). Nothing is added without a square.
 void put_square(const Specification& s, const CycleSpec& c, Observations& o) {
   for (const SquareSpec& q : s.squares) {
     if (q.name != c.measurement.square) continue;

@@ -8,7 +8,8 @@
 #include "simulation/simulate_spec.h"
 
 /// Readings of a specification, measurement by measurement, in the form in which a reader of files
-/// returns them: those of an exact machine, before effects and noise.
+/// returns them: those of an exact machine with the stated set-up of straightedges and squares,
+/// before effects and noise.
 namespace nonio::simulation {
 
 /// Returns the rows of one measurement. They contain only what its file will contain, so that
@@ -30,7 +31,8 @@ class Clock {
  public:
   explicit Clock(const CycleSpec& c) : c_(c) {}
   /// Advances the time by a move of `way`, m or rad, and by the dwell, except for the first
-  /// reading, and appends time (s) and material temperature (degC) of the reading to `o`.
+  /// reading, and appends time (s) and material temperature (degC) of the reading to `o`; NaN for
+  /// those that the file does not contain.
   void reading(Observations& o, double way);
   void pause() { t_ += c_.pause; }
 
@@ -43,7 +45,7 @@ class Clock {
 /// Returns the header row of a measurement's file.
 std::string header_of(const CycleSpec&);
 /// Returns the row of the file that begins with reading `at`: one reading, or the three of a ball
-/// centre. `deviation` (m or rad) replaces the deviations of these readings.
+/// centre or of a probe. `deviation` (m or rad) replaces the deviations of these readings.
 std::string row_of(const CycleSpec&, const Observations&, std::size_t at,
                    const std::vector<double>& deviation);
 /// Returns a whole file with the columns that a method declares.

@@ -19,7 +19,7 @@ struct CycleSpec {
   Measurement measurement;
   Axis axis;
   std::uint64_t line = 0;       ///< line in the specification
-  std::vector<double> targets;  ///< ascending, without random shifts
+  std::vector<double> targets;  ///< targets, ascending, without random shifts, m or rad
   double offset = 0.0;          ///< largest random shift of a target, m or rad
   std::uint32_t runs = 5;
   bool pendulum = true;  ///< true: each run in both directions; false: every run in `direction`

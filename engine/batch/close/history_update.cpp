@@ -18,8 +18,9 @@ std::string in_one_line(const std::vector<Error>& errors) {
   return all;
 }
 
-/// Returns one event of kind "compensation" for each table that was loaded into a control on a day
-/// that a machine's record states.
+/// Returns one event of kind "compensation" for each state of a control in the machine records that
+/// was not read from a backup. Its text is the table that was loaded, "none" if no table was
+/// active, or empty if the record does not state it.
 std::vector<config::Event> events_of(const config::MachineRecords& records) {
   std::vector<config::Event> events;
   for (const config::RecordFile& file : records) {

@@ -25,13 +25,14 @@ class HistoryUpdate {
       : options_(options), context_(context) {}
 
   /// Has to be called before the first result is stored. Marks the store as possibly outdated.
-  /// `known`: the run up to which the store is complete, as the plan of this run states it.
+  /// `known`: the run up to which the store is complete according to the plan of this run; it is
+  /// used if the store itself does not state one.
   Expected<void> begin(std::optional<std::uint64_t> known = {});
   std::optional<std::uint64_t> known() const { return known_; }
-  /// Has to be called when all results are stored: adds these campaigns to the store. `last` is the
-  /// run up to which the store should be complete before, `run` the one up to which it is complete
-  /// afterwards. Returns notes for the summary. An error leaves the store unchanged, and the next
-  /// run rebuilds it.
+  /// Has to be called when all results are stored: adds these campaigns to the store, and rebuilds
+  /// the store if it is not complete up to the run `last`. `run` is the run up to which it is
+  /// complete afterwards. Returns notes for the summary about results that are not in the history.
+  /// After an error or a note, the next run rebuilds the store.
   Expected<std::vector<std::string>> end(std::uint64_t last, std::uint64_t run,
                                          const std::vector<std::string>& campaigns,
                                          const Expected<store::SiteRecords>& records);

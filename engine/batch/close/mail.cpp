@@ -42,8 +42,8 @@ constexpr std::size_t longest_answer = 300;  // longest quoted message of a serv
                                              // bytes
 constexpr std::size_t longest_subject = 200;
 
-/// Replaces control characters by spaces. A text longer than `longest` bytes is shortened without
-/// cutting a character, and "..." is appended.
+/// Replaces control characters by spaces and removes spaces at the end. A text longer than
+/// `longest` bytes is shortened without cutting a character, and "..." is appended.
 std::string one_line(std::string text, std::size_t longest) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
@@ -64,8 +64,8 @@ std::string without(const std::string& secret, const std::string& text) {
   return there ? "its answer contains a secret that was sent, and is not shown" : text;
 }
 
-/// Encodes the subject as `=?UTF-8?B?...?=` words, none of which splits a character (RFC 2047).
-/// ASCII subjects are returned unchanged.
+/// Makes one line of at most about 200 bytes from the subject. If it is not ASCII, it is encoded as
+/// `=?UTF-8?B?...?=` words, none of which splits a character (RFC 2047).
 std::string encoded_subject(const std::string& subject) {
   const std::string text = one_line(subject, longest_subject);
   const bool plain = std::all_of(text.begin(), text.end(),
@@ -118,8 +118,8 @@ std::string said_in(int file) {
   return one_line(std::move(said), longest_answer);
 }
 
-/// Returns the environment variables that the mail program needs; variables with passwords are left
-/// out.
+/// Returns the environment variables PATH, HOME, USER, LOGNAME, LANG and TZ for the mail program;
+/// all others are left out, because they may contain passwords.
 std::vector<std::string> kept_environment() {
   constexpr std::string_view kept[] = {"PATH=", "HOME=", "USER=", "LOGNAME=", "LANG=", "TZ="};
   std::vector<std::string> all = process::present_environment();

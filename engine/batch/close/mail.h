@@ -38,7 +38,8 @@ using PostTo = Expected<std::string> (*)(const config::Webhook& webhook,
                                          double seconds);
 
 /// Sends the letter in this process; exported as `nonio_deliver` by a library that is loaded late
-/// (late_library.h). A server may take `seconds` (s).
+/// (late_library.h). The mail program may take `seconds` (s) in total; a server may take `seconds`
+/// (s) for each answer.
 using Deliver = Expected<std::string> (*)(const config::Mail& mail,
                                           const std::filesystem::path& site, const Letter& letter,
                                           double seconds);

@@ -19,8 +19,8 @@ void write_history(RunResult& run, HistoryUpdate& history, std::uint64_t known,
 
 /// Writes reports again if they show another history of their machine than the store contains by
 /// now, so that the order in which campaigns are evaluated has no effect. Returns false if it was
-/// interrupted. `only`: the campaign of a run that is reopened; reports of other campaigns are left
-/// to the next run.
+/// interrupted; any other failure is noted in `run`, and the next run writes the reports. `only`:
+/// the campaign of a run that is reopened; reports of other campaigns are left to the next run.
 bool show_histories(const RunOptions& options, const RunEvents& events,
                     const reading::Context& context, const RunState& state, ReleaseDesk desk,
                     HistoryUpdate& history, const Expected<store::SiteRecords>& records,

@@ -16,8 +16,8 @@ namespace {
 
 constexpr const char* histories_name = "histories";
 
-/// Digest of the entries of people (events, aliases, intervals) that histories contain; anything
-/// else in a history changes only together with a campaign.
+/// Returns the digest of the entries of people (events, aliases, intervals) that histories contain;
+/// anything else in a history changes only together with a campaign.
 std::string digest_of_records(const store::SiteRecords& records) {
   storage::Json json = storage::Json::array();
   for (const auto* events : {&records.logs.events, &records.of_records}) {

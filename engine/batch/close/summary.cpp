@@ -90,7 +90,8 @@ std::string run_line(const RunResult& run, const config::TerminalWords& words) {
          "\n";
 }
 
-/// Number of new findings with one heading, and the first places.
+/// Number of new findings with one heading, and the first three campaigns and measurements that
+/// have it.
 struct Fresh {
   std::size_t count = 0;
   std::string where;
@@ -116,7 +117,8 @@ struct Lists {
         {{"campaign", v.id}, {"folder", v.folder}, {"last_done_night", v.run}, {"message", v.why}});
   }
 
-  /// Adds a campaign to its lists. An error if its record cannot be read.
+  /// Adds a campaign to its lists. An error if the campaign has not failed and its record has to be
+  /// read but cannot be.
   Expected<void> add(const CampaignState& c, const fs::path& out) {
     if (c.status == evaluation::Status::failed) {
       add_failed(c, out);
@@ -231,7 +233,8 @@ std::string counts_line(const RunResult& run, const Lists& lists, const Worklist
          words.counted("asking", worklist.asking) + "\n";
 }
 
-/// Writes one line per heading of new findings, headings with the most findings first.
+/// Writes the headings of new findings with severity warning, one line each, with the most frequent
+/// first: at most 6 lines, then the number of the others.
 void write_fresh(storage::Spool& out, const Lists& lists) {
   if (lists.fresh_by_heading.empty()) return;
   std::vector<std::pair<std::string, Fresh>> all(lists.fresh_by_heading.begin(),
@@ -256,8 +259,9 @@ bool is_quiet(const RunResult& run, const Lists& lists, const WorklistPages& wor
          run.waiting.empty() && run.notes.empty();
 }
 
-/// Writes summary.txt: failures, losses and actions required come first. Long lists are cut;
-/// summary.json contains them in full.
+/// Writes summary.txt: a single line if the run has nothing to report; otherwise the counts and
+/// certificates, then failures, losses and the worklist before the campaigns that were evaluated.
+/// Long lists are cut; summary.json contains them in full.
 void write_text(storage::Spool& out, const RunResult& run, Lists& lists, const std::string& version,
                 const WorklistPages& worklist) {
   const config::TerminalWords& words = lists.words;

@@ -10,8 +10,9 @@
 
 namespace nonio::batch {
 
-/// Returns the campaign's first error with its file and line, followed by "(and 3 more)" in the
-/// language of `words`; without an error, the reason for which the campaign was evaluated.
+/// Returns the campaign's first error with its file and line; if there are more, followed by their
+/// number in the language of `words`, for example "(and 3 more)". Without an error, returns the
+/// reason for which the campaign was evaluated, in English.
 std::string first_error(const CampaignState& c, const config::TerminalWords& words);
 
 /// Translates the reason for which a campaign was evaluated or not into the language of `words`.

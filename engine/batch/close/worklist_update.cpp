@@ -94,8 +94,8 @@ void add_curves(reports::SiteHistory& site, const fs::path& out,
   }
 }
 
-/// Returns the text of the mail to the addresses in `[mail]`; empty if no line is severe enough for
-/// a mail. `site` is unchanged afterwards.
+/// Returns the text of the mail to the addresses in `[mail]`; empty without `[mail]`, or if no line
+/// is severe enough for a mail. `site` is unchanged afterwards.
 Expected<std::string> mail_text(reports::SiteHistory& site, const reading::Context& context,
                                 const std::string& language) {
   if (!context.site.mail) return std::string();
@@ -200,7 +200,8 @@ class MachinePages {
   std::vector<std::size_t> which_{};
 };
 
-/// Makes the pages without error curves, and only those of machines with new data.
+/// Makes the lists of the site, and the pages of those machines only that have new data, all
+/// without error curves.
 Expected<Texts> large_worklist(const fs::path& out, const reading::Context& context,
                                const assessment::LastRun& last_run,
                                const std::function<void()>& alive) {

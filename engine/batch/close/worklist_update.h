@@ -22,8 +22,8 @@ struct WorklistPages {
   std::string mail;          ///< lines that are severe enough for a mail; empty: no mail
 };
 
-/// Collects the facts of the run that the history does not contain: failed and vanished campaigns,
-/// issued certificates, drafts.
+/// Collects the facts of the run that the history does not contain: its number, date and counts,
+/// failed and vanished campaigns, issued certificates, drafts, and the error of the history.
 assessment::LastRun last_run_of(const RunResult& run, const std::filesystem::path& out,
                                 const Templates& templates);
 

@@ -26,8 +26,8 @@ class Committer {
   struct Done {
     Given given;
     std::string error;   ///< reason why the results could not be stored; empty: they are stored
-    bool again = false;  ///< the process died while storing the campaign, so the parent process may
-                         ///< store it
+    bool again = false;  ///< whether the process died while storing the campaign, so that the
+                         ///< parent process may store it
   };
   /// Runs in the child process: stores these campaigns and returns the outcome of each.
   using Task = std::function<std::vector<Expected<void>>(const std::vector<Given>&)>;

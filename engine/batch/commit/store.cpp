@@ -35,8 +35,8 @@ Expected<void> write_record(const fs::path& folder, const evaluation::Record& re
                               [&] { return storage::read_file(path).value_or("") == text; });
 }
 
-/// Copies into `record` the findings of the previous run and the run since which the campaign has
-/// failed.
+/// Copies into `record` the findings of the previous run and, if the campaign has failed, sets the
+/// run since which it has failed.
 Expected<void> look_back(const fs::path& folder, evaluation::Record& record) {
   NONIO_TRY(const auto last, evaluation::last_record(folder));
   if (record.status == evaluation::Status::failed)
@@ -147,6 +147,7 @@ class Move {
   }
 
   /// Renames the old record, and removes files of the old results that the new ones do not contain.
+  /// If the new results are a temporary failure, good old results are moved into `last-good`.
   void put_old_aside() {
     std::error_code error;
     const bool there = fs::exists(fs::symlink_status(folder_ / evaluation::record_name, error));
@@ -241,8 +242,8 @@ class Move {
     if (const auto renamed = storage::rename_file(from, to, is_ours); !renamed)
       give_up(renamed.error().message);
   }
-  /// Copies the old results into `last-good`, completely or not at all. Some files may exist
-  /// already, and some may be missing if an earlier attempt was interrupted.
+  /// Moves the old results into `last-good`. Files that an interrupted attempt has moved already
+  /// stay there. If a file is missing or differs from its record, `last-good` is removed.
   void keep(const evaluation::Record& old) {
     if (!done_) return;
     const fs::path to = folder_ / evaluation::last_good_name;

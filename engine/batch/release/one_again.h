@@ -9,11 +9,13 @@
 
 namespace nonio::batch {
 
-/// Marks one campaign of a reopened run as to be evaluated and leaves all others as the run left
-/// them. Returns its id; an error if no campaign, or more than one, has that folder or id.
+/// Marks the campaign whose folder or id is `options.only` as to be evaluated, and leaves all
+/// others as the reopened run left them. Returns its id; an error if no campaign, or more than one,
+/// matches.
 Expected<std::string> leave_only(const RunOptions& options, const RunState& state, RunResult& run);
 
-/// Removes campaigns that were added after the reopened run; the next run evaluates them.
+/// If the run is reopened, removes campaigns that were added to the site after it; the next run
+/// evaluates them.
 void leave_out_new(const RunState& state, std::vector<CampaignState>& campaigns);
 
 }  // namespace nonio::batch

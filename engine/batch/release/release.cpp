@@ -28,8 +28,8 @@ namespace {
 constexpr const char* author = "author";
 constexpr const char* authoriser = "authoriser";
 
-/// Returns the name in lower case with single spaces, so that two spellings of one person are
-/// equal.
+/// Returns the name with ASCII letters in lower case, single spaces, and no spaces at the ends, so
+/// that two spellings of one person are equal.
 std::string plain_name(const std::string& name) {
   std::string out;
   for (const char c : name) {
@@ -41,7 +41,8 @@ std::string plain_name(const std::string& name) {
   return out;
 }
 
-/// Splits the list of persons who may authorise certificates, for example "B. Sample; A. Bianchi".
+/// Splits a list of persons at semicolons, for example "B. Sample; A. Bianchi", and returns the
+/// names in the form of `plain_name`.
 std::vector<std::string> persons_in(const std::string& text) {
   std::vector<std::string> out;
   for (std::size_t at = 0; at <= text.size();) {
@@ -133,8 +134,8 @@ class Releaser {
     return std::move(out_);
   }
 
-  /// Checks the password of the user that `--user` names, and takes the name of the person from
-  /// users.toml. Without `--user`, calls `no_user_is_named`.
+  /// Checks password and role of the user that `--user` names, and takes the name of the person
+  /// from users.toml. Without `--user`, calls `no_user_is_named`.
   Expected<void> identify() {
     if (request_.user.empty()) return no_user_is_named();
     if (!request_.by.empty()) return fail("--by and --user: expected one of them");
@@ -261,7 +262,8 @@ class Releaser {
            (first ? ", approved by " + first->by + " at " + first->at : "");
   }
 
-  /// Locks the output folder, and checks that its draft is the one in the register.
+  /// Checks that the draft in the output folder is the one in the register, locks the folder, and
+  /// reads from its record the run and the other campaigns with the same readings.
   Expected<void> take_output() {
     if (!request_.out.empty()) out_.draft->out = fs::absolute(request_.out).string();
     options_.out = out_.draft->out;

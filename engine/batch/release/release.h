@@ -42,8 +42,9 @@ struct Released {
   std::vector<std::filesystem::path> files;  ///< written files in the output folder of the run
 };
 
-/// Issues the draft of a run. Its data, plugins, templates and version must be unchanged since the
-/// run. `base` gives plugins, templates and version.
+/// Approves the draft of a run, and issues the certificate unless the person approves as author. To
+/// issue it, its data, plugins, templates and version must be unchanged since the run. `base` gives
+/// plugins, templates and version.
 Released release(const ReleaseRequest& request, const RunOptions& base, const RunEvents& events);
 
 /// Returns the drafts of the site that contains `folder`; for a campaign's folder, only the draft

@@ -41,8 +41,9 @@ std::string own_token() {
   return token + more.data();
 }
 
-/// Returns the campaigns in one list, ordered by id. Campaigns that are known only because they
-/// share files of readings with others are added at the end; they are not evaluated.
+/// Returns the campaigns of the lists ordered by id. Campaigns that are known only because they
+/// share files of readings with others are added at the end and are not evaluated; with
+/// `whole_site` they are left out.
 std::vector<CampaignState> states_of(std::vector<Listed> listed, bool whole_site) {
   std::stable_sort(listed.begin(), listed.end(),
                    [](const Listed& a, const Listed& b) { return a.campaign.id < b.campaign.id; });
@@ -109,8 +110,8 @@ std::string numbers_text(const std::vector<std::uint64_t>& numbers) {
          (numbers.size() > most ? " and " + std::to_string(numbers.size() - most) + " more" : "");
 }
 
-/// Repeats `try_it` until it succeeds or `until` has passed, because on a shared file system the
-/// files of another host may appear late.
+/// Repeats `try_it` until it succeeds, a stop is requested, or `until` has passed, and returns its
+/// last result: on a shared file system the files of another host may appear late.
 template <class Try>
 auto with_patience(std::chrono::steady_clock::time_point until, const Try& try_it) {
   for (;;) {
@@ -269,7 +270,7 @@ bool is_of(const std::vector<ShardResult>& record, const std::vector<Listed>& li
       [](const ShardResult& r, const Listed& l) { return r.campaign == l.campaign.id; });
 }
 
-/// The list of a shard, and its record.
+/// The campaigns that a shard had to evaluate, and the record of their results.
 struct Reported {
   std::vector<Listed> listed;
   ShardRecord record;

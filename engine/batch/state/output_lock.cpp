@@ -148,7 +148,7 @@ Expected<Made> make_user(const fs::path& path, const User& user, const std::stri
 }
 
 /// Returns true if this process now owns the user file, and false on file systems without hard
-/// links, where only flock protects the folder.
+/// links, where only flock protects the folder. An error if another process uses the folder.
 Expected<bool> become_user(const fs::path& out, const fs::path& path, const User& own,
                            const std::string& says) {
   sweep(path, own);

@@ -49,7 +49,7 @@ Expected<void> write_plan(const std::filesystem::path& out, RunPlan& plan,
                           const std::vector<CampaignState>& campaigns);
 /// Returns the plan, none if no run is planned; an error if the plan cannot be read.
 Expected<std::optional<RunPlan>> find_plan(const std::filesystem::path& out);
-/// Returns the plan; an error if no run is planned.
+/// Returns the plan; an error if no run is planned or the plan cannot be read.
 Expected<RunPlan> read_plan(const std::filesystem::path& out);
 /// Removes plan.json first, because without it the plan does not exist, then the lists.
 Expected<void> remove_plan(const std::filesystem::path& out);
@@ -84,7 +84,8 @@ struct ShardRecord {
 /// same bytes.
 Expected<void> write_shard_record(const std::filesystem::path& out, const RunPlan& plan,
                                   std::uint64_t shard, const ShardRecord& record);
-/// Returns the record of a shard, none if it has not reported.
+/// Returns the record of a shard, none if it has not reported; an error if the record is damaged or
+/// belongs to another plan.
 Expected<std::optional<ShardRecord>> read_shard_record(const std::filesystem::path& out,
                                                        const RunPlan& plan, std::uint64_t shard);
 /// Returns how many shards have reported.

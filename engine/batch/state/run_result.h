@@ -32,7 +32,8 @@ struct RunOptions {
                                 ///< their times are unchanged
   std::string date{};           ///< date of the run, YYYY-MM-DD; empty: today
   std::string version;
-  bool as_root = false;  ///< whether root may run it even if other users can change the plugins
+  bool as_root = false;  ///< whether root may start the run even if other users can change the
+                         ///< plugins
   bool confine = true;   ///< whether plugins are confined; false is used to measure what
                          ///< confinement costs
   /// Part of the run that this process does; `whole`: the run is not divided.
@@ -49,7 +50,7 @@ struct RunOptions {
 struct Vanished {
   std::string id, folder;  ///< id, and former folder as text; for a lost part of the site, both are
                            ///< its path
-  std::uint64_t run = 0;   ///< run in which it was evaluated last
+  std::uint64_t run = 0;   ///< number of the run in which the campaign was evaluated last
   std::string why;         ///< what is found in its place, and what to do
 };
 
@@ -70,7 +71,8 @@ struct RunResult {
   enum class End { complete, interrupted, refused } end = End::complete;
   evaluation::RunLabel run{};
   std::optional<std::uint64_t> seen_before{};  ///< number of campaigns in the previous run
-  std::string error;                           ///< why a run was refused: usage or configuration
+  std::string error;                           ///< why the run was refused or could not be
+                                               ///< completed; empty: neither
   std::vector<CampaignState> campaigns;        ///< campaigns of the run, ordered by id
   std::vector<std::string> notes;
   std::vector<certificates::RegisterEntry> issued;  ///< certificates issued since the previous run

@@ -15,7 +15,7 @@ namespace nonio::batch {
 /// Folder for the run's own files in the output folder; no campaign can have this name.
 inline constexpr const char* state_folder = ".nonio";
 /// Folder inside `state_folder` for the plan of a run in shards; it exists from the plan to the end
-/// of the merge.
+/// of the merge, or until the plan is cancelled.
 inline constexpr const char* plan_folder = "plan";
 inline constexpr const char* plan_name = "plan.json";
 
@@ -23,7 +23,7 @@ inline constexpr const char* plan_name = "plan.json";
 /// number when it is resumed, so that its summary equals that of an undisturbed run.
 struct RunState {
   std::uint64_t number = 1;
-  std::string date{};            ///< date of the run, YYYY-MM-DD, as given
+  std::string date{};            ///< date of the run, YYYY-MM-DD; the local date if none was given
   std::optional<RunEnd> last{};  ///< the previous complete run; none before the first
   bool force = false;
   bool resumed = false;
@@ -39,21 +39,24 @@ struct RunState {
   evaluation::RunLabel of() const { return {number, date}; }
 };
 
-/// Begins or resumes a run. An error if the output folder contains results of another site that
-/// still exists, because the campaigns of both would be mixed.
+/// Begins or resumes a run; with `dry_run`, nothing is written. An error if the state file is
+/// damaged, or if the output folder contains results of another site that still exists, because the
+/// campaigns of both would be mixed.
 Expected<RunState> begin_run(const RunOptions& options, const std::string& site,
                              std::optional<std::uint64_t> issued_so_far);
 /// Returns the last run in its state at its beginning, so that one campaign can be evaluated again.
 /// An error if it is not complete. Nothing is written, so an interruption leaves the run complete.
 Expected<RunState> reopen_run(const RunOptions& options, const std::string& site);
-/// Returns the planned run in its state at its beginning; it is in progress. Nothing is written.
+/// Returns the planned run in its state at its beginning. An error if it is not the run in progress
+/// in the output folder. Nothing is written.
 Expected<RunState> planned_run(const RunOptions& options, const std::string& site,
                                std::uint64_t number);
 /// Marks the run as complete. The next run takes over `run.issued_before`.
 Expected<void> end_run(const std::filesystem::path& out, const RunState& run, const RunEnd& end);
 
 /// Compares the layout of site.toml (`hashed`: OUT/ab/<id>) with that of existing results, and
-/// marks a new output folder. Results are never moved: a different layout is an error.
+/// marks a new output folder with hashed folders, unless `dry_run`. Results are never moved: a
+/// different layout is an error.
 Expected<void> settle_folders(const std::filesystem::path& out, bool hashed, bool dry_run);
 
 /// Returns an error while a planned run is not merged, because the next run would be refused.

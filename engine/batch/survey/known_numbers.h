@@ -16,10 +16,11 @@ struct Known {
   std::vector<certificates::WaitingDraft> drafts;
 };
 
-/// Reads the register; none if another process keeps it locked. An error if it cannot be read, or
-/// is in a place where it could be lost. `first`: before anything is issued; a broken chain of the
-/// journal is an error then.
+/// Point of the run at which the register is read. `first`: before anything is issued; a broken
+/// chain of the journal is an error then.
 enum class Look { first, again };
+/// Reads the register; none if another process keeps it locked. An error if it cannot be read, or
+/// is in a place where it could be lost.
 Expected<std::optional<Known>> known_of(const RunOptions& options, const reading::Context& context,
                                         Look look = Look::first);
 

@@ -49,8 +49,8 @@ bool is_record(const std::string& path) {
 }
 std::string asset_of(const std::string& path) { return fs::path(path).stem().string(); }
 
-/// Whether the file is valid. An invalid record replaces no copy, because the copy names the
-/// machine of the record.
+/// Whether the file may replace its copy: a machine record must be valid, because its copy names
+/// the machine of the record; other files always may.
 bool is_good(const std::string& path, const std::string& bytes) {
   return !is_record(path) || config::parse_machine(bytes, path, asset_of(path)).has_value();
 }
@@ -98,7 +98,7 @@ Expected<void> SiteParts::read_inventory() {
   return {};
 }
 
-/// If the inventory is missing or damaged, the copies themselves are taken as the inventory.
+/// Takes the copies themselves as the inventory, because the inventory is missing or damaged.
 Expected<void> SiteParts::read_copies() {
   NONIO_TRY(const auto there, storage::is_there(out_ / copies_folder));
   if (!there) return {};

@@ -40,8 +40,7 @@ class SiteParts {
  private:
   struct Part {
     std::string sha256;     ///< digest of the copy
-    std::string last_seen;  ///< YYYY-MM-DD; for a damaged file, the day of the last run that found
-                            ///< it valid
+    std::string last_seen;  ///< day of the last run that found the file valid, YYYY-MM-DD
     std::string why;        ///< what is wrong with the file now; empty: nothing
   };
 

@@ -109,7 +109,8 @@ class Walker {
     return false;
   }
 
-  /// Returns the names in a folder; no descriptor remains open.
+  /// Returns the names in a folder; none for the output folder, and none, with a report, if the
+  /// folder cannot be read. No descriptor remains open.
   FolderNames list(const std::string& folder) {
     FolderNames names;
     const int fd = ::open(path_of(folder).c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
@@ -225,7 +226,9 @@ bool take_over(const std::vector<std::string>& pieces, SiteWalk& walk) {
   return false;
 }
 
-/// Walks once. None if the walk ended early; places to be skipped next time are added to `passed`.
+/// Walks through the site once. Returns none if the child process ended or hung, and then adds the
+/// place where this happened to `passed`, so that the next attempt skips it. If `stopped` returns
+/// true, the walk so far is returned.
 Expected<std::optional<SiteWalk>> try_walk(const fs::path& site, const fs::path& out,
                                            double seconds, bool (*stopped)(), Passed& passed) {
   auto child =

@@ -19,10 +19,11 @@ struct SiteWalk {
   std::vector<std::string> notes;      ///< messages about what is skipped: links, wrong file names
 };
 
-/// Finds all folders below a site. Links are not followed, because a campaign is a folder inside
-/// the site; hidden folders and the output folder are left out. Runs in a child process with one
-/// open descriptor. A folder that does not answer within `seconds` (s) is added to `unlisted`. An
-/// error if the site itself cannot be listed. If `stopped` returns true, the result is incomplete.
+/// Finds the folders of all campaigns below a site. Links are not followed, because a campaign is a
+/// folder inside the site; hidden folders and the output folder are left out. Runs in a child
+/// process with one open descriptor. A folder that does not answer within `seconds` (s) is added to
+/// `unlisted`. An error if the site itself cannot be listed. If `stopped` returns true, the result
+/// is incomplete.
 Expected<SiteWalk> walk_site(const std::filesystem::path& site, const std::filesystem::path& out,
                              double seconds, bool (*stopped)());
 

@@ -113,8 +113,8 @@ class Pool {
   }
 
   /// Handles a child that died or hangs. If the files of its current campaign hang, the campaign
-  /// fails; otherwise it is tried alone, at most twice more. Another process continues with the
-  /// others.
+  /// fails; otherwise it is tried alone, at most twice more, and then fails. Another process
+  /// continues with the others.
   void cut_short(process::Watched& child, const Batch& batch, bool silent, double patience) {
     const std::size_t at =
         std::clamp<std::size_t>(child.signs().index, batch.received, batch.campaigns.size() - 1);

@@ -178,8 +178,9 @@ std::optional<std::uint64_t> ChangeDetector::look_at_file(const CampaignState& s
   return now ? std::optional(storage::short_digest(*now)) : std::nullopt;
 }
 
-/// Adds output files that are missing or changed to `why`. A file of the recorded size that is not
-/// younger than the record is unchanged; otherwise its digest decides.
+/// Adds output files that are missing or changed to `why`. A file of another size has changed. A
+/// file of the recorded size is unchanged if it is not younger than the record, unless
+/// `verify_results` is set; otherwise its digest decides.
 void ChangeDetector::look_at_outputs(const CampaignState& state, const evaluation::Record& record,
                                      std::vector<std::string>& why) {
   const fs::path folder = storage::results_folder(in_.out, state.id);

@@ -29,8 +29,9 @@ class ChangeDetector {
  private:
   using Last = Expected<std::optional<evaluation::LastRecord>>;
 
-  /// Parses the manifest and returns its id; stores the digests of the campaign's files in the
-  /// state.
+  /// Parses the manifest and returns its id; stores the digests of the campaign's files of readings
+  /// in the state. Returns an empty text, without parsing, if `rough`, and also if the manifest is
+  /// invalid.
   std::string read_whole(CampaignState& state, const std::string& manifest, bool rough);
   Last last_of(const std::string& id);
   std::string staged_reason(const CampaignState& state) const;

@@ -98,7 +98,8 @@ void evaluate_for(int stream, const reading::Context& context, process::SharedSt
 }
 
 /// Sends the descriptor of a file of the campaign to the other process. Files outside the campaign
-/// and secrets are refused.
+/// and secrets are refused; only the manifest may be a link to a file outside. Returns false if the
+/// message cannot be sent.
 bool Evaluator::hand_out(const fs::path& folder, const std::string& path) const {
   std::error_code error;
   const fs::path root = fs::path(path).is_absolute() ? storage::real_folder(folder, error) : folder;

@@ -21,8 +21,8 @@ std::vector<std::filesystem::path> library_folders(const std::filesystem::path& 
 
 /// Controls the only process that loads plugins; it is confined before it loads them. It starts the
 /// processes that evaluate as children of the main process, which contains no plugin code. A plugin
-/// that crashes the process while it is loaded or prepared is left out at the next attempt; one
-/// that hangs is left out after its time limit.
+/// that crashes the process while it is loaded or prepared is tried again once (up to five times
+/// after signal 9), then left out; one that hangs is left out after its time limit.
 class PluginHost {
  public:
   struct Request {

@@ -166,8 +166,9 @@ class Runner {
       storage::remove_leftovers(storage::own_folder(options_.out, campaigns_[g.campaign].id));
   }
 
-  /// Waits for the register, which another process keeps locked, when all other campaigns are done;
-  /// after the time limit its campaigns are left to the next run.
+  /// Waits for the register, which another process keeps locked, when all other campaigns are done.
+  /// After the time limit, the campaigns that wait for it are evaluated a last time, whether or not
+  /// it is still locked.
   void wait_for_register() {
     using Clock = Worker::Clock;
     const config::Numbering& numbering = context_.site.numbering;
@@ -316,7 +317,8 @@ class Runner {
     return s;
   }
 
-  /// Fails a campaign whose worker returned no results, and stores the reason.
+  /// Fails a campaign whose worker returned no results, and stores the failure as its result. In an
+  /// approval nothing is stored, so that the draft is kept.
   void lost(std::size_t index, const std::string& why) {
     CampaignState& c = campaigns_[index];
     note_failure(c.id, why);
@@ -334,7 +336,8 @@ class Runner {
     finish(index, evaluation::Status::failed, std::move(evaluated.results.errors));
   }
 
-  /// Enters a failure into the register. After a share has hung once, it is not tried again.
+  /// Enters a failure into the register, unless the register is on another host. After the register
+  /// has not answered once, it is not tried again.
   void note_failure(const std::string& campaign, const std::string& why) {
     if (register_hangs_ || work_.elsewhere) return;
     const auto noted =

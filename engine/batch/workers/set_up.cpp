@@ -28,8 +28,8 @@ std::string all_of(const std::vector<Error>& errors) {
   return text;
 }
 
-/// Adds notes for summary.txt: no signature is possible, the signing certificate expires within 30
-/// days, or there is no time-stamp server.
+/// Adds a note for summary.txt if no signature is possible, or if the signing certificate expires
+/// within 30 days. Sets `unstamped` if there is no time-stamp server.
 void note_key(SetUp& place, bool is_stamped) {
   constexpr sign::Time month = sign::Time{30} * 86400;
   std::vector<std::string>& notes = place.notes;
@@ -50,9 +50,9 @@ void note_key(SetUp& place, bool is_stamped) {
         " (`nonio certificate extend` can add a time stamp until then)";
 }
 
-/// Returns a plugin folder, or a plugin, that users other than root and the owner of the program
-/// can change; empty if there is none. The program's own folder is not checked, because whoever can
-/// change it can change the program too.
+/// Returns a plugin folder, or a plugin, that belongs to a user other than root and the owner of
+/// the program, or that every user can change; empty if there is none. The program's own folder is
+/// not checked, because whoever can change it can change the program too.
 std::string changeable_by_others(const RunOptions& options) {
   struct stat own {};
   ::stat(options.own_plugins.c_str(), &own);
@@ -72,7 +72,7 @@ std::string changeable_by_others(const RunOptions& options) {
 }
 
 /// Refuses to run as root if other users can change the plugins, because a gap in the confinement
-/// would give them root's rights.
+/// would give them root's rights. The option --root permits it.
 Expected<void> check_user(const RunOptions& options) {
   if (::geteuid() != 0 || options.as_root) return {};
   if (const std::string path = changeable_by_others(options); !path.empty())

@@ -18,7 +18,8 @@ namespace nonio::batch {
 struct SetUp {
   reading::Context context;
   std::optional<certificates::Signer> signer;
-  loader::Plugins plugins;  ///< declarations only: this process contains no plugin code
+  loader::Plugins plugins;  ///< declarations of the plugins; this process does not contain their
+                            ///< code
   std::optional<PluginHost> host;
   SiteParts parts;
   std::vector<std::string> notes;  ///< notes for the summary of the run
@@ -27,8 +28,9 @@ struct SetUp {
   std::string no_key;              ///< why nothing can be signed; empty: signing works
 };
 
-/// Reads the site and starts the plugin host. An error states all mistakes of the site. The process
-/// that holds the key is started before any plugin is loaded.
+/// Reads the site and starts the plugin host. An error states all mistakes of the site file. If
+/// this process may have to sign (whole run or merge, no dry run), the process that holds the key
+/// is started before any plugin is loaded.
 Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options);
 
 }  // namespace nonio::batch

@@ -62,11 +62,12 @@ class Worker {
   std::string stage() const { return stage_.get(); }
   int channel() const { return channel_.get(); }
 
-  /// Whether the memory of the process has grown noticeably since its start.
+  /// Whether the memory of the worker or of the process with the plugins has grown noticeably.
   bool grown() const { return grown_; }
   /// Whether a document of the last answered campaign shows the machine's history.
   bool shows_history() const { return shows_history_; }
-  /// Returns the answer to the campaign that was given last; none if there is none yet.
+  /// Returns the answer to the campaign that was given last: `Answer::none` if the process has
+  /// ended without one, no value if there is no answer yet.
   std::optional<Answer> answer();
   /// Ends the worker. After Answer::none, returns how its process, or the one with the plugins, had
   /// ended.

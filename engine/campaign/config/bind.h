@@ -24,8 +24,9 @@ struct Chosen {
 };
 
 /// Returns the value of a key in the unit of the member and reports a wrong value as an error.
-/// Returns none if the key is absent or its value cannot be used; a list of whole numbers is empty
-/// then.
+/// Returns none if the key is absent, its text is empty, or its value cannot be used; a list of
+/// whole numbers then lacks the wrong elements. A text or list that only breaks a rule for its form
+/// may be returned in spite of the reported error.
 template <class T>
 std::optional<T> value_of(TableReader&, const Key&);
 // The specializations are defined with the reader (toml_reader.cpp).
@@ -232,11 +233,12 @@ template <auto check, auto... path>
 inline constexpr Key::Into checked = binding::nested<check, binding::Path<path...>>();
 template <auto... path>
 inline constexpr Key::Into nested = checked<nullptr, path...>;
-/// Fills a vector from tables under any name.
+/// Fills a vector from tables under any name. `check` is called after each table, as for `checked`.
 template <auto check, auto... path>
 inline constexpr Key::Into by_names =
     binding::nested<check, binding::Path<path...>, named_tables>();
-/// Declares an inner table whose keys fill the same struct as the keys of the outer table.
+/// Declares an inner table whose keys fill the same struct as the keys of the outer table. `check`
+/// is called after the keys of the inner table were read.
 template <class T, auto check = nullptr>
 inline constexpr Key::Into same =
     binding::table<check, table, T, T>([](void* outer, std::string_view) { return outer; });
@@ -308,7 +310,8 @@ constexpr auto longest(std::size_t entries) {
 }
 inline constexpr auto distinct = [](Key& key) { key.distinct = true; };
 inline constexpr auto secret = [](Key& key) { key.may_be_secret = true; };
-/// Sets the default of `kind` by the name of an axis: A, B and C are rotary (ISO 841).
+/// Sets the default of the key `kind` to rotary if the name of the axis begins with A, B or C (ISO
+/// 841).
 inline constexpr auto kind_by_name = [](Key& key) {
   key.initials = "ABC", key.by_name = "kind", key.named_so = "rotary";
 };

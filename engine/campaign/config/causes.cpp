@@ -102,8 +102,9 @@ void read_file(const std::string& name, std::string_view text,
   top.finish();
 }
 
-/// Returns the causes in these templates. The last result is kept, because every campaign needs it
-/// and reading it takes a tenth of the time of a short command.
+/// Returns the causes in these templates, with the errors and warnings of their files. The last
+/// result is kept, because every campaign needs it and reading the files takes a tenth of the time
+/// of a short command.
 std::shared_ptr<const Read> read_in(const Templates& templates) {
   static std::mutex one_at_a_time;
   static std::shared_ptr<const Read> last;

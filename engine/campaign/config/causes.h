@@ -19,10 +19,10 @@ namespace nonio::config {
 inline constexpr std::string_view site_causes = "causes/site/";
 
 struct Cause {
-  Formula formula;  ///< without an axis it applies to every axis of its kind
+  Formula formula;  ///< formula of the deviation; without an axis it applies to all of its kind
   bool rotary = false;
   std::string title, is, size, appearance, similar, remedy;  ///< texts for people in English
-  std::map<std::string, std::string> titles{};  ///< titles in other languages, by language
+  std::map<std::string, std::string> titles{};  ///< titles by language ("": a text in English)
   std::string prior;  ///< frequency of the cause: common, rare or very-rare
   /// Columns that readings need to show the cause, such as "time_s".
   std::vector<std::string> columns{};
@@ -32,7 +32,8 @@ struct Cause {
   /// Returns 2 ln of the odds against the cause before readings are known: 0 for a common one, as
   /// for effects of plugins, otherwise 2 ln 10 (rare) or 2 ln 100 (very rare).
   double price() const;
-  /// Returns the effect of the formula. If `tried`, the units of the formula are not checked again.
+  /// Returns the effect of the formula. If `tried`, the formula passed the trial on sample readings
+  /// (finite, linear, unit of a deviation) before, and the trial is not repeated.
   Expected<Effect> effect(bool tried) const;
 };
 
@@ -45,7 +46,7 @@ using Library = std::shared_ptr<const std::vector<Cause>>;
 /// a name is used twice, or a formula of the site is not valid.
 Checked<Library> causes_in(const Templates& templates);
 
-/// Returns a warning with file and line for each key with a former name.
+/// Returns one warning for each former name of a key in a file, with the line of its first use.
 std::vector<Error> warnings_of_causes(const Templates& templates);
 
 /// Adds the texts of the causes to the words for effects in the templates.

@@ -20,8 +20,8 @@ std::string symbol_of(Quantity q) { return std::string(FormulaUnit{q, {}}.symbol
 /// Returns the value in SI units of the unit in which the parameter is printed.
 double amount(const Formula::Parameter& p) { return 1.0 / unit_of(p.quantity).per_si; }
 
-/// Checks on random readings that the expression is finite, linear in its linear parameters, and
-/// has the unit of a deviation.
+/// Checks at 64 points, most of them random, that the expression is finite, linear in its linear
+/// parameters, and has the unit of a deviation, and that each parameter occurs in it.
 class Trial {
  public:
   Trial(const Formula& formula, const Axis& axis, Expression& expression)

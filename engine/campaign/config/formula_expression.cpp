@@ -22,8 +22,8 @@ struct Name {
 constexpr Dimension no_dimension{0, 0, 0}, distance{1, 0, 0}, duration{0, 1, 0},
     temperature{0, 0, 1};
 
-/// Names and dimensions of the variables, in the order of Expression::Variable. On a rotary axis p
-/// and theta are angles.
+/// Names and dimensions of the variables, in the order of Expression::Variable. On a rotary axis,
+/// all variables of dimension `distance` (p, theta, length, pitch) have no dimension, as angles.
 constexpr std::array<Name, Expression::variables> readings{{{"p", 0.0, distance},
                                                             {"theta", 0.0, distance},
                                                             {"d", 0.0, no_dimension},
@@ -50,8 +50,8 @@ constexpr std::array<Name, 9> units{{{"m", 1.0, distance},
 
 constexpr std::size_t most_characters = 400;
 
-/// Returns an error for text that the parser would accept and no formula needs: assignments,
-/// strings, several results; otherwise "".
+/// Returns an error for text that no formula needs, even if the parser would accept it: over 400
+/// characters, characters of strings or outside ASCII, assignments, several results; otherwise "".
 std::string forbidden(const std::string& text) {
   if (text.size() > most_characters)
     return "expected " + std::to_string(most_characters) + " characters at most, found " +

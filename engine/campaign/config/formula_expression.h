@@ -38,14 +38,16 @@ class Expression {
     variables
   };
 
-  /// Parses an expression; an error contains the position. If `known`, the expression was parsed
-  /// before, and only the names that occur in it are declared.
+  /// Parses an expression. An error contains the position of the wrong text if there is one. If
+  /// `known`, the expression was parsed before, and only the names that occur in it are declared.
   static Expected<Expression> parse(const Formula& formula, const Axis& axis, bool known = false);
   Expression(Expression&&) noexcept;
   Expression& operator=(Expression&&) noexcept;
   ~Expression();
 
-  /// Returns the slots with the values of the units; variables and parameters are 0.
+  /// Returns a copy of the slots. After `parse`, the units have their values in SI units, `length`,
+  /// `duration`, `runs`, `pitch` and `teeth` are 1, and all other variables and the parameters are
+  /// 0.
   std::vector<double> slots() const;
   static std::size_t parameter_slot(std::size_t k);
   /// Converts slots into units of which number `k` (0 length, 1 time, 2 temperature) is smaller by

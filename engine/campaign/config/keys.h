@@ -191,7 +191,7 @@ inline constexpr TextRule campaign_id_rule{
 bool obeys(std::string_view text, const TextRule& rule);
 bool in_range(double value, const Key& key);
 const Key* find_key(std::span<const Key> keys, std::string_view name);
-/// Whether an axis is rotary according to its name (ISO 841: A, B, C turn about X, Y, Z).
+/// Whether an axis is rotary according to its name, which then begins with A, B or C (ISO 841).
 bool rotary_by_name(std::string_view axis);
 
 }  // namespace nonio::config

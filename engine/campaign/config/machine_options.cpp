@@ -20,7 +20,8 @@ std::uint64_t line_in(const KeyLines& lines, const std::string& key) {
   return found == lines.end() ? 0 : found->second;
 }
 
-/// Returns the file and line of a key in a record: "machines/S-0042.toml:7".
+/// Returns the file of a record and the line of a key in it, "machines/S-0042.toml:7"; only the
+/// file if the line is not known.
 std::string place_in(const MachineRecord& record, const std::string& key) {
   const std::uint64_t line = line_in(record.lines, key);
   return record.file + (line == 0 ? "" : ":" + std::to_string(line));

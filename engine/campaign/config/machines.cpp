@@ -39,7 +39,8 @@ void same_number_twice(const MachineRecord& record, TableReader& top) {
     }
 }
 
-/// Reads the table files that a record names; their paths must be inside the site.
+/// Reads the table files that a record names. An error if a path is outside of the site, or if the
+/// files no longer have the SHA-256 that the record states.
 Expected<std::map<std::string, std::vector<Artifact>>> tables_of(const MachineRecord& record,
                                                                  const fs::path& site) {
   std::map<std::string, std::vector<Artifact>> tables;
@@ -205,7 +206,8 @@ std::string machine_input(const Machine& m) {
 
 namespace {
 
-/// Returns a machine with the maker and serial number of a record.
+/// Returns a machine with the maker and serial number of a record, or of its last valid version if
+/// the record has errors.
 Machine machine_of(const RecordFile& r) {
   Machine out;
   out.maker = r.record ? r.record->maker : r.maker;

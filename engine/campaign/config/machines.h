@@ -17,10 +17,11 @@ inline constexpr const char* machines_folder = "machines";
 
 /// The table and backlash value in the control for one axis, from one day on.
 struct ControlState {
-  std::string since{};  ///< first day of the state, YYYY-MM-DD
-  /// Table files, relative to the site; empty: no table was active.
+  std::string since{};  ///< day on which the state was loaded or found in a backup, YYYY-MM-DD
+  /// Table files, relative to the site and separated by commas; empty: no table was active; none:
+  /// not stated.
   std::optional<std::string> table{};
-  std::optional<double> backlash{};  ///< backlash value, m or rad; 0: no value was active
+  std::optional<double> backlash{};  ///< backlash value, m or rad; 0: not active; none: not stated
   std::string source = "stated";     ///< origin: stated (by a person), backup or nonio
   std::string sha256{};              ///< SHA-256 of the table files; empty: not stated
   std::string files{};               ///< name of the table's files in RecordFile::tables
@@ -85,8 +86,9 @@ Expected<MachineRecords> read_machines(const std::filesystem::path& site);
 std::string machine_input(const Machine& machine);
 /// Prefix of the names that `machine_input` returns.
 inline constexpr std::string_view machine_prefix = "machine ";
-/// Returns the digest of the records of the machine for which `machine_input` returns `input`;
-/// `absent` if there is no record.
+/// Returns the digest of the records of the machine for which `machine_input` returns `input`. If
+/// there are none and `input` states no asset, it is made from the records with errors whose
+/// machine is not known; if there are none of these either, it is `absent`.
 std::string machine_digest(const MachineRecords& records, std::string_view input);
 
 /// Returns the record of a machine; null if there is none. It may be a record with errors that
@@ -99,7 +101,8 @@ std::vector<Error> contradictions(const Manifest& manifest, const MachineRecord&
 
 /// Returns the options with which a controller writes tables. For each axis in option `axes`, the
 /// record of the machine overrides site.toml, and the campaign overrides both; axes of site.toml
-/// that the campaign lacks are left out. An error if the campaign contradicts the record.
+/// and of the record that the campaign lacks are left out. A record that names another control is
+/// ignored. An error if the campaign contradicts the record.
 Checked<Settings> settle_table_options(const Info& output, const RawOptions& site,
                                        const Manifest& manifest, const MachineRecord* record);
 

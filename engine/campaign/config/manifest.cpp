@@ -36,7 +36,7 @@ NumberTable scaled(NumberTable table, double scale) {
 }
 
 /// Sets `from` to the centre of a circle and `to` to its point at 0 deg, on the first axis of the
-/// plane (m).
+/// plane (m). Positions of the centre on axes outside of the plane are stored in `at`.
 void fill_circle(TableReader& reader, Measurement& m) {
   const std::string plane = m.settings.text("plane");
   const NumberTable centre = scaled(m.settings.table("centre"), mm);
@@ -85,7 +85,8 @@ void check_members(TableReader& reader, const Measurement& m) {
     reader.error("square_turned", "expected the key square as well");
 }
 
-/// Checks the keys that all methods share.
+/// Checks that feed and over-travel are given in one unit only. An empty `state` is stored as an
+/// empty text, so that it differs from a missing one.
 void check_common(TableReader& reader, Measurement& m) {
   if (reader.contains("state") && !m.state) m.state.emplace();
   for (const auto& [linear, rotary] :
@@ -142,7 +143,8 @@ void add_axis(const std::string& name, bool any_named, Manifest& manifest) {
   if (any_named) manifest.undeclared_axes.push_back(name);
 }
 
-/// Checks that each `reversal_of` names a straightness of the same line, and names it only once.
+/// Checks that each `reversal_of` names a straightness of the same line that is no reversal itself,
+/// and that no straightness is named twice.
 void check_reversals(std::vector<TableReader>& list, const std::vector<Measurement>& all) {
   std::set<std::string> taken;
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -38,7 +38,7 @@ using RawOptions = std::map<std::string, std::map<std::string, RawOption>>;
 using KeyLines = std::map<std::string, std::uint64_t, std::less<>>;
 
 struct RunChoice {
-  /// Names of the plugins to run; none: all that apply.
+  /// Names of the plugins to run; none: all that apply, except those on request.
   std::optional<std::vector<std::string>> analyses, outputs;
 };
 
@@ -122,7 +122,7 @@ struct AcceptedRule {
 
 /// `[certificate]` of site.toml: how certificates are approved and numbered.
 struct Numbering {
-  /// Pattern of the numbers; the sequence begins anew each year.
+  /// Pattern of the numbers. If it contains {year}, the sequence begins anew each year.
   std::string pattern = "{year}-{number:4}";
   /// File of the register, relative to the site.
   std::string register_file = "certificates.sqlite";
@@ -174,7 +174,7 @@ struct SiteFile {
   RunChoice run;
   RawOptions options;
   Limits limits;
-  std::vector<Alias> aliases{};  ///< other names of machines; each occurs once and is not an asset
+  std::vector<Alias> aliases{};  ///< other names of machines; each occurs once, never as an asset
   std::vector<DueRule> due{};  ///< rules for the time to the next campaign; at most one per machine
   std::optional<DatabaseChoice> database{};
   KeyLines lines;
@@ -207,11 +207,13 @@ Checked<Settings> settle_options(const Info& plugin, const RawOptions& site,
                                  const RawOptions& campaign,
                                  const std::vector<Option>& others = {});
 
-/// Parses a TOML file of templates/ into settings without nested tables.
+/// Parses a TOML file of templates/ into settings. A key of a nested table has the name
+/// "table.key".
 Expected<Settings> parse_settings(std::string_view text, const std::string& file);
 
 /// Returns the options of a plugin from the texts of a command line, with defaults for those that
-/// are missing. In "axes" commas separate the entries.
+/// are missing. In an option that is a list or contains tables (`axes`), commas separate the
+/// entries.
 Checked<Settings> options_from(const Info& plugin, const std::map<std::string, std::string>& texts);
 
 }  // namespace nonio::config

@@ -13,7 +13,8 @@ using Holds = Key::Holds;
 
 std::span<const Key> common_keys() { return find_key(campaign_file().keys, "measurement")->keys; }
 
-/// Returns the kind of key that reads values of an option.
+/// Returns the kind of key that reads values of an option; `by_kind` for tables of numbers, which
+/// no key of [[measurement]] contains.
 Holds holds_of(const Setting& value) {
   return std::visit(
       []<class T>(const T&) {

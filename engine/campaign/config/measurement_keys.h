@@ -34,8 +34,8 @@ class KindKeys {
   Key table_;
 };
 
-/// Declaration of campaign.toml with the keys of all methods in [[measurement]]; each key is
-/// allowed only for the kinds that declare it. A key that two kinds declare differently is
+/// Declaration of campaign.toml with the keys of all methods in [[measurement]]; a key of a method
+/// is allowed only for the kinds that declare it. A key that two kinds declare differently is
 /// `Key::Holds::by_kind`.
 class CampaignKeys {
  public:

@@ -25,7 +25,8 @@ struct PasswordSource {
   std::string section;  ///< section of site.toml that states the source
 };
 
-/// Reads a password from its source, without the line feed at its end.
+/// Reads a password from its source. Line ends at the end of a file or credential are removed; the
+/// value of an environment variable is returned unchanged.
 Expected<std::string> read_password(const PasswordSource&, const std::filesystem::path& site);
 
 }  // namespace nonio::config

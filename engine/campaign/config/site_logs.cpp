@@ -188,8 +188,8 @@ Check counts(Checked<std::vector<T>> (*parse)(std::string_view, const std::strin
 
 }  // namespace
 
-/// Checks an entry after its keys were read: it needs a reason in words, because the reason is
-/// shown for years. Former ids of findings are renamed.
+/// Checks an entry after its keys were read and stores its line. A reason must have words, because
+/// it is shown for years; `until` must not be before `date`. Former ids of findings are renamed.
 template <class Entry>
 void check_entry(TableReader& reader, Entry& entry) {
   entry.line = reader.line();

@@ -55,7 +55,7 @@ struct SiteLogs {
 
 /// Parses a file. Returns all its errors at once, each with its line.
 Checked<std::vector<Event>> parse_events(std::string_view text, const std::string& file);
-/// Returns the valid acknowledgements, without withdrawn ones.
+/// Returns the acknowledgements that were not withdrawn; they may have expired.
 Checked<std::vector<Acknowledgement>> parse_acknowledged(std::string_view text,
                                                          const std::string& file);
 Checked<std::vector<Forgotten>> parse_forgotten(std::string_view text, const std::string& file);

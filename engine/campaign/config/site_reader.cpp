@@ -28,7 +28,8 @@ int usual_port(Mail::Tls tls) {
 
 }  // namespace
 
-/// Checks [mail]: a password is sent only with encryption.
+/// Checks the keys of [mail] together and sets the usual port if none is stated. A login requires
+/// encryption, so that the password is never readable on the way.
 void check_mail(TableReader& reader, Mail& m) {
   if (m.port == 0) m.port = usual_port(m.tls);
   if (reader.raw().contains("to") && m.to.empty())

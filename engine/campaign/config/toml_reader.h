@@ -25,7 +25,8 @@ class TableReader {
               std::vector<Error>& errors)
       : TableReader(table, declaration, {}, file, errors) {}
 
-  /// Reads all keys that are declared with a member into `object`, and checks the others.
+  /// Reads all keys that are declared with a member into `object`, and checks the others. Keys
+  /// whose condition (`Key::only`) is not fulfilled are skipped.
   template <class T>
   void fill(T& object) {
     fill(&object, &binding::tag<T>);
@@ -62,7 +63,8 @@ class TableReader {
   std::uint64_t line_of(std::string_view key) const;
   std::uint64_t line() const { return table_.source().begin.line; }
   const std::string& file() const { return file_; }
-  /// Returns the name of this table if its declaration allows any name; otherwise empty.
+  /// Returns the name of this table if its declaration allows any name. For a table of a list it is
+  /// the name of the table that contains the list. Otherwise empty.
   const std::string& name() const { return name_; }
   const toml::table& raw() const { return table_; }
   const std::string& place() const { return place_; }
@@ -126,11 +128,12 @@ struct FormerKey {
   std::uint64_t line = 0;    ///< number of the line, from 1
   bool is_value = false;     ///< `former` is the id of a finding instead of a key
 };
-/// Renames the keys in `table` that have former names according to `declaration`, so that all later
-/// code finds the present names. Returns them in the order of their lines. A former name next to
-/// the present one is not renamed and stays unknown.
+/// Renames the keys in `table` that have former names according to `declaration`, and ids of
+/// findings that were renamed, so that all later code finds the present names. Returns them in the
+/// order of their lines. A former name next to the present one is not renamed and stays unknown.
 std::vector<FormerKey> rename_former_keys(toml::table& table, const Key& declaration);
-/// Returns a warning for each key, but only one for repeated headers of the same key.
+/// Returns one warning, with the line of the first use, for each former name in a table or in all
+/// tables of a list.
 std::vector<Error> warnings_of(const std::vector<FormerKey>& keys, const std::string& file);
 
 /// Adds the line of each key below a table to `lines`, by names such as "axes.X.number".

@@ -17,7 +17,8 @@ bool is_bare_key_character(char c) {
 
 /// Finds text for which toml++ 3.3 has undefined behaviour instead of an error: a byte outside
 /// ASCII that is neither in a string nor in a comment, or where a string continues after a
-/// backslash; and a table header that does not begin with a key.
+/// backslash; a table header that does not begin with a key; a quote within a word; and tables
+/// nested too deeply.
 class Precheck {
  public:
   explicit Precheck(std::string_view text) : text_(text) {}
@@ -52,8 +53,8 @@ class Precheck {
   }
 
  private:
-  /// Whether a quote opens in the middle of a word. toml++ continues the word there, and may find
-  /// in it what is part of a string here.
+  /// Whether a quote opens within a word. toml++ regards it as part of the word and would interpret
+  /// characters that this check regards as part of a string.
   bool quote_within_word() const {
     const bool opens = closing_.empty() && (text_[at_] == '"' || text_[at_] == '\'');
     return opens &&

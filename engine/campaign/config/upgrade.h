@@ -21,10 +21,10 @@ struct UpgradedFile {
   std::vector<UpgradedLine> lines;  ///< lines that differ; empty: nothing was changed
 };
 
-/// Returns the text of a file with former names of keys replaced by the present ones. All other
-/// bytes, including comments, order, line ends and the byte order mark, stay the same. The result
-/// is parsed again. If its content differs, an error with the line that must be changed by hand is
-/// returned.
+/// Returns the text of a file with former names of keys and of findings replaced by the present
+/// ones. All other bytes, including comments, order, line ends and the byte order mark, stay the
+/// same. The result is parsed again. Returns an error with the line to be changed by hand if a name
+/// is not found in its line, or if the result does not have the same content.
 Expected<UpgradedFile> upgraded(std::string_view text, const Key& declaration,
                                 const std::string& file);
 

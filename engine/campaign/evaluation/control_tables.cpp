@@ -93,8 +93,8 @@ class OfCampaign {
     return out;
   }
 
-  /// Returns what the written tables add along an axis; none if the axis was measured twice,
-  /// because it is not known which of the tables is loaded.
+  /// Returns what the written tables add along an axis; none if no table was written for it, or if
+  /// the axis was measured twice, because it is then not known which of the tables is loaded.
   std::optional<AxisCorrection> written(const std::string& axis, const Measurement& m) const {
     const Campaign& campaign = read_.manifest->campaign;
     const auto many = std::count_if(

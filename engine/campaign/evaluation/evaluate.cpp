@@ -64,7 +64,8 @@ void append_analyses(std::vector<Results::Analysed>& to, std::vector<Results::An
   to.insert(to.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-/// Copies what was read into `out`. Returns false if there is no valid manifest to evaluate.
+/// Moves what was read into `out`. Returns false if there is no valid manifest to evaluate, or if
+/// its id is no longer `id`.
 bool begin_results(reading::ReadCampaign& read, const std::string& id, const reading::Twins& twins,
                    Evaluated& out) {
   out.campaign.id = id;

@@ -67,7 +67,7 @@ struct ControlTables {
 struct Evaluated {
   Campaign campaign;
   Results results;
-  reading::Inputs inputs;  ///< names and digests of the campaign's own files, manifest first
+  reading::Inputs inputs;  ///< digests of the campaign's files and machine record, manifest first
   Status status = Status::none;
   std::optional<Certificate> certificate{};
   bool retry = false;  ///< the campaign failed for a reason outside of its files

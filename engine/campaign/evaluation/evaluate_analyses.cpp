@@ -17,7 +17,8 @@ namespace nonio::evaluation {
 
 namespace {
 
-/// Returns the smallest U (CMC) of a quantity measured over `length` (m); 0 if none is stated.
+/// Returns the smallest U (CMC) of a quantity measured over `length` (m); 0 if none is stated for
+/// this quantity.
 double floor_of(const Cmc& cmc, Quantity q, double length) {
   switch (q) {
     case Quantity::length:

@@ -35,8 +35,9 @@ void check_control(const Work& work) {
                                                    "; there are " + comma_list(tables)));
 }
 
-/// Whether a controller is that of the machine's record. If it is not, an error is reported if the
-/// manifest requests it; if site.toml requests it for all machines, it is only left out.
+/// Whether a controller is that of the machine's record; also true if there is no record or it
+/// states no control. If not, an error is reported if the manifest has `[run] outputs`; if
+/// site.toml requests the controller for all machines, it is only left out.
 bool is_control_of_record(const Work& work, const std::string& controller) {
   const auto& machine = work.read.machine;
   if (!machine || machine->control.empty() || machine->control == controller) return true;
@@ -164,8 +165,8 @@ OutputResult no_table(const char* id, const Info& controller, const char* why,
 /// an error if there is no model.
 using ModelReadings = std::optional<Expected<std::vector<Observations>>>;
 
-/// Writes a table that replaces the active compensation: the active tables are first removed from
-/// the readings and results.
+/// Writes a table. If compensation was active during the measurement, its tables are first removed
+/// from the readings and results, because the new table replaces them.
 Expected<OutputResult> write_over_present(const Work& work, const WantedController& w,
                                           const ModelReadings& of_model, const Results& results) {
   const reading::ReadCampaign& read = work.read;
@@ -283,7 +284,7 @@ std::optional<NumberRequest> number_request(const Work& work,
 namespace {
 
 /// Stores the answer of the register for the output that is issued under a number: the certificate,
-/// or a finding that states what is missing.
+/// a finding that states what is missing, or an error, after which the next run tries again.
 void take_number(const Work& work, NumberRequest request, const AssignedNumber* assigned,
                  const std::vector<WantedOutput>& documents, Evaluated& out) {
   if (assigned != nullptr && assigned->error) {

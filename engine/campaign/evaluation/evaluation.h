@@ -116,23 +116,26 @@ bool has_plugin(const std::vector<Plugin>& all, const std::string& name) {
   return std::any_of(all.begin(), all.end(), [&](const Plugin& p) { return p.info.name == name; });
 }
 
-/// Reports each name that no plugin of this kind has.
+/// Reports each of `names` that no plugin of this kind has, except that of the model fit.
 void report_absent(const Work& work, const char* kind, const char* key, const PluginNames& names,
                    const std::function<bool(const std::string&)>& is_there);
 
-/// Run the requested analyses and, if the manifest requests them, the models. They return the
-/// results.
+/// Run the requested analyses, and the models if `[run] analyses` names the model fit or, without
+/// this list, if [model] has effects. They return the results.
 std::vector<Results::Analysed> run_analyses(const Work& work);
 std::vector<Results::Analysed> fit_models(const Work& work, std::vector<ModelFit>& models);
 
 /// Returns the ids of the findings that prevent tables: signs of a mistake in the files that were
-/// not accepted with a reason. Adds the reason to an accepted finding.
+/// not accepted with a reason. Adds the reason to an accepted finding, and reports an error if the
+/// readings do not have an accepted finding.
 std::vector<std::string> open_doubts(const Work& work, std::vector<Results::Analysed>& analyses);
 
-/// Returns a remark for each measurement that no analysis and no model has used.
+/// Returns a remark for each measurement that no analysis and no model has used, and one if the
+/// manifest has a model that was not fitted.
 std::vector<Remark> unevaluated(const reading::ReadCampaign& read, const Results& results);
 
-/// Compares values with the tolerances of the manifest and returns the decisions.
+/// Compares values with the tolerances of the manifest and returns the decisions. A tolerance
+/// without a value gets the decision `cannot_be_decided`.
 std::vector<Conformity> held_against_tolerances(const Campaign& campaign,
                                                 const std::vector<Results::Analysed>& analyses);
 

@@ -99,6 +99,7 @@ std::optional<FollowedGroup> of_axis(const reading::ReadCampaign& read, std::siz
 
 /// Returns the values of an analysis that are compared between campaigns, if it has an uncertainty
 /// budget; otherwise none. The budget states what the instrument contributes to their uncertainty.
+/// Values without any other uncertainty are left out.
 std::optional<FollowedGroup> of_budget(const Results::Analysed& a, const Campaign& campaign) {
   if (!a.evaluation.budget) return std::nullopt;
   const UncertaintyBudget& budget = *a.evaluation.budget;
@@ -143,9 +144,9 @@ std::string effects_of(const ModelFit& fit) {
   return out;
 }
 
-/// Whether a parameter of a model is compared between campaigns. Parameters of curves are not,
-/// because their knots differ between campaigns. Scales are not, because the quantity `scale`
-/// contains them with the parts of instrument and temperature.
+/// Whether a parameter of a model is compared between campaigns. Searched parameters are not.
+/// Parameters of curves are not, because their knots differ between campaigns. Scales are not,
+/// because the quantity `scale` contains them with the parts of instrument and temperature.
 bool is_followed(const ModelFit& fit, const ModelFit::Parameter& p) {
   const auto effect = std::find_if(fit.effects.begin(), fit.effects.end(),
                                    [&](const ModelFit::Effect& e) { return e.name == p.effect; });

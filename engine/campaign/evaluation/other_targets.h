@@ -19,7 +19,7 @@ struct ComparedTargets {
   struct Fit {
     double beyond = 0.0, dof = 0.0;
     std::vector<double> coefficients{}, covariance{}, share{};
-    std::vector<double> sinusoids{};  ///< value, variance and share of each
+    std::vector<double> sinusoids{};  ///< value, variance and share of each sinusoid (SI units)
     std::vector<double> residuals{};  ///< residual at each target, m or rad
   };
 

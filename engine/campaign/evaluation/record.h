@@ -50,14 +50,15 @@ struct IndexedSince {
 struct Record {
   std::string folder;  ///< folder of the campaign, relative to the site
   std::uint64_t run = 0;
-  std::string date;  ///< date of that run
+  std::string date;  ///< date of the run with number `run`, YYYY-MM-DD
   std::string reason;
   Status status = Status::none;
   bool retry = false;  ///< the campaign failed for a reason that is not part of its content
   /// First of the successive runs in which the campaign failed.
   std::optional<RunLabel> failed_since{};
   reading::Inputs inputs;
-  /// Run since which its data are unchanged; none: it failed temporarily.
+  /// Run since which the campaign's data in the history are unchanged; none: the campaign failed
+  /// temporarily.
   std::optional<IndexedSince> indexed{};
   std::string certificate;  ///< number of the certificate; empty: none
   bool draft = false;       ///< the certificate is a draft that waits for approval

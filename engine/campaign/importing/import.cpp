@@ -64,8 +64,9 @@ std::string campaign_of(const ImportRule& rule, const Places& places) {
   return id;
 }
 
-/// Returns a digest of the readings, which is the same for equal readings in different bytes (line
-/// ends, a comment).
+/// Returns a digest of the deviations, runs, positions and approaches of all readings, which is the
+/// same for equal readings in different bytes (line ends, a comment); empty if there are no
+/// readings.
 std::string digest_of(const Observations& o) {
   std::string bytes;
   const auto put = [&](const auto& column) {
@@ -254,8 +255,8 @@ class Importer {
                              (request_.rule.axes.empty() ? "" : ", as the rule states"));
   }
 
-  /// Returns the text of campaign.toml. Data that are still missing are named in a comment at the
-  /// beginning and in one at their place.
+  /// Returns the text of campaign.toml. What the campaign lacks is named in comments at the
+  /// beginning, and what a file lacks in comments in its [[measurement]].
   std::string manifest_of(const ImportedCampaign& campaign, const Places& places) const {
     toml::table root;
     if (auto extra = config::parse_toml(request_.rule.manifest, "rule"); extra)

@@ -16,7 +16,7 @@ namespace nonio::importing {
 /// The rule by which the names of files state what was measured.
 struct ImportRule {
   std::string pattern;   ///< form of the names: "{machine}_{axis}_{date}.rtl"
-  std::string campaign;  ///< pattern of the campaign's id, as in `pattern`; empty: see campaign_of
+  std::string campaign;  ///< pattern of the id; empty: date and placeholders except axis and id
   std::string kind = "axis";         ///< kind of every measurement
   std::string reader;                ///< reader of every file; empty: chosen by the content
   std::vector<std::string> exclude;  ///< a file is skipped if its path contains one of these

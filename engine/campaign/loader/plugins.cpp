@@ -107,8 +107,8 @@ Probed probe_in_child(std::span<const fs::path> paths) {
   return probed;
 }
 
-/// Whether the child was killed by SIGKILL. It is sent from outside (by a person, or by a system
-/// without memory), so it shows nothing about the plugin.
+/// Whether the child was killed by SIGKILL before it finished a file. The signal is sent from
+/// outside (by a person, or by a system without memory), so it shows nothing about the plugin.
 bool is_killed(const Probed& p) {
   return p.refusals.empty() && !p.end.well && !p.end.overdue &&
          p.end.words.starts_with("signal 9 ");
@@ -116,7 +116,8 @@ bool is_killed(const Probed& p) {
 
 /// Returns for each file why it must be refused; empty if it is accepted. All files are tried in
 /// one child, because a child takes longer to start than a plugin. A file with which the child
-/// ended is tried again alone, so that it is not blamed for the files before it.
+/// ended before the time limit is tried again alone, so that it is not blamed for the files before
+/// it.
 std::vector<std::string> probe(std::span<const fs::path> paths) {
   std::vector<std::string> refusals;
   while (refusals.size() < paths.size()) {

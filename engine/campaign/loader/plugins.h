@@ -46,8 +46,9 @@ class Plugins final : public Registry {
   void load(const std::vector<std::filesystem::path>& folders);
 
   const std::vector<PluginFile>& files() const { return files_; }
-  /// Messages about two plugins of one kind with the same name, with both paths. Outputs and
-  /// controllers are regarded as one kind.
+  /// Messages about two plugins of one kind with the same name, with both paths (outputs and
+  /// controllers are regarded as one kind), about folders that cannot be read, and about files for
+  /// which there was not enough memory.
   const std::vector<std::string>& conflicts() const { return conflicts_; }
   /// Whether all loaded plugins are in this folder.
   bool all_from(const std::filesystem::path& folder) const;

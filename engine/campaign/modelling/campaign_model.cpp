@@ -364,8 +364,8 @@ std::vector<model::Term> library_of(const PartModel& part, std::shared_ptr<const
 
 namespace {
 
-/// Removes candidates with separate values for each group of measurements, unless they explain more
-/// than the same effect with one common value.
+/// Removes candidates with separate values for each group of measurements, unless they belong to
+/// the chosen set or explain more than the same effect with one common value.
 void leave_out_weaker_groups(model::Explanation& e) {
   std::map<std::string, double> score;
   for (const model::Candidate& c : e.candidates) score[c.term.name()] = c.score;

@@ -24,8 +24,8 @@ struct PartModel {
   std::string unfit;  ///< why these readings cannot show the model; "" if they can
   std::vector<model::Candidate> left_out{};  ///< effects that do not apply, with the reason
   RowsPlace interpolated{};                  ///< readings whose temperature is interpolated
-  /// The causes of the library for an axis. They are searched if the catalogue may not explain the
-  /// readings.
+  /// The causes of the library, null if the part is not an axis. They are searched if the catalogue
+  /// may not explain the readings.
   config::Library library{};
   /// Effects whose value the model states. Their prediction is subtracted from the deviations of
   /// `part`, and all other effects are fitted to what remains. A comparison lists them after its
@@ -64,7 +64,7 @@ struct ReadingPlace {
   std::uint64_t line = 0;  ///< line in the file; 0: the reader does not state it
   std::uint32_t run = 0;   ///< number of the run; 0: the reader does not state it
   int direction = 0;       ///< direction of motion, +1 or -1; 0: the reader does not state it
-  double target = 0.0;     ///< position of the target along its line, m or rad
+  double target = 0.0;     ///< coordinate along the line: m, rad or s, as `position` states
   Quantity position = Quantity::length;
 };
 ReadingPlace place_of(const PartModel& part, const Campaign& campaign, std::size_t row);
@@ -73,7 +73,8 @@ RowsPlace place_of(const PartModel& part, const Campaign& campaign,
                    const std::vector<std::uint32_t>& rows);
 
 /// Returns what is wrong in a list of effects: wrong form, unknown kind or axis (with the nearest
-/// name), or an effect that is given twice.
+/// name), an effect of the set-up, which every model contains, a value that cannot be stated, or an
+/// effect that is given twice.
 std::vector<std::string> model_mistakes(const std::vector<std::string>& effects,
                                         const reading::ReadCampaign& read);
 
@@ -90,16 +91,17 @@ Error nothing_to_compare(const reading::ReadCampaign& read);
 /// manifest.
 std::vector<std::string> kinds_measured(const reading::ReadCampaign& read);
 
-/// The steps of `part_models`. `bare_parts` returns the parts with their readings only, the next
-/// function adds the catalogue, for which every effect examines every reading, and the last one
-/// adds the places of interpolated temperatures.
+/// The steps of `part_models`. `bare_parts` returns the parts with their readings only,
+/// `fill_catalogue` adds the catalogue, for which every effect examines every reading, and the
+/// places of interpolated temperatures. `fill_interpolated` adds only these places.
 std::vector<PartModel> bare_parts(const reading::ReadCampaign& read);
 void fill_catalogue(PartModel& part, const reading::ReadCampaign& read);
 void fill_interpolated(PartModel& part, const reading::ReadCampaign& read);
 /// Returns the first mistake as an error, with the line of [model] effects.
 Expected<void> without_mistakes(const std::vector<std::string>& effects,
                                 const reading::ReadCampaign& read);
-/// Sets another model for the same readings. `effects` must be free of mistakes.
+/// Sets another model for the same readings. `effects` must be free of mistakes. If the readings
+/// cannot show the model, `unfit` states why.
 void set_model(PartModel& part, const std::vector<std::string>& effects,
                const reading::ReadCampaign& read);
 

@@ -25,8 +25,8 @@ Entry entry_of(const std::string& written);
 const std::string* find_effect(const std::vector<std::string>& model, const std::string& effect);
 
 /// Returns the stated value in SI units. If `rotary`, the axis of the effect is rotary. An error
-/// states what was expected: only an effect with one parameter and without shapes can have a stated
-/// value.
+/// states what was expected: only an effect with one parameter, without shapes and without groups,
+/// that is neither a curve nor depends on a recorded channel, can have a stated value.
 Expected<double> held_value(const Entry& entry, const Effect& effect, bool rotary);
 
 }  // namespace nonio::modelling

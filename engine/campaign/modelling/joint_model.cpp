@@ -18,7 +18,7 @@ namespace {
 using model::Holds;
 using storage::Json;
 
-// Largest number of readings per campaign, because its columns are kept in memory.
+// Largest number of readings of a campaign, because all columns of its effects are kept in memory.
 constexpr std::size_t most_readings = 20000;
 
 const char* name_of(Holds holds) {

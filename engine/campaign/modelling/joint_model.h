@@ -17,14 +17,15 @@ struct Together {
   std::vector<PartModel> parts;
   std::vector<std::string> effects;  ///< effects that the models of the campaigns contain
   model::JointExplanation explanation;
-  std::vector<std::shared_ptr<const void>> keeps{};  ///< owns effects that no campaign owns
+  std::vector<std::shared_ptr<const void>> keeps{};  ///< owners of effects made from library causes
 
   Quantity deviation() const { return parts.front().deviation(); }
 };
 
 /// Explains the runs of each axis that at least two campaigns measured, with the models of these
-/// campaigns. Parts that cannot be explained together (other kinds, axes that only one campaign
-/// measured) are added to `left_out` as "<campaign> <part>".
+/// campaigns. Parts that cannot be explained together are added to `left_out` as "<campaign>
+/// <part>": other kinds, axes that only one campaign measured and, with the reason in brackets,
+/// parts that have more than 20000 readings or cannot show their model.
 Expected<std::vector<Together>> explain_together(
     const std::vector<const reading::ReadCampaign*>& campaigns, std::uint64_t seed,
     std::vector<std::string>& left_out);

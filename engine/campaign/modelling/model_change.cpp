@@ -54,8 +54,8 @@ ModelStep step_of(const Change& change, const std::string& effect, bool add) {
   return step;
 }
 
-/// Returns the text of campaign.toml; an error if another process has changed the file since it was
-/// read.
+/// Returns the text of campaign.toml. An error if the file is a link, or if another process has
+/// changed it since it was read.
 Expected<std::string> unchanged_manifest(const fs::path& folder,
                                          const reading::ReadCampaign& read) {
   std::error_code error;

@@ -24,7 +24,7 @@ struct Change {
   /// Comparisons of the part before and after the change; none if the model cannot be fitted or no
   /// measurement shows the effect.
   std::optional<Compared> before, after;
-  std::string no_before;  ///< why there is no `before`
+  std::string no_before;  ///< why the model before could not be fitted; empty: no such error
 };
 
 /// An effect to add to a model, or to remove from it.
@@ -42,7 +42,7 @@ struct CampaignEdit {
   std::vector<ModelEdit> model{};
   std::vector<Exclusion> excluded{};
   std::vector<Period> periods{};
-  std::string why{};  ///< comment on all changes; an exclusion has its own
+  std::string why{};  ///< comment on all changes that have no comment of their own
 
   bool empty() const { return model.empty() && excluded.empty() && periods.empty(); }
 };

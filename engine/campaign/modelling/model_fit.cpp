@@ -156,7 +156,8 @@ void put_fit(ModelFit& out, const PartModel& part, const model::Comparison& c) {
   for (const model::Suspect& s : c.suspects) out.suspects.push_back({s.row, s.minimal_detectable});
 }
 
-// Largest number of readings; fits of more take seconds
+// Largest number of readings for which models with fewer effects are fitted too, because with more
+// readings each fit takes seconds.
 constexpr std::size_t most_refitted = 20000;
 
 /// Returns the terms that are marked in `in`, in the order of the model.

@@ -17,7 +17,7 @@ struct ModelFits {
 };
 
 /// Fits the model of each part with readings and returns it under the part's first measurement. A
-/// model that cannot be fitted is a finding; a name that does not exist in it is an error.
+/// model that cannot be fitted is a finding; a mistake in [model] effects is an error.
 Expected<ModelFits> model_fit(const reading::ReadCampaign& read, const reading::Context& context);
 
 /// Returns the readings of a part for documents without a model: the residuals are the readings.
@@ -33,8 +33,8 @@ std::vector<ModelFit::Without> without_each(const PartModel& part);
 
 /// Returns the readings from which tables are made if the manifest states compensate = "model": for
 /// each target and direction that was measured, one reading, the sum of the model's compensable
-/// effects. It is empty for an axis whose model has no such effect; measurements without an axis
-/// stay unchanged.
+/// effects. A measurement has no readings if its model has no such effect. Ball centres and
+/// measurements that no model can explain stay unchanged. An error if a model cannot be fitted.
 Expected<std::vector<Observations>> compensable_readings(const reading::ReadCampaign& read,
                                                          std::vector<Remark>& notes);
 

@@ -11,7 +11,10 @@
 
 namespace nonio::modelling {
 
-/// Returns sentences about values below their uncertainty and effects that no measurement shows.
+/// Returns the warnings about a fit as sentences: values below their uncertainty, gains that are
+/// too large, parameters that are not identifiable, positions or orders that are not stated,
+/// interpolated temperatures, time constants of thermal tests, and noise that is not independent or
+/// not constant.
 std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,
                                      const ModelWords& words);
 

@@ -16,11 +16,11 @@ struct Predicted {
   model::Prediction prediction;
 };
 
-/// Returns a prediction for every part of `unseen` that `seen` contains too. Parts are matched by
-/// kind and name, displacements over time otherwise by displacement. The model is that of the
-/// manifest of `seen`; only the zeros of the lines are fitted again. If `zero_kept`, the zero of a
-/// displacement over time is kept too, and other parts are an error. If no part matches, an error
-/// lists the parts of both campaigns.
+/// Returns a prediction for every part of `unseen` that `seen` contains too, except ball centres.
+/// Parts are matched by kind and name, displacements over time otherwise by displacement. The model
+/// is that of the manifest of `seen`; only the zeros of the lines are fitted again. If `zero_kept`,
+/// the zero of a displacement over time is kept too, and other parts are an error. If no part
+/// matches, an error lists the parts of both campaigns.
 Expected<std::vector<Predicted>> predictions(const reading::ReadCampaign& seen,
                                              const reading::ReadCampaign& unseen, bool zero_kept);
 

@@ -115,7 +115,7 @@ namespace {
 // docs/dev/constants.md, M24.
 constexpr double separable = 4.0;  // power of a plan that separates effects, in standard deviations
 constexpr double most_longer = 10.0;       // largest factor by which a longer test is proposed
-constexpr std::size_t enough_targets = 9;  // a wave and a bend need as many columns as 5 targets
+constexpr std::size_t enough_targets = 9;  // with fewer targets, denser ones are proposed
 
 class Next {
  public:

@@ -62,8 +62,8 @@ class ModelWords {
   std::string order_unknown() const;
   std::string has_unstated_position() const;
   std::string unmeasured(const std::string& effect) const;
-  /// Returns the catalogue's text about an effect of this kind: `what` is "is", "size", "looks" or
-  /// "remedy"; "" if there is none.
+  /// Returns the catalogue's text about an effect of this kind, in English if it is not translated;
+  /// "" if there is none. `what` is "is", "size", "appearance", "similar" or "remedy".
   std::string card(const std::string& effect, const std::string& what) const;
 
  private:
@@ -76,8 +76,8 @@ class ModelWords {
   std::string language_;
 };
 
-/// Return the statements of `ModelWords` as findings, for documents in any language, with ids
-/// "verdict.*" and "place.*".
+/// Return the statements of `ModelWords` as findings, for documents in any language. The beginning
+/// of an id names the statement: "verdict.", "place.", "plan.", "description.", "false-alarms".
 Finding verdict_finding(const model::Explanation& explanation, const PartModel& part);
 Finding place_finding(const model::Place& place, Quantity deviation);
 Finding plan_finding(const model::Plan& plan);

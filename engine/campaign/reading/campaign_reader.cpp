@@ -40,7 +40,7 @@ namespace {
 
 const Campaign& campaign_in(const ReadCampaign& out) { return out.manifest->campaign; }
 
-/// Reads the manifest into `out`. Returns false if it cannot be read.
+/// Reads the manifest into `out`. Returns false if it cannot be read or has errors.
 bool read_manifest(const CampaignSource& from, ReadCampaign& out) {
   from.stage("reading campaign.toml");
   const auto text = storage::read_small_file(from.folder / config::manifest_name);
@@ -82,6 +82,7 @@ void take_present_state(const config::RecordFile& file, Axis& axis, ReadCampaign
 }
 
 /// Adds the data about the machine that its record in the site contains and the manifest does not.
+/// Reports errors in the record, and contradictions between both.
 void look_up_machine(const CampaignSource& from, ReadCampaign& out) {
   Machine& machine = out.manifest->campaign.machine;
   const std::string input = config::machine_input(machine);
@@ -116,7 +117,8 @@ void note_tables(ReadCampaign& out, const std::string& list, const std::vector<A
   }
 }
 
-/// Reads the tables that were active during the measurement.
+/// Reads the active tables that the manifest names, and reports a measurement without compensation
+/// on an axis with an active table.
 void look_up_active_tables(const CampaignSource& from, ReadCampaign& out) {
   for (const Axis& axis : campaign_in(out).machine.axes) {
     if (!axis.active_table || axis.active_table->empty() || out.active_tables.contains(axis.name))

@@ -19,9 +19,9 @@ inline constexpr const char* former_key_note = "manifest.former-key";
 
 /// The content of a campaign's folder: its manifest and its measurements.
 struct ReadCampaign {
-  std::optional<config::Manifest> manifest;  ///< none if it cannot be read; then all else is empty
+  std::optional<config::Manifest> manifest;  ///< none if it has errors; then no measurement is read
   std::optional<config::MachineRecord>
-      machine{};  ///< record of the campaign's machine in the site; none: there is no record
+      machine{};  ///< record of the campaign's machine in the site; none: there is no valid record
   /// For each axis, the files of the table that was active during the measurement, if there was
   /// one.
   std::map<std::string, std::vector<Artifact>> active_tables{};
@@ -36,7 +36,7 @@ struct ReadCampaign {
   std::vector<Remark> notes;
   std::vector<std::string> unread;  ///< measurements of a kind that no plugin reads
   std::vector<Error> errors;
-  Inputs inputs;  ///< names and digests of the campaign's own files, manifest first
+  Inputs inputs;  ///< digests of the campaign's files and of the machine's record, manifest first
 };
 
 ReadCampaign read_campaign(const std::filesystem::path& folder, const Context& context,
@@ -46,7 +46,7 @@ ReadCampaign read_campaign(const std::filesystem::path& folder, const Context& c
 struct Workplace {
   loader::Plugins plugins;
   Context context;
-  std::vector<std::string> notes;  ///< notes about refused plugins
+  std::vector<std::string> notes;  ///< notes about refused plugins and former names of keys
 };
 
 /// Which templates `open_workplace` reads: all for `documents`, otherwise only the words in the
@@ -54,8 +54,9 @@ struct Workplace {
 /// command. Except with `terminal`, the causes of the library become effects that can be named.
 enum class TemplatesFor { documents, terminal, terminal_with_library };
 
-/// Loads plugins, templates and the site.toml of the nearest folder at or above the campaign that
-/// contains one.
+/// Loads plugins and templates, and site.toml and the records of machines of the site that contains
+/// the campaign (`config::site_of`). Returns an error if plugins are in conflict
+/// (`Plugins::conflicts`).
 Expected<std::unique_ptr<Workplace>> open_workplace(
     const std::filesystem::path& campaign, const std::vector<std::filesystem::path>& plugin_folders,
     const std::vector<std::filesystem::path>& template_folders, const std::string& version,

@@ -94,8 +94,8 @@ std::size_t join_targets(Observations& o) {
 
 /// Returns the named reader, otherwise the first that recognises the content, otherwise the one for
 /// the columns that the method declares. None if no plugin reads this kind of measurement: this is
-/// noted, and other measurements are evaluated. An error if a refused plugin may be the required
-/// one.
+/// noted, and other measurements are evaluated. An error if no reader of this kind recognises the
+/// content, or if a refused plugin may be the required one.
 Expected<const Reader*> choose_reader(const CampaignSource& from, const Measurement& m,
                                       std::string_view bytes, ReadCampaign& out) {
   const auto& readers = from.context.plugins->readers();
@@ -201,8 +201,9 @@ std::optional<Settings> settle_reader(const CampaignSource& from, const Info& in
   return std::nullopt;
 }
 
-/// Adds findings about an implausible end of the file, and notes about missing and changed
-/// readings.
+/// Adds findings about an implausible end of the file and those of the reader, and a note about
+/// missing readings. If the measurement moves to targets, joins targets that differ by rounding,
+/// with a note.
 void note_oddities(const Measurement& m, std::string_view bytes, Observations& o,
                    ReadCampaign& out) {
   auto ends = implausible_end(bytes, m.file);

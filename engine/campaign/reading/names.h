@@ -23,9 +23,9 @@ std::vector<Error> site_mistakes(const Context& context);
 void locate(Error& error, const config::KeyLines& manifest, const config::KeyLines& site,
             const std::string& plugin = {});
 
-/// Sets the line of an error in the manifest: that of the nearest existing key above the faulty one
-/// (machine.axes.X for machine.axes.X.slave), otherwise of the first existing key in `others`,
-/// otherwise line 1.
+/// Sets the line of an error that has a file and no line. In the manifest it is that of the nearest
+/// existing key above the faulty one (machine.axes.X for machine.axes.X.slave), otherwise of the
+/// first existing key in `others`; otherwise, and in other files, it is line 1.
 void give_line(Error& error, const config::KeyLines& manifest,
                const std::vector<std::string>& others);
 

@@ -13,7 +13,7 @@
 namespace nonio::tables {
 
 /// Returns the controller of this name; without a name, the one after which the files are named,
-/// otherwise the only one that can read them.
+/// otherwise the only one that can read them, or that could read them if one line were correct.
 Expected<const Controller*> control_of(const loader::Plugins&, const std::string& name,
                                        const std::vector<Artifact>& files, const Campaign&,
                                        const std::map<std::string, std::string>& options);
@@ -38,7 +38,7 @@ struct TableDifference {
   bool rotary = false;  ///< the output axis is rotary
   std::optional<TableShape> present{},
       next{};  ///< none if only the other set of tables has such a table
-  /// Largest absolute value of next - present, and its position on the first input axis.
+  /// Largest absolute value of next - present, and its position on the first input axis, m or rad.
   double largest = 0.0, at = 0.0;
   double range = 0.0;  ///< range of next - present, m or rad
 };
@@ -67,7 +67,8 @@ struct Underlay {
 Campaign with_one(Campaign campaign, Measurement m);
 
 /// Returns the tables that were active according to manifest and record; none if there was no
-/// table. An error if the control does not read the files as tables of these axes.
+/// table. An error if the control does not read the files as tables of these axes, or if they
+/// contain another backlash than is stated.
 Expected<std::optional<Underlay>> active_compensation(const reading::ReadCampaign&,
                                                       const Controller&, const Settings& options);
 /// Returns readings, or a model's predictions of them, without the correction of these tables; the
@@ -125,7 +126,7 @@ Expected<CampaignTables> tables_of_campaign(const reading::ReadCampaign&, const 
 /// The compensation with which an axis was measured.
 struct MeasuredWith {
   std::vector<LoadedTable> tables;   ///< tables of the axis; empty: no table was active
-  std::string files;                 ///< names of their files; empty: no table was active
+  std::string files;                 ///< names of the files of these tables; empty: no table active
   std::optional<double> backlash{};  ///< backlash value, m or rad; none: not stated
   bool from_backup = false;          ///< whether only the backup states this compensation
 };

@@ -47,8 +47,8 @@ Expected<OneAxis> one_axis(const reading::ReadCampaign& read, const std::string&
   return fail("no measurement of axis " + axis + "; there are " + (list.empty() ? "none" : list));
 }
 
-/// Removes the active compensation from the readings, so that the new table contains the whole
-/// correction.
+/// States the active compensation in the campaign and the options, and removes it from the
+/// readings, so that the new table contains the whole correction.
 void take_active(OneAxis& one, const MeasuredWith& with, const std::string& axis,
                  Settings& options) {
   for (Axis& a : one.campaign.machine.axes) {
@@ -60,8 +60,8 @@ void take_active(OneAxis& one, const MeasuredWith& with, const std::string& axis
   one.readings = without_tables(one.campaign, one.measured, with.tables);
 }
 
-/// Checks that the merge changes only the table of this axis, and that the control reads it back
-/// unchanged.
+/// Checks that the merge changes only the table of this axis and no backlash value, and that the
+/// control reads the new table back unchanged.
 Expected<void> only_this_axis(const ReadTables& present, const ReadTables& fresh,
                               const ReadTables& next, const std::string& axis) {
   constexpr double nothing = 1e-12;  // largest difference that is regarded as rounding, m or rad

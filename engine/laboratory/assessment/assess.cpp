@@ -133,7 +133,8 @@ class Assessment::State {
     kept_.keep(changes);
   }
 
-  /// Returns the number of machines with a name; campaigns without a machine follow them in `site`.
+  /// Returns the number of machines with a name, which are the first of `machines_` and the only
+  /// ones in `site`.
   std::size_t count() const { return machines_with_name_; }
 
   reports::SiteHistory site;
@@ -225,8 +226,9 @@ class Assessment::State {
     return {};
   }
 
-  /// Collects names of machines in entries of people that no campaign states. Records of machines
-  /// are no mistake, because they may precede the campaigns.
+  /// Collects names of machines that no campaign states, from events, valid acknowledgements and
+  /// calibration intervals. Records of machines are no mistake, because they may precede the
+  /// campaigns.
   void note_unknown(const std::vector<store::MachineState>& states, const MachineEvents& events) {
     std::set<std::string> names;
     for (const store::MachineState& state : states) names.insert(state.machine.name);
@@ -427,7 +429,8 @@ class Assessment::State {
       site.machines.push_back(s.shown);
       site.months.insert(site.months.end(), s.months.begin(), s.months.end());
     }
-    intervals.resize(site.machines.size());  // machines come before campaigns without one
+    // campaigns without a machine come last and get no proposal
+    intervals.resize(site.machines.size());
     auto proposals = proposals_of(intervals);
     for (std::size_t i = 0; i < proposals.size(); ++i)
       site.machines[i].proposal = std::move(proposals[i]);
@@ -474,7 +477,7 @@ class Assessment::State {
   std::size_t machines_with_name_ = 0;
   std::vector<std::string> unknown_{};
   const Links links_{out_};
-  /// Campaigns dated later are treated as not measured yet.
+  /// Day of the run; campaigns dated later are treated as not measured yet.
   const std::string until_ = last_run_.date.empty() ? "9999-12-31" : last_run_.date;
   std::map<std::string, std::vector<reports::WorkItem>> lines_{};  ///< worklist lines, by name of
                                                                    ///< the machine

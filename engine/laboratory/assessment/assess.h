@@ -52,7 +52,8 @@ class Assessment {
   /// Stores the results of the assessment for the next run.
   void keep();
   reports::SiteHistory take_site() &&;
-  /// Returns the site with all series of all machines.
+  /// Returns the site with all series of all machines, after storing the results that `keep` names
+  /// for the next run.
   Expected<reports::SiteHistory> take_whole(Keep keep) &&;
 
  private:

@@ -207,7 +207,8 @@ std::vector<std::vector<Adjusted>> adjusted_by_run(
   std::vector<std::vector<Adjusted>> out;
   for (const SeriesTests* s : tests) out.emplace_back(s->changes.size());
   std::map<std::uint64_t, std::vector<Asked>> unsaid, said;
-  std::map<std::uint64_t, std::size_t> still;  // number of series whose last point came in this run
+  // by run: number of series with a model whose last point came in it
+  std::map<std::uint64_t, std::size_t> still;
   for (std::size_t k = 0; k < tests.size(); ++k) {
     const SeriesTests& s = *tests[k];
     still[s.run] += s.has_model;

@@ -31,7 +31,7 @@ struct OfQuantity {
 struct Lesson {
   std::string quantity;  ///< quantity and unit, separated by a space
   std::uint64_t points = 0;
-  std::vector<double> ratios{};  ///< scatter ratio of each point, see `kernel::Scatter`
+  std::vector<double> ratios{};  ///< ratios of `statistics::Scatter`, of the points that have one
   std::optional<nonio::statistics::Slope> slope{};
 };
 /// Returns how many of the first evaluations are used for the statistics of the laboratory: all, or
@@ -45,8 +45,9 @@ Lesson lesson_of(const FollowedSeries& series, Fits& fits,
 /// Statistics by quantity and unit, for all machines of a site, rounded in coarse steps.
 struct Learned {
   std::map<std::string, OfQuantity> of;
-  double drift_below = 1.0;  ///< level of the test for a drift: `significant_below` divided by the
-                             ///< number of series
+  /// level of the test for a drift: `significant_below` divided by the number of series with three
+  /// points or more, rounded up from 10,000 on
+  double drift_below = 1.0;
 };
 Learned learn(const std::vector<const Lesson*>& lessons);
 

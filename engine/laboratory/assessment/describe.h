@@ -13,7 +13,8 @@
 
 namespace nonio::assessment {
 
-/// Returns the quantity that has this unit symbol in results.json.
+/// Returns the quantity that has this unit symbol in results.json; Quantity::number for an unknown
+/// symbol.
 Quantity quantity_of_unit(const std::string& symbol);
 /// Converts a value from the printed unit to SI, so that `printed` restores the same number.
 double si(double shown, Quantity quantity);
@@ -36,7 +37,8 @@ class Links {
 /// Returns the link for one campaign.
 std::string link_of(const std::filesystem::path& out, const std::string& campaign);
 
-/// Returns the median gap between campaign days, in days; none if there is only one day.
+/// Returns the median gap between campaign days, in days (of two middle gaps the larger); none for
+/// fewer than two days.
 std::optional<std::int64_t> usual_interval(const std::vector<store::StoredCampaign>& campaigns);
 
 /// The limit that applies to a followed quantity, in the unit of results.json: its own limit, or
@@ -47,17 +49,19 @@ struct FollowedLimit {
   nonio::statistics::Beyond beyond{};
 };
 /// Returns the limit of the quantity of `series`. For B_mean it is that of B, if B has one and was
-/// measured together with B_mean since the last significant change. None if neither exists.
+/// measured together with B_mean since the last significant change; otherwise it is its own. None
+/// if there is no such limit, or if its series has ended.
 std::optional<FollowedLimit> limit_of(const AssessedMachine& machine, const FollowedSeries& series);
 
-/// Returns whether the change is one of a quantity of this axis between the same campaigns between
-/// which the table was loaded.
+/// Returns whether the table was loaded on this axis and the days between which it was loaded
+/// overlap with those between which the change occurred.
 bool is_at(const reports::TableLoaded& table, const std::string& axis,
            const reports::HistoryChange& change);
 
 /// Describes a machine for pages and programs. `due`: day of the next calibration by a rule; `why`:
-/// the rule in words. If `due` is empty there is no rule, and forecasts look one usual interval
-/// ahead. A forecast for a day before `today` is marked as overdue.
+/// the interval of that rule in months, as text. If `due` is empty there is no rule, and forecasts
+/// look one usual interval ahead. A forecast for a day before `today` is marked as overdue, unless
+/// it has no answer or a value of the axis is out of its limit or indeterminate.
 reports::MachineHistory describe(const AssessedMachine& machine, const std::filesystem::path& out,
                                  const std::string& due, const std::string& why,
                                  const std::string& today = {});

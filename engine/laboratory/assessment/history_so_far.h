@@ -37,7 +37,8 @@ struct HistoryBasis {
 Expected<std::vector<HistoryBasis>> history_bases(const std::filesystem::path& out,
                                                   const std::vector<std::string>& campaigns);
 
-/// Reads the results of one machine and computes the history.
+/// Reads the results of one machine and computes the history. It has no series if the campaign
+/// states no machine or no valid day.
 Expected<HistorySoFar> history_so_far(const std::filesystem::path& out, const HistoryBasis& basis);
 
 }  // namespace nonio::assessment

@@ -21,12 +21,12 @@ struct KeptMachine {
   std::string rows{};  ///< digest of the machine's data in the store and the site
   struct Series {
     Lesson lesson;
-    Manner manner;      ///< parameters of the trend
-    SeriesTests tests;  ///< tests of that trend
+    Manner manner;      ///< parameters with which the trend was fitted
+    SeriesTests tests;  ///< tests of the changes of this trend
   };
   std::vector<Series> series{};
   std::string digest{};  ///< digest of everything that `standing` depends on, except the date
-  std::string date{};    ///< date of the run
+  std::string date{};    ///< date of the run that made `standing`
   Standing standing{};
   struct Page {
     std::string made_from{};

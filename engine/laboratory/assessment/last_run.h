@@ -22,7 +22,7 @@ struct LastRun {
   struct Vanished {
     std::string campaign, folder;
     std::uint64_t last_seen_run = 0;
-    std::string why;  ///< what is found in its place
+    std::string why;  ///< what was found in place of the campaign
   };
   std::uint64_t run = 0;
   std::string date;  ///< date of the run, YYYY-MM-DD; used in place of a clock
@@ -33,7 +33,8 @@ struct LastRun {
   std::vector<std::string> issued{};   ///< numbers of issued certificates
   std::vector<std::string> waiting{};  ///< campaigns whose drafts wait for approval
   std::string language = "en";         ///< language of the site
-  std::string history_error{};         ///< why the store does not contain this run; empty: it does
+  /// why the store does not contain this run; empty: the store contains it
+  std::string history_error{};
 };
 
 /// Reads the last complete run from OUT/summary.json. An error if there is none.

@@ -24,8 +24,9 @@ void put_count(WorkItem& line, const char* name, std::size_t n) {
   line.finding.evidence.push_back({name, static_cast<double>(n), Quantity::count});
 }
 
-/// Makes the lines of vanished campaigns, one per machine; if many vanished, one per folder that
-/// they had in common.
+/// Makes the lines of vanished campaigns: one per machine, and one for each campaign without a
+/// machine. If campaigns of more than `most_machines` machines vanished, it makes one line per top
+/// folder instead. A vanished part that is not a campaign has a line of its own.
 std::vector<WorkItem> lost(const Known& known) {
   std::map<std::string, std::vector<const LastRun::Vanished*>> by_machine, by_folder;
   std::vector<WorkItem> out;
@@ -68,8 +69,9 @@ std::vector<WorkItem> lost(const Known& known) {
   return out;
 }
 
-/// Makes the lines of failed campaigns. Many failures with the same message, for example from a
-/// mistake in site.toml, are one line.
+/// Makes the lines of failed campaigns, and one if the history could not be stored. More than
+/// `most_alike` failures with the same message, for example from a mistake in site.toml, are one
+/// line.
 std::vector<WorkItem> failed(const Known& known) {
   std::map<std::string, std::vector<const LastRun::Failed*>> by_message;
   for (const LastRun::Failed& f : known.last_run.failed) by_message[f.message].push_back(&f);
@@ -102,7 +104,8 @@ std::vector<WorkItem> failed(const Known& known) {
   return out;
 }
 
-/// Adds a line for machines without a stated limit, whose conformity was not assessed.
+/// Adds a line for machines that have results but no stated limit, so that their conformity was not
+/// assessed.
 void not_judged(const Known& known, std::vector<WorkItem>& out) {
   std::string names;
   std::size_t count = 0;
@@ -218,8 +221,8 @@ void fold(std::vector<WorkItem>& lines, const char* finding, const char* several
   lines.push_back(std::move(all));
 }
 
-/// Returns |value| / limit, or |value| / u without a limit: within one kind, lines are sorted by
-/// this, largest first.
+/// Returns |value| / limit, or |value| / u without a limit, or 0 without both: within one kind,
+/// lines are sorted by this, largest first.
 double size_of(const WorkItem& l) {
   if (l.value && l.limit && *l.limit > 0.0) return std::fabs(*l.value) / *l.limit;
   if (l.value && l.u && *l.u > 0.0) return std::fabs(*l.value) / *l.u;

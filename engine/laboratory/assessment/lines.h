@@ -30,7 +30,8 @@ struct Known {
 std::vector<reports::WorkItem> lines_of(const Known& known);
 
 /// Returns the kind of a quantity: reversal, scale, curve, turn, cyclic, scatter, squareness,
-/// straightness, centre, circle or parameter. Its words are `term.what` and `term.look`.
+/// straightness, centre, circle or parameter. The words for a kind are in `term.what` and
+/// `term.look`.
 std::string kind_of(const std::string& quantity);
 
 /// Returns the axis of a series; if it has none, the one in its quantity (backlash:X.b).

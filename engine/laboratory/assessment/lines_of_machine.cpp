@@ -78,7 +78,8 @@ class OfMachine {
 
   // ---- lines about changes
 
-  /// Collects the changes of each axis since its last repair or compensation.
+  /// Collects the changes of each axis since its last repair or compensation, except those that are
+  /// attributed to the instrument or to a table that was loaded wrongly.
   void causes_by_axis() {
     for (const HistorySeries& s : d_.series) {
       std::string repaired;
@@ -384,7 +385,8 @@ class OfMachine {
     }
   }
 
-  /// Whether an event of these days states the compensation, or the campaign has readings as left.
+  /// Returns whether an event between the days of both campaigns states the compensation, or the
+  /// later campaign has readings of the axis as left.
   bool is_declared(const reports::TableLoaded& t) const {
     return std::any_of(m_.events.begin(), m_.events.end(),
                        [&](const config::Event& e) {
@@ -428,7 +430,8 @@ class OfMachine {
     });
   }
 
-  /// Adds one line per axis of a campaign for tables, results and certificates that were withheld.
+  /// Adds one line per kind, campaign and axis for tables, results and certificates that were
+  /// withheld and for expired calibrations.
   void held_back() {
     std::map<std::string, WorkItem> all;
     for (const Withheld& w : withheld(m_.stored)) {
@@ -511,7 +514,8 @@ class OfMachine {
     }
   }
 
-  /// Adds a line for each change in a campaign of this run that coincides with another instrument.
+  /// Adds a line for each change, in a series with a new point of this run, that is attributed to
+  /// another instrument.
   void instruments() {
     for (std::size_t i = 0; i < m_.followed.size(); ++i) {
       if (m_.followed[i].run != last_run_.run) continue;
@@ -535,9 +539,10 @@ class OfMachine {
   const reports::MachineHistory& d_;
   const LastRun& last_run_;
   std::map<std::string, std::vector<AxisChange>> causes_;
-  std::map<std::string, bool> told_;  ///< axes that have a line with all their changes
-  std::set<std::pair<std::string, std::string>> open_;  ///< axis and quantity of values that have a
-                                                        ///< line
+  /// axes that have a line about values out of their limit or a forecast
+  std::map<std::string, bool> told_;
+  /// axis and quantity of values that are out of their limit or indeterminate
+  std::set<std::pair<std::string, std::string>> open_;
   std::vector<WorkItem> out_;
 };
 

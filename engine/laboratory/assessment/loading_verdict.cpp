@@ -14,7 +14,8 @@ namespace nonio::assessment {
 
 namespace {
 
-/// Returns the index of the axis' only measurement. An error if there is none, or more than one.
+/// Returns the index of the axis' only measurement with readings. An error if there is none, or
+/// more than one.
 Expected<std::size_t> only_measurement(const reading::ReadCampaign& read, const std::string& axis) {
   const Campaign& campaign = read.manifest->campaign;
   std::optional<std::size_t> found;

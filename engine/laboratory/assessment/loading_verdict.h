@@ -16,8 +16,9 @@ struct LoadingVerdict {
   Answer answer = Answer::not_decided;  ///< not_decided: the measurements allow no decision
   std::vector<Finding> findings{};      ///< findings of the analysis before-after: pitch and
                                         ///< reversal
-  /// Change between both campaigns, recognised as a loaded table; none if the tables worked, or if
-  /// the change is not one that the tables in `next` would cause.
+  /// Change between both campaigns, recognised as a loaded table; none if the tables worked, if the
+  /// table that was active before is not known, or if the change is not one that the tables in
+  /// `next` would cause.
   std::optional<statistics::TableChange> change{};
   double E = 0.0;  ///< E of the axis after loading, m or rad
 };

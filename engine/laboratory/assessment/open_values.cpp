@@ -44,7 +44,8 @@ std::string axis_of_measurement(const StoredMachine& m, std::size_t campaign,
   return {};
 }
 
-/// Whether a later campaign has measured this axis; with an empty `axis`, all axes of the campaign.
+/// Returns whether a later campaign has measured this axis. With an empty `axis`, returns whether
+/// all axes of the campaign were measured later; false if it has none.
 bool is_measured_later(const StoredMachine& m, const std::map<std::string, std::size_t>& newest,
                        std::size_t campaign, const std::string& axis) {
   if (!axis.empty()) {

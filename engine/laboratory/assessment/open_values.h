@@ -44,7 +44,7 @@ struct Withheld {
   std::size_t campaign = 0;  ///< index into StoredMachine::campaigns
   std::string axis;          ///< axis of a table, if known
   std::string finding;
-  std::vector<std::string> outputs;  ///< names of the outputs
+  std::vector<std::string> outputs;  ///< names of the plugins that make the outputs
 };
 
 /// Returns tables withheld in the newest campaign that measured their axis; results withheld by an

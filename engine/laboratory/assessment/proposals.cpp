@@ -131,8 +131,9 @@ std::optional<std::size_t> last_significant(const FollowedSeries& s) {
 }
 
 /// Returns the shortest interval after which the forecast of a followed quantity meets its limit;
-/// none if no forecast does. `refusal` is set if the last change of a quantity is not explained
-/// yet.
+/// none if no forecast does. It has no months if it is shorter than one month, or if the bound of
+/// the forecast is beyond the limit already. `refusal` is set if the last change of a quantity is
+/// not explained yet.
 std::optional<IntervalProposal> chart(const AssessedMachine& m,
                                       std::optional<IntervalProposal>& refusal) {
   std::optional<IntervalProposal> shortest;

@@ -43,8 +43,8 @@ IntervalFacts interval_facts(const AssessedMachine& machine, std::optional<int> 
 /// found (staircase). After a failure it is not longer than the staircase, and never longer than
 /// the control chart of the quantities with a limit. A machine that was measured well before the
 /// end of its interval has not tested that interval. The proposal is refused, with a reason, for a
-/// value beyond its limit today, for fewer than two campaigns, without a limit or an interval, and
-/// for fewer than two campaigns after the last change.
+/// value beyond its limit today, for fewer than two days of measurement, without a limit or an
+/// interval, and, except after a failure, for fewer than two campaigns after the last change.
 std::vector<reports::IntervalProposal> proposals_of(
     const std::vector<const IntervalFacts*>& machines);
 

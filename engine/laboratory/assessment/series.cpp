@@ -367,7 +367,8 @@ double share_of_limit(const StoredResult& r) {
   return r.tolerance && *r.tolerance > 0.0 ? std::fabs(r.value) / *r.tolerance : 0.0;
 }
 
-/// Returns the deciding result of each campaign. `results`: by campaign, as found before as left.
+/// Returns the deciding result of each campaign that compares the quantity with a limit. `results`:
+/// in the order of `before`.
 std::vector<std::size_t> deciding(const StoredMachine& m, const std::vector<std::size_t>& results) {
   const auto decides = [&](const StoredResult& a, const StoredResult& b) {
     const auto key = [](const StoredResult& r) {

@@ -81,8 +81,9 @@ struct AssessedMachine {
   std::vector<ShownSeries> shown;
 };
 
-/// Finds the events of each machine, sorted by day. An event may name the machine, an alias, or a
-/// serial number that belongs to no other machine and is not the name of another machine.
+/// Finds the events of each machine, in the order of `logs`. An event may name the machine, an
+/// alias, or a serial number that belongs to no other machine and is not the name of another
+/// machine.
 class MachineEvents {
  public:
   MachineEvents(const std::vector<store::MachineState>& all, const store::StoredLogs& logs);

@@ -15,21 +15,24 @@ namespace nonio::assessment {
 std::vector<reports::MonthOfMachine> months_of(const AssessedMachine& machine,
                                                const reports::MachineHistory& described);
 
-/// Returns the results of one machine by the instrument and certificate that they depend on.
+/// Returns the campaigns of one machine, with one entry for each instrument, certificate and end of
+/// validity. Campaigns that state no instrument are left out.
 std::vector<reports::InstrumentUse> instruments_of(const AssessedMachine& machine,
                                                    const std::filesystem::path& out);
-/// Joins the lists of all machines: the results of one instrument and certificate become one entry,
-/// sorted by day and campaign.
+/// Joins the lists of all machines: the campaigns with one instrument and certificate become one
+/// entry, in which they are sorted by day and campaign.
 std::vector<reports::InstrumentUse> joined(
     const std::vector<const std::vector<reports::InstrumentUse>*>& of_machines);
 
-/// Last value of a quantity, for the comparison with other machines of the model.
+/// Last value of a quantity that was not measured as left, for the comparison with other machines
+/// of the model.
 struct ComparedValue {
   std::string axis, quantity;
   Quantity unit = Quantity::deviation;
   double value = 0.0, u = 0.0;
-  std::string conditions{};        ///< conditions that must be equal for a comparison, as JSON
-                                   ///< without the travel
+  /// conditions that must be equal for a comparison, as JSON without the travel and the state of
+  /// the compensation
+  std::string conditions{};
   std::optional<double> travel{};  ///< distance from the first target to the last, m or rad
   bool rotary = false;
 };

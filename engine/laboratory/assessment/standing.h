@@ -24,16 +24,17 @@ struct Standing {
   std::vector<reports::MonthOfMachine> months{};
   std::vector<reports::InstrumentUse> instruments{};
   bool has_results = false;
-  bool judged = false;     ///< whether some result was compared with a limit
-  bool conforms = false;   ///< whether all values that were judged last conform
+  bool judged = false;  ///< whether a result was compared with a limit, or a limit has no value
+  /// whether all values that were judged last conform, and no limit lacks a value
+  bool conforms = false;
   bool attention = false;  ///< whether the last campaign has a finding with severity warning
   bool reversal = false;   ///< whether such a finding of the last campaign is about reversal
   IntervalFacts interval{};
   std::string until{};  ///< last date of a run for which the lines are the same
 };
 
-/// Makes the lines of a machine and applies the acknowledgements. `described`: result of `describe`
-/// for the same machine.
+/// Assesses one machine: makes its lines, applies the acknowledgements to them, and collects its
+/// entries in the lists over all machines. `described`: result of `describe` for the same machine.
 Standing standing_of(const AssessedMachine& machine, const reports::MachineHistory& described,
                      const store::StoredLogs& logs, const LastRun& last_run,
                      const std::filesystem::path& out);

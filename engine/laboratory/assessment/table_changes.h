@@ -19,9 +19,11 @@ inline constexpr double change_resolution = 0.1;
 
 /// Returns the changes between two neighbouring campaigns of an axis that were caused by loading or
 /// removing a table, for campaigns whose results.json has `control_tables`. Known tables are those
-/// that earlier campaigns wrote and those in the record of the machine.
+/// that earlier campaigns wrote or had active, and those in the record of the machine; of more than
+/// eight, the last eight.
 std::vector<reports::TableLoaded> tables_loaded(const AssessedMachine& machine);
-/// Returns pairs of neighbouring campaigns of which one does not state the active table.
+/// Returns pairs of neighbouring campaigns of an axis of which at least one does not state the
+/// active table.
 std::vector<reports::TableLoaded> tables_unstated(const AssessedMachine& machine);
 
 }  // namespace nonio::assessment

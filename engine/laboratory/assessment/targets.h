@@ -48,8 +48,9 @@ struct PointTargets {
 /// Selects the data that the quantity needs. `place`: index of the quantity in the measurement.
 PointTargets targets_of(const StoredTargets&, const std::string& quantity, std::size_t place);
 
-/// Points compared over a common stretch of the axis. If all have the same targets, the points are
-/// unchanged and there is no stretch.
+/// Points compared over a common stretch of the axis. If all have the same targets, the targets of
+/// a point are unknown, or nothing is common to all, the points are unchanged and there is no
+/// stretch.
 struct Compared {
   std::vector<nonio::statistics::Point> points;
   std::optional<nonio::statistics::Stretch> over{};

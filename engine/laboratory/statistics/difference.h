@@ -19,8 +19,8 @@ struct Difference {
   double zeta() const { return u > 0.0 ? value / u : 0.0; }
 };
 
-/// Returns after - before - expected. An error as of `check` for point 1 (before) or 2, or if
-/// `expected` is not a number.
+/// Returns after - before - expected. An error as of `check` for point 1 (before) or 2 (after), if
+/// `expected` or `u_expected` is not a finite number, or if `u_expected` is below 0.
 Expected<Difference> difference(const Point& before, const Point& after, double expected = 0.0,
                                 double u_expected = 0.0);
 

@@ -7,8 +7,9 @@
 /// is below the level.
 namespace nonio::statistics {
 
-/// Benjamini and Hochberg 1995: limits the mean share of false ones among the significant tests,
-/// for tests that are independent or positively correlated.
+/// Returns the adjusted p according to Benjamini and Hochberg (1995). They limit the mean fraction
+/// of false ones among the significant tests, for tests that are independent or positively
+/// correlated.
 std::vector<double> benjamini_hochberg(const std::vector<double>& p);
 /// Returns the adjusted p according to Holm (1979). They limit the probability that any
 /// of the tests is significant by chance.

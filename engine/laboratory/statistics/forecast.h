@@ -19,7 +19,9 @@ struct Forecast {
   double u_reading = 0.0;       ///< standard uncertainty of the value that the next campaign will
                                 ///< measure
   double p_out = 0.0, p_read_out = 0.0;
-  std::optional<double> leaves{};  ///< earliest time at which the 95 % bound meets the limit
+  /// time, from the last point to 20 years later, at which the 95 % bound first meets the limit;
+  /// none if it does not, or without a limit
+  std::optional<double> leaves{};
   Answer answer = Answer::cannot_say;
 };
 
@@ -31,11 +33,11 @@ struct Beyond {
 
 /// Forecasts a series at `time` (years). The state is x' b with u^2 = x' C x (plus walk dt).
 /// `limit` applies to the absolute value plus `beyond`. The answer depends on P(out): below 5 %
-/// keep, up to 50 % watch, above 50 % act; it is act in any case if the last point is out already.
-/// Otherwise it is cannot_say for fewer than three points, or later than half of their span after
-/// the last one. `u_new` is the u of the next campaign; none: that of the last one. Source: ISO
-/// 14253-1 and ILAC-G8 for the three answers (general knowledge; the bounds of P are chosen for
-/// Nonio).
+/// keep, up to 50 % watch, above 50 % act; without a limit it is keep. It is act in any case if the
+/// last point is out already. Otherwise it is cannot_say for fewer than three points, or later than
+/// half of their span after the last one. `u_new` is the u of the next campaign; none: that of the
+/// last one. Source: ISO 14253-1 and ILAC-G8 for the three answers (general knowledge; the bounds
+/// of P are chosen for Nonio).
 Forecast forecast(const Series&, const Trend&, double time, std::optional<double> limit,
                   std::optional<double> u_new = std::nullopt, Beyond beyond = {});
 

@@ -18,7 +18,7 @@ struct Proposal {
   Method method = Method::staircase;
   std::optional<double> months{};  ///< proposed interval; none: the history does not determine an
                                    ///< interval
-  /// Reason as id of a word, and the numbers in it, by name.
+  /// Id of the text that states the reason, and the numbers in this text, by name.
   std::string why{};
   std::vector<std::pair<std::string, double>> numbers{};
 };
@@ -28,15 +28,17 @@ enum class Found { conforms, undecided, fails };
 
 /// Halves the interval after a failure, and extends it after a success so that both balance at the
 /// target: (1 + a)^R (1/2)^(1-R) = 1, so 1 + a = 2^((1-R)/R) (3.7 % at 95 %), at most 2. An
-/// indeterminate result leaves the interval unchanged. `why` names that case;
-/// no interval is proposed for "no-interval" and "no-target".
+/// indeterminate result leaves the interval unchanged. `why` names the case. No
+/// interval is proposed if `months` is not above 0 ("no-interval"), or `target` not between 0 and 1
+/// ("no-target").
 Proposal staircase(double months, Found, double target = 0.95);
 
-/// Proposes the day on which the one-sided 95 % bound of the forecast meets the limit
-/// ("meets-limit"), but not later than half the observed span, which limits forecasts
-/// ("as-far-as-seen"). No interval is proposed for "few-campaigns" (fewer than three, or all on one
-/// day), "out-already", and "change-not-explained" (fewer than two campaigns after the last
-/// significant change, which follows the point `changed_after`).
+/// Proposes the time in months from the last campaign until the one-sided 95 % bound of the
+/// forecast meets the limit ("meets-limit"), but at most half of the observed span, which limits
+/// forecasts ("as-far-as-seen"). No interval is proposed for "few-campaigns" (fewer than three, or
+/// all on one day), "out-already" (the last value or the bound is beyond the limit), and
+/// "change-not-explained" (fewer than two campaigns after the last significant change, which
+/// follows the point `changed_after`).
 Proposal control_chart(const Series&, const Trend&, double limit,
                        std::optional<std::size_t> changed_after = {}, Beyond beyond = {});
 
@@ -46,7 +48,8 @@ Proposal control_chart(const Series&, const Trend&, double limit,
 /// 10^((R0-R)/(1-Q)). Above the target, not all passed: Q = 1 - 2 P(passed or more), I' = I
 /// 10^((R0-R) Q) (derived by symmetry: RP-1 itself was not readable). I' is not above 2 I. The
 /// interval is changed only if Q > 0.5 and by more than 5 days. `why`: "fleet-shorter",
-/// "fleet-longer", "fleet-as-it-is"; no interval: "no-interval", "no-target", "no-machines".
+/// "fleet-longer", "fleet-as-it-is". No interval is proposed if `months` ("no-interval"), `target`
+/// ("no-target") or the counts ("no-machines") are invalid.
 Proposal fleet(double months, int passed, int machines, double target = 0.95);
 
 }  // namespace nonio::statistics

@@ -57,13 +57,16 @@ struct Series {
   std::optional<std::vector<std::size_t>> steps{};
 };
 
-/// Returns an error that names the first invalid point: a value that is not finite, u that is not
-/// above 0, a time before the previous one, an event after the last point.
+/// Returns an error for a series that is empty or invalid. It names the first invalid point: a
+/// value, time or common part that is not finite, u that is not above 0, a time before the previous
+/// one, an event or a step after the last point. `spread` has to be at least 0, `excess` at least
+/// 1.
 Expected<void> check(const Series&);
 
 /// Scatter at one point: d^2/u(d)^2, where d is the point minus the line through its neighbours.
-/// Levels, slopes and common parts cancel. Points next to a declared event are left out, unless the
-/// event is a change of the instrument.
+/// Levels, slopes and common parts cancel. Left out are the first and the last point, points whose
+/// neighbours have one time, and points next to a declared event, unless the event is a change of
+/// the instrument.
 struct Scatter {
   std::size_t point = 0;
   double ratio = 0.0;

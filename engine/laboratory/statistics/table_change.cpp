@@ -47,9 +47,9 @@ Between between(const std::vector<double>& position, const std::vector<double>& 
   return {value[i - 1] + part * (value[i] - value[i - 1]), wrong * wrong};
 }
 
-/// Returns the standard uncertainty of a mean. For a single run it is estimated from the scatter of
-/// the reversal along the axis, or from the second differences of one direction; both estimates are
-/// rather too large.
+/// Returns the standard uncertainty of a mean. If the curve does not state it (single run), it is
+/// estimated from the scatter of the reversal along the axis, or from the second differences of one
+/// direction; both estimates are rather too large. 0 for fewer than three positions.
 double u_of(const MeasuredCurve& c) {
   if (c.u > 0.0) return c.u;
   const auto& one = c.plus.empty() ? c.minus : c.plus;

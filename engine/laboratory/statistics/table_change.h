@@ -56,11 +56,12 @@ struct TableChange {
 /// The best h by chi2 is returned if three conditions are met. First, the part of the change that h
 /// does not explain is noise (p > 1e-3, and less than 0.4 of the change) or less than a tenth of h.
 /// Second, neither no change nor a change of scale or of reversal explains the change as well (chi2
-/// larger by 25). Third, no other hypothesis explains it as well (chi2 larger by 9). An offset that
-/// cannot be distinguished from none is `loaded`. `resolution` is the smallest standard uncertainty
-/// of a difference. If `active` is none, the active table is unknown; S is then nothing or any of
-/// the known tables. Source: least squares; limits by simulation
-/// (tests/property/loaded_table_test.py).
+/// larger by 25). Third, no other hypothesis explains it as well (chi2 larger by 9). None is
+/// returned otherwise, and if the campaigns have too few positions in common, or positions over at
+/// most half of the axis. An offset that cannot be distinguished from none is `loaded`.
+/// `resolution` is the smallest standard uncertainty of a difference. If `active` is none, the
+/// active table is unknown; S is then nothing or any of the known tables. Source: least squares;
+/// limits by simulation (tests/property/loaded_table_test.py).
 std::optional<TableChange> recognize(const MeasuredCurve& before, const MeasuredCurve& after,
                                      const std::optional<TableCurve>& active,
                                      const std::vector<TableCurve>& known, double u_slope,

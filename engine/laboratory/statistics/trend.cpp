@@ -186,7 +186,9 @@ class Trending {
     return beyond > expected + 5.0 * std::sqrt(expected);
   }
 
-  /// Adds the most significant step or drift. Returns false if none is significant.
+  /// Adds the step with the largest decrease of chi2, or a drift, if it is significant. If both
+  /// are, the drift is added unless its chi2 is more than `inseparable` larger. Returns false if
+  /// neither is.
   bool improve() {
     const auto base = fit(shape_);
     if (!base || !(base->dof > 0.0)) return false;
@@ -318,9 +320,9 @@ class Trending {
   }
 
   /// Replaces the model by a random walk (local level, variance by maximum likelihood, independent
-  /// u), if a level does not fit or there are two or more undeclared steps, and if the walk is
-  /// likelier than the steps at their penalty. At the border q = 0 the likelihood ratio is half a
-  /// chi-square with 1 degree of freedom.
+  /// u) for eight points or more without steps at declared events, if a level does not fit or there
+  /// are two or more undeclared steps, and if the walk is likelier than the steps at their penalty.
+  /// At the border q = 0 the likelihood ratio is half a chi-square with 1 degree of freedom.
   void walk(Trend& out) const {
     constexpr double at_border = 5.412;  // 99 % quantile of half a chi-square with 1 degree of
                                          // freedom

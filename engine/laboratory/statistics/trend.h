@@ -16,11 +16,12 @@
 ///
 /// An undeclared step: G_k is the decrease of chi2 by a step after point k. The largest G over the
 /// places without a declared step is tested; its p is Bonferroni's bound if that is below 0.001
-/// (where it is sharp), otherwise it comes from 10,000 simulated series of the same V and X. A
-/// drift: the decrease of chi2 by a column of time, normal. Either is added if significant at 1 %;
-/// if both are, the drift is preferred unless its chi2 is more than 4 larger. At most three steps
-/// are added. For eight points or more, a random walk replaces a level that does not fit, or two or
-/// three steps if the walk is likelier than they are with a penalty of 3 ln n each.
+/// (where it is sharp), otherwise it comes from up to 10,000 simulated series of the same V and X.
+/// A drift: the decrease of chi2 by a column of time, normal. A step is added if significant at 1
+/// %, a drift at Series::drift_below; if both are, the drift is preferred unless its chi2 is more
+/// than 4 larger. At most three steps are added. For eight points or more, a random walk replaces a
+/// level that does not fit, or two or three steps if the walk is likelier than they are with a
+/// penalty of 3 ln n each.
 ///
 /// If the spread of slopes in the laboratory is known (Series::spread), a row slope/spread = 0
 /// holds the slope near 0 while steps are searched and their sizes are estimated. Slopes, segments
@@ -62,7 +63,7 @@ struct Trend {
   bool line_or_step = false;  ///< whether these points cannot distinguish a drift from a step
 
   // For extrapolation (forecast.h): the model at a time after the last point is coefficients . (1,
-  // 1 for each change, time).
+  // 1 for each change, and, if `drifts`, the time since the first point).
   std::vector<double> coefficients, covariance;  ///< covariance row by row
   bool drifts = false;
   double walk = 0.0;  ///< variance per year of a random walk

@@ -10,7 +10,7 @@
 namespace nonio::statistics {
 
 struct Walk {
-  double q = 0.0;                      ///< variance of the level per year
+  double q = 0.0;                      ///< variance of the change of the level per year
   double log_likelihood = 0.0;         ///< logarithm of the diffuse likelihood, over the points
                                        ///< after the first
   double state = 0.0, variance = 0.0;  ///< level at the last point, and its variance

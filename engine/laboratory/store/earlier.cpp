@@ -67,8 +67,8 @@ std::string recorded_digest(const fs::path& folder) {
   return {};
 }
 
-/// Returns the bytes of earlier.json. It is the only copy, so a missing or changed file is an error
-/// and never taken as empty.
+/// Returns the bytes of earlier.json; empty if it does not exist and no record states it. It is the
+/// only copy, so a file that a record states and that is missing or changed is an error.
 Expected<std::string> earlier_bytes(const fs::path& campaign) {
   for (const fs::path& folder : {campaign, campaign / evaluation::last_good_name}) {
     const fs::path path = folder / earlier_name;

@@ -34,7 +34,7 @@ struct FolderHistory {
 /// file.
 Expected<FolderHistory> history_of(const std::filesystem::path& folder, const std::string& id);
 
-/// Returns the runs of these evaluations without reading the results.
+/// Returns the runs of the evaluations that `history_of` returns, without reading results.json.
 Expected<std::vector<std::uint64_t>> runs_of(const std::filesystem::path& folder);
 
 /// Data to be stored with new results, so that earlier evaluations are kept.

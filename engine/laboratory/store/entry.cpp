@@ -101,7 +101,8 @@ class EntryReader {
                            text_at(i, "certificate"), text_at(i, "valid_until")};
   }
 
-  /// Returns the state of a result. A check is always a separate series.
+  /// Returns the state of a result: `said`, or as-found if it is empty. In a check campaign it is
+  /// always check, because a check is a separate series.
   std::string state(std::string said) const {
     if (entry_.purpose == "check") return "check";
     return said.empty() ? "as-found" : said;
@@ -181,8 +182,9 @@ class EntryReader {
                               .value = p["predicted"]});
   }
 
-  /// Reads the parts of the uncertainty budget. The parts of the instrument and of the expansion
-  /// are common to several campaigns; all other parts are new in each campaign.
+  /// Reads the parts of the uncertainty budget. The parts of an instrument with a serial number and
+  /// of the expansion of an axis are common to several campaigns; all other parts are new in each
+  /// campaign.
   void read_parts(dom::object budget, std::string_view name, ResultRow& row) {
     dom::object results, one, parts;
     if (budget["results"].get(results) != simdjson::SUCCESS ||

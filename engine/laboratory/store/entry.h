@@ -26,7 +26,9 @@ struct CommonPart {
 /// One result of a campaign, in the unit of results.json.
 struct ResultRow {
   std::string measurement, axis, quantity;
-  std::string source;  ///< origin of the result: "followed", or the name of the analysis
+  /// origin of the result: "followed", the name of the analysis, or for a prediction that of the
+  /// controller
+  std::string source;
   std::string unit;
   std::string state;  ///< state of the machine: as-found, as-left, check, predicted
   double value = 0.0;
@@ -93,8 +95,8 @@ struct Entry {
 };
 
 /// Makes the entry from the bytes of results.json and the digests of the inputs. An error if the
-/// bytes are not a complete results.json, contain a value that is not a number, or belong to
-/// another campaign than `id`.
+/// bytes are not a complete results.json, contain a value that is not a number or a text with a
+/// character 0, or belong to another campaign than `id`.
 Expected<Entry> entry_of(std::string_view results, const reading::Inputs& inputs,
                          const std::string& id);
 

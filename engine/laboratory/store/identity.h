@@ -8,14 +8,14 @@
 
 namespace nonio::store {
 
-/// Returns the name of a machine in the history: its asset, otherwise maker and serial. Empty if a
-/// campaign states neither; then it belongs to no machine.
+/// Returns the name of a machine in the history: its asset, otherwise maker and serial. Empty if
+/// the asset is missing and the maker or the serial too; the campaign then belongs to no machine.
 std::string machine_of(const MachineAsStated& machine);
 
 /// Two names that may denote one machine. They are joined only if site.toml states an alias.
 struct Spelling {
   std::string one, other;  ///< names of two machines; `one` is the name that more campaigns state
-  std::string why;         ///< reason in words
+  std::string why;         ///< why the names may denote one machine, in words
 };
 
 struct NamedMachine {
@@ -24,8 +24,8 @@ struct NamedMachine {
   std::size_t campaigns = 0;
 };
 
-/// Finds names that differ only in case, spaces, punctuation, O and 0, or I, l and 1, and assets
-/// whose maker and serial other campaigns state without an asset.
+/// Finds names that differ only in case, spaces, punctuation, O and 0, or I, l and 1, and machines
+/// of different names whose maker and serial are the same except for such differences.
 std::vector<Spelling> spellings(const std::vector<NamedMachine>& machines);
 
 }  // namespace nonio::store

@@ -20,15 +20,15 @@ struct StorePlace {
                                             ///< too
   std::int64_t evaluations = 0;  ///< number of evaluations in the server's store when it was last
                                  ///< written
-  /// Random ids, one for each time that the store is written; the server contains the last one. A
-  /// copy of this folder does not contain the later ones, so two copies that write to one schema
+  /// Random ids of the last 500 times that the store was written; the server contains the last one.
+  /// A copy of this folder does not contain the later ones, so two copies that write to one schema
   /// are detected.
   std::vector<std::string> turns{};
 };
 
-/// Reads the location. An error if the file is damaged. In a file that belongs to another user, the
-/// password file is ignored, since that user could otherwise send this user's password to any
-/// server.
+/// Reads the location; without a file, it is OUT/history.sqlite. An error if the file is damaged.
+/// In a file that belongs neither to this user nor to root, the password file is ignored, since its
+/// owner could otherwise send this user's password to any server.
 Expected<StorePlace> place_of(const std::filesystem::path& out);
 
 /// Stores the location that site.toml states for the store. Returns true if the store was in
@@ -41,7 +41,8 @@ Expected<void> note_evaluations(const std::filesystem::path& out, std::int64_t c
 std::string name_of(const StorePlace& place, const std::filesystem::path& out);
 std::string store_in(const std::filesystem::path& out);
 
-/// Opens the store for reading. On a server, everything read from it belongs to one run.
+/// Opens the store for reading. On a server, everything read from it belongs to one run. An error
+/// if there is no store, or if its version is not that of this program.
 Expected<storage::Database> open_store(const std::filesystem::path& out);
 
 /// Makes the server's schema if it is missing. An error if it belongs to another output folder, or

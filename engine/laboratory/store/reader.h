@@ -24,15 +24,18 @@ struct StoredCampaign {
   InstrumentAsStated instrument;
   std::int64_t evaluation = 0;
   std::uint64_t run = 0;  ///< run of that evaluation
-  std::string number{};   ///< number of its last certificate
+  std::string number{};   ///< number of the campaign's last certificate; empty: none
   std::string place{}, control{};
 };
 
-/// A result of a campaign: a followed quantity, or one with a limit or U.
+/// A result of a campaign: a followed quantity, a value with a limit, or one of the values of
+/// analyses that the history shows, such as A, B, E, M and R.
 struct StoredResult {
   std::size_t campaign = 0;  ///< index into StoredMachine::campaigns
   std::string measurement, axis, quantity;
-  std::string source{};  ///< origin of the result: "followed", or the name of the analysis
+  /// origin of the result: "followed", the name of the analysis, or for a prediction that of the
+  /// controller
+  std::string source{};
   std::string unit, state, decision, conditions;
   bool followed = false;
   double value = 0.0;
@@ -65,10 +68,10 @@ struct StoredMachine {
   std::vector<StoredResult> predicted{};  ///< results predicted by tables, sorted by campaign
   /// Members `other_targets` of results.json, each as JSON.
   std::vector<std::string> other_targets{};
-  /// Severity by finding id, for the last evaluation of each campaign.
+  /// Highest severity by finding id, for the last evaluation of each campaign.
   std::vector<std::map<std::string, std::string>> findings;
-  /// Findings about tables and certificates with severity warning, and refusals of analyses, for
-  /// the last evaluation of each campaign.
+  /// Findings with severity warning that withhold a table, a certificate or a result, or report an
+  /// invalid calibration, for the last evaluation of each campaign.
   std::vector<std::vector<FindingRow>> asked{};
   std::vector<LimitWithoutValue> without_value{};
   std::vector<StoredTables> tables{};  ///< tables sorted by campaign
@@ -99,7 +102,8 @@ struct CountedCampaign {
   std::string campaign, day, sha256;
 };
 
-/// Entries of people, as stored.
+/// Entries of people (events, acknowledgements, campaigns removed on purpose), aliases and
+/// calibration intervals, as stored.
 struct StoredLogs {
   std::vector<config::Event> events;
   std::vector<config::Acknowledgement> acknowledged;
@@ -132,7 +136,8 @@ class StoreReader {
   Expected<std::vector<CountedCampaign>> counted_campaigns();
   /// Returns, by campaign, its certificate numbers and what they replace as one text.
   Expected<std::map<std::string, std::string>> certificates();
-  /// Returns, by run from this one on, how many different quantities of axes it has evaluated.
+  /// Returns, for each run from `run` on, the number of different followed quantities of axes of
+  /// all machines that it evaluated.
   Expected<std::map<std::uint64_t, std::uint64_t>> followed_since(std::uint64_t run);
 
  private:

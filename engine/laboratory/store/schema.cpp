@@ -95,7 +95,8 @@ constexpr const char* all_tables[] = {
     "campaign",      "machine",       "event",       "acknowledgement",
     "forgotten",     "machine_alias", "store",       "due_rule"};
 
-/// Returns triggers per statement, so that TRUNCATE is refused as well.
+/// Returns the SQL of triggers that refuse changes of the append-only tables on a server. They are
+/// per statement, so that TRUNCATE is refused as well.
 std::string server_triggers() {
   std::string sql =
       "CREATE FUNCTION append_only() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN "

@@ -128,7 +128,8 @@ void insert(Database& database, const std::string& campaign,
                  {c.number, campaign, c.campaign_sha256, c.day, c.replaces});
 }
 
-/// Replaces the entries of people by those in the site's present files.
+/// Replaces the entries of people, the events of the machines' records, the aliases and the
+/// calibration intervals by those in the site's present files.
 void replace_logs(Database& database, const config::SiteLogs& logs,
                   const std::vector<config::Alias>& aliases,
                   const std::vector<config::Event>& of_records,
@@ -215,7 +216,7 @@ class Filling {
   }
 
   /// Adds the new evaluations of these campaigns. Returns false if the rows of the store contradict
-  /// the files.
+  /// the files, or if a new evaluation belongs before the last one in the store.
   Expected<bool> some(const std::vector<std::string>& campaigns) {
     const Place last = last_place();
     std::map<Place, std::pair<Known, Before>> added;

@@ -31,9 +31,10 @@ struct Updated {
                                         ///< reason
 };
 
-/// Adds new evaluations of these campaigns to OUT/history.sqlite, in one transaction. A store that
-/// is missing, damaged, of an older version, or inconsistent with the results is rebuilt from all
-/// of them; so is one that is `behind`. `alive` is called repeatedly.
+/// Adds new evaluations of these campaigns to the store, in one transaction. A store that is
+/// missing, damaged, of an older version, or inconsistent with the results is rebuilt from all of
+/// them. If `behind`, the store is rebuilt too, because it may lack results of an earlier run.
+/// `alive` is called repeatedly.
 Expected<Updated> update(const std::filesystem::path& out, bool behind,
                          std::vector<std::string> campaigns, const SiteRecords& records,
                          const std::function<void()>& alive);

@@ -76,7 +76,8 @@ Design design_of(std::span<const Pass> passes, double period, double step) {
   return out;
 }
 
-/// Computes the means over readings of one phase, without the lines, and the scatter about them.
+/// Computes the means, over the readings of one phase, of the deviations minus the lines of the
+/// passes, and the scatter about these means.
 void fold(const Design& d, const Eigen::VectorXd& left, std::size_t passes, std::size_t n,
           PeriodicError& out) {
   std::vector<double> sum(n, 0.0), count(n, 0.0);

@@ -80,7 +80,8 @@ void index_readings(const AxisTest& test, PassModel& m) {
     }
 }
 
-// Subtracts from e its mean over each target and direction; returns the largest mean.
+// Subtracts from e its mean over each target and direction; returns the largest absolute mean, m or
+// rad.
 double take_target_means(const AxisTest& test, PassModel& m) {
   double largest = 0.0;
   for (std::size_t i = 0; i < test.targets.size(); ++i)
@@ -194,7 +195,7 @@ PassModel fitted(const AxisTest& test, bool slopes, std::span<const std::size_t>
   return m;
 }
 
-/// Whether all inputs of a fit are equal, bit for bit.
+/// Returns whether the targets and readings of two tests are equal, bit for bit.
 bool same_bits(const AxisTest& a, const AxisTest& b) {
   const auto same = [](const auto& x, const auto& y) {
     return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0;

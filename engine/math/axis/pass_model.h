@@ -38,9 +38,10 @@ struct PassModel {
   double middle = 0.0;  ///< position with z = 0, m or rad
 };
 
-/// Fits the means of the targets and the offsets of the passes, and with `slopes` also their
-/// slopes, by least squares. The fit alternates between targets and passes; for equal runs it is
-/// exact after one round. `left_out`: indices of readings that are omitted.
+/// Fits the means of the targets and the offsets of the passes, and with `slopes` also the slopes
+/// of passes with three or more readings, by least squares. The fit alternates between targets and
+/// passes; for equal runs it is exact after one round. `left_out`: indices of readings that are
+/// omitted.
 PassModel fit_passes(const AxisTest& test, bool slopes, std::span<const std::size_t> left_out = {});
 
 /// Returns the index, in `readings()`, of the first reading of target i in direction -, if `minus`,

@@ -178,8 +178,8 @@ std::size_t middle_of(const AxisStatistics& axis) {
   return best;
 }
 
-// Returns the range of the first pass: every target once, in one run and direction (+ if it was
-// measured). NaN if no run contains all targets.
+// Returns the range of the first pass: the earliest reading of every target in one direction (+ if
+// it was measured). NaN unless all of them are from the same run.
 double first_pass(const AxisStatistics& axis) {
   const auto whole = [&](auto side) {
     return std::all_of(axis.targets.begin(), axis.targets.end(), [&](const auto& t) {

@@ -30,7 +30,7 @@ namespace {
 // docs/dev/constants.md, A3.
 constexpr double pooling_level = 0.5, pooling_level_of_pair = 0.05;
 // docs/dev/constants.md, A4.
-// of the largest |B_i|: largest remainder after compensation by a single value
+// largest remainder after compensation by a single value, as a fraction of the largest |B_i|
 constexpr double tolerated_share = 0.5;
 constexpr double negligible = 1e-12;  // m or rad: rounding errors
 
@@ -50,7 +50,8 @@ std::vector<double> means(const AxisTest& test, bool minus) {
   return out;
 }
 
-// Returns the mean over the targets of s+^2/n_i+ + s-^2/n_i-.
+// Returns the mean over the targets of s+^2/n_i+ + s-^2/n_i- with its degrees of freedom, which are
+// 0 if a direction has no scatter.
 Estimate scatter_of_B_i(const AxisTest& test, const PassModel& model) {
   double per[2] = {0.0, 0.0};
   for (std::size_t i = 0; i < test.targets.size(); ++i) {
@@ -62,8 +63,9 @@ Estimate scatter_of_B_i(const AxisTest& test, const PassModel& model) {
   return {a + b, joined_dof(a, model.side[0].dof, b, model.side[1].dof)};
 }
 
-// Returns the variance of B_mean from the scatter of passes: from runs with both directions, else
-// from each side.
+// Returns the variance of B_mean from the scatter of passes: from runs with both directions if
+// there are two, else from each side. The degrees of freedom are 0 if a side has fewer than two
+// passes.
 Estimate scatter_of_passes(const PassModel& model) {
   std::vector<double> pairs, alone[2];
   for (std::size_t p = 0; p + 1 < model.passes.size(); p += 2) {

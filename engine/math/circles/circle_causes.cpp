@@ -22,7 +22,8 @@ namespace {
 constexpr double bin_width = full_turn / 360.0;
 constexpr int bins_of_turn = 360;
 constexpr std::size_t at_least = 24;  // fewest bins; more if the number of causes requires it
-// smallest squared part of a column that is independent of the others
+// fraction of the squared norm of a column that is independent of the other columns; the cause is
+// not fitted if the fraction is not above this limit
 constexpr double singular = 1e-10;
 
 std::size_t index_of(Cause c) { return static_cast<std::size_t>(c); }
@@ -36,7 +37,7 @@ struct Bins {
     double n = 0.0, deviation = 0.0, angle = 0.0;
     std::array<double, cause_count> column{};
   };
-  std::map<int, std::array<Bin, 2>> of;  ///< index 0: counter-clockwise
+  std::map<int, std::array<Bin, 2>> of;  ///< key: degree; index 0: counter-clockwise, 1: clockwise
 
   Bins(std::span<const CircleReading> readings, const CircleModel& model) {
     for (const CircleReading& r : readings) {
@@ -157,7 +158,8 @@ class Fit {
     const Eigen::Index k = at(columns_.size());
     Eigen::MatrixXd plain(rows, k), white(rows, k);
     Eigen::VectorXd y(rows);
-    // The inverse of the whitening, applied to unit vectors, gives the derivatives by each mean.
+    // The whitening, applied to unit vectors, gives its matrix, which the derivatives by each mean
+    // need.
     std::vector<Eigen::MatrixXd> filters;
     Eigen::Index row = 0;
     for (const Block& b : blocks_) {

@@ -12,17 +12,17 @@ namespace nonio::math {
 
 namespace {
 
-// Remainder of the spikes after the omitted zone, in its u: above `begins` the zone is widened, and
-// then further while it is above `goes_on`, because an exponential decays slowly.
-// docs/dev/constants.md, A23.
+// The zone is widened if the remainder of the spikes after it exceeds `begins` times its u, and
+// then further while it exceeds `goes_on` times its u, because an exponential decays slowly. `wide`
+// is the width of a window, rad. docs/dev/constants.md, A23.
 constexpr double normal_quartile = 0.6745;  // median of |x|, in standard deviations
 constexpr double begins = 2.24, goes_on = 1.0, wide = 2.0 * full_turn / 360.0;
 
 // Sum and number of residuals by angle since the reversal, rad.
 using Residuals = std::map<double, std::pair<double, double>>;
 
-/// Returns the residuals between the angles `from` and `to` after a reversal; several runs are
-/// averaged.
+/// Returns the sum and the number of the residuals of one direction by angle, for the angles
+/// between `from` and `to`, rad, after a reversal.
 Residuals behind(std::span<const CircleReading> readings, const CircleModel& model,
                  const CauseFit& fit, int direction, double reversal, double from, double to) {
   Residuals out;
@@ -68,16 +68,16 @@ std::vector<Spike> reversal_spikes(std::span<const CircleReading> readings,
 
 namespace {
 
-/// Returns the mean over the angles; NaN if there are none.
+/// Returns the mean residual over the angles, m; NaN if there are none.
 double mean_of(const Residuals& residuals) {
   double sum = 0.0, n = 0.0;
   for (const auto& [way, of] : residuals) sum += of.first / of.second, n += 1.0;
   return sum / n;
 }
 
-/// Returns the scatter of differences of residuals between windows that are one window apart: the
-/// standard deviation for normal noise, computed from the median, because long spikes affect only
-/// some windows.
+/// Returns the scatter of differences of residuals between windows that have one window between
+/// them: the standard deviation for normal noise, m, computed from the median, because long spikes
+/// affect only some windows. 0 if there are no such windows.
 double scatter_of_windows(const CauseFit& fit) {
   std::map<std::pair<int, int>, std::pair<double, double>> windows;
   for (const auto& bin : fit.bins) {
@@ -95,9 +95,10 @@ double scatter_of_windows(const CauseFit& fit) {
   return *middle / normal_quartile;
 }
 
-/// Returns the remainder of the spikes of an axis after the omitted zone, for both directions and
-/// both reversals together: the difference of the mean residual in the next window and in the one
-/// two windows later, in u of such differences. The result is the larger value of both axes.
+/// Returns the larger remainder, of the two axes, of the spikes after the omitted zone. The
+/// remainder of an axis combines both directions and both reversals: the difference of the mean
+/// residual in the next window and in the one two windows later, in u of such differences. 0 if no
+/// difference is known.
 double left_over(std::span<const CircleReading> readings, const CircleModel& model,
                  const CauseFit& fit) {
   const double edge = model.leave_out, scatter = scatter_of_windows(fit);

@@ -10,11 +10,11 @@
 //   one way    at least five runs, each further in the same direction than the one before (by
 //              chance 2/n!, 1.7 % for n = 5), and the line through the single passes significant
 //              at 1 %: a machine that warms up does not drift in a straight line
-//   within     offsets, at least two runs: the readings also move within the passes, which the
-//              reversal shows along the axis (0.5 to 1.5 of the drift, t test at 1 %). A zero that
-//              was reset between two runs does not have this effect
-//   slopes     two runs: both directions agree; more: line through the single passes at 1 %. A
-//              zero that was reset does not tilt a pass
+//   within     offsets, at least two runs: both directions agree, and the readings also move within
+//              the passes, which the reversal shows along the axis (0.5 to 1.5 of the drift, t test
+//              at 1 %). A zero that was reset between two runs does not have this effect
+//   slopes     both directions agree, and for more than two runs, line through the single passes at
+//              1 %. A zero that was reset does not tilt a pass
 // and  the shift from the first run to the last exceeds the scatter of a single reading
 // A drift of less than a fifth of A is information, because it is already part of the scatter; its
 // size is extrapolated to five runs, because with fewer runs a larger part of it is in the

@@ -12,7 +12,8 @@ namespace nonio::math {
 
 namespace {
 
-/// Returns the largest drift from run to run found in the readings, m or rad.
+/// Returns the largest drift from the first run to the last among the findings about drift, m or
+/// rad; 0 if there is no such finding.
 double drift_of(const Observations& o) {
   if (o.axes.empty() || o.axes.front().approach.empty()) return 0.0;
   std::vector<Finding> found;

@@ -53,7 +53,8 @@ bool has_full_test(const AxisTest& test) {
   return false;
 }
 
-// Whether the targets are evenly spaced within rounding; a plan that varies by 1 % is uneven.
+// Returns whether four or more targets are evenly spaced within rounding; a plan that varies by 1 %
+// is uneven.
 bool even(const AxisTest& test) {
   constexpr double rounding = 5e-4;  // tolerance, as a fraction of an interval
   const std::size_t m = test.targets.size();

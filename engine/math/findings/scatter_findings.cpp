@@ -13,7 +13,8 @@
 //   target.
 // target.worst: q_i = distance of the mean at i from the line between its neighbours, scaled to the
 //   variance of one mean. A single outlying target gives the pattern (-w, 1, -w) in q; its height
-//   is compared with the q_j that it does not affect: t, 1 % over all targets.
+//   is compared with the q_j that it does not affect: t, 1 % over all targets. It must also exceed
+//   four times its u by the scatter of the readings. At least five targets.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -143,7 +144,8 @@ Suspect most_suspect(const AxisTest& test, const PassModel& m, bool slopes) {
     const double z = test.targets[m.target[k]] - m.middle;
     const Spread& s = spread[m.pass[k]];
     const double of_pass = 1.0 / s.n + (slopes && s.zz > 0.0 ? z * z / s.zz : 0.0);
-    const double free = (1.0 - 1.0 / n) * (1.0 - std::min(of_pass, 0.9));  // 1 - h, equal runs
+    // 1 - h, with the leverage h of equal runs
+    const double free = (1.0 - 1.0 / n) * (1.0 - std::min(of_pass, 0.9));
     const double rest = std::max(0.0, side.squares - m.e[k] * m.e[k] / free) / (side.dof - 1.0);
     const double t = test_ratio(m.e[k], std::sqrt(rest * free));
     if (std::fabs(t) <= std::fabs(worst.t)) continue;

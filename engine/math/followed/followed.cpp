@@ -12,7 +12,8 @@
 namespace nonio::math {
 namespace {
 
-constexpr double largest_gap = full_turn / 3.0;  // between targets that cover a turn
+// largest gap between targets that cover a turn, rad
+constexpr double largest_gap = full_turn / 3.0;
 /// Largest ratio of the variance of a sinusoid to that with evenly spread phases.
 constexpr double most_inflated = 2.0;
 constexpr std::size_t fewest_for_curve = 5, fewest_for_sinusoid = 10;

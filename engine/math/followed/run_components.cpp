@@ -40,7 +40,8 @@ RunPart run_part(const std::vector<double>& values, double noise) {
   return {std::max(0.0, s * s - noise), noise, s * s};
 }
 
-/// Collects the offsets and slopes of the runs.
+/// Offsets and slopes of the complete runs, and the mean contribution of single readings to their
+/// variance.
 struct RunValues {
   std::vector<double> shared_offset, own_offset, shared_slope, own_slope;
   double offset_noise = 0.0, slope_noise = 0.0;
@@ -119,7 +120,8 @@ std::optional<double> lag_of_residuals(const PassModel& m, const Alike& white) {
 }
 
 /// Finds the correlation of adjacent readings that explains the lag-1 correlation of the residuals,
-/// stores it in `c`, and returns its effects.
+/// stores it in `c`, and returns its effects. Nothing is stored if the lag-1 correlation is not
+/// significant, or with fewer than four targets.
 Alike find_neighbours(RunComponents& c, std::size_t targets) {
   constexpr double most = 0.95;
   constexpr std::size_t longest = 80;  // with more targets the effect of the ends is negligible

@@ -31,9 +31,11 @@ TargetWeights of_reversal(const AxisTest&);
 double share_of_targets(const AxisTest&, const TargetWeights&, bool reversal);
 
 /// Fits a polynomial, and sinusoids with these periods (m or rad), to the mean deviation m_i at
-/// each target.
+/// each target. If a period is a full turn, the polynomial is a constant. The fit is empty if the
+/// targets do not determine it.
 TargetFit fit_means(const AxisTest&, const RunComponents&, const std::vector<double>& periods);
-/// Fits a polynomial to the reversals B_i of a bidirectional test.
+/// Fits a polynomial to the reversals B_i of a bidirectional test. The fit is empty if the targets
+/// approached from both directions do not determine it.
 TargetFit fit_reversal(const AxisTest&, const RunComponents&);
 
 }  // namespace nonio::math

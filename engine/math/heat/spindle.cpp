@@ -138,8 +138,8 @@ std::vector<OfTurn> turn_by_turn(const Turns& k) {
   return out;
 }
 
-/// Returns the effective number of turns in a mean, N (1 - rho)/(1 + rho), with rho the correlation
-/// of the asynchronous motion with that of the previous turn, over all angles.
+/// Returns the effective number of turns in a mean, N (1 - rho)/(1 + rho), at least 1.5, with rho
+/// the correlation of the asynchronous motion with that of the previous turn, over all angles.
 double turns_that_count(const Turns& k, const std::vector<double>& left) {
   double with = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < left.size(); ++i) {

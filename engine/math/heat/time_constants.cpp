@@ -190,8 +190,9 @@ double rss_with(const Means& m, const Curve& c, const PathNoise& noise) {
   return rest.squaredNorm();
 }
 
-/// Whether a second time constant reduces the residuals significantly; both curves are compared
-/// under the noise estimated with two.
+/// Returns whether a second time constant reduces the residuals significantly and differs from the
+/// first by a factor of `apart` or more; both curves are compared under the noise estimated with
+/// two.
 bool two_parts(const Means& m, const Fitted& two) {
   Curve one = searched(m, 1, two.noise);
   refine(m, two.noise, one);

@@ -33,7 +33,8 @@ std::string mm(double m) {
   return std::string(text.data(), end) + " mm";
 }
 
-/// The request as integers.
+/// The request in integers: lengths, steps and pitches in nm, and the triples in both orders of
+/// their legs.
 struct Search {
   std::int64_t ux = 0, uy = 0, unit = 0;
   std::int64_t of_x = 1, of_y = 1, of_d = 1;  // units of which the steps must be integer multiples

@@ -127,8 +127,8 @@ class Linear {
   double sum_ = 0.0;
 };
 
-/// Returns the best solutions over all directions of each axis; for an axis at rest, one direction
-/// is sufficient.
+/// Returns up to `kept` solutions, the best over all directions of each axis, the best first; for
+/// an axis at rest, one direction is sufficient.
 std::vector<Linear> best_of(const std::vector<ChainReading>& all, const ChainOrder& order,
                             bool between) {
   std::vector<Directions> tried(1);

@@ -22,7 +22,7 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 constexpr double thinnest = 1e-6;    // smallest ratio of second to first singular value of a plane
 constexpr double same_angle = 1e-6;  // smallest difference of two angles of the axis, rad
 // docs/dev/constants.md, A9.
-constexpr double worst_follow = 0.1;  // rms difference between encoder and circle, rad
+constexpr double worst_follow = 0.1;  // largest rms difference between encoder and circle, rad
 
 double wrapped(double angle) { return std::remainder(angle, full_turn); }
 
@@ -63,7 +63,7 @@ std::optional<Plane> plane_of(std::span<const BallCentre> centres) {
     points.row(i) << c.at[0], c.at[1], c.at[2];
     plane.weight[i] = c.weight;
   }
-  // subtracted first, so that a large offset does not cost digits
+  // The first point is subtracted before the mean, so that a large offset does not cost digits.
   const Vector3d first = points.row(0).transpose();
   points.rowwise() -= first.transpose();
   const Vector3d mean = points.transpose() * plane.weight / plane.weight.sum();
@@ -83,7 +83,8 @@ std::optional<Plane> plane_of(std::span<const BallCentre> centres) {
   return plane;
 }
 
-/// Circle in the plane: centre, radius, covariance for a standard uncertainty of 1, residuals.
+/// Circle in the plane: centre, radius, their covariance for a standard uncertainty of 1 m, and the
+/// shift of the centre per unit of shear.
 struct Circle {
   Vector2d centre = Vector2d::Zero();
   double radius = 0.0;
@@ -154,7 +155,8 @@ std::optional<Circle> geometric(const Plane& p) {
 }
 
 /// Sense of the points about the normal relative to the encoder, +1 or -1, and the angle of the
-/// point at encoder zero: the sense that agrees better, or nothing if neither agrees.
+/// point at encoder zero. `sense_of` returns the sense that agrees better, or nothing if neither
+/// agrees to within `worst_follow`.
 struct Sense {
   double sign = 1.0, zero = 0.0;
 };

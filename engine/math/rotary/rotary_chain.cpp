@@ -20,7 +20,7 @@ constexpr double derivative_step = 1e-6;  // m and rad, step of numerical deriva
 constexpr double ended = 1e-12;           // m: a smaller step ends the iteration
 constexpr int most_steps = 60;
 constexpr double largest_tilt = 0.5;  // largest change of a direction in one step, rad
-// ratio of the sums of squares of two chains that fit equally well
+// largest ratio of the sums of squares of two chains that fit equally well
 constexpr double fits_alike = 4.0;
 constexpr double other_way = 0.1;  // smallest angle between directions of two different chains, rad
 constexpr double open_changes_nothing = 1e-5, rounding_size = 1e-9;
@@ -36,7 +36,8 @@ bool sound(const std::vector<ChainReading>& all, const ChainOrder& order) {
   });
 }
 
-/// Returns the extent of the readings: the lever that converts a tilt to a length.
+/// Returns the largest range of a coordinate of the readings, at least 1 mm, m: the lever that
+/// converts a tilt to a length.
 double extent_of(const std::vector<ChainReading>& all) {
   double size = 1e-3;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -183,7 +184,8 @@ class Descent {
   MatrixXd V_, U_, open_;
 };
 
-/// Converts row 3 i + k of a fit to index k n + i of a budget.
+/// Reorders a vector over n readings from index 3 i + k of a fit (reading i, coordinate k) to index
+/// k n + i of a budget.
 std::vector<double> by_coordinate(const VectorXd& row) {
   const Index n = row.size() / 3;
   std::vector<double> out(static_cast<std::size_t>(row.size()));

@@ -31,7 +31,8 @@ Matrix3d turn(const Vector3d& n, double angle) {
   return Matrix3d::Identity() + std::sin(angle) * cross + (1.0 - std::cos(angle)) * cross * cross;
 }
 
-/// Fits a circle to the commanded positions of one line; none if they do not follow one.
+/// Fits a circle to the commanded positions of one line. Returns nothing if they do not follow one,
+/// or if its radius is below `least_radius`.
 std::optional<RotaryFit> circle_of(const std::vector<RtcpReading>& all, std::size_t line) {
   std::map<long long, BallCentre> places;
   for (const RtcpReading& r : all) {
@@ -136,9 +137,10 @@ class Readings {
   }
 
  private:
-  /// Returns the position of a line's ball in the control, with the axis at 0. With a table, the
-  /// linear axes follow the ball; with a head, they move back by the vector from its pivot (at c0)
-  /// to the ball.
+  /// Returns the mean position of a line's ball in the control, with the axis at 0, and raises
+  /// `off` to the largest distance of a reading's position from it, m. With a table, the linear
+  /// axes follow the ball; with a head, they move back by the vector from its pivot (at c0) to the
+  /// ball.
   Vector3d place_of(std::size_t line, const Vector3d& middle, double& off) const {
     Vector3d mean = Vector3d::Zero();
     double n = 0.0;
@@ -165,7 +167,7 @@ class Readings {
   }
 
   /// Chooses the point to which a and b refer: at the mean height of the balls that are sensed
-  /// across the axis.
+  /// across the axis, or of all balls if none is.
   void choose_point() {
     double height[2] = {0.0, 0.0}, n[2] = {0.0, 0.0};
     for (const RtcpReading& r : all_) {
@@ -203,11 +205,12 @@ class Readings {
   const RtcpWish& wish_;
   Vector3d n0_, c0_;
   std::array<std::size_t, 2> across_{0, 1};
-  std::vector<Vector3d> ball_;         // ball position of each line
-  std::vector<Vector3d> known_;        // positions of the distinct balls
-  std::vector<std::size_t> which_;     // index of the ball of each line
-  std::vector<Eigen::Index> ball_at_;  // first index of its unknown position; -1: known
-  std::vector<Eigen::Index> zero_at_;  // index of its unknown zero; -1: known
+  std::vector<Vector3d> ball_;      // ball position of each line
+  std::vector<Vector3d> known_;     // positions of the distinct balls
+  std::vector<std::size_t> which_;  // index of the ball of each line
+  // by line: first index of the ball's unknown position; -1: known
+  std::vector<Eigen::Index> ball_at_;
+  std::vector<Eigen::Index> zero_at_;  // by line: index of its unknown zero; -1: known
   Eigen::Index unknowns_ = 4;
 };
 

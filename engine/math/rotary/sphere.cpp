@@ -25,7 +25,8 @@ struct Sphere {
   double radius;
 };
 
-/// Returns starting values; the points are relative to their mean.
+/// Returns a sphere as starting values; nothing if the points do not determine one. The points are
+/// relative to their mean.
 std::optional<Sphere> start(const MatrixXd& points) {
   MatrixXd columns(points.rows(), 4);
   columns << 2.0 * points, VectorXd::Ones(points.rows());

@@ -12,7 +12,8 @@ namespace nonio::math {
 ///     cov(y_i, y_j) = s^2 [(1 - w) (i == j) + w rho^|i - j|]
 ///
 /// rho and w are estimated by restricted maximum likelihood (REML), so that slow noise absorbed by
-/// the fitted columns does not bias them. A Kalman filter with one state: O(n).
+/// the fitted columns does not bias them. The covariance is inverted by a Kalman filter with one
+/// state, so the cost grows linearly with the number of means.
 struct PathNoise {
   double rho = 0.0, w = 0.0;
   /// Returns the variance of the coefficient of a slow column, relative to that with white noise of
@@ -20,8 +21,8 @@ struct PathNoise {
   double slow() const { return (1.0 - w) + w * (1.0 + rho) / (1.0 - rho); }
 };
 
-/// Whitens the columns (the last one contains the deviations) for s = 1, in place; returns ln det
-/// of the covariance. place: index of the bin of each row, ascending.
+/// Whitens the columns for s = 1, in place, and returns ln det of the covariance. place: index of
+/// the bin of each row, ascending.
 double whiten(Eigen::MatrixXd& columns, const std::vector<int>& place, const PathNoise& noise);
 
 /// Estimates the noise of the residuals of y on X.

@@ -6,7 +6,8 @@
 namespace nonio::math {
 namespace {
 
-/// Returns the name of the machine's axis along a coordinate: "X", or "X1" if there is no X.
+/// Returns the name of the machine's linear axis along a coordinate: "X", or another such as "X1"
+/// if the machine has no X; "X" if it has neither.
 std::string axis_along(const Campaign& c, std::size_t coordinate) {
   const std::string letter(1, "XYZ"[coordinate]);
   if (c.machine.axis(letter) != nullptr) return letter;

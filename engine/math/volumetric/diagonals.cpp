@@ -20,7 +20,8 @@ using Vector = Eigen::VectorXd;
 using Row = Eigen::RowVectorXd;
 
 constexpr std::size_t most_stops = 1000;
-constexpr double rank_threshold = 1e-10;  ///< relative to the largest column; columns are lengths
+/// smallest pivot that counts for the rank, relative to the largest one
+constexpr double rank_threshold = 1e-10;
 // docs/dev/constants.md, A6.
 constexpr double closure_limit = 4.0;  ///< limit of the closure error, in standard uncertainties
 
@@ -133,7 +134,8 @@ class System {
   std::size_t first_of_X() const { return r_.Y.size() * (n_ + 1); }
   std::size_t first_of_yaw() const { return first_of_X() + r_.X.size() * (n_ + 1); }
   const Vector& y() const { return y_; }
-  /// Standard uncertainties of the readings by repetition; 1 for all lines if it is not known.
+  /// Standard uncertainties of the readings by repetition. If one is not known, they are 1 for all
+  /// lengths and 0 for yaw; readings that are 0 by definition have 0.
   const std::vector<double>& sigma() const { return sigma_; }
   /// Returns the index of the first reading of the directly measured straightness EYX, or if
   /// `second` of EXY.
@@ -288,8 +290,8 @@ class System {
   Eigen::Index next_ = 0;
 };
 
-/// Generalised least squares with the rank determined numerically. A functional that the rows do
-/// not determine has no value.
+/// Generalised least squares with the rank determined numerically. The value of a functional is
+/// valid only if the rows determine it (`determined`).
 class Solution {
  public:
   Solution(const System& system, const ReadingModel* model) : model_(model) {

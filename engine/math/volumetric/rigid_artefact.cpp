@@ -91,7 +91,8 @@ class Frame {
 
  private:
   /// Fits a placement by its balls with known coordinates, and derives the coordinates of its other
-  /// balls.
+  /// balls. Returns false if no ball is known, or if the known ones are on one line and others are
+  /// not known.
   bool link(std::size_t p) {
     const ArtefactPlacement& placement = a_.placements[p];
     std::vector<Vector3d> q, at;

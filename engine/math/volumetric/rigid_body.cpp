@@ -23,7 +23,7 @@ using Eigen::VectorXd;
 constexpr double changes_nothing = 1e-6;
 constexpr double shows_nothing = 1e-9;  // norm of a row of V below which a term affects no reading
 constexpr double same_share = 1e-6;
-constexpr std::size_t places_of_curve = 21;  // points of a curve
+constexpr std::size_t places_of_curve = 21;  // number of points of a curve
 
 std::string name_of(const RigidTerm& term) {
   return term.kind == RigidTerm::Kind::squareness ? term.error
@@ -46,7 +46,8 @@ void find_combinations(const RigidFit& f, RigidSolution& out) {
   }
 }
 
-/// Returns the terms of the least identifiable direction, the largest first.
+/// Returns the terms of the least identifiable direction whose coefficients exceed 0.3 of the
+/// largest, the largest first; the coefficients are relative to it.
 Combination weakest_of(const RigidFit& f) {
   Combination out;
   if (f.solved.rank == 0) return out;
@@ -182,8 +183,8 @@ void put_results(const RigidFit& f, const RigidBox& box, const RigidWish& wish,
       wish.parts);
 }
 
-/// Returns the largest degree that the positions of the readings allow: at least two positions for
-/// each polynomial.
+/// Returns the largest degree, 2 to 8, that the positions of the readings allow: at least two
+/// positions for each polynomial of an axis.
 std::size_t allowed_degree(const std::vector<RigidLine>& lines, const RigidBox& box) {
   std::size_t least = most_degree;
   for (std::size_t k = 0; k < 3; ++k) {

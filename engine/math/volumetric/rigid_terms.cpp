@@ -78,7 +78,7 @@ Corner way_of(const RigidLine& line, std::size_t i) {
   return out;
 }
 
-/// Returns the vector to the reading that is farthest along the beam.
+/// Returns the vector from the first reading to the reading that is farthest along the beam.
 Corner farthest_way(const RigidLine& line) {
   Corner best{};
   for (std::size_t i = 0; i < line.readings.size(); ++i) {

@@ -30,8 +30,8 @@ struct RigidBox {
   double lever(std::size_t k, const Corner& at) const { return at[k] - (low[k] + high[k]) / 2.0; }
 };
 
-/// Returns the terms of these errors with polynomials up to `degree`, in the order of
-/// `rigid_errors`; errors of axes that do not move have none.
+/// Returns the terms of these errors, or if `errors` is empty, of all, with polynomials up to
+/// `degree`, in the order of `rigid_errors`; errors of axes that do not move have none.
 std::vector<RigidTerm> rigid_terms(const RigidBox&, const std::vector<std::string>& errors,
                                    std::size_t degree);
 

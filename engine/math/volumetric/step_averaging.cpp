@@ -13,7 +13,7 @@ using Index = Eigen::Index;
 /// One move of an axis over its interval i, as a difference of two readings: +1 after, -1 before;
 /// the reading before the first move is the zero of the pass.
 struct Increment {
-  std::size_t pass = 0, after = 0;  ///< number of moves before the reading
+  std::size_t pass = 0, after = 0;  ///< number of moves of the pass up to and including this one
 };
 
 /// Returns the move of `axis` over interval i (from position i to i + 1) in a pass.

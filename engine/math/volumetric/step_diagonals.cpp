@@ -35,7 +35,7 @@ struct Layout {
 };
 
 struct ReadingRow {
-  std::size_t pass, moves;  ///< moves 0: the zero before the first move
+  std::size_t pass, moves;  ///< index of the pass, number of moves; 0 moves: zero of the pass
 };
 
 /// Rows of readings (weight 1), of series, and of the gauge.
@@ -224,7 +224,8 @@ std::array<bool, 3> known_scales(const StepDiagonals& d, const Factor& f) {
   return known;
 }
 
-/// Whether the undetermined directions change no curve that is given.
+/// Returns whether there are at most eight undetermined directions, and none of them changes a
+/// curve or squareness that is given.
 bool complete(const StepDiagonals& d, const Factor& f, const std::array<bool, 3>& known) {
   const auto size = static_cast<Index>(9 * d.n);
   if (f.open.cols() > 8) return false;

@@ -18,9 +18,9 @@ struct CourseColumns {
   MatrixXd columns;
 };
 
-/// Rows of a course, averaged in at most `most_bins` bins of equal numbers of rows (the number of
-/// bins minus 1 has no prime factors except 2, 3 and 5, for the Fourier transform of the changes),
-/// divided into consecutive blocks.
+/// Rows of a course, averaged in at most `most_bins` bins of nearly equal numbers of rows (the
+/// number of bins minus 1 has no prime factors except 2, 3 and 5, for the Fourier transform of the
+/// changes), divided into consecutive blocks.
 class CourseData {
  public:
   static constexpr Index blocks = course_blocks, most_bins = 751;

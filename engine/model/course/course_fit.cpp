@@ -50,7 +50,8 @@ class CourseFit {
     return out;
   }
 
-  /// Returns -ln of the evidence with the shapes at these indices of their grids.
+  /// Returns -ln of the evidence with the shapes at these indices of their grids; infinite if two
+  /// terms have the same column.
   double cost_with(const std::vector<std::size_t>& at) const {
     std::vector<Index> columns;
     for (std::size_t k = 0; k < at.size(); ++k)
@@ -123,7 +124,8 @@ class CourseFit {
     return data_.means(*columns);
   }
 
-  /// Optimizes continuous shapes between adjacent values of their grids.
+  /// Optimizes the continuous shapes of searched terms between adjacent values of their grids, in
+  /// two rounds.
   void refine() {
     for (int round = 0; round < 2; ++round)
       for (std::size_t k = 0; k < terms_.size(); ++k) {

@@ -25,7 +25,8 @@ class CourseWhitening {
   CourseWhitening(const CourseData& data, const CourseNoise& noise);
 
   MatrixXd of(MatrixXd columns) const;
-  /// Returns half the natural logarithm of the determinant of the noise covariance.
+  /// Returns half the natural logarithm of the determinant of the noise covariance, including the
+  /// term of the unknown zero.
   double half_log_determinant() const { return half_log_determinant_; }
   /// Returns the variance of the zero divided by that of the correlated part of the noise.
   double variance_of_zero() const { return variance_of_zero_; }

@@ -50,8 +50,8 @@ class CoursePool {
 
   static constexpr std::size_t most_columns = 6;
 
-  /// Result of a greedy search that adds columns to `columns` one by one, each time the one with
-  /// the largest gain of evidence.
+  /// Result of a greedy search that adds at most `most_columns` columns to `columns` one by one,
+  /// each time the one with the largest gain of evidence.
   struct Greedy {
     std::vector<Index> added;
     /// largest gain of ln evidence after any number of columns, each reduced by the penalty
@@ -103,7 +103,8 @@ struct CourseSides {
   MatrixXd products;
   Eigen::RowVectorXd squares;  ///< whitened sum of squares of each displacement, m^2
   struct Blocks {
-    std::vector<MatrixXd> white, centred;  ///< as in CoursePool::Blocks, with the displacements
+    /// products in each block, as in CoursePool::Blocks, of the columns with the displacements
+    std::vector<MatrixXd> white, centred;
     /// sum of squares in each block about its mean, m^2
     std::vector<Eigen::RowVectorXd> centred_squares;
   };

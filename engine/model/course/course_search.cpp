@@ -446,7 +446,7 @@ class CourseExplanation {
     Candidate c;
     c.term = search_.term_of(e);
     c.cv_rms = search_.left_out_with({e});
-    c.minimal_detectable = std::numeric_limits<double>::quiet_NaN();  // not known over time
+    c.minimal_detectable = std::numeric_limits<double>::quiet_NaN();  // not determined for a course
     c.p = p;
     const bool member = std::find(set_.begin(), set_.end(), e) != set_.end();
     c.alone = 2.0 * (gain.alone - search_.penalty());
@@ -458,7 +458,7 @@ class CourseExplanation {
 
   /// Fits the candidate together with the model. If `anew`, the shapes of the model are searched
   /// again, and those of the candidate if it is a member of the best set or nothing was found;
-  /// otherwise all shapes are kept.
+  /// otherwise all shapes are kept. If the fit fails, the candidate becomes not visible.
   void fit(Candidate& c, bool anew) {
     std::vector<Term> terms = anew ? model_ : out_.comparison.fit.terms;
     terms.push_back(c.term);

@@ -114,7 +114,8 @@ class Worth {
     }
   }
 
-  /// Finds the source (a channel that is not a temperature) whose removal increases the RMS most.
+  /// Finds the source (a channel that is not a temperature) whose removal increases the RMS most
+  /// and by more than a tenth, and which has an effect with a time constant.
   void unseen() {
     for (const Sensors::One& one : out_.used) {
       const auto* channel = part_.table.channel(one.channel);

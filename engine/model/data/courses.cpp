@@ -50,7 +50,8 @@ Part part_of(const Measurement& m, const Observations& o, std::uint32_t line,
   return part;
 }
 
-/// Returns the correlation coefficient of the changes of two series over a hundredth of the test.
+/// Returns the correlation coefficient, without subtraction of means, of the changes of two series
+/// over a hundredth of the test; 0 if one of them has no such changes.
 double move_together(const std::vector<double>& a, const std::vector<double>& b) {
   const std::size_t step = std::max<std::size_t>(1, a.size() / 100);
   double aa = 0.0, ab = 0.0, bb = 0.0;

@@ -8,8 +8,8 @@ namespace nonio::model {
 
 namespace {
 
-/// Multiplies errors along an axis by the component of each reading's direction of sensing along
-/// it.
+/// Multiplies the columns of a linear axis by the component of each reading's direction of sensing
+/// along this axis; the columns of other axes are unchanged.
 void project(const Observations& o, const Axis& axis, MatrixXd& columns) {
   const std::size_t k = coordinate_of(axis.name);
   if (axis.rotary || k > 2) return;

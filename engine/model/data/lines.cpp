@@ -22,8 +22,8 @@ namespace {
 /// The order in which the readings of one axis were taken.
 struct Order {
   std::vector<std::uint32_t> rows;  ///< row indices, first reading first
-  bool known = true;                ///< if false, no conclusion from time is allowed
-  /// taken as the cycle of ISO 230-2, because the order of the file is impossible
+  bool known = true;                ///< if false, nothing may be concluded from the order in time
+  /// whether the cycle of ISO 230-2 is assumed, because the order of the file is impossible
   bool assumed = false;
 };
 
@@ -55,7 +55,7 @@ bool grouped(const Passes& passes) {
   return *high < *other_low || *other_high < *low;
 }
 
-/// Whether a pass is listed from its end to its start.
+/// Returns whether some pass of at least three readings is listed from its end to its start.
 bool against_its_direction(const Observations& o, const Passes& passes) {
   const auto& position = o.axes.front().position;
   return std::any_of(passes.begin(), passes.end(), [&](const auto& entry) {
@@ -88,11 +88,12 @@ Rows pendulum(const Observations& o, const Passes& passes) {
   return rows;
 }
 
-/// Returns the order of the readings. If every reading has a time, the times decide. Otherwise
-/// `said`, from the manifest: "pendulum", "as-listed", "unknown", or empty. If it is empty, the
-/// order is as listed, unless no machine can have moved so: several runs with all readings of one
-/// direction before all of the other, or a pass listed against its direction. Then it is taken as
-/// the cycle of ISO 230-2 (forward and back, run by run).
+/// Returns the order of the readings. If every reading has a time, they are sorted by it. Otherwise
+/// `said` decides, which the manifest states: "pendulum", "as-listed" or "unknown" (as listed, and
+/// not known); it may be empty. If it is empty, the order is as listed, unless no machine can have
+/// moved so: several runs with all readings of one direction before all of the other, or a pass
+/// listed against its direction. Then the cycle of ISO 230-2 is assumed (forward and back, run by
+/// run).
 Order order_of(const Observations& o, const std::string& said) {
   Order out;
   out.rows.resize(o.size());
@@ -125,7 +126,8 @@ bool moves(const Observations::AxisColumn& axis) {
   return *low < *high;
 }
 
-/// Appends the measured columns of `more`, but not positions and lines.
+/// Appends the measured columns of `more`, but not positions and lines, and stores the measurement
+/// `id` and the row of each reading in the part.
 void append_readings(Part& part, const Observations& more, const std::string& id) {
   Observations& to = part.table;
   const std::size_t before = to.size(), added = more.size();
@@ -138,8 +140,8 @@ void append_readings(Part& part, const Observations& more, const std::string& id
   to.missing += more.missing;
 }
 
-/// Returns the positions of one axis in a measurement. If the axis did not move, they are the
-/// position that the manifest states, else NaN.
+/// Returns the positions of one axis in a measurement. If its readings do not contain the axis,
+/// each is the position that the manifest states, or NaN if it states none.
 Observations::AxisColumn column_of(const std::string& axis, const Observations& o,
                                    const Measurement& m) {
   if (const auto* column = o.axis(axis)) {
@@ -186,8 +188,9 @@ void append_angles(Part& part, const Observations& o, const Measurement& m) {
   }
 }
 
-/// Appends the place of each reading along its line, and the direction of approach: of the one axis
-/// that moves, or along the direction of sensing.
+/// Appends the place of each reading along its line, and the direction of motion. If exactly one
+/// linear axis moves, they are its position and approach; for a circle see `append_angles`;
+/// otherwise they are counted along the direction of sensing, from the start of the diagonal.
 void append_places(Part& part, const Observations& o, const Measurement& m) {
   std::vector<const Observations::AxisColumn*> moved;
   for (const auto& axis : o.axes)

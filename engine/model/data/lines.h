@@ -15,10 +15,12 @@ inline double dot(const Vector& a, const Vector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Whether all readings sense the only axis along its motion, or its angle if it is rotary.
+/// Returns whether the table has one axis, and all readings sense the motion along it, or its angle
+/// if it is rotary. False if a direction of approach is missing.
 bool sensed_along_one_axis(const Observations&);
-/// Whether lengths are sensed in a known direction while only linear axes move. Unless they are
-/// sensed along one axis (see above), this is across the motion or over several axes at once.
+/// Returns whether lengths are sensed, each in a known direction, while at least one linear axis
+/// and no other axis moves. If `sensed_along_one_axis` is false, such readings are across the
+/// motion or over several axes at once.
 bool across(const Observations&);
 /// Whether some direction of sensing has several components, as on a diagonal.
 bool senses_several(const Observations&);

@@ -56,7 +56,8 @@ Moments moments(Index m, Index k, double rho) {
   return {M.trace(), M.diagonal<1>().sum(), M.squaredNorm()};
 }
 
-/// Returns the variance of the sum of products of adjacent residuals for independent readings.
+/// Returns the variance of the sum of products of adjacent residuals for a pass of m independent
+/// readings of unit variance, after a polynomial with k terms is fitted.
 double variance_of_products(Index m, Index k) {
   MatrixXd b = MatrixXd::Zero(m, m);
   b.diagonal<1>().setConstant(0.5);
@@ -99,13 +100,13 @@ class AlikePasses {
   }
 
  private:
-  // longer passes are treated as this long, because the effect of their ends is negligible
+  // a longer pass counts as several of this length, because the effect of their ends is negligible
   static constexpr Index longest = 60;
   std::map<std::pair<Index, Index>, double> share_;
 };
 
-/// Sum of the products of residuals that are adjacent in a pass, and sum of the squares of all
-/// residuals.
+/// Sum of the products of weighted residuals that are adjacent in a pass, and sum of the squares of
+/// all weighted residuals. Readings of weight 0 contribute to neither.
 struct Products {
   double lagged = 0.0, squares = 0.0;
 };
@@ -146,8 +147,9 @@ class ExpectedRatio {
 };
 
 /// Estimates the correlation of adjacent readings from the ratio of products of adjacent residuals
-/// to squares. It is used if it exceeds `least_seen` standard deviations, and is then reduced
-/// towards 0 according to its uncertainty, by a normal prior with most values below `usual`.
+/// to squares; with fewer than 8 degrees of freedom it is not known. It is used if it exceeds
+/// `least_seen` standard deviations, and is then reduced towards 0 according to its uncertainty, by
+/// a normal prior with most values below `usual`.
 void find_neighbours(const Repeats& r, const Saturated& s, const std::vector<double>& weight,
                      Noise& noise) {
   // docs/dev/constants.md, M25.
@@ -218,8 +220,10 @@ void spread_out(const Part& part, Noise& noise) {
                               : noise.stretch->outside);
 }
 
-/// Finds the range of targets whose scatter differs most from that of the others, if it is
-/// significant: F-test of the two variances, corrected for the number of ranges.
+/// Finds the range of targets of an axis whose scatter differs most from that of the others, if it
+/// differs by a factor of at least 1.5 and significantly: F-test of the two variances, corrected
+/// for the number of ranges. At least three targets must be inside and three outside, of at most
+/// 400.
 void find_stretch(const Part& part, const Repeats& repeats, const Saturated& s,
                   const std::vector<double>& weight, Noise& noise) {
   constexpr std::size_t fewest = 3, most_targets = 400;
@@ -239,7 +243,7 @@ void find_stretch(const Part& part, const Repeats& repeats, const Saturated& s,
   }
   const double all = squares.back(), n = dof.back();
   const double stretches = 0.5 * static_cast<double>(targets * targets);
-  double best = 12.0;  // smaller values occur by chance in one of 2000 ranges
+  double best = 12.0;  // larger values occur by chance in one of 2000 ranges
   for (std::size_t a = 0; a + fewest <= targets; ++a)
     for (std::size_t b = a + fewest; b <= targets; ++b) {
       const double in = squares[b] - squares[a], f = dof[b] - dof[a];
@@ -262,7 +266,8 @@ void find_stretch(const Part& part, const Repeats& repeats, const Saturated& s,
   if (noise.stretch) spread_out(part, noise);
 }
 
-/// Estimates the scatter inside and outside of a known range again, from the weighted residuals.
+/// Estimates the scatter inside and outside of a known range again, from the residuals `s` of a fit
+/// that is weighted with this range; nothing is changed if one of both has no residuals.
 void measure_stretch(const Part& part, const Repeats& repeats, const Saturated& s,
                      const std::vector<double>& weight, Noise& noise) {
   const TargetScatter scatter = scatter_of(part, repeats, s, weight, s.dof);

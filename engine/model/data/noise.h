@@ -13,8 +13,9 @@
 /// Estimates the correlation of the noise from the residuals of repeats (docs/model.md).
 namespace nonio::model {
 
-/// Returns the largest step of which all differences of readings are integer multiples; 0 if there
-/// is none.
+/// Returns the smallest difference between two readings, m or rad, if all differences are integer
+/// multiples of it, within 2 %. Returns 0 otherwise, or if the range of the readings exceeds 10^6
+/// such steps.
 double digit_of(const Observations& o);
 
 /// Returns the weights divided by the square of the relative scatter `rough` of each reading.
@@ -24,14 +25,16 @@ std::vector<double> with_scatter(const std::vector<double>& weight, const Noise&
 /// and the correlation of adjacent readings. No model of the catalogue is used.
 Noise noise_of(const Part& part, const Repeats& repeats, const std::vector<double>& weight);
 
-/// Returns the scatter of repeats with the weights of `with_scatter`. The pass terms of `saturate`
-/// absorb a part of the correlation of adjacent readings; the result is corrected for this.
+/// Returns the scatter of repeats with the weights of `with_scatter`, at least digit/sqrt(12). The
+/// pass terms of `saturate` absorb a part of the correlation of adjacent readings; the result is
+/// corrected for this. None if there are fewer than 3 degrees of freedom.
 std::optional<NoiseFloor> noise_floor(const Repeats& repeats, const Saturated& saturated,
                                       const std::vector<double>& weight, const Noise& noise);
 
 /// Returns `noise` with a random zero, or with a stronger correlation of adjacent readings, if this
 /// makes the residuals of these terms (with their shapes) more likely: restricted likelihood
-/// (Patterson and Thompson 1971), maximised over kinds and sizes.
+/// (Patterson and Thompson 1971), maximised over kinds and sizes. Returns it unchanged for fewer
+/// than 10 or more than 1500 readings, or if passes or redundancy are missing.
 Noise with_zero(const Observations& o, const std::vector<Term>& terms,
                 const std::vector<double>& weight, const Noise& noise);
 
@@ -40,10 +43,10 @@ Noise with_zero(const Observations& o, const std::vector<Term>& terms,
 struct Unsteady {
   /// minimum for a zero that is a random walk from row to row
   double walks = std::numeric_limits<double>::infinity();
-  double of_run = std::numeric_limits<double>::infinity();   ///< minimum for a random zero of each
-                                                             ///< run
-  double of_pass = std::numeric_limits<double>::infinity();  ///< minimum for a random zero of each
-                                                             ///< pass
+  /// minimum for a random zero of each run; infinite with one run
+  double of_run = std::numeric_limits<double>::infinity();
+  /// minimum for a random zero of each pass; infinite if the passes are not known
+  double of_pass = std::numeric_limits<double>::infinity();
   double size_of_pass = 0.0;  ///< size of the zero of a pass, in units of s
   double least() const { return std::min(walks, of_run); }
 };

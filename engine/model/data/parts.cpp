@@ -111,7 +111,8 @@ class Parts {
   void add_space(std::size_t m) {
     if (done_.contains(m)) return;
     const std::string state = state_of(measurement(m));
-    if (state.empty() && oblique_ && states_.size() > 1) return;  // it belongs to every state
+    // the measurement belongs to every state
+    if (state.empty() && oblique_ && states_.size() > 1) return;
     Part part;
     part.kind = Part::Kind::space;
     std::vector<std::size_t> members;
@@ -149,7 +150,8 @@ class Parts {
   std::vector<Part> parts_;
 };
 
-/// Whether effects of this axis can occur in this part.
+/// Returns whether effects of this axis can occur in this part: always in an axis test; in space,
+/// if some reading both approaches along this linear axis and senses it; otherwise never.
 bool concerns(const Part& part, const Axis& axis) {
   if (part.kind == Part::Kind::axis) return true;
   if (part.kind == Part::Kind::balls || part.kind == Part::Kind::course || axis.rotary)
@@ -180,11 +182,15 @@ std::shared_ptr<const Grouping> grouping_by(
 }
 
 /// Returns the ways to group the lines of an axis: by stated properties first, then by measurement.
-/// A property that gives the same groups as an earlier one is omitted.
+/// A property that gives the same groups as an earlier one is omitted. Empty for other parts, and
+/// for a single measurement.
 std::vector<std::shared_ptr<const Grouping>> groupings_of(const Part& part,
                                                           const Campaign& campaign) {
   std::vector<std::shared_ptr<const Grouping>> out;
   if (part.kind != Part::Kind::axis || part.measurements.size() < 2) return out;
+  // Groups are of lines: a measurement with several lines has no groups.
+  for (std::size_t i = 0; i < part.table.size(); ++i)
+    if (line_of(part.table, i) >= part.measurements.size()) return out;
   std::vector<const Measurement*> measurements;
   for (const std::string& id : part.measurements)
     for (const Measurement& m : campaign.measurements)
@@ -231,7 +237,9 @@ bool can_be_in(const Part& part, const Effect& effect) {
          (part.kind == Part::Kind::axis && !part.table.channels.empty());
 }
 
-/// Returns the term of an effect in this part; none if the effect does not apply to it.
+/// Returns the term of an effect for the axis or instance `written` of this part; none if the
+/// effect cannot occur in the part, or if the part has no such axis or instance. `Effect::applies`
+/// is not tested.
 std::optional<Term> term_of(const Part& part, const Effect& effect, const std::string& written) {
   if (!can_be_in(part, effect)) return std::nullopt;
   if (effect.instances) {

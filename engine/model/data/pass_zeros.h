@@ -24,7 +24,8 @@ class ZerosOfPasses {
                 const std::vector<double>& residual);
 
   /// Returns the p-value of the differences between passes of the same side under the hypothesis
-  /// that readings scatter independently with standard deviation s.
+  /// that readings scatter independently with standard deviation s; 1 if s is 0, or if no side has
+  /// two passes.
   double p_of_differences(double s) const;
   /// Whether the zeros of passes show no systematic order: a step between two passes, a trend, one
   /// different run, or any of these in the reversal is a cause, not scatter. False if there are too

@@ -195,8 +195,8 @@ Saturated saturate(const Repeats& r, const std::vector<double>& y,
 namespace {
 
 /// Groups of readings that are compared with each other: those of a target; if each cell of the
-/// target has four readings, those of a cell, so that a reversal that differs between targets does
-/// not count as scatter.
+/// target has at least four readings, those of a cell, so that a reversal that differs between
+/// targets does not count as scatter.
 struct Groups {
   std::vector<std::uint32_t> of;
   std::size_t count;
@@ -214,9 +214,10 @@ struct Groups {
   }
 };
 
-/// Returns the residuals that remain after the median of its target or cell, and then the running
-/// median of its pass, are subtracted from each reading, three times. This needs no model, and an
-/// outlier does not affect other readings.
+/// Returns the residuals that remain after the median of its target or cell (if this has at least
+/// three readings), and then the running median of the adjacent readings of its pass, are
+/// subtracted from each reading, three times. This needs no model, and an outlier does not affect
+/// other readings.
 std::vector<double> polished(const Repeats& r, const std::vector<double>& y) {
   const Groups groups(r);
   const Members targets(groups.of, groups.count), passes(r.pass, r.passes);
@@ -255,7 +256,7 @@ std::vector<double> polished(const Repeats& r, const std::vector<double>& y) {
 std::vector<double> apart_from_others(const Repeats& r, const std::vector<std::uint32_t>& rows,
                                       const std::vector<double>& e) {
   const Groups groups(r);
-  // Sort the values of each requested group; omitting one value shifts the median by one place.
+  // Sort the values of each requested group; omitting one value shifts the later ones by one place.
   std::vector<std::size_t> asked(groups.count, 0);
   std::size_t lists = 0;
   for (const auto i : rows)
@@ -283,8 +284,9 @@ std::vector<double> apart_from_others(const Repeats& r, const std::vector<std::u
 
 namespace {
 
-/// Returns the deviations minus the predicted effects of the set-up, such as the tilt of a mirror.
-/// These are fitted by least absolute residuals, which an outlier hardly affects.
+/// Returns the residuals of a fit of the effects of the set-up, such as the tilt of a mirror. Huber
+/// weights (1 up to the robust deviation, then its ratio to the residual) reduce the effect of
+/// outliers. Returns the deviations if the model has no such effects or the fit fails.
 std::vector<double> without_set_up(const Observations& o, const std::vector<Term>& model) {
   std::vector<Term> set_up;
   for (const Term& term : model)
@@ -303,8 +305,9 @@ std::vector<double> without_set_up(const Observations& o, const std::vector<Term
 }
 
 /// Returns, for each reading, the ratio of the scatter near its target, estimated by a median over
-/// adjacent targets, to the scatter s of all readings; 1 if it is below 2. A range with more
-/// scatter is not a series of outliers.
+/// adjacent targets, to the scatter s of all readings; 1 if it is at most 2. A range with more
+/// scatter is not a series of outliers. Also 1 if it cannot be determined: several axes, fewer than
+/// 64 or more than 20000 readings, or adjacent targets that are more than two thirds of all.
 std::vector<double> rougher_than(double s, const Observations& o, const std::vector<double>& e) {
   constexpr std::size_t fewest = 16;
   // docs/dev/constants.md, M27.

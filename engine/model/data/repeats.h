@@ -29,8 +29,9 @@ struct Saturated {
 };
 Saturated saturate(const Repeats&, const std::vector<double>& y, const std::vector<double>& weight);
 
-/// Returns the number of pass terms for a pass of this many readings: offset, slope, curvature.
-/// Short passes have them too, because an unmodeled growth gives each pass a slope.
+/// Returns the number of pass terms for a pass of this many readings: offset, from 4 readings a
+/// slope, from 8 a curvature. Passes of 4 readings have a slope, because an unmodeled growth causes
+/// one.
 inline Index shared_columns(Index readings) {
   return readings >= 8 ? 3 : readings >= 4 ? 2 : readings >= 1 ? 1 : 0;
 }
@@ -43,7 +44,8 @@ std::vector<double> apart_from_others(const Repeats&, const std::vector<std::uin
 
 /// Returns readings that contradict their repeats and adjacent readings: found by medians, then
 /// tested against the scatter of the others (Student, corrected for the number of readings). Of the
-/// model, only the effects of the set-up are subtracted.
+/// model, only the effects of the set-up are subtracted. None if there are fewer than 10 readings,
+/// or if more than a quarter of them seem to contradict others.
 std::vector<Suspect> suspects_of(const Observations&, const Repeats&,
                                  const std::vector<Term>& model);
 

@@ -9,12 +9,14 @@
 /// Use of thermal tests of an axis in the model of its axis tests.
 namespace nonio::model {
 
-/// Stores in each part the time constants of its linear axes.
+/// Stores in each part, except ball centres, the time constants that thermal tests determine for
+/// its linear axes.
 void put_time_constants(const Campaign& campaign, const std::vector<Observations>& read,
                         std::vector<Part>& parts);
 
-/// Returns the time constant from thermal tests for this effect. None if the part's readings have
-/// no times, or if it is outside the range that the effect searches.
+/// Returns the time constant from thermal tests for this effect of an axis. None if the tests
+/// determine none or contradict each other, if the effect has no such shape, if the part's readings
+/// have no times, or if the value is outside the range that the effect searches.
 std::optional<Term::Stated> stated_time_constant(const Part& part, const Effect& effect,
                                                  const Axis& axis);
 

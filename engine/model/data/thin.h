@@ -9,15 +9,15 @@ namespace nonio::model {
 /// the search for effects and in the test that locates the residuals.
 inline constexpr std::size_t thin_beyond = 6000;
 
-/// Averages readings that are close together: of one line and direction, of adjacent runs and
-/// adjacent positions, so that fewer than `thin_beyond` rows remain, but at least 2 runs and 25
-/// positions. Readings of weight 0 are omitted. The noise of a mean is smaller; slow variations
-/// remain.
+/// Returns the means of readings that are close together: of one line and direction, of adjacent
+/// runs and adjacent positions. At most `thin_beyond` rows remain if there are at most 60 lines.
+/// Readings of weight 0 are omitted. The noise of a mean is smaller; slow variations remain. A
+/// table that cannot be thinned is returned unchanged.
 Observations thinned(const Observations& o, const std::vector<double>& weight);
 Part thinned(const Part& part, const std::vector<double>& weight);
 
-/// Whether readings can be averaged: only in tables of one axis, because readings in space are
-/// seldom close together.
+/// Returns whether readings can be averaged: only in tables of one axis that have a direction of
+/// approach for each reading, because readings in space are seldom close together.
 bool can_be_thinned(const Observations& o);
 
 }  // namespace nonio::model

@@ -30,7 +30,7 @@ class Likelihood {
   Likelihood(const Observations& o, const MatrixXd& model, const std::vector<double>& weight)
       : o_(o), model_(model), weight_(weight) {}
 
-  /// Returns -2 ln of the restricted likelihood.
+  /// Returns -2 ln of the restricted likelihood, up to a constant.
   double operator()(const Noise& noise) const {
     const Whitening white(o_, weight_, noise);
     MatrixXd x = white(model_);
@@ -212,7 +212,8 @@ Noise with_zero(const Observations& o, const std::vector<Term>& terms,
   constexpr double worth = 1.5;
   constexpr double no_sign = 1.2;  // score below which a gain of `worth` is improbable
   // docs/dev/constants.md, M31.
-  constexpr std::size_t most = 1500;  // above, the covariance matrix of all readings is too large
+  // largest number of readings; above, the covariance matrix is too large
+  constexpr std::size_t most = 1500;
   if (o.size() > most || o.size() < 10 || noise.pass.empty()) return noise;
   const auto blocks = blocks_of(o, terms, root_weights(o, weight));
   if (!blocks) return noise;

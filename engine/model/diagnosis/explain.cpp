@@ -66,7 +66,8 @@ std::optional<Statement> drift(const Finding& f, double dof) {
   return out.p < stated_below ? std::optional(out) : std::nullopt;
 }
 
-/// Returns the reversals if those of all targets have the same sign and each one is significant.
+/// Returns the mean, smallest and largest reversal if there are at least three targets, each read
+/// from both sides, whose reversals have the same sign and are all significant.
 std::optional<Statement> reversal(const Finding& f, double dof) {
   const Repeats& r = f.repeats;
   const std::vector<double>& y = f.part.table.deviation;
@@ -214,8 +215,8 @@ std::vector<Term> certain_terms(const Explanation& out) {
   return terms;
 }
 
-/// Returns the candidates of effects that are significant in addition to the model and do not
-/// repeat at a place.
+/// Returns the candidates of effects that are significant in addition to the model and whose
+/// predictions differ between repeated readings of a target from one side.
 std::vector<Candidate> certain_in(const Part& part, const std::vector<Term>& model,
                                   const std::vector<Term>& catalogue, std::uint64_t seed) {
   std::vector<Candidate> out;
@@ -259,8 +260,8 @@ double rms_with_certain(const Finding& finding, const Explanation& out) {
   return std::isfinite(rms) ? rms : finding.of_model.fit.rms;
 }
 
-/// Whether the search is repeated with a free value for each target: only with few targets, because
-/// more free values would cost more evidence than they show.
+/// Returns whether the search is repeated with a free value for each target: only on an axis with
+/// at most 60 targets, because more free values would cost more evidence than they show.
 bool few_places(const Finding& finding) {
   constexpr std::uint32_t most_targets = 60;
   return finding.part.kind == Part::Kind::axis && finding.repeats.targets <= most_targets;

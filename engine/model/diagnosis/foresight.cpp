@@ -108,7 +108,8 @@ std::vector<Foresight::Factor> factors_of(const Fit& now, const Longer& longer) 
   return out;
 }
 
-/// Returns the sum of squares of these readings that only this term of a fit explains.
+/// Returns the sum of squares of these readings that only this term of a fit explains; NaN if the
+/// columns of a term cannot be computed for them.
 double taken_by(const Fit& fit, std::size_t term, const Observations& o,
                 const std::vector<double>& weight, const Noise& noise) {
   const Whitening white(o, weight, Whitening::of_repeats(noise));

@@ -23,16 +23,17 @@ class PassZeros {
   /// coarser result than flipping many stretches.
   bool drawn_again() const;
   /// Returns the residual of each reading in the best explanation minus the mean of its repeats,
-  /// including the part that a pass shares.
+  /// scaled to the variance of a reading; it includes the part that a pass shares. 0 for readings
+  /// without repeats.
   std::vector<double> noise() const;
   /// Returns the places of `residual`, tested with zeros of passes as a part of the noise. Requires
   /// that these zeros scatter. The test of a place that is determined by differences between passes
   /// uses the scatter of passes.
   std::vector<Place> places(const std::vector<double>& residual,
                             const std::optional<NoiseFloor>& floor, double least) const;
-  /// Whether an effect of the best explanation is significant if the zeros of passes scatter. An
-  /// effect that is nearly constant within a pass has only as much evidence as the number of passes
-  /// allows.
+  /// Returns whether an effect of the best explanation is significant if the zeros of passes
+  /// scatter; true if this cannot be tested. An effect that is nearly constant within a pass has
+  /// only as much evidence as the number of passes allows.
   bool shows(const std::string& effect) const;
 
  private:

@@ -73,7 +73,7 @@ void append(Observations& o, const Course& course, double interval) {
 }
 
 /// Returns the distance, in standard deviations, between the prediction `said` of one effect and
-/// the nearest one of the model with `other`, whose shapes are searched.
+/// the nearest one of the model with `other`, whose shapes are searched; 0 if this fit fails.
 double distance(const Observations& o, const std::vector<Term>& model, const VectorXd& said,
                 const Term& other, double s) {
   Observations imagined = o;
@@ -93,7 +93,8 @@ std::vector<Course> courses_of(const Observations& o, const AxisReadings& r) {
   targets.erase(std::unique(targets.begin(), targets.end()), targets.end());
   std::vector<double> between;
   for (std::size_t i = 0; i + 1 < targets.size(); ++i)
-    between.push_back(targets[i] + 0.382 * (targets[i + 1] - targets[i]));  // not a simple fraction
+    // 0.382 is not a simple fraction, so that a period does not repeat
+    between.push_back(targets[i] + 0.382 * (targets[i + 1] - targets[i]));
   const double whole = std::max(r.duration, 1.0);
   std::vector<Course> out;
   out.push_back({"another-run", targets, 1});

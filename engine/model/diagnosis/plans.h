@@ -15,7 +15,8 @@ struct Further {
 /// known values, because weights and columns need an entry for each reading.
 void fill_measured(Observations& o);
 
-/// Returns tables with one additional run of an axis, appended to its readings.
+/// Returns tables that contain the readings of an axis and one planned measurement of it: one run
+/// or three.
 std::vector<Further> further_runs(const Part& part, const Axis& axis);
 
 /// Returns tables with one additional measurement on a machine with several axes, or of a ball.
@@ -30,9 +31,10 @@ std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
                             const Candidate& candidate, const std::vector<Term>& catalogue,
                             double s);
 
-/// Returns further measurements that would separate two effects that cancel each other, ordered as
-/// by `plans_for`: their joint effect is compared with that of each alone. `value`: their linear
-/// parameters, SI; `s`: standard deviation of a reading, m or rad.
+/// Returns further measurements of an axis that would separate two effects that cancel each other,
+/// ordered as by `plans_for`: their joint effect is compared with that of each alone. Empty for
+/// other parts. `value`: their linear parameters, SI; `s`: standard deviation of a reading, m or
+/// rad.
 std::vector<Plan> plans_for_pair(const Part& part, const std::vector<Term>& model,
                                  const std::vector<Term>& pair, const std::vector<double>& value,
                                  double s);

@@ -127,8 +127,10 @@ class Judge {
   }
 
  private:
-  /// Whether cells differ from the best explanation by more than their repeats scatter, apart from
-  /// what the passes of a side share, because places test that part.
+  /// Returns whether cells differ from the best explanation significantly, and by more than
+  /// `least_serious`, compared with the scatter of their repeats. What the passes of a side share
+  /// is not included, because places test that part. False if the floor has fewer than 8 degrees of
+  /// freedom.
   bool lacks_fit() const {
     if (!f_.of_best.floor || !(f_.of_best.floor->dof >= 8.0)) return false;
     const std::vector<double> weight = with_scatter(f_.weight, f_.noise);
@@ -165,7 +167,9 @@ class Judge {
                                std::accumulate(shared.begin(), shared.end(), Index{0}));
   }
 
-  /// Whether the residuals are smaller than readings with this scatter allow.
+  /// Returns whether the residuals of the best explanation are significantly smaller than the noise
+  /// floor allows. False if there is no floor, or if it is not above the last digit of the
+  /// readings.
   bool below_scatter() const {
     const Fit& fit = f_.of_best.fit;
     if (!f_.of_best.floor || fit.redundancy == 0 || f_.of_best.floor->s <= f_.noise.digit)
@@ -189,7 +193,9 @@ class Judge {
   }
 
   /// Returns the kind of random zero if the model with it, or with it in place of the first effect,
-  /// is a better explanation than the best set of effects; else `steady`.
+  /// is a better explanation than the best set of effects; else `steady`. Also `steady` if no
+  /// effect was found, if zeros of passes are already noise, or if the effects have less evidence
+  /// than `least_against_zero`.
   Noise::Zero unsteady_zero() const {
     if (out_.together.empty() || f_.noise.zero != Noise::Zero::steady) return Noise::Zero::steady;
     const Noise::Zero instead = better_zero(f_.of_model.fit.terms, f_.start);
@@ -219,7 +225,8 @@ class Judge {
     return std::clamp(share * evidence, 0.0, alias_evidence);
   }
 
-  /// Whether an effect of the best set is significant also with a random walk of the zero.
+  /// Returns whether the evidence for an effect of the best set exceeds `certain_evidence` also if
+  /// the zero is random (a random walk, or one zero of each run).
   bool walk_with(const std::string& name) const {
     std::vector<Term> terms = f_.of_model.fit.terms;
     const double without = f_.walk_with(terms).least();
@@ -233,8 +240,9 @@ class Judge {
     return without - f_.walk_with(terms).least() - price > certain_evidence;
   }
 
-  /// Whether a serious residual remains at the places of this effect: the effect may then be only
-  /// the most similar one in the catalogue.
+  /// Returns whether one of the places `serious` shares a factor with this effect, and has more
+  /// than `share` of the mean square of its contribution: the effect may then be only the most
+  /// similar one in the catalogue.
   bool in_doubt(const std::string& name, const std::vector<Place>& serious, double share) const {
     for (std::size_t t = 0; t < f_.of_best.fit.terms.size(); ++t) {
       if (f_.of_best.fit.terms[t].name() != name) continue;
@@ -357,7 +365,8 @@ class Judge {
   }
 
   /// Lists effects that are significant whatever causes the residuals: their evidence is very
-  /// large, and no residual of their size remains at their positions.
+  /// large, they have no alias and cancel no other effect, no residual of their size remains at
+  /// their places, and neither a single target or pass nor random zeros can explain them.
   void list_certain(const std::vector<Place>& serious, bool walks) {
     for (const std::string& name : out_.together) {
       const auto c = std::find_if(out_.candidates.begin(), out_.candidates.end(),
@@ -371,8 +380,8 @@ class Judge {
     }
   }
 
-  /// Whether the readings of one target contribute most of the evidence of an effect, which is then
-  /// a property of that target.
+  /// Returns whether the readings of one target contribute more than `most_of_one_target` of the
+  /// evidence of an effect, which is then a property of that target.
   bool of_one_target(const std::string& name) const {
     return share_of_one(name, f_.repeats.target, f_.repeats.targets) > most_of_one_target;
   }

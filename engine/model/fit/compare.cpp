@@ -69,9 +69,9 @@ std::vector<double> cross_validated(const Observations& o, const std::vector<Ter
     normal += share;
     right += right_share;
   }
-  // Smallest pivot of columns of unit length: if the other runs hardly determine a direction (a
-  // curve over the few targets of partial runs), their prediction is noise, amplified hundreds of
-  // times.
+  // Least ratio of the smallest to the largest pivot, for columns of unit length: if the other runs
+  // hardly determine a direction (a curve over the few targets of partial runs), their prediction
+  // is noise, amplified hundreds of times.
   constexpr double predicts = 1e-5;
   std::vector<double> out(o.size(), std::numeric_limits<double>::quiet_NaN());
   for (const auto& [run, rows] : runs) {
@@ -158,9 +158,10 @@ std::vector<Place> PlacesLeft::operator()(const std::vector<double>& residual,
 
 namespace {
 
-/// Returns the places of the residuals of a fit. If adjacent readings are correlated, p is the
-/// largest one over all correlations that the repeats allow, including none, because few readings
-/// determine the correlation poorly.
+/// Returns the places of the residuals of a fit. If adjacent readings are correlated and some place
+/// is significant, p is the largest one for three correlations: the estimate, none, and the
+/// estimate plus twice its standard uncertainty, because few readings determine the correlation
+/// poorly.
 std::vector<Place> places_left(const Part& part, const Repeats& repeats, const Fit& fit,
                                const Saturated& saturated, const std::vector<double>& weight) {
   const auto tested = [&](const Noise& noise) {

@@ -77,8 +77,8 @@ class PlacesLeft {
 std::vector<Place> seats_in(const Part& part, const Repeats& repeats, const Comparison& comparison);
 
 /// Returns the residual of each reading when its run is predicted from the others with the given
-/// shapes (cross-validation), m or rad. NaN for readings of a run that the others do not determine;
-/// empty with one run.
+/// shapes (cross-validation), m or rad. NaN for readings of a run that the others do not determine,
+/// or that is the only run of its line; empty if no line has two runs.
 std::vector<double> cross_validated(const Observations& o, const std::vector<Term>& terms,
                                     const std::vector<double>& weight);
 /// Returns the root of the weighted mean square of the finite residuals; nothing if no residual of

@@ -128,7 +128,7 @@ class SquaresOf {
     math::take_out(others_, left_);
   }
 
-  /// Returns the sum of squares; infinite if the term has no columns.
+  /// Returns the sum of squares; infinite if the columns of the term cannot be computed.
   double operator()(const Term& term) const {
     auto block = columns_of(o_, term, term.shape);
     if (!block) return std::numeric_limits<double>::infinity();
@@ -146,7 +146,8 @@ class SquaresOf {
   MatrixXd others_;
 };
 
-/// Optimizes a shape between the grid values adjacent to its best one.
+/// Optimizes a shape between the grid values adjacent to its present value; a shape that has its
+/// usual value is unchanged.
 void refine(const Observations& o, std::vector<Term>& terms, std::size_t t, std::size_t k,
             const Whitening& white, const VectorXd& y) {
   const std::vector<double> grid = terms[t].effect->shapes[k].grid(o, terms[t].axis);
@@ -215,7 +216,7 @@ Expected<VectorXd> shape_column(const Observations& o, const Term& term, std::si
                                 const VectorXd& linear) {
   const Effect::Shape& shape = term.effect->shapes[k];
   double size = std::max(std::fabs(term.shape[k]), 1e-12);
-  if (usual_of(term, k)) {  // may be at 0
+  if (usual_of(term, k)) {  // the value may be 0, so use the width of the grid
     const std::vector<double> grid = shape.grid(o, term.axis);
     if (grid.size() > 1) size = std::max(size, grid.back() - grid.front());
   }
@@ -231,8 +232,9 @@ Expected<VectorXd> shape_column(const Observations& o, const Term& term, std::si
   return VectorXd((*above - *below) * linear / (2.0 * step));
 }
 
-/// Searches the shapes that another measurement states, also between grid values, and keeps the
-/// found value if its gain of evidence exceeds the cost of a searched shape (workbench.h, price).
+/// Optimizes each shape whose value another measurement states between the adjacent grid values,
+/// and keeps the found value if its gain of evidence exceeds the cost of a searched shape
+/// (workbench.h, price).
 void free_stated(const Observations& o, std::vector<Term>& terms, const std::vector<char>& searched,
                  const std::vector<double>& weight, const Noise& noise) {
   const Whitening white(o, weight, Whitening::of_repeats(noise));
@@ -253,7 +255,8 @@ void free_stated(const Observations& o, std::vector<Term>& terms, const std::vec
   }
 }
 
-/// Improves shapes that were found on means of readings by two Gauss-Newton steps on all readings.
+/// Improves shapes that were found on means of readings by at most two Gauss-Newton steps on all
+/// readings; a step is kept only if it reduces the sum of squares.
 void step_shapes(const Observations& o, std::vector<Term>& terms, const std::vector<char>& searched,
                  const Whitening& white, const VectorXd& y) {
   const VectorXd weighted = white(y);

@@ -62,7 +62,8 @@ class Wrong {
     return count < fewest ? nan : std::sqrt(sum / count);
   }
 
-  /// Returns the error at a time `span` after the last known temperature, or before the first, K.
+  /// Returns the error at a time `span` (s) after the last known temperature, or before the first,
+  /// K; NaN if not known.
   double beyond(double span) const {
     double sum = 0.0, count = 0.0;
     for_stretches(span, 1, [&](std::size_t a, std::size_t b, double scale) {

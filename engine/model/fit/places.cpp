@@ -295,12 +295,13 @@ MatrixXd orthonormal(MatrixXd columns) {
 class Cells {
  public:
   Cells(const Repeats& r, const Whitening& white) : r_(r), root_(white.root()) {
-    constexpr std::size_t most = 400;  // above, the means of cells are used
+    // largest number of cells; above it, the means of the cells are used
+    constexpr std::size_t most = 400;
     if (white.independent() || r.cells > most) return;
     columns_ = white(dummies({r.cell.begin(), r.cell.end()}, r.cells));
     MatrixXd products = math::transposed_product(columns_, columns_);
     for (double& x : products.diagonal())
-      if (!(x > 0.0)) x = 1.0;  // all its readings are suspect
+      if (!(x > 0.0)) x = 1.0;  // all readings of this cell are suspect
     products_.compute(products);
   }
   void take_out(MatrixXd& columns) const {

@@ -21,7 +21,8 @@ struct Residuals {
   const std::optional<NoiseFloor>& floor;
 };
 
-/// Tests of all places that these readings can show, for one residual of a model or many.
+/// Tests of all places that these readings can show. They are prepared once and applied to one or
+/// more residual vectors of a model.
 class PlaceTests {
  public:
   /// `basis`: orthonormal columns of the model, as in Residuals.

@@ -72,8 +72,10 @@ void Workbench::fill_search(Block& block) const {
     block.searched += instance.free[k] != 0 && !is_usual(instance.term, block.shape, k);
 }
 
-/// Whether a set with this block would have nearly one free value per target; `of_position`: its
-/// number of other unknowns of position.
+/// Returns whether a set with this block would have nearly one free value per target, or the block
+/// is a curve outside of the model with about half as many columns as there are targets. False if
+/// the block varies within a target. `of_position`: number of other unknowns of position in the
+/// set.
 bool Workbench::follows_targets(const Block& block, Index of_position) const {
   if (!block.of_position) return false;
   const bool stated = block.effect < stated_;

@@ -31,7 +31,9 @@ class Workbench {
   };
   struct Instance {
     Term term;
-    std::vector<std::size_t> blocks;  ///< empty: the effect is not identifiable from the readings
+    /// indices of the blocks of this effect; empty: the effect is not identifiable from the
+    /// readings
+    std::vector<std::size_t> blocks;
     std::string error;
     bool reducible = false;  ///< whether combinations of its columns may be removed (`may_lose`)
     /// Indexed by a bit mask of shapes: number of shape combinations in which all shapes of the
@@ -42,10 +44,12 @@ class Workbench {
   /// Blocks in the order in which they were added, and the resulting residual.
   struct State {
     std::vector<std::size_t> blocks;
-    double squares = 0.0;    ///< weighted residual sum of squares
-    Index parameters = 0;    ///< number of linear parameters and searched shapes, without zeros
-    double price = 0.0;      ///< cost of parameters, shapes and names
-    double criterion = 0.0;  ///< n ln(squares/n) + price; smaller is better
+    double squares = 0.0;  ///< weighted residual sum of squares
+    Index parameters = 0;  ///< number of linear parameters and searched shapes, without zeros
+    double price = 0.0;    ///< cost of parameters, shapes and names
+    /// n ln(squares/n) + price, with a larger price for few readings; smaller is better; infinite
+    /// if some columns are dependent
+    double criterion = 0.0;
   };
 
   /// Columns by term and shape as the effect returned them, reused for other weights.
@@ -87,8 +91,9 @@ class Workbench {
   /// Returns the state with the best block of this effect added; the unchanged blocks if none can
   /// be added.
   State with(const State& state, const Gains& gains, std::size_t effect) const;
-  /// Does the same as `with`, but also tries to reduce the knots of a curve in `state`: the curve
-  /// adapts to the new effect, which otherwise could not use the targets that the curve follows.
+  /// Does the same as `with`, but on a single axis also tries to reduce the knots of a curve in
+  /// `state`: the curve adapts to the new effect, which otherwise could not use the targets that
+  /// the curve follows.
   State joined(const State& state, const Gains& gains, std::size_t effect) const;
   /// Searches each effect's shapes again with the others fixed, until nothing improves, at most
   /// four times. Returns the improved state.
@@ -99,7 +104,8 @@ class Workbench {
   State without(const State& state, std::size_t effect) const;
 
   /// Returns the best shapes of all effects together, searched one after the other until nothing
-  /// improves.
+  /// improves, at most four times. Error: the readings do not show an effect, or do not separate
+  /// the effects.
   Expected<std::vector<std::vector<double>>> best_shapes() const;
 
   /// Returns an n x q orthonormal basis of a state's columns (without the zeros).

@@ -287,7 +287,8 @@ class JointSearch {
     }
   }
 
-  /// Makes effects shared whose differences between campaigns also occur in flipped readings.
+  /// Assigns one shared value to each effect whose differences between campaigns are as large in
+  /// more than 1 % of the copies with flipped signs.
   void settle_differences() {
     for (std::size_t i = 0; i < choices_.size(); ++i) {
       if (choices_[i].holds == Holds::shared) continue;
@@ -389,7 +390,8 @@ class JointSearch {
     out.trials = chance_.trials;
   }
 
-  /// Returns the sum of squares of the cell means over all campaigns, for each column of `y`.
+  /// Returns, for each column of `y`, the sum of n times the squared mean over the cells of all
+  /// campaigns that have n >= 2 readings of weight above 0.
   VectorXd of_cells(const std::vector<MatrixXd>& y) const {
     VectorXd out = VectorXd::Zero(y.front().cols());
     for (std::size_t m = 0; m < y.size(); ++m) {

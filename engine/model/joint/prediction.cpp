@@ -30,6 +30,9 @@ Expected<Observations> joined(const Observations& seen, const Observations& unse
     axis.approach.insert(axis.approach.end(), more->approach.begin(), more->approach.end());
     axis.approach.resize(axis.position.size(), 0);
   }
+  for (const auto& axis : unseen.axes)
+    if (seen.axis(axis.axis) == nullptr)
+      return fail("axis " + axis.axis + " is not among what was measured in both campaigns");
   const auto first = static_cast<std::uint32_t>(seen.lines.size());
   if (out.line.empty()) out.line.assign(seen.size(), 0);
   for (std::size_t i = 0; i < unseen.size(); ++i) out.line.push_back(first + line_of(unseen, i));

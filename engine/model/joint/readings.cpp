@@ -97,7 +97,8 @@ class Reader {
         stretch_.low = std::min(stretch_.low, x), stretch_.high = std::max(stretch_.high, x);
   }
 
-  /// Lists the blocks of all effects, with the shapes of the member with the most readings.
+  /// Lists the blocks of all effects that no member has in its model, with the shapes of the member
+  /// with the most readings.
   void list_blocks() {
     std::map<std::string, std::pair<const Term*, const Member*>> all;
     std::vector<std::string> order;
@@ -157,8 +158,10 @@ class Reader {
     return out;
   }
 
-  /// Sums the squared differences of the means of successive passes of one side, without the means
-  /// of the targets; their expectation is 2 (offset^2 + s^2/n). A slow drift contributes little.
+  /// Sums, over successive passes of one side with at least three repeated readings each, half the
+  /// squared difference of their means in units of s^2, minus the share of the noise of single
+  /// readings, so that each has the variance of an offset as its expectation. The mean of its cell
+  /// is first subtracted from each reading. A slow drift contributes little.
   void sum_offsets(const Ground& ground, const std::vector<double>& y, double s) {
     const Repeats& r = ground.repeats;
     std::vector<double> cell(r.cells, 0.0), in_cell(r.cells, 0.0), mean(r.passes, 0.0),

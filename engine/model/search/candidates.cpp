@@ -16,9 +16,8 @@ namespace {
 
 using State = Workbench::State;
 
-/// An effect whose loss of evidence exceeds this is not tried with other shapes of the remaining
-/// effects.
-/// docs/dev/constants.md, M41.
+/// In space, an effect whose loss of evidence exceeds this is not tried with other shapes of the
+/// remaining effects. docs/dev/constants.md, M41.
 constexpr double hopeless = 100.0;
 
 double normal_below(double x) { return 0.5 * std::erfc(-x * std::numbers::sqrt2 / 2.0); }
@@ -171,7 +170,8 @@ class CandidateOf {
 
  private:
   /// Returns the effects that can replace a member of the best explanation with hardly any loss of
-  /// evidence.
+  /// evidence; for a curve also causes with nearly its form (`is_form_of`); and effects that would
+  /// be found with another suspect reading (`Finding::otherwise`).
   std::vector<std::string> aliases_of(std::size_t member) const {
     std::vector<std::string> names;
     const State rest = f_.bench->without(f_.best, member);

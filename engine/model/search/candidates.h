@@ -8,8 +8,9 @@
 namespace nonio::model {
 
 /// Returns every effect outside the model, with its evidence, its aliases and the smallest size
-/// that would be detected; most evidence first. `ground`: inputs of the comparison in which the
-/// candidates' RMS is computed.
+/// that would be detected; most evidence first. Effects of a library are omitted unless they are in
+/// the best explanation or could replace a member of it. `ground`: inputs of the comparison in
+/// which the candidates' RMS is computed.
 std::vector<Candidate> candidates_of(const Finding& finding, const Ground& ground);
 
 }  // namespace nonio::model

@@ -82,9 +82,11 @@ class Finder {
     return repeated.dof >= fewest ? std::sqrt(repeated.squares / repeated.dof) : 0.0;
   }
 
-  /// Whether a random walk of the zero explains the readings better than all effects that were
-  /// found. Within a pass it resembles a correlation of adjacent readings; in this case the
-  /// readings are treated as independent, so that the random walk remains visible.
+  /// Returns whether the model with a random zero (a random walk, or one of each run) explains the
+  /// readings better than all found effects with a correlation of adjacent readings. Within a pass
+  /// a random walk resembles such a correlation; in this case the readings are treated as
+  /// independent, so that the random walk remains visible. False if the repeats show no
+  /// correlation.
   bool walks_rather() {
     if (!(f_.noise.in_repeats > 0.0)) return false;
     Noise alone = f_.noise;
@@ -207,7 +209,8 @@ class Finder {
     return state;
   }
 
-  /// Adds the optimal shapes of a state, which are between grid values, to the grids.
+  /// Adds the optimal shapes of a state, which are between grid values, to the grids. Returns
+  /// whether a shape was added.
   bool add_refined(const State& state) {
     bool any = add_fitted(state, terms_of_state(state));
     any = add_moved(state) || any;
@@ -318,7 +321,8 @@ class Finder {
   }
 
   /// Determines the suspect readings again, from the residuals of the best explanation; returns
-  /// whether they changed.
+  /// whether they changed. If more than an eighth of the readings would be suspect, nothing is
+  /// changed.
   bool suspect_again() {
     const std::size_t n = f_.part.table.size();
     const auto fitted = fit_near(f_.part.table, terms_of_state(f_.best), flags(false), f_.weight);

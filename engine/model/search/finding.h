@@ -36,7 +36,8 @@ struct Finding {
   std::vector<Term> descriptions{};
   std::vector<Suspect> suspects{};
   std::vector<double> weight{};  ///< weight of each reading: 0 for suspects
-  Noise noise{};                 ///< noise estimated from the repeats
+  /// noise of the search: estimated from the repeats, with random zeros of passes if these scatter
+  Noise noise{};
   std::optional<Workbench> bench{};
   /// With few readings and no repeats: effects of explanations that are nearly as good if another
   /// reading, or none, is suspect.

@@ -26,7 +26,8 @@ std::set<std::size_t> effects_of(const Workbench& bench, const State& s) {
   return out;
 }
 
-/// Returns the best states with one more effect, best first, one for each set of effects.
+/// Returns at most `side_by_side` states that have one effect more than those of `level`: those
+/// with the smallest criterion, one for each set of effects, with their shapes searched again.
 std::vector<State> grown(const Workbench& bench, const std::vector<State>& level) {
   std::vector<State> next;
   std::set<std::set<std::size_t>> seen;

@@ -9,8 +9,8 @@ namespace nonio::model {
 
 /// Returns the best set of effects that contains those of `start`: several sets are grown in
 /// parallel, each step by the effect, with its shape, that reduces the criterion most; then effects
-/// are removed and exchanged until nothing improves. A plain forward selection would keep an early
-/// compromise.
+/// are removed and exchanged until nothing improves, at most 20 times. A plain forward selection
+/// would keep an early compromise.
 Workbench::State best_explanation(const Workbench& bench, const Workbench::State& start);
 
 /// Corrects p-values for a search in which noise alone can produce effects anywhere.

@@ -328,8 +328,8 @@ struct Kept {
   std::string profile, xmp, identifier;
 };
 
-/// Computes the additional data of a PDF that is to be archived. `contents`: the compressed pages,
-/// from which and the XMP packet the identifier is computed.
+/// Computes the additional data of a PDF that is to be archived. The identifier is computed from
+/// the XMP packet and `contents`, the compressed pages.
 Kept kept_of(HPDF_Doc doc, const NewFile& file, const std::vector<std::string>& contents,
              const Deflater& fast) {
   const char* producer = HPDF_GetInfoAttr(doc, HPDF_INFO_PRODUCER);

@@ -32,14 +32,14 @@ std::vector<std::filesystem::path>& hidden() {
 
 constexpr unsigned load_seconds = 10;
 
-/// Folder of the program's own plugins; empty if it is not known.
+/// Returns the folder of the program's own plugins; empty if it is not known.
 std::filesystem::path& own_folder() {
   static std::filesystem::path folder;
   return folder;
 }
 
-/// Message in shared memory that the child sets while it loads an untried plugin; not valid if
-/// there is no memory.
+/// Returns the message in shared memory that the child sets while it loads an untried plugin; not
+/// valid if there is no memory.
 SharedStatus& loading_untried() {
   static SharedStatus words;
   return words;
@@ -55,7 +55,8 @@ int end_of(pid_t child, const std::vector<pid_t>& children_before) {
   return status;
 }
 
-/// Ends this process with the exit status that a shell would report for its child.
+/// Ends this process as its child ended: with the same exit status, with 130 after SIGINT, or with
+/// 2 and a message after another signal.
 [[noreturn]] void end_as(int status) {
   if (WIFEXITED(status)) ::_exit(WEXITSTATUS(status));
   if (WTERMSIG(status) == SIGINT) ::_exit(130);

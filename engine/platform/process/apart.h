@@ -10,15 +10,16 @@ namespace nonio::process {
 /// nothing. The parent waits for the child and ends with its status.
 void step_aside();
 
-/// Writes all buffered output, because a child would inherit the buffers and write them a second
-/// time.
+/// Writes all buffered standard output, because a child would inherit the buffers and write them a
+/// second time.
 void flush_output();
 
 /// Whether this process is the child of `step_aside`, or a descendant of that child.
 bool is_apart();
 
 /// Whether a plugin must first be loaded in a trial process: it is not in the program's own folder,
-/// whose plugins were tested with it, or this process cannot be restarted.
+/// whose plugins were tested with it; or this process cannot be restarted; or a process has ended
+/// before while it loaded an untried plugin.
 bool must_be_tried(const std::filesystem::path& plugin);
 
 /// States that this process loads plugins that were not tried, during the lifetime of the object.

@@ -42,8 +42,8 @@ Expected<std::array<Handle, 2>> channel_pair(int type, const std::string& to_who
 bool write_text(int stream, std::string_view bytes);
 bool read_text(int stream, std::string& bytes);
 
-/// Sends a byte and up to four descriptors over any channel. Returns false if the other process has
-/// ended.
+/// Sends a byte and up to four descriptors over any channel. Returns false if there are more
+/// descriptors, or if the other process has ended.
 bool send_descriptors(int channel, char word, const std::vector<int>& descriptors);
 
 struct Received {

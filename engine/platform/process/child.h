@@ -14,8 +14,8 @@ namespace nonio::process {
 
 /// How a child process ended.
 struct ChildEnd {
-  bool well = false;  ///< the process exited with status 0
-  std::string words;  ///< reason if it did not: "signal 11 (Segmentation fault)"
+  bool well = false;  ///< whether the process exited with status 0
+  std::string words;  ///< why it did not, for example "signal 11 (Segmentation fault)"
   bool overdue = false;
 };
 
@@ -27,8 +27,8 @@ class Child {
  public:
   struct Settings {
     double memory_MB = 0.0;  ///< limit of private memory after the start; 0: no limit
-    /// The child prints nothing. A reader of the parent's output waits until every process has
-    /// closed it, also a child that outlives the parent.
+    /// Whether the child prints nothing. A reader of the parent's output waits until every process
+    /// has closed it, also a child that outlives the parent.
     bool silent = false;
   };
   /// A program to start in the child, and the descriptors of its standard streams; -1: /dev/null.
@@ -62,7 +62,7 @@ class Child {
   /// disk in the kernel is left behind after two seconds, because it ends only when the disk
   /// answers. Without a child, the result is `well`.
   ChildEnd end();
-  /// Waits up to `seconds` for the end of the child, then kills it (`overdue`).
+  /// Waits up to `seconds` for the end of the child, then kills it and sets `overdue`.
   ChildEnd wait(double seconds);
   /// Gives up ownership: the child continues until this process ends.
   void release() { pid_ = -1; }

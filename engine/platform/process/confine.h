@@ -38,7 +38,7 @@ std::string confine_visit();
 std::string confine_pure(void (*told)(const char* call));
 
 /// Makes these files unreadable, and also everything that is created later in the folders above
-/// them. Returns why the kernel refused, or an empty text.
+/// them; has no effect without Landlock. Returns why the kernel refused, or an empty text.
 std::string hide_files(const std::vector<std::filesystem::path>& secrets);
 
 /// Whether `confine_computing` is in effect, after which working folder and umask cannot change.
@@ -47,8 +47,8 @@ bool is_computing_confined();
 /// Closes all descriptors except 0, 1, 2 and `kept` (in ascending order).
 void close_others(const std::vector<int>& kept);
 
-/// Overwrites all environment variables except locale, time zone, terminal and folders, because a
-/// variable may contain a password.
+/// Overwrites all environment variables except those for locale, time zone, terminal, folders,
+/// search paths, tests and sanitizers, because a variable may contain a password.
 void forget_environment();
 
 }  // namespace nonio::process

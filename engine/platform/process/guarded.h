@@ -24,8 +24,8 @@ auto leaving_all_as_it_is(const std::string& who, const Call& call) -> decltype(
   return result;
 }
 
-/// Returns the result of `call`. Any exception of a plugin becomes an error with the plugin's name
-/// `who`; Nonio's own code does not throw on purpose.
+/// Returns the result of `call`. Any exception of a plugin becomes an error, and every error
+/// message begins with the plugin's name `who`; Nonio's own code does not throw on purpose.
 template <class Call>
 auto guarded(const std::string& who, const Call& call) -> decltype(call()) {
   return leaving_all_as_it_is(who, [&]() -> decltype(call()) {

@@ -262,8 +262,9 @@ void forbid_hostile(Filter& filter) {
     filter.add(SCMP_ACT_KILL_PROCESS, "ioctl", is_int(1, command));
 }
 
-/// Prints the filter of the process that loads plugins and creates the others: everything but
-/// hostile calls. It may create a process only as its sibling, as `PluginHost` does.
+/// Prints the filter of the process that loads plugins and creates the others. It forbids the calls
+/// in `hostile` and `of_verbs`, threads, limits of other processes, and memory to which no limit
+/// applies. The process may create another one only as its sibling, as `PluginHost` does.
 void print_loading() {
   Filter filter(SCMP_ACT_ALLOW);
   forbid_hostile(filter);

@@ -24,7 +24,8 @@ namespace nonio::process {
 struct SignsOfLife {
   std::atomic<std::uint64_t> beats;
   std::atomic<std::uint64_t> index;  ///< number of the task that the child works on
-  std::atomic<bool> reads;           ///< the child may be waiting for a disk; otherwise it computes
+  std::atomic<bool> reads;           ///< whether the child may be waiting for a disk; otherwise it
+                                     ///< computes
   std::array<char, 8192> place;      ///< path that the child is reading
 
   void beat() { ++beats; }

@@ -13,7 +13,8 @@ namespace nonio::storage {
 
 struct BackupSummary {
   std::uint64_t files = 0, bytes = 0;
-  /// entries that are neither file, folder nor link, and links that lead outside the folder
+  /// Names of entries whose content is not in the archive: entries that are neither file, folder
+  /// nor link, and links that lead outside the folder.
   std::vector<std::string> left_out;
 };
 

@@ -13,10 +13,10 @@ struct Character {
   std::size_t size = 0;
 };
 
-/// Decodes the first character of a text that is not empty.
+/// Decodes the first character of a text that is not empty. Its size is 0 if it is not valid UTF-8.
 Character first_of(std::string_view text);
-/// Whether the character is visible and harmless: not a control character, not invisible, no change
-/// of the direction of writing.
+/// Whether the character is visible and harmless: not a control character, not invisible, not of a
+/// private-use area, no change of the direction of writing.
 bool is_shown(std::uint32_t code);
 
 }  // namespace nonio::storage

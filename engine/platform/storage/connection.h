@@ -11,8 +11,8 @@
 /// The implementation of `Database`: one class for SQLite, one for PostgreSQL.
 namespace nonio::storage {
 
-/// All functions return an error text, "" for success. After an error only `rollback` may be
-/// called.
+/// All functions but `rollback` return an error text, "" for success. After an error only
+/// `rollback` may be called.
 class Connection {
  public:
   Connection() = default;

@@ -19,7 +19,8 @@ class Disk {
   Disk& operator=(const Disk&) = delete;
   ~Disk();
 
-  /// Flushes the file system. An error if the disk has lost a write since the last call.
+  /// Flushes the file system. An error if this fails, for example because the disk has lost a write
+  /// since the last call.
   Expected<void> flush() const;
   /// Number of failed flushes in all processes. Work that began at another number is not reliable,
   /// because it is not known which writes were lost.

@@ -59,8 +59,9 @@ class ReadFile {
   std::size_t released_ = 0;  ///< bytes at the front whose pages were released
 };
 
-/// Calls `take` with parts of a file of up to one megabyte. Unlike a mapping this is safe if
-/// another process truncates the file, so the main process reads in this way only.
+/// Calls `take` with the parts of a file, each of up to one megabyte; a file in a pack is one part.
+/// Unlike a mapping this is safe if another process truncates the file, so the main process reads
+/// in this way only.
 Expected<void> read_parts(const std::filesystem::path& path,
                           const std::function<void(std::string_view)>& take);
 /// Reads a whole file, also one in a pack (pack.h).

@@ -192,7 +192,8 @@ bool has_record(const fs::path& folder) {
 
 bool is_hashed(const fs::path& out) { return is_there_to_read(out / hashed_mark); }
 
-/// Calls `take` with each subfolder of a folder, which may be missing.
+/// Calls `take` with each subfolder of a folder, which may be missing. Sets `error` if the folder
+/// cannot be read.
 void each_folder_in(const fs::path& folder, std::error_code& error,
                     const std::function<void(const fs::path&)>& take) {
   std::error_code here;

@@ -76,7 +76,7 @@ bool is_pack_name(std::string_view name);
 inline constexpr const char* catalogue_name = "catalogue";
 Expected<void> check_catalogue(const std::filesystem::path& out);
 
-/// Removes packs that contain no campaign, and incomplete copies.
+/// Removes packs to which the catalogue assigns no campaign, and incomplete copies.
 Expected<void> sweep_packs(const std::filesystem::path& out);
 
 /// Size of a results file, and when the file, or the pack that contains it, was written.

@@ -22,7 +22,7 @@ std::string lower(std::string text) {
 }
 
 /// Returns the first `most` characters, counted in UTF-16 as spreadsheets do, with those that a
-/// sheet name must not contain replaced by '_'.
+/// sheet name must not contain replaced by '_'. Bytes that are not UTF-8 are left out.
 std::string plain_name(std::string_view name, std::size_t most) {
   std::string out;
   for (std::size_t count = 0; !name.empty();) {

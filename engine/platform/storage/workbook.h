@@ -12,8 +12,8 @@
 /// A spreadsheet as a value, and its conversion to XLSX (ECMA-376).
 namespace nonio::storage {
 
-/// A date YYYY-MM-DD; written as text if it is not a day that spreadsheets can represent (from 1900
-/// on).
+/// A date YYYY-MM-DD; written as text if it is not a day that spreadsheets represent alike (from
+/// 1900-03-01 on).
 struct Day {
   std::string text;
 };
@@ -35,7 +35,7 @@ struct Chart {
 };
 
 struct Sheet {
-  /// `xlsx_bytes` changes it to a name that spreadsheets accept; see `sheet_name`
+  /// Name of the sheet; it must be one that spreadsheets accept, as `sheet_name` makes it.
   std::string name;
   std::vector<std::vector<Cell>> rows{};
   std::vector<std::size_t> headings{};  ///< numbers of the rows in bold, from 0

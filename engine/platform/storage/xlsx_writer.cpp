@@ -94,7 +94,8 @@ void write_cell(lxw_worksheet* sheet, lxw_row_t row, lxw_col_t column, const Cel
   }
 }
 
-/// Sets the width of each column to its longest text, within limits.
+/// Sets the width of each column to its longest text, but at least 9 and at most 60 characters;
+/// cells that are not text count as 13 characters.
 void set_widths(lxw_worksheet* sheet, const Sheet& rows, First& first) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows.rows)

@@ -26,7 +26,8 @@ std::optional<std::int64_t> quickly_rounded(double size, int places) {
   return rest > 0.5 ? whole + 1 : whole;
 }
 
-// Rounds a size >= 0 to 12 significant digits; nothing if `quickly_rounded` gives nothing.
+// Rounds a size from 1e-11 to 1e12 to 12 significant digits; nothing for other sizes, or if
+// `quickly_rounded` gives nothing.
 std::optional<Decimal> quick_decimal(double size) {
   if (!(size >= 1e-11 && size < 1e12)) return std::nullopt;
   int places = 11;

@@ -23,10 +23,10 @@ struct Der {
   static std::optional<Der> take(std::string_view& rest);
   /// Does the same as `take(rest)` if the element has this tag; otherwise returns none.
   static std::optional<Der> take(std::string_view& rest, std::uint8_t tag);
-  /// Whether the whole text consists of DER elements, down to the innermost ones. Sequences, sets
-  /// and constructed elements of other classes must consist of elements, and every other universal
-  /// type must be primitive. This is stricter than OpenSSL, which accepts other encodings and
-  /// normalises them before it checks a signature.
+  /// Whether the whole text consists of DER elements, down to the innermost ones, with at most 41
+  /// levels. Sequences, sets and constructed elements of other classes must consist of elements,
+  /// and every other universal type must be primitive. This is stricter than OpenSSL, which accepts
+  /// other encodings and normalises them before it checks a signature.
   static bool sound(std::string_view text, int depth = 0);
   /// Returns the whole text as one element of this tag; none if it is not.
   static std::optional<Der> only(std::string_view text, std::uint8_t tag);

@@ -6,7 +6,7 @@
 
 namespace nonio::sign {
 
-/// A key with its certificate and the chain up to the root.
+/// A key with its certificate and the chain towards the root, without the root itself.
 struct Key::Impl {
   PrivateKeyPtr key;
   CertificatePtr certificate;

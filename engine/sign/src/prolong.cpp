@@ -16,7 +16,7 @@ namespace nonio::sign {
 
 namespace {
 
-/// A chain of certificates, and the time when its first certificate was used.
+/// A chain of certificates, and the times and the role for which its revocation is checked.
 struct Used {
   std::vector<CertificatePtr> chain;
   Revocation revocation;
@@ -28,7 +28,7 @@ std::string text_of_uri(const GENERAL_NAME* name) {
   return url.starts_with("http://") ? url : "";
 }
 
-/// Returns the addresses of OCSP responders (RFC 5280, 4.2.2.1).
+/// Returns the addresses of OCSP responders (RFC 5280, 4.2.2.1) that begin with http://.
 std::vector<std::string> responders_of(X509* certificate) {
   std::vector<std::string> out;
   const std::unique_ptr<AUTHORITY_INFO_ACCESS, Freed<AUTHORITY_INFO_ACCESS_free>> all(
@@ -42,7 +42,7 @@ std::vector<std::string> responders_of(X509* certificate) {
   return out;
 }
 
-/// Returns the addresses of revocation lists (RFC 5280, 4.2.1.13).
+/// Returns the addresses of revocation lists (RFC 5280, 4.2.1.13) that begin with http://.
 std::vector<std::string> places_of_lists(X509* certificate) {
   std::vector<std::string> out;
   const std::unique_ptr<CRL_DIST_POINTS, Freed<CRL_DIST_POINTS_free>> all(

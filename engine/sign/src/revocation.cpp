@@ -63,7 +63,8 @@ Expected<void> check_list(const X509_CRL* list, X509* issuer, Time now) {
   return {};
 }
 
-/// Returns the time from which the certificate counts as revoked.
+/// Returns the time from which the certificate counts as revoked: the date of its revocation, or
+/// its invalidity date if that is earlier.
 Time revoked_from(const X509_REVOKED* entry) {
   const Time when = time_of(X509_REVOKED_get0_revocationDate(entry));
   const std::unique_ptr<ASN1_GENERALIZEDTIME, Freed<ASN1_GENERALIZEDTIME_free>> invalid(
@@ -112,7 +113,7 @@ Said said_by(X509_CRL* list, X509* one) {
 
 /// Returns an error unless the answer is signed by the issuer or a responder that it has authorised
 /// (RFC 6960, 4.2.2.2). A responder whose own certificate would need a revocation check is not
-/// accepted.
+/// accepted, nor an answer with certificates other than the responder's.
 Expected<void> check_responder(OCSP_BASICRESP* answer, X509* issuer) {
   const Borrowed candidates(sk_X509_new_null());
   sk_X509_push(candidates.get(), issuer);

@@ -31,8 +31,8 @@ struct Revocation {
   Time at;   ///< time at which the certificates were used
   Time now;  ///< time of the check, at which given lists must be current
   Of of;
-  /// Time at which signatures or stamps made with them are proved to have existed: a later
-  /// revocation has no effect.
+  /// Time at which signatures or time stamps made with the certificates are proved to have existed:
+  /// a later revocation has no effect.
   Time until = std::numeric_limits<Time>::max();
 };
 /// Largest accepted difference between two clocks, s.

@@ -7,7 +7,7 @@
 namespace nonio::sign {
 
 /// Requests a time-stamp token (RFC 3161) for this SHA-256 from the configured server, and checks
-/// it as `verify` will.
+/// it as `verify` will. A server that did not answer is not asked again if `stamping.away` is set.
 Expected<std::string> ask_for_time_stamp(const TimeStamping& stamping, std::string_view imprint,
                                          Time now);
 

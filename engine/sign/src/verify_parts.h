@@ -24,14 +24,16 @@ class Report {
   void add(const char* id, const Expected<void>& result, const std::string& well);
   void skip(const char* id, const std::string& why, bool essential = true);
   void check_signer(X509* certificate, const Verifier& verifier);
-  /// Checks a time stamp over `stamped` and sets `Verified::at` to its time. `said`: the signer's
-  /// own time; `existed`: when the whole file is proved to have existed, 0 if nothing proves it.
-  /// Returns the chain of the stamp.
+  /// Checks a time stamp over `stamped` and sets `Verified::at` to its time; without a time stamp,
+  /// to `existed` if that is not 0. `said`: the signer's own time; `existed`: when the whole file
+  /// is proved to have existed, 0 if nothing proves it. Returns the chain of the stamp; empty if
+  /// there is no stamp or it is not valid.
   std::vector<CertificatePtr> check_stamp(const char* id, std::string_view token,
                                           std::string_view stamped, const std::string& said,
                                           const Trusted& known, const Verifier& verifier,
                                           Time existed);
-  /// Checks the signer's chain at `Verified::at` and returns it.
+  /// Checks the use, the chain and the revocation of the signer's certificate at `Verified::at`.
+  /// Returns the chain; empty if it does not lead to a trusted root.
   std::vector<CertificatePtr> check_chain(X509* certificate,
                                           const std::vector<CertificatePtr>& others,
                                           const Trusted& known, const Verifier& verifier);

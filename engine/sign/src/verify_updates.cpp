@@ -40,7 +40,7 @@ class FileDigest {
   std::size_t done_ = 0;
 };
 
-/// Adds the statements of a store; they are covered by the next stamp.
+/// Adds the statements and certificates of a store; the statements are covered by the next stamp.
 Expected<void> take_store(const pdf::Store& store, Added& added) {
   const auto take = [&](Expected<Statement> statement) -> Expected<void> {
     if (!statement) return fail(statement.error());

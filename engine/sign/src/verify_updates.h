@@ -24,8 +24,9 @@ struct Added {
 Expected<Added> read_updates(std::string_view bytes, const std::vector<std::size_t>& ends,
                              pdf::Updater& updater);
 
-/// Checks the stamps, the newest first; the time of each stamp proves that the older ones existed
-/// then. Adds the statements to `known`, each with the time at which it is proved to have existed.
+/// Checks the stamps, the newest first, and returns them with the oldest first. The time of each
+/// stamp proves that the older ones existed then. Adds the statements to `known`, each with the
+/// time at which it is proved to have existed.
 Expected<std::vector<Stamp>> check_document_stamps(Added& added, Trusted& known, Time now);
 
 /// Checks that every statement and every certificate is needed for one of the chains, and that none

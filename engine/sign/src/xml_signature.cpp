@@ -74,7 +74,7 @@ Expected<void> check_nodes(const xmlNode* node) {
   return {};
 }
 
-/// Returns the document in Canonical XML 1.0, without comments.
+/// Returns the document in Canonical XML 1.0, without comments; an empty text if this fails.
 std::string canonical(xmlDoc* document) {
   xmlOutputBuffer* buffer = xmlAllocOutputBuffer(nullptr);
   std::string out;
@@ -270,7 +270,8 @@ Expected<void> ask_xmlsec(xmlDoc* document, X509* certificate) {
   return {};
 }
 
-/// Checks that the document, parsed as XML, is byte by byte what was signed.
+/// Checks that the document, parsed as XML, is byte by byte what was signed, has one signature
+/// only, and is accepted by xmlsec too.
 Expected<void> check_form(std::string_view bytes, const Parts& parts, X509* certificate) {
   if (parts.before.find(signature_namespace) != std::string_view::npos)
     return fail("has more than one signature");

@@ -45,7 +45,8 @@ std::string from_base64(std::string_view text) {
   return out;
 }
 
-/// Returns an element; empty elements have an end tag, as the canonical form requires.
+/// Returns an element followed by a line feed; empty elements have an end tag, as the canonical
+/// form requires.
 std::string element(std::string_view name, std::string_view attributes, std::string_view content) {
   std::string out = "<";
   out += name;
@@ -73,7 +74,7 @@ std::string without_line_end(std::string text) {
   return text;
 }
 
-/// Returns SignedInfo. `alone`: as a separate document, with the namespaces that its parents
+/// Returns SignedInfo. If `alone`, it is a separate document with the namespaces that its parents
 /// declare.
 std::string info(const XmlSignature& s, bool alone) {
   const std::string content = element(

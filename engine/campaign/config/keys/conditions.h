@@ -3,7 +3,7 @@
 
 #include "campaign/config/keys/shared.h"
 
-/// Declares [instrument] and [environment] of campaign.toml.
+/// Declares [instrument], [[sensor]], [[square]] and [environment] of campaign.toml.
 namespace nonio::config::declared {
 
 inline constexpr Key instrument_keys[] = {

@@ -17,7 +17,7 @@ namespace {
 struct Bounds {
   double slope = 0.02;   ///< largest slope of the deviation over the travel, m/m or rad/rad
   double share = 0.002;  ///< largest range as a share of the travel, for ranges above `size`
-  double size, most;     ///< ranges of the deviations; no range above `most` is plausible, m or rad
+  double size, most;     ///< least range that `share` limits; largest plausible range; m or rad
   double small_share = 0.05;  ///< largest share of a short travel, for ranges above `small_size`
   double small_size;          ///< range that is plausible on any short travel, m or rad
   double scatter;             ///< largest standard deviation of repeated readings, m or rad

@@ -39,8 +39,9 @@ void note_shared(const Twins& twins, Inputs& inputs);
 std::vector<Finding> implausible_campaign(const config::Manifest& manifest,
                                           const std::string& today);
 
-/// Reports a pitch in inches under a key in mm: it is not a usual pitch, but 25.4 times its value
-/// is one, or equals the pitch of another axis of the machine.
+/// Reports a pitch in inches under a key in mm: it is below 2 mm, and 25.4 times its value is
+/// either the pitch of another axis of the machine, or a usual pitch although the value itself has
+/// more than two significant digits.
 void implausible_pitch(const Campaign& campaign, std::vector<Finding>& out);
 
 /// Reports readings whose period shows that the pitch of the axis is stated in inches.

@@ -34,7 +34,7 @@ void implausible_air(const Observations& o, std::vector<Finding>& out) {
     const char* name;
     const std::vector<double>& values;
     Quantity mean, range;
-    double most;  ///< largest plausible range within one measurement
+    double most;  ///< largest plausible range within one measurement, in the unit of the column
   };
   for (const Column& c :
        {Column{"material_c", o.material, Quantity::temperature, Quantity::temperature_difference,
@@ -63,7 +63,8 @@ void implausible_air(const Observations& o, std::vector<Finding>& out) {
   }
 }
 
-/// Reports times that contradict the distances moved or the order of the rows.
+/// Reports times that contradict the stated dwell or feed, the distances moved, or the order of the
+/// rows.
 void implausible_times(const Measurement& m, const std::vector<Stroke>& strokes,
                        const Observations& o, std::vector<Finding>& out) {
   constexpr double slowest = 3600.0;  // longest plausible time for one reading, s

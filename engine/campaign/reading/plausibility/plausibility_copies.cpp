@@ -101,7 +101,8 @@ class Copies {
   }
 
   /// Returns the standard deviation of a reading from the differences between pairs of passes, as
-  /// the 40 % quantile over all pairs, which neither a misreading nor drift increases.
+  /// the 40 % quantile over all pairs, which neither a misreading nor drift increases. It is not
+  /// larger than `scatter_`, and equals it with fewer than three pairs.
   double scatter_of_pairs() const {
     // converts the median of a difference to the standard deviation of a reading
     constexpr double sigma = 1.4826 / 1.4142;
@@ -256,9 +257,9 @@ Cells cells_by_run(const std::vector<Stroke>& strokes) {
 }
 
 /// Returns the number of readings that both measurements have at the same run, direction and
-/// target; none if chance explains it. The probability that two readings are equal is estimated, so
-/// that digits coarser than the machine's scatter give no finding. Zeros are ignored, because
-/// instruments are zeroed at a target.
+/// target; none if they are too few or chance explains them. The probability that two readings are
+/// equal is estimated, so that digits coarser than the machine's scatter give no finding. Zeros are
+/// ignored, because instruments are zeroed at a target.
 std::optional<double> shared_readings(const Cells& one, const Cells& other) {
   constexpr double chance = 1e-7, of_all = 0.15;
   constexpr std::size_t fewest = 8, fewest_values = 6;

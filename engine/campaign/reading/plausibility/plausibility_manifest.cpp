@@ -11,8 +11,8 @@ namespace {
 
 constexpr double micrometre = 1e-6, arc_second = 1.0 / arcsec_per_rad;
 
-/// A stated value with the usual range of such values. A value of 0 is also regarded as stated.
-/// Confidence of the bounds: inferred; see docs/dev/wrong-inputs.md.
+/// A stated value with the usual range of such values. A value of 0 is never reported. Confidence
+/// of the bounds: inferred; see docs/dev/wrong-inputs.md.
 struct Statement {
   std::string key;
   std::optional<double> value;
@@ -110,7 +110,8 @@ std::vector<Statement> statements(const Campaign& c) {
   return all;
 }
 
-/// Reports positions of axes at rest, and ends of lines, that are outside of the machine's travel.
+/// Reports positions of linear axes at rest, and ends of lines, that are outside of the machine's
+/// travel.
 void implausible_places(const Campaign& c, std::vector<Finding>& out) {
   for (const Measurement& m : c.measurements)
     for (const auto* places : {&m.at, &m.from, &m.to})

@@ -30,7 +30,7 @@ struct Stroke {
 struct Passes {
   std::vector<Stroke> strokes;
   double step =
-      0.0;  ///< smallest difference between two readings that are not equal; 0 if all are equal
+      0.0;  ///< least difference of unequal readings, or their last decimal if finer; 0: all equal
 };
 
 /// Returns the strokes of a measurement; none if it has no axis.
@@ -45,12 +45,14 @@ void take_line_out(const std::vector<double>& at, std::vector<double>& values);
 /// Reports runs or targets of which one part seems to be from another machine than the rest.
 void implausible_halves(const Passes& passes, bool angular, std::vector<Finding>& out);
 
-/// Reports a value that marks a missing reading, a reading far from the others, a pass of means,
-/// and exchanged targets.
+/// Reports a value that marks a missing reading, a reading far from the others, a pass that equals
+/// the mean of the others, and exchanged targets.
 void implausible_values(const Passes& passes, const Observations& o, std::vector<Finding>& out);
 
-/// Reports passes that are copies, and directions that are swapped or contradict the order of the
-/// rows.
+/// Reports passes that are copies. With `with_directions`, it also reports, in a measurement of one
+/// line, directions that are swapped, turned or contradict the order of the rows, a pass whose
+/// deviations have another order of magnitude, and what `implausible_values` and
+/// `implausible_halves` report.
 void implausible_passes(const Passes& passes, const Observations& o, bool with_directions,
                         std::vector<Finding>& out);
 
@@ -65,8 +67,8 @@ void shifted_rows(const Passes& passes, Quantity deviation, std::vector<Finding>
 /// Reports passes in which more readings are equal than chance allows.
 void implausible_copies(const Passes& passes, const Observations& o, std::vector<Finding>& out);
 
-/// Reports passes that an earlier measurement of the campaign contains too. `passes` contains the
-/// strokes of each measurement.
+/// Reports passes, or numerous readings at the same places, that an earlier measurement of the
+/// campaign contains too. `passes` contains the strokes of each measurement.
 std::vector<Finding> passes_of_another_measurement(const Campaign& campaign,
                                                    const std::vector<Observations>& all,
                                                    const std::vector<Passes>& passes);

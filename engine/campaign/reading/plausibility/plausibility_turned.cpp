@@ -8,8 +8,8 @@
 //   a direction   u is half of the reversal, v the mean of both directions, both without the
 //                 shapes that elastic wind-up of a drive gives the reversal. In a correct file v
 //                 contains the pitch error. A wrong sign exchanges u and v; reverse order
-//                 exchanges their odd parts. So u (its odd part) must exceed the scatter and three
-//                 times v, whichever of the shapes is subtracted.
+//                 exchanges their odd parts. So u must exceed the scatter and three times v (its
+//                 odd part 2.2 times that of v), whichever of the shapes is subtracted.
 // If only these shapes show it, wind-up may be the cause: then the finding is information.
 #include <algorithm>
 #include <cmath>

@@ -90,8 +90,8 @@ struct Group {
   }
 };
 
-/// Factor for limits that running sums are compared with, because they differ from a direct
-/// computation by up to 1e-6. If they indicate a finding, it is computed directly.
+/// Factor that lowers limits for running sums, because these differ from a direct computation by up
+/// to 1e-6 of their value. A finding is computed again directly.
 constexpr double nearly = 1.0 - 1e-6;
 
 /// Returns the sums of squares of the first k curves about their mean, for k = 0, 1, 2, ...

@@ -12,18 +12,22 @@
 /// Comparison of a model with the measurements: how well it fits, and where it does not.
 namespace nonio::model {
 
-/// Standard deviation of repeated readings of one target in one direction, after the terms of a
-/// whole pass (zero, slope and curvature) are subtracted; no model of the catalogue is used. At
-/// least digit/sqrt(12), the scatter that a coarse display can hide.
+/// Standard deviation of repeated readings of one target in one direction: that of the residuals of
+/// the fit, after the mean of each target and direction and the terms of a whole pass (zero, slope
+/// and curvature) are subtracted. At least digit/sqrt(12), the scatter that a coarse display can
+/// hide. For a course it is estimated from the second differences of the residuals.
 struct NoiseFloor {
-  double s = 0.0;    ///< standard deviation, m or rad
-  double u = 0.0;    ///< standard uncertainty of s, s / sqrt(2 dof)
+  double s = 0.0;  ///< standard deviation, m or rad
+  /// standard uncertainty of s: s / sqrt(2 dof), combined with the contribution of an uncertain
+  /// correlation of adjacent readings
+  double u = 0.0;
   double dof = 0.0;  ///< degrees of freedom
 };
 
-/// F-test of the model against the cell means; absent without repeats. e are the weighted residuals
-/// of a fit of redundancy dof1 + r, r is the number of degrees of freedom of the repeated readings,
-/// s is their standard deviation, and dof2 is the number of degrees of freedom of s.
+/// F-test of the model against the cell means; absent if the repeats have fewer than 3 degrees of
+/// freedom, or if dof1 < 1. e are the weighted residuals of a fit of redundancy dof1 + r, r is the
+/// number of degrees of freedom of the repeated readings, s is their standard deviation, and dof2
+/// is the number of degrees of freedom of s.
 ///
 ///     F = (sum e^2 - r s^2)/(dof1 s^2)      F >= 0
 struct LackOfFit {
@@ -58,14 +62,19 @@ std::string to_text(const Where& where);
 /// A structure that remains in the residuals, by the factor with which it varies.
 struct Place {
   Where where;
-  /// share of the residual sum of squares, minus the share expected from noise
+  /// share of the residual sum of squares; for `Comparison::places` minus the share expected from
+  /// noise
   double share = 0.0;
-  double p = 1.0;    ///< F-test, corrected for the number of places tested
+  /// p-value of an F-test, or of a t-test of one target or run if it is smaller; corrected for the
+  /// number of places tested
+  double p = 1.0;
   double rms = 0.0;  ///< rms of this structure, m or rad
   /// The position, if it occurs mainly at one: a target (m or rad), a run, an instant (s).
   std::optional<double> at{};
   Quantity at_quantity = Quantity::number;
-  std::string line{};     ///< in space: name of the line along which the position is counted
+  /// in space: name of the line along which the position is counted; for the factor `channel`: name
+  /// of the channel
+  std::string line{};
   bool together = false;  ///< for two factors: whether `share` includes the effect of each factor
                           ///< alone
 };
@@ -75,17 +84,21 @@ struct Place {
 struct Suspect {
   std::size_t row = 0;  ///< row in the part's table
   double residual = 0.0;
-  double t = 0.0;  ///< studentised residual
+  double t = 0.0;  ///< residual divided by its standard deviation (studentised)
   /// smallest error of this reading that would be detected, m or rad
   double minimal_detectable = 0.0;
 };
 
 struct Comparison {
   Fit fit;
-  double largest = 0.0;  ///< residual with the largest absolute value, with its sign
+  /// residual with the largest absolute value, with its sign, m or rad; suspect readings excluded
+  double largest = 0.0;
   std::size_t largest_row = 0;
-  std::optional<double> cv_rms{};  ///< RMS of cross-validation over runs; absent with one run
-  /// residual of each reading when its run is predicted from the others
+  /// RMS of cross-validation over runs or, for a course, blocks of time, m or rad; absent if no run
+  /// could be predicted
+  std::optional<double> cv_rms{};
+  /// residual of each reading when its run is predicted from the others, m or rad; NaN if they do
+  /// not determine it; empty with one run and for a course
   std::vector<double> cv_residual{};
   std::optional<NoiseFloor> floor{};
   std::optional<LackOfFit> lack_of_fit{};
@@ -118,11 +131,13 @@ class Groundwork {
   std::unique_ptr<const Found> found_;
 };
 
-/// Called when the fit of a long table is complete, except for its places.
+/// Function that `compare` calls for a long table when the fit is complete, before places are
+/// tested.
 using Fitted = std::function<void(const Comparison&)>;
 
-/// Fits a model and compares it with the readings. Errors are those of `fit`: parameters that the
-/// readings do not separate. `known`: the groundwork of this part, if it already exists.
+/// Fits a model and compares it with the readings. Error: there are no readings, or `fit` fails,
+/// for example because the readings do not separate some parameters. `known`: the groundwork of
+/// this part, if it already exists. `fitted`: called for a long table only.
 Expected<Comparison> compare(const Part& part, const std::vector<Term>& model,
                              const Groundwork* known = nullptr, const Fitted& fitted = {});
 

@@ -23,10 +23,11 @@ inline constexpr double most_per_kelvin = 50e-6;
 
 struct Candidate {
   Term term;            ///< the effect with the shapes found
-  bool visible = true;  ///< false: not identifiable from these readings
-  /// reason if not visible: "aliased" with the model or the targets; "no-temperature", ...
+  bool visible = true;  ///< whether the effect is identifiable from these readings
+  /// reason if not visible: "not-shown" by these readings, "aliased" with the model or the targets,
+  /// or the id that the effect states, such as "no-temperature"
   std::string why;
-  double rms = 0.0;  ///< rms of the residuals with it added to the model
+  double rms = 0.0;  ///< rms of the residuals with it added to the model, m or rad
   std::optional<double> cv_rms{};
   double p = 1.0;  ///< probability that noise alone gives such a candidate anywhere in this search
   /// 2 ln of the evidence for it; <= 0: none. Candidates are ranked by it. If there is evidence
@@ -39,7 +40,8 @@ struct Candidate {
   double within = 0.0;
   std::vector<Parameter> parameters;
   std::vector<std::string> aliases;  ///< effects that these readings do not separate from it
-  /// RMS of the smallest effect that would be detected with probability 0.9, m or rad.
+  /// RMS of the smallest effect that would be detected with probability 0.9, m or rad; NaN for a
+  /// course.
   double minimal_detectable = 0.0;
   /// Mean ratio of found to true size for an effect near the limit of detection, which is found
   /// only if noise enlarges it. 1 if there is no such bias.
@@ -51,7 +53,8 @@ struct Candidate {
 };
 
 /// Returns effects that concern a part but are not identifiable from its readings, as candidates
-/// that are not visible, with the reason.
+/// that are not visible, with the reason. Effects that give no reason, nuisances and descriptions
+/// are omitted.
 std::vector<Candidate> not_applying(const Part& part, const std::vector<Effect>& effects);
 
 /// Returns the rows of the table whose temperature is interpolated in time.
@@ -87,8 +90,10 @@ struct Foresight {
 struct Verdict {
   enum class Kind { missing, nothing, unknown, unrepeatable };
   Kind kind = Kind::nothing;
-  std::string effect;           ///< for `missing`: the missing effect
-  double false_alarms = 0.0;    ///< share of simulated noise samples whose verdict is not `nothing`
+  std::string effect;  ///< for `missing`: the missing effect
+  /// share of simulated noise samples whose verdict is not `nothing`; for a course the significance
+  /// level of the search
+  double false_alarms = 0.0;
   std::size_t trials = 0;       ///< number of simulated noise samples
   double suspects_share = 0.0;  ///< share of the readings that are suspect
   /// For `unknown`: the residuals are smaller than the scatter of repeated readings allows.
@@ -116,7 +121,7 @@ struct Statement {
   What what = What::drift;
   /// total drift or mean reversal, and its standard uncertainty, m or rad
   double value = 0.0, u = 0.0;
-  double low = 0.0, high = 0.0;  ///< smallest and largest reversal of a target
+  double low = 0.0, high = 0.0;  ///< smallest and largest reversal of a target, m or rad
   /// p-value; for reversals that of the least significant target, corrected for the number of
   /// targets
   double p = 1.0;
@@ -131,7 +136,7 @@ struct Sensors {
   };
   std::size_t recorded = 0;  ///< number of channels in the file
   std::vector<One> used;     ///< channels used, the most needed first
-  /// smallest set of channels with which the RMS grows by less than a tenth
+  /// smallest set of channels with which the RMS grows by at most a tenth
   std::vector<std::string> smallest;
   /// RMS of cross-validation with all channels, and with the smallest set, m
   double rms = 0.0, rms_smallest = 0.0;
@@ -139,8 +144,8 @@ struct Sensors {
   /// s.
   std::string unseen{};
   double unseen_tau = 0.0;
-  /// The gain with the largest relative uncertainty: its effect, u/|gain|, the duration of this
-  /// test, and the duration of an equally varied test that would reduce it to a tenth, s.
+  /// The gain with the largest relative uncertainty u/|gain|: its effect, u/|gain|, the duration of
+  /// this test, and the duration of an equally varied test that would reduce u/|gain| to 0.1, s.
   std::string weakest{};
   double relative_u = 0.0, measured = 0.0, wanted = 0.0;
 };
@@ -150,16 +155,20 @@ struct Explanation {
   std::vector<Candidate> candidates;  ///< effects that can be added to the model, largest evidence
                                       ///< first
   std::vector<std::string> together;  ///< effects that the best explanation adds to the model
-  bool explains_all = false;  ///< the best explanation leaves no significant structure in any place
-  double best_rms = 0.0;      ///< rms of the residuals of the best explanation, m or rad
-  /// Effects of `together` that are significant whatever causes the residuals; most evidence first.
+  /// for the verdict `missing`: whether the best explanation leaves no significant structure and no
+  /// lack of fit; else, and for a course, false
+  bool explains_all = false;
+  double best_rms = 0.0;  ///< rms of the residuals of the best explanation, m or rad
+  /// Effects that are significant whatever causes the residuals: those of `together`, and then, if
+  /// the verdict is `unknown`, those that were found with descriptions in the model.
   std::vector<std::string> certain;
   /// Pairs of effects of `together` that cancel each other, so that neither is demonstrated.
   std::vector<std::pair<std::string, std::string>> cancelling;
   /// Position on the axis, m, of the fixed point of a single growth that is equivalent to the
   /// growth and drift in `together`.
   std::optional<double> one_growth{};
-  /// if the verdict is `unknown`: rms with the significant effects in the model, m or rad
+  /// if the verdict is `unknown`: rms of the residuals with the significant effects in the model;
+  /// for a course the same as `best_rms`; m or rad
   double significant_rms = 0.0;
   /// if the verdict is `unknown`: descriptions of the residuals that the significant effects leave
   std::vector<Description> descriptions;
@@ -174,7 +183,8 @@ struct Explanation {
   std::vector<Plan> plans;
   /// owner of effects that are not in the catalogue but are referenced by terms
   std::shared_ptr<const void> keeps{};
-  /// for a course, if effects of channels are in the best explanation
+  /// contribution of the recorded channels, for a course with effects of channels in its model or
+  /// in its best explanation
   std::optional<Sensors> sensors{};
   Verdict verdict;
 };

@@ -26,7 +26,8 @@ struct Grouping {
 struct Term {
   const Effect* effect = nullptr;
   Axis axis;
-  std::vector<double> shape{};  ///< empty: searched, if the effect has shapes
+  /// values of the shapes; empty: they are searched if the effect has any
+  std::vector<double> shape{};
   /// A shape that another measurement states with standard uncertainty u. It is used if the
   /// readings do not contradict it; it is then not an unknown of the fit and needs no evidence.
   struct Stated {
@@ -59,11 +60,13 @@ struct Parameter {
   std::string effect;  ///< name of the effect: "backlash:X"
   std::string name;    ///< symbol: "b"
   double value = 0.0;
-  double u = 0.0;  ///< standard uncertainty; NaN for a shape that takes only discrete values
+  /// standard uncertainty; NaN if it cannot be determined, and for a shape that is not fitted
+  /// (discrete values, or its usual value)
+  double u = 0.0;
   Quantity quantity = Quantity::number;
   bool shape = false;
   std::string group{};  ///< group of a grouped term: "before"; it is also the end of `name`
-  bool held = false;    ///< given, not fitted; u = 0
+  bool held = false;    ///< whether the value is given and not fitted; u is then 0
 };
 
 /// Correlation of the noise of the readings, as estimated from their repeats and their order.
@@ -81,18 +84,19 @@ struct Noise {
     double inside = 1.0;          ///< standard deviation inside, relative to the mean one
     double outside = 1.0;         ///< standard deviation outside, relative to the mean one
   };
-  double measured = 0.0;    ///< correlation of adjacent readings in a pass; NaN: not known
-  double p = 1.0;           ///< probability that independent readings show such a correlation
-  double in_repeats = 0.0;  ///< correlation used in the search and in tests: 0 if repeats show none
+  double measured = 0.0;  ///< correlation of adjacent readings in a pass; NaN: not known
+  double p = 1.0;         ///< probability that independent readings show such a correlation
+  /// correlation used in the search, in tests and for the values of a fit: 0 if repeats show none
+  double in_repeats = 0.0;
   double u_neighbours = 0.0;  ///< standard uncertainty of `in_repeats`, if it is used
-  double neighbours = 0.0;    ///< correlation of adjacent readings used for values and u of a fit
+  double neighbours = 0.0;    ///< correlation of adjacent readings used for u of a fit
   Zero zero = Zero::steady;
   /// standard deviation of a zero, or of a step of the random walk, relative to that of a reading;
   /// it affects only u
   double zero_size = 0.0;
   double zero_found = 0.0;  ///< most likely value of `zero_size`
   bool zero_open = false;   ///< the readings do not bound the size of the zero
-  double digit = 0.0;       ///< step of the last digit of the readings, m or rad
+  double digit = 0.0;       ///< step of the last digit of the readings, m or rad; 0: none was found
   std::optional<Stretch> stretch{};
   std::vector<double> rough{};  ///< standard deviation of each reading relative to s; empty: 1
   std::vector<std::uint32_t> pass{};  ///< index of the pass (run in one direction on a line) of
@@ -123,13 +127,14 @@ struct Fit {
 
 /// Fits the terms by weighted least squares: deviation = zero of its line + sum of columns *
 /// parameters + e, by QR with pivoting on columns of unit length. Shapes that are not given are
-/// searched on their grids, one after the other until nothing improves, then between grid values;
-/// their uncertainty is that of the linearised problem. `weight` (0..1 per reading, or empty) is
-/// for suspect readings. Error: names of parameters that the readings do not separate; there is no
-/// minimum-norm solution. If repeats show correlated noise, all rows are whitened first
-/// (generalised least squares); other properties of the noise affect only u. `thin`: means of
-/// adjacent readings of a long table, if they already exist. Source: GUM-6:2020 9 for the
-/// covariance.
+/// searched on their grids, one after the other (at most four rounds), and continuous ones then
+/// between grid values; their uncertainty is that of the linearised problem. `weight` (0..1 per
+/// reading, or empty) is for suspect readings. Error: too few readings, or names of parameters that
+/// the readings do not separate; there is no minimum-norm solution. If repeats show correlated
+/// noise, all rows are whitened first (generalised least squares); the scatter `rough` is contained
+/// in the weights; a random zero, and a correlation that only the residuals show, affect only u.
+/// `thin`: means of adjacent readings of a long table, if they already exist. Source: GUM-6:2020 9
+/// for the covariance.
 Expected<Fit> fit(const Observations& observations, std::vector<Term> terms,
                   std::vector<double> weight = {}, const Noise& noise = {},
                   const Observations* thin = nullptr);

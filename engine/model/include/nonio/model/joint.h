@@ -33,11 +33,14 @@ struct JointEffect {
   Holds holds = Holds::shared;
   std::size_t after = 0;  ///< for `changed`: index of the first campaign with the second value
   /// Parameters with standard uncertainties: one list for `shared`, two for `changed`, one per
-  /// campaign for `own` (empty if its readings do not determine the effect).
+  /// campaign for `own` (empty if its readings do not determine the effect). Only the first list
+  /// contains the shapes.
   std::vector<std::vector<Parameter>> groups{};
   double evidence = 0.0;  ///< decrease of -2 ln likelihood minus the cost of parameters and names
-  double p = 1.0;         ///< p-value of the effect, corrected for the search
-  double rms = 0.0;   ///< rms of the residuals with this effect alone added to the models, m or rad
+  double p = 1.0;         ///< p-value of the effect; for named effects corrected for the search
+  /// rms of the residuals with this effect added to the models, for named effects with all of them,
+  /// m or rad
+  double rms = 0.0;
   double size = 0.0;  ///< rms of the part of the readings that this effect explains, m or rad
   /// effects that explain the readings equally well in its place
   std::vector<std::string> aliases{};
@@ -64,9 +67,10 @@ struct JointExplanation {
 };
 
 /// Explains the readings of all members together by least squares; each reading is weighted by the
-/// noise floor of its campaign. Errors: fewer than two members; a member without a noise floor
-/// whose model leaves no redundancy. Evidence and p-values are determined as in `explain`: the
-/// signs of stretches and of whole passes of the residuals are flipped 200 times. Source:
+/// noise floor of its campaign or, if this has fewer than 8 degrees of freedom, by the residuals of
+/// its model. Error: there are fewer than two members, or the readings of a member do not scatter
+/// or do not determine its model. Evidence and p-values are determined as in `explain`: the signs
+/// of stretches and of whole passes of the residuals are flipped, 200 times in all. Source:
 /// docs/dev/model-evidence.md, several campaigns.
 Expected<JointExplanation> explain_together(const std::vector<Member>& members, std::uint64_t seed);
 

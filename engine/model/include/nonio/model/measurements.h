@@ -29,8 +29,8 @@ struct TimeConstant {
   double tau = 0.0, u = 0.0;  ///< time constant and its standard uncertainty, s
 };
 
-/// Two time constants are contradictory if their logarithms differ by at least this multiple of the
-/// standard uncertainty of the difference (docs/dev/constants.md, M34).
+/// Two time constants are contradictory if their logarithms differ by more than this multiple of
+/// the standard uncertainty of the difference (docs/dev/constants.md, M34).
 inline constexpr double time_constants_apart = 2.6;
 
 /// Measurements that are explained together: they sense the same axes in the same unit.
@@ -43,14 +43,19 @@ struct Part {
   };
   std::string name;                       ///< "X", "XY", "EYX", "C centres", "warm/x1"
   std::vector<std::string> measurements;  ///< ids of the measurements
-  std::vector<Axis> axes;                 ///< axes of the part: one for `axis` and `balls`, else
-                                          ///< the linear axes
-  Observations table;                     ///< lines named by their measurements
+  /// axes of the part: one for `axis` and `balls`, the linear axes for `space`; for `course` one
+  /// axis that has only the name of the displacement
+  std::vector<Axis> axes;
+  Observations table;  ///< readings of all measurements of the part
   Kind kind = Kind::axis;
   std::vector<std::uint32_t> measurement{};  ///< index into `measurements` of each reading
-  std::vector<std::uint32_t> row{};          ///< row of each reading in its measurement's table
-  std::vector<double> along{};               ///< place of each reading on its line, m or rad
-  std::vector<std::int8_t> way{};  ///< direction of motion of each reading along its line, +1 or -1
+  /// row of each reading in its measurement's table; for `balls` that of the first coordinate
+  std::vector<std::uint32_t> row{};
+  /// place of each reading on its line, m or rad; for `course` its time, s
+  std::vector<double> along{};
+  /// direction of motion of each reading along its line, +1 or -1; 0 if it is not known, and for
+  /// `course`
+  std::vector<std::int8_t> way{};
   /// Measurements of an axis for which the cycle of ISO 230-2 is assumed, because the order of the
   /// file is impossible.
   std::vector<std::string> order_assumed{};
@@ -83,10 +88,11 @@ inline bool has_unstated_position(const Part& part) {
   return false;
 }
 
-/// Returns the parts of a campaign, in the order of the measurements: runs of one axis; all linear
-/// axes and their measurements in one table, if some reading is sensed across the motion or in
-/// several axes; ball centres of a rotary axis; displacements over time. Other measurements are
-/// omitted, and so are readings that `check` (sdk/check.h) rejects.
+/// Returns the parts of a campaign, in the order of their first measurements: runs of one axis;
+/// measurements in space; ball centres of a rotary axis; displacements over time. If the campaign
+/// has diagonals, each state of the machine has one part in space, which contains the runs of its
+/// axes; otherwise there is one part for each axis and direction of sensing. Other measurements are
+/// omitted, and so are measurements whose readings `check` (sdk/check.h) rejects.
 std::vector<Part> parts_of(const Campaign& campaign, const std::vector<Observations>& read);
 
 /// Returns all effects that apply to a part, except nuisances, followed by the grouped terms of
@@ -100,12 +106,14 @@ std::vector<std::string> names_of(const Part& part, const Effect& effect);
 /// the displacements of the part if the measurement has others that do not move together with them:
 /// "heat:t4/x1", "heat:t4/x1+x2".
 std::string written_for(const Part& part, const std::string& effect);
-/// Whether an effect, as the manifest writes it, applies to this part by its list of displacements.
+/// Returns whether the displacements that follow "/" in an effect, as the manifest writes it,
+/// include the displacement of this part. True if none are listed, or if the part is not a course.
 bool is_for(const Part& part, const std::string& effect);
 
 /// Returns the terms of the effects that a model names, then the nuisances, then the model's
-/// descriptions. Error: an unknown kind, axis or grouping. Effects of axes of other parts are
-/// omitted, and so is an effect that the model also has with groups, because these include it.
+/// descriptions. Error: an unknown kind, axis or grouping, or an effect that does not apply to the
+/// readings. Effects that cannot occur in this part are omitted, and so is an effect that the model
+/// also has with groups, because these include it.
 Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
                                      const std::vector<std::string>& names,
                                      const std::vector<Effect>& effects);

@@ -16,9 +16,12 @@ struct Prediction {
   double rms = 0.0;           ///< rms of `error`, m or rad
   double sd = 0.0;      ///< standard deviation of the readings, m or rad: the error without a model
   double inside = 0.0;  ///< share of the readings with |error| <= 2 u
-  /// time, s, from which on the errors exceed their expanded uncertainty
+  /// for a course: time, s, of the first reading of the first window (a twentieth of the readings,
+  /// at least 10) in which the RMS of error/u exceeds 2; none if there is no such window
   std::optional<double> fails_from{};
-  bool outside = false;  ///< whether a channel or an axis leaves the range of the fit
+  /// whether an axis leaves the range of the fit by more than 2 % of it, or a channel by more than
+  /// 10 %
+  bool outside = false;
 };
 
 /// Predicts a displacement over time. `seen`: the part that the terms are fitted to; `unseen`: the
@@ -30,8 +33,9 @@ Expected<Prediction> predict(const Part& seen, const std::vector<Term>& model, c
 
 /// Predicts readings at positions (an axis, lines in space): the zeros of the lines and the terms
 /// `set_up` of the unseen readings (nuisances) are new unknowns. The uncertainty contains the
-/// parameters, the new unknowns and one reading, from the residuals of the fit. Errors: an axis
-/// that only one of both parts has; a model that the seen readings do not determine.
+/// parameters, the new unknowns and one reading, from the residuals of the fit. Error: an axis of
+/// the seen part is missing in the unseen one; one part has lengths, the other angles; the seen
+/// readings do not determine the model.
 Expected<Prediction> predict_places(const Part& seen, const std::vector<Term>& model,
                                     const Part& unseen, const std::vector<Term>& set_up);
 

@@ -31,7 +31,7 @@ void append_int(std::string& out, long long value);
 
 /// Appends a number to `out` as an operand of a PDF, with at most two decimals, and then the
 /// character `after`. Values beyond +-30000 are replaced by this limit, because PDF readers limit
-/// them too.
+/// them too; NaN is replaced by 30000.
 void append_real(std::string& out, double value, char after);
 
 }  // namespace nonio::pdf

@@ -81,11 +81,11 @@ struct File {
 /// anything that this reader does not accept.
 Expected<File> parse(std::string_view bytes);
 
-/// Returns the uncompressed content of a stream. Error: it does not have exactly `size` bytes, or
-/// it is compressed by another method than /FlateDecode.
+/// Returns the uncompressed content of a stream. Error: the object has no stream, the content does
+/// not have exactly `size` bytes, or it is compressed by another method than /FlateDecode.
 Expected<std::string> content(const File& file, const Object& object, std::size_t size);
-/// Returns the uncompressed content of a stream whose size is not known. Error: it has more than
-/// `most` bytes, or it is compressed by another method than /FlateDecode.
+/// Returns the uncompressed content of a stream whose size is not known. Error: the object has no
+/// stream, the content has more than `most` bytes, or it cannot be uncompressed by /FlateDecode.
 Expected<std::string> content_up_to(const File& file, const Object& object, std::size_t most);
 
 }  // namespace nonio::pdf

@@ -27,7 +27,9 @@ inline constexpr std::size_t usual_room = 16384;
 /// Returns `pdf` with the attachments, a signature field, and space for a signature of `room`
 /// bytes, which is filled with zeros. The field is in the frame that a page declares for it
 /// (`signature_key`); if there is none, it is on the first page and invisible. Equal input gives
-/// equal bytes. `pdf` is parsed strictly (reader.h), because plugins create it.
+/// equal bytes. `pdf` is parsed strictly (reader.h), because plugins create it. Error: `parse`
+/// rejects `pdf`, it already has a form or attachments, an attachment has no valid name, `room` is
+/// not 1000 to `max_room`, or the sizes exceed `max_file`.
 Expected<std::string> reserve(std::string_view pdf, const std::vector<Attachment>& attachments,
                               Time time, std::size_t room = usual_room);
 
@@ -54,7 +56,8 @@ Expected<Time> stated_time(std::string_view pdf);
 /// is a signature of the type `sub_filter`, and no second signature dictionary exists.
 Expected<const Value*> find_signature(const File& file);
 /// Returns the signature that this dictionary describes. Error unless its /ByteRange covers the
-/// whole file except /Contents.
+/// whole file except /Contents, and unless /Contents and the time (/M) have the form that `reserve`
+/// writes.
 Expected<PdfSignature> signature_of(const File& file, const Value& dictionary);
 
 }  // namespace nonio::pdf

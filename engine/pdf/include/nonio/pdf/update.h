@@ -37,7 +37,7 @@ inline constexpr std::size_t most_update_bytes = 10'000'000;
 
 /// Returns the positions in bytes at which the signed file and each of its updates end; the last
 /// one is the size of the file. Only the cross-reference tables at the end of each part are read.
-/// If they do not divide the file, it is one part.
+/// If they do not divide the file, it is one part; at most `most_updates` updates are separated.
 std::vector<std::size_t> ends_of_parts(std::string_view bytes);
 
 /// Writes or reads the updates of one signed file, one after the other.

@@ -24,7 +24,8 @@ struct EmbeddedFont {
 };
 
 struct Font {
-  /// Font data, which must outlive the call of `write`; null: the document does not have this font.
+  /// Font data, which must outlive the call of `write`. Only that of /F3 may be null: the document
+  /// then does not have this font.
   const EmbeddedFont* embedded = nullptr;
   /// Bounding box of all glyphs (left, bottom, right, top), and then the heights above and below
   /// the base line, all in 1/1000 of the font size.

@@ -59,6 +59,7 @@ namespace detail {
 /// `fill_times` fills `t`, `timed` and `duration`; `fill_temperatures` fills `K`, `temperature` and
 /// `interpolated`. A gap of temperatures is interpolated if it is at most a quarter of its line
 /// long; a missing end takes the nearest temperature if that is at most an eighth of the line away.
+/// Otherwise, and if a line with gaps has fewer than three temperatures, `temperature` is false.
 void fill_times(const Observations& o, AxisReadings& r);
 void fill_temperatures(const Observations& o, AxisReadings& r);
 
@@ -72,9 +73,10 @@ Expected<AxisReadings> readings_of(const Observations& o, const Axis& axis);
 bool from_both_directions(const AxisReadings& r);
 
 /// Returns candidate positions of the fixed point of a screw or scale, in m from the middle of the
-/// measured stretch (rad for a rotary axis). If the manifest states one, only that; for a rotary
-/// axis or several axes only the middle; otherwise seven positions up to 1.5 times the length of
-/// the stretch from its middle. Empty if the readings do not move the axis.
+/// measured stretch (rad for a rotary axis). If the manifest states one for a linear axis, only
+/// that; otherwise only the middle for a rotary axis or several axes, and for a single linear axis
+/// seven positions up to 1.5 times the length of the stretch from its middle. Empty if the readings
+/// do not move the axis.
 std::vector<double> fixed_points(const Observations& o, const Axis& axis);
 
 Effect::Shape fixed_point_shape();

@@ -37,8 +37,8 @@ struct Contribution {
 /// The uncertainty budget of an analysis: its input quantities and their contribution to each
 /// result. U = k sqrt(sum u^2), unless the laboratory's smallest uncertainty (its CMC) is larger.
 /// Sources: JCGM 100:2008, 5.2 (correlated inputs), G.4 (degrees of freedom); docs/uncertainty.md.
-/// Range: u >= 0, k > 0, dof > 0 or infinite; `check` (sdk/check.h) rejects values that are not
-/// finite.
+/// Range: u >= 0, k > 0, dof > 0 or infinite; `check` (sdk/check.h) tests only that each result has
+/// one u per contribution.
 struct UncertaintyBudget {
   struct Result {
     std::string name;  ///< name of the value (`Value::name`)

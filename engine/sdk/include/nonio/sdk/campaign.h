@@ -81,8 +81,8 @@ struct Square {
   std::optional<double> U{};  ///< expanded uncertainty (k = 2) of `error`, rad
 };
 
-/// What the uncertainty budget needs in addition to the instrument (ISO/TR 230-9:2005 Annex C);
-/// each is the full range of the quantity.
+/// What the uncertainty budget needs in addition to the instrument (ISO/TR 230-9:2005 Annex C), and
+/// other test conditions. Ranges are full ranges of the quantity.
 struct Environment {
   /// misalignment of beam and axis, as lateral distance over the travel, m
   std::optional<double> misalignment;
@@ -91,7 +91,7 @@ struct Environment {
   /// largest distance of the material temperature from 20 degC, K
   std::optional<double> temperature_difference;
   std::optional<double> expansion_range;  ///< range of the expansion coefficient, 1/K
-  std::optional<double> drift;            ///< m, range of the drift test (E_VE)
+  std::optional<double> drift;            ///< range of the drift test (E_VE), m
   std::optional<double> drift_angle;      ///< range of the drift test of a rotary axis, rad
   std::string warm_up{};                  ///< how the machine was warmed up before the test
   std::string sensors{};                  ///< where the temperature sensors were
@@ -189,7 +189,8 @@ struct Measurement {
   /// length of the base of a level or mirror that was moved step by step by this length, m
   std::optional<double> foot{};
   std::string square{};  ///< for a straightness: name of the square on whose face it was measured
-  bool square_turned = false;  ///< measured after the square was turned over about one of its faces
+  /// whether it was measured after the square was turned over about a face
+  bool square_turned = false;
   /// Tolerances of this measurement's results. They replace those of its axis with the same name.
   std::vector<Tolerance> tolerances{};
   /// Values of the keys that the method declares, in the unit of the manifest; defaults are filled
@@ -199,10 +200,10 @@ struct Measurement {
   /// Motion of the machine during the measurement. It decides which readings repeat at targets, and
   /// whether effects of a model apply.
   enum class Motion {
-    targets,     ///< stops at targets, which the runs share
-    path,        ///< without stops, over an angle: a circle
-    time,        ///< over time, at rest or with an axis that is exercised
-    placements,  ///< features of an artefact in several placements
+    targets,     ///< motion with stops at targets, which the runs share
+    path,        ///< motion without stops over an angle: a circle
+    time,        ///< readings over time, at rest or while an axis is exercised
+    placements,  ///< readings of features of an artefact in several placements
     none         ///< no axis of the machine moved
   };
   Motion motion = Motion::targets;  ///< motion during the measurement, as the method declares it
@@ -256,7 +257,7 @@ struct Campaign {
   CertificateTexts certificate;
   std::vector<Measurement> measurements;
   std::vector<std::string> model;  ///< effects of the model, as `kind:axis`
-  /// tables compensate the model's prediction instead of the mean readings
+  /// whether tables compensate the model's prediction instead of the mean readings
   bool compensate_model = false;
   std::vector<Formula> formulas;
 };

@@ -34,7 +34,7 @@ inline Way direction_of_word(std::string_view word) {
 }
 
 /// Returns the direction of approach, +1 or -1; `listed` is +1 if the targets are listed in rising
-/// order, -1 if in falling order.
+/// order, -1 if in falling order. `way` must not be `none`.
 inline std::int8_t direction_of(Way way, int listed) {
   const int sign = way == Way::plus      ? 1
                    : way == Way::minus   ? -1
@@ -158,8 +158,8 @@ inline std::vector<Option> table_map_options() {
 }
 
 /// Returns the lines of each table, from the options `tables`, or `first_line` and `last_line`.
-/// Error: a range is malformed, both forms are used, or the tables overlap or are not in the order
-/// of the file.
+/// Error: a range is malformed, `last_line` is before `first_line`, both forms are used, or the
+/// tables overlap or are not in the order of the file.
 inline Expected<std::vector<RowRange>> tables_of(const Settings& options) {
   std::vector<RowRange> tables;
   const RowRange all{static_cast<std::uint64_t>(options.integer("first_line", 1)),

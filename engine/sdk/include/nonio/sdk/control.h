@@ -55,13 +55,14 @@ struct ControlTable {
   double largest = 0.0;    ///< largest absolute value of an entry, in file units
   /// range of one increment, in steps
   std::optional<std::pair<std::int64_t, std::int64_t>> increment{};
-  bool rotary = true;          ///< supports tables of rotary axes
-  bool bidirectional = false;  ///< supports separate tables for each direction
-  bool straightness = false;   ///< supports compensation of one axis by the position of another
+  bool rotary = true;          ///< whether the control supports tables of rotary axes
+  bool bidirectional = false;  ///< whether it supports a separate table for each direction
+  /// whether it supports compensation of one axis by the position of another
+  bool straightness = false;
   bool squareness = false;
-  /// supports tables over the positions of several axes, or all errors in one file
+  /// whether it supports tables over the positions of several axes, or all errors in one file
   bool volumetric = false;
-  bool runs_gcode = true;  ///< runs part programs in G-code
+  bool runs_gcode = true;  ///< whether the control runs part programs in G-code
   /// the parameter for the backlash value; empty: none exists with these tables
   std::string backlash;
   std::vector<Fact> facts{};
@@ -77,7 +78,7 @@ struct LoadedTable {
   /// c for motion towards plus, at the grid points, m or rad; for two inputs the last one varies
   /// fastest
   std::vector<double> plus;
-  std::vector<double> minus;  ///< c for motion towards minus; empty: the same as `plus`
+  std::vector<double> minus;  ///< c for motion towards minus, m or rad; empty: as `plus`
   Outside outside = Outside::holds;
   /// backlash value that the file sets, m or rad; lost motion is positive
   std::optional<double> backlash{};

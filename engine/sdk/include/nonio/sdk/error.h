@@ -12,7 +12,7 @@ namespace nonio {
 /// of the place (file, line, column) that it knows, from the innermost outward.
 struct Error {
   std::string message;
-  /// relative to the campaign's directory; empty if the error is not in a file
+  /// path of the file, relative to the campaign's directory; empty if the error is not in a file
   std::string file{};
   std::uint64_t line = 0;  ///< line of the file, 1-based; 0 if the error is not in a line
   std::string column{};    ///< name of the column, empty if none

@@ -80,8 +80,8 @@ inline const char* take_digits(const char* p, const char* end, std::uint64_t& di
   return p;
 }
 
-/// Parses an exponent [eE][+-]digits at `p`, which must extend to the end; false if there is other
-/// text.
+/// Parses an exponent [eE][+-]digits at `p`, which must extend to the end, and adds it to
+/// `d.exponent`. True also if there is no text at `p`; false if there is other text.
 inline bool take_exponent(const char* p, const char* end, Decimal& d) {
   if (p == end) return true;
   if (*p != 'e' && *p != 'E') return false;
@@ -115,7 +115,8 @@ inline bool parse_decimal(std::string_view text, bool comma_allowed, Decimal& d)
 }
 
 /// Converts the text exactly with the standard library, for numbers whose digits do not fit into a
-/// double. The text is known to be well formed.
+/// double. The text is known to be well formed. Returns infinity (without sign) if the number is
+/// too large for a double, and 0 if it is too small.
 inline double slow_value(std::string_view text, const Decimal& d) {
   std::string plain(text.front() == '+' ? text.substr(1) : text);
   std::replace(plain.begin(), plain.end(), ',', '.');
@@ -197,8 +198,9 @@ inline std::size_t quoted_end(std::string_view line, std::size_t open, char sepa
 
 }  // namespace detail
 
-/// Splits a line; fields come trimmed and without the quotes around them. False if a quoted field
-/// is not terminated on this line, or if text follows a closing quote.
+/// Splits a line; fields come trimmed and without the quotes around them, and doubled quotes within
+/// them remain doubled. False if a quoted field is not terminated on this line, or if text follows
+/// a closing quote.
 inline bool split(std::string_view line, char separator, std::vector<std::string_view>& fields) {
   fields.clear();
   const char* const end = line.data() + line.size();
@@ -267,8 +269,8 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// Returns the element of `names` with the smallest edit distance to `name`; names must not be
-/// empty.
+/// Returns the element of `names` with the smallest edit distance to the first 24 bytes of `name`;
+/// the first such element if there are several. `names` must not be empty.
 inline std::string_view nearest(std::string_view name, const std::vector<std::string_view>& names) {
   name = name.substr(0, 24);  // longer than any column name
   std::string_view best = names.front();

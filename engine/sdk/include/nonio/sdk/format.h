@@ -86,8 +86,10 @@ std::string localised(std::string number, std::string_view language);
 /// none.
 std::string words(const Templates& templates, std::string_view language, std::string_view name);
 
-/// Writes a number of a finding for a sentence: counts as integers, positions with at most 4
-/// decimals, and a probability as "p = 0.0021", or "p < ..." below the smallest printed value.
+/// Writes a number of a finding for a sentence, in its printed unit without the symbol: counts as
+/// integers, positions with at most 4 decimals, a probability as "p = 0.0021", or "p < 0.0001"
+/// below that value, and other numbers with about 3 significant digits. A deviation below 0.0005 is
+/// written as 0.000.
 std::string evidence_text(const Number& n);
 
 /// Replaces each `{name}` in `text` by the finding's evidence of that name. A number whose
@@ -101,7 +103,9 @@ std::vector<std::pair<std::string, std::string>> said(
     const Templates& templates, std::string_view language,
     std::vector<std::pair<std::string, std::string>> texts);
 
-/// Returns a text of a finding; `part` is "title", "says" or "advice".
+/// Returns a text of a finding in this language, else in English; `part` is "title", "says" or
+/// "advice". If templates/words has neither, the title is the id of the finding, the advice is
+/// `Finding::advice`, and other parts are empty.
 std::string finding_text(const Templates& templates, std::string_view language,
                          const Finding& finding, std::string_view part);
 

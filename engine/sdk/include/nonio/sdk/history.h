@@ -55,7 +55,8 @@ struct HistorySeries {
   std::string axis, quantity;
   Quantity unit = Quantity::deviation;
   std::vector<HistoryPoint> points;
-  std::string model;  ///< none, level, drift, step, walk; empty for a largest deviation
+  /// model of the series: none, level, drift, step or walk; empty for a largest deviation
+  std::string model;
   std::vector<HistorySegment> segments{};
   std::vector<HistoryChange> changes{};
   std::optional<double> smallest_change{}, limit{};

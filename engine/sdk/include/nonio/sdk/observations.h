@@ -31,18 +31,22 @@ struct Observations {
   struct AxisColumn {
     std::string axis;
     bool rotary = false;
-    std::vector<double> position;       ///< commanded position at each reading, m or rad
-    std::vector<std::int8_t> approach;  ///< +1, -1; empty if the axis did not move
+    std::vector<double> position;  ///< commanded position at each reading, m or rad
+    /// direction of approach of each reading: +1, -1, or 0 where the axis did not move; empty if no
+    /// direction is stated
+    std::vector<std::int8_t> approach;
   };
   /// Readings of one line share one unknown zero and one direction of sensing.
   struct Line {
     std::string name;
-    /// direction of sensing, unit vector; all 0 for a rotary axis (deviation is an angle)
+    /// direction of sensing, unit vector; all 0 if the deviation is an angle, or if it is not
+    /// stated
     std::array<double, 3> sense{};
     /// Name shared by the lines of one rigid body whose position and orientation in the machine are
     /// unknown.
     std::string body{};
-    bool body_size_known = true;  ///< false: its size is unknown, because its temperature is
+    /// whether the size of the body is known; false if its temperature is unknown
+    bool body_size_known = true;
   };
 
   /// A quantity recorded next to the deviations: a temperature at some place, a speed, a load. It
@@ -64,7 +68,7 @@ struct Observations {
   std::vector<Line> lines;
 
   std::vector<double> deviation;           ///< actual - target, m or rad; always finite
-  std::vector<double> u;                   ///< standard uncertainty of the deviation
+  std::vector<double> u;                   ///< standard uncertainty of the deviation, m or rad
   std::vector<std::uint32_t> run;          ///< number of the run in the file, from 1
   std::vector<std::uint32_t> line;         ///< index into `lines`; empty: all in lines[0]
   std::vector<std::uint32_t> source_line;  ///< line of the file, 1-based
@@ -81,7 +85,8 @@ struct Observations {
   /// Structure of the machine (manifest), for effects that depend on it.
   std::string structure{};
 
-  /// False: the order in which the rows were taken is not known (manifest, `order = "unknown"`).
+  /// Whether the order in which the rows were taken is known; false if the manifest states `order =
+  /// "unknown"`.
   bool order_known = true;
 
   std::uint64_t missing = 0;  ///< number of readings that were not taken

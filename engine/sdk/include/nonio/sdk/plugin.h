@@ -148,7 +148,7 @@ struct Method {
     std::string name;  ///< name without unit: `target` of quantity length is `target_mm` in a file
     Quantity quantity = Quantity::number;
     Role role = Role::none;
-    std::string help;      ///< one sentence
+    std::string help;      ///< one sentence that describes the column
     bool required = true;  ///< if false, a file may omit it, and fields may be blank
   };
   /// name: the `kind` of [[measurement]]. options: the keys that the method adds to it, next to
@@ -227,8 +227,8 @@ struct Effect {
   /// candidate; it is offered if no effect explains the residual. In a model with other effects it
   /// describes only what they do not.
   bool description = false;
-  /// Its instances are channels of a measurement over time (`Observations::channels`): it explains
-  /// displacements over time only, and no other effect does.
+  /// Its instances are recorded channels (`Observations::channels`). It can occur in displacements
+  /// over time, in which no other effect occurs, and in axis tests with recorded channels.
   bool of_channels = false;
   /// Optional: returns the reason why the effect does not apply.
   std::function<WhyNot(const Observations&, const Axis&)> why_not{};

@@ -204,12 +204,13 @@ struct ModelFit {
   /// rad along their line).
   struct Curve {
     double rms = 0.0, low = 0.0, high = 0.0;
-    std::optional<double> low_at{}, high_at{};  ///< absent if the curve is not a function of place
+    /// places of `low` and `high`; absent if it has none
+    std::optional<double> low_at{}, high_at{};
   };
   struct Parameter {
     std::string effect, name;  ///< effect and symbol: "backlash:X", "b"
     double value = 0.0;
-    std::optional<double> u{};  ///< standard uncertainty
+    std::optional<double> u{};  ///< standard uncertainty, SI; absent if it is not known
     Quantity quantity = Quantity::number;
     /// a nonlinear parameter found by search: period, time constant, instant
     bool searched = false;
@@ -249,14 +250,14 @@ struct ModelFit {
   struct Channel {
     std::string name, unit;      ///< name and unit, such as "bearing", "degC"
     bool used = false;           ///< whether an effect of the model uses it
-    std::vector<double> values;  ///< value at each reading
+    std::vector<double> values;  ///< value at each reading, in `unit`
   };
   struct Suspect {
     std::size_t row = 0;
-    double minimal_detectable = 0.0;  ///< smallest error of this reading that would be detected
+    double minimal_detectable = 0.0;  ///< smallest error that would be detected, m or rad
   };
 
-  std::string part;                       ///< usable in a file name: "X"
+  std::string part;                       ///< name of the part, which is usable in a file name: "X"
   std::vector<std::string> measurements;  ///< ids of the measurements
   std::string axis;
   bool rotary = false;   ///< whether positions are angles, in rad

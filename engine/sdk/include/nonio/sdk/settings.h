@@ -19,8 +19,9 @@ using Setting = std::variant<bool, std::int64_t, double, std::string, std::vecto
                              std::vector<std::string>, NumberTables, NumberTable>;
 
 /// Named values: the options of one plugin, or one file of templates/ with its tables flattened
-/// ("finding.drift.parallel.advice"). An accessor returns `otherwise` if the name is absent or has
-/// another type; the options that a plugin receives are complete and have the declared types.
+/// ("finding.drift.parallel.advice"). If the name is absent or has another type, an accessor
+/// returns `otherwise`, or an empty value if it has no such parameter; `number` also accepts an
+/// integer. The options that a plugin receives are complete and have the declared types.
 class Settings {
  public:
   std::map<std::string, Setting, std::less<>> values;

@@ -61,12 +61,13 @@ bool varies_where_sensed(const Observations& o, const SpaceReadings& s, std::siz
 /// closer than 1e-9 of the length are one.
 std::vector<double> places_of(const SpaceReadings& s, std::size_t k);
 
-/// Returns numbers of knots to try for a smooth curve: at most 10, and at least two places for each
-/// free value, so that the curve cannot follow single places.
+/// Returns numbers of knots to try for a smooth curve: from 3 to at most 10, with at least two
+/// places for each free value, so that the curve cannot follow single places. Empty for fewer than
+/// 8 places.
 std::vector<double> knots_over(const std::vector<double>& places);
 
-/// The readings of one line in space, except those without a position of an axis that the first
-/// reading has.
+/// The readings of one line in space, except those that state the positions of other axes than the
+/// first reading does.
 struct SpaceLine {
   using Vector = std::array<double, 3>;
   std::vector<std::size_t> rows;

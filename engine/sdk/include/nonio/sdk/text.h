@@ -64,7 +64,8 @@ inline void append_utf8(std::string& out, std::uint32_t c) {
 /// Position of a text in XML or HTML: between tags, or in a quoted attribute.
 enum class Markup { element, attribute };
 
-/// Escapes text for XML and HTML; control characters that XML does not allow are omitted.
+/// Escapes text for XML and HTML; control characters below U+0020, except tab and line feed, are
+/// omitted. Quotes are escaped only in an attribute.
 inline std::string escaped_markup(std::string_view text, Markup where = Markup::element) {
   std::string out;
   for (const char c : text) {

@@ -15,7 +15,8 @@ namespace nonio::sign {
 struct Prolonging {
   Verifier verifier{};  ///< trusted roots and expected signers; available revocation lists
   std::vector<std::string> answers{};  ///< available OCSP answers, DER
-  TimeStamping stamping{};             ///< no time stamp if the address is empty
+  TimeStamping stamping{};             ///< server for the time stamp; none is requested if the
+                                       ///< address is empty
   bool fetch = true;  ///< whether to request missing data from the addresses in the certificates
   int seconds = 10;   ///< time limit for an answer, s
 };
@@ -26,7 +27,9 @@ struct Prolonged {
 };
 
 /// Returns the file with one more update. The file must be accepted by `verify_pdf` before and
-/// after the update; otherwise an error names the certificate whose revocation status is unknown.
+/// after the update. Other errors: the revocation status of a certificate, which the error names,
+/// is unknown; there is nothing to add; the time stamp is missing; or the file would become too
+/// large.
 Expected<Prolonged> prolong(std::string_view signed_pdf, const Prolonging& how);
 
 }  // namespace nonio::sign

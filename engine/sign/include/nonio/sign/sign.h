@@ -53,7 +53,7 @@ struct TimeStamping {
                          ///< stamp
   int seconds = 10;      ///< time limit for an answer, s
   std::string trust{};   ///< PEM of the trusted roots of the server's certificate
-  /// Set when the server did not answer, so that it is not contacted again. May be null.
+  /// Why the server did not answer; it is then not contacted again. Empty until then; may be null.
   std::shared_ptr<std::string> away{};
 };
 

@@ -12,7 +12,7 @@
 /// given as an argument.
 namespace nonio::sign {
 
-/// Larger files are refused unread; they are not signed either.
+/// Largest size of a signed file in bytes; larger files are refused unread, and are not signed.
 inline constexpr std::size_t max_bytes = pdf::max_file;
 
 struct Check {
@@ -61,8 +61,8 @@ struct Verified {
   bool holds() const;  ///< returns whether no check failed and every essential one was made
 };
 
-/// Returns an error if the roots or the revocation lists contain none: a file of 0 bytes, such as a
-/// failed download, is not an empty list.
+/// Returns an error if roots that are given contain no certificate, or if a given revocation file
+/// contains no list. A revocation file of 0 bytes, such as a failed download, is an error too.
 Expected<void> check_verifier(const Verifier& verifier);
 
 /// Returns the number of certificates in a PEM file of roots.

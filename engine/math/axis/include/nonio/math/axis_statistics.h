@@ -38,8 +38,8 @@ struct AxisStatistics {
 
 AxisStatistics axis_statistics(const AxisTest&);
 
-/// Tracks the largest and smallest of the values put in; if one of them is NaN, the results are
-/// NaN.
+/// Tracks the largest and smallest of the values put in. The results are NaN if one of the values
+/// is NaN, or if there are none.
 class Extent {
  public:
   void put(double value);

@@ -46,9 +46,10 @@ class AxisTest {
   /// Returns the test with these targets only (ascending indices, each below targets.size()).
   AxisTest only(std::span<const std::size_t> kept) const;
 
-  /// Arranges observations by their first axis column; rows without a direction of approach are
-  /// omitted. Readings at a target are in the order of their runs. The test is empty, which is not
-  /// an error, if there is no axis column or it has no directions of approach.
+  /// Arranges observations by their first axis column; rows without a direction of approach or with
+  /// a position that is not finite are omitted. Readings at a target are in the order of their
+  /// runs. The test is empty, which is not an error, if there is no axis column or it has no
+  /// directions of approach.
   static AxisTest arrange(const Observations&);
 
  private:

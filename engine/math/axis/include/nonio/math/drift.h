@@ -16,7 +16,7 @@
 ///     b_i      (offset per run + slope per run (x_i - middle)) lag_i: contribution of drift to B_i
 ///
 /// Source: derived (docs/formulas.md). Range: any test; `known` is false if no direction has two
-/// passes. No errors.
+/// passes, or with fewer than two targets (four for the slope). No errors.
 namespace nonio::math {
 
 struct Drift {
@@ -28,7 +28,9 @@ struct Drift {
     double p_passes = 1.0;   ///< p of the slope of the line through the single passes
     double p_runs = 1.0;    ///< p of the slope of the line through the runs; 1 for fewer than three
     bool monotone = false;  ///< whether the runs change in one direction only
-    bool agree = true;  ///< whether both directions, fitted separately, drift with the same sign
+    /// whether both directions, fitted separately, drift with the same sign; true if only one
+    /// direction has a drift
+    bool agree = true;
   };
   Part offset, slope;
   double scatter = 0.0;     ///< standard deviation of a reading within its pass

@@ -39,10 +39,12 @@ struct PeriodicError {
   double periods = 0.0;  ///< number of periods in the shortest pass
   double step = 0.0;     ///< widest step of all passes, m or rad
   std::array<Harmonic, 2> harmonics{};
-  std::vector<double> folded;  ///< folded means, m or rad: n values over one period
+  /// folded means over one period, m or rad; phases without readings omitted
+  std::vector<double> folded;
   double range = 0.0;
-  double s = 0.0;         ///< standard deviation of a reading about the folded mean; NaN with dof 0
-  double u_folded = 0.0;  ///< standard uncertainty of a folded mean
+  double s = 0.0;  ///< standard deviation of a reading about the folded mean; NaN with dof 0
+  /// standard uncertainty of the folded mean with the fewest readings, m or rad
+  double u_folded = 0.0;
   double dof = 0.0;
 };
 PeriodicError periodic_error(std::span<const Pass>, double period);
@@ -55,8 +57,9 @@ PeriodicError periodic_error(std::span<const Pass>, double period);
 ///              direction to the first target of the other, if they are one step apart
 ///
 /// A step is not followed if the axis moves less than half of the commanded distance. The order of
-/// the readings is ignored: passes run in their direction. Source: laboratory method; the tests of
-/// the standards for small steps were not available (docs/formulas.md).
+/// the readings is ignored, because those of a pass are sorted in its direction of motion. Source:
+/// laboratory method; the tests of the standards for small steps were not available
+/// (docs/formulas.md).
 struct SmallSteps {
   enum class Answer { given, too_few, several_sizes };
   struct One {
@@ -76,7 +79,8 @@ struct SmallSteps {
   std::size_t least_first = 0;
   /// number of steps that the axis did not follow, not including those directly after a reversal
   std::size_t not_followed = 0;
-  double s = 0.0;  ///< standard deviation of a step about the mean of its repetitions, m
+  /// standard deviation of a step about the mean of its repetitions, m; NaN if dof is 0
+  double s = 0.0;
   /// degrees of freedom of s; 0: no step was repeated at the same place and direction
   double dof = 0.0;
 };

@@ -51,12 +51,13 @@ const PositioningRule* positioning_rule(std::string_view name);
 /// first target, or the middle between the largest and the smallest of them.
 enum class Offset { mean_of_all, first_target, mid_range };
 /// Returns this constant, m or rad. If only one direction was measured, its means replace the
-/// bidirectional ones. NaN if a target lacks such a mean.
+/// bidirectional ones. NaN if a target that contributes lacks such a mean, or if there are no
+/// targets.
 double offset_of(const AxisStatistics&, Offset);
 
 /// Composition of the uncertainty of a value: U^2 = S^2 (if systematic) + means U_EVE^2/n +
 /// (scatter U_EVE)^2 + band E_VE^2 + (B D_B)^2 + (B_mean D_mean)^2, in the symbols of
-/// uncertainty.h; the scatter also includes D_s.
+/// uncertainty.h. Unless `systematic`, (2 scatter D_s)^2 is added.
 struct RuleShare {
   bool systematic = false;  ///< includes the contributions that do not average out
   double means = 0.0;       ///< coefficient of the variance of a mean of n readings
@@ -79,8 +80,8 @@ std::vector<RuleValue> evaluate_rule(const PositioningRule&, const AxisStatistic
                                      Offset = Offset::mean_of_all);
 
 /// Returns the value of R+ or R-, which are 2 k s, for k_to instead of k_from standard deviations.
-/// Nothing for all other values, because they contain means and cannot be converted without the
-/// readings.
+/// Nothing if one of these numbers is not above 0, and for all other values, because they contain
+/// means and cannot be converted without the readings.
 std::optional<double> converted(std::string_view name, double value, double k_from, double k_to);
 
 }  // namespace nonio::math

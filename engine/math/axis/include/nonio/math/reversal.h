@@ -19,19 +19,23 @@ struct Reversal {
   enum class Kind {
     unknown,      ///< not both directions at every target, or one run does not allow a decision
     none,         ///< not distinguishable from zero
-    lost_motion,  ///< constant and negative: one value compensates it
-    over_compensated,  ///< constant and positive, whatever the cause
-    not_constant,      ///< one value does not compensate it
+    lost_motion,  ///< negative, and constant or at least halved by compensation with one value
+    /// positive, and constant or at least halved by one value, whatever the cause
+    over_compensated,
+    not_constant,  ///< not constant, and not even halved by compensation with one value
   };
   Kind kind = Kind::unknown;
-  double mean = 0.0;          ///< B_mean, m or rad, signed
-  double u_mean = 0.0;        ///< standard uncertainty of `mean` from the scatter of the readings
+  double mean = 0.0;  ///< B_mean, m or rad, signed
+  /// standard uncertainty of `mean` from the scatter of the readings; with one run an upper bound,
+  /// from the spread of B_i
+  double u_mean = 0.0;
   double largest = 0.0;       ///< largest reversal, max |B_i|
   double largest_left = 0.0;  ///< max |B_i - B_mean|: remains after compensation by a single value
-  double p_varies = 1.0;      ///< F test: B_i differ more than the scatter explains
-  double p_mean = 1.0;        ///< t test: B_mean differs from zero
+  double p_varies = 1.0;      ///< p of the F test whether B_i differ more than the scatter explains
+  double p_mean = 1.0;        ///< p of the t test whether B_mean differs from zero
 
-  /// For rotary axes: sinusoids in the two directions. NaN if the targets do not cover the turn.
+  /// Sinusoids over the angle of a rotary axis. The amplitudes are NaN for a linear axis, or if the
+  /// targets do not cover the turn.
   double opposed_amplitude = 0.0;  ///< amplitude of B_i / 2 over the angle: elasticity
   double p_opposed = 1.0;
   double concordant_amplitude = 0.0;  ///< amplitude common to both directions: eccentricity

@@ -34,9 +34,10 @@ struct VdiResult {
   double P_plus, P_minus, Pa_plus, Pa_minus, Ps_max_plus, Ps_max_minus;
 };
 
-/// Computes the values of VDI/DGQ 3441:1977. A value is NaN unless every target contributes to it.
-/// `from_range` divides the range by d_n (n = 2..10; for other n the value is NaN). No errors. The
-/// text of the standard was not available: confidence M in docs/formulas.md.
+/// Computes the values of VDI/DGQ 3441:1977. A value is NaN unless every target contributes to it;
+/// a value of one direction needs only the targets approached in it. `from_range` divides the range
+/// by d_n (n = 2..10; for other n the value is NaN). No errors. The text of the standard was not
+/// available: confidence M in docs/formulas.md.
 VdiResult evaluate_vdi3441(const AxisTest& test, StandardDeviation how);
 VdiResult evaluate_vdi3441(const AxisStatistics&, StandardDeviation how);
 

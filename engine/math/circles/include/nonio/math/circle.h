@@ -53,7 +53,8 @@ struct PathCircle {
 
 /// Returns the least-squares circle through the path (geometric distances).
 PathCircle least_squares_circle(std::span<const CircleReading>, double R);
-/// Returns the pair of concentric circles with the smallest radial distance that contains the path.
+/// Returns the pair of concentric circles with the smallest radial distance that contains the path;
+/// for fewer than four readings, the least-squares circle.
 PathCircle minimum_zone(std::span<const CircleReading>, double R);
 /// Returns the mean, smallest and largest distance of the path from a given centre.
 PathCircle about(std::span<const CircleReading>, double R, std::array<double, 2> centre);
@@ -100,10 +101,13 @@ struct CircleModel {
   /// Whether a reading at this angle is too close to a reversal for the fit.
   bool leaves_out(double angle) const;
 };
-/// Sets `wanted` to the causes that readings of these directions and pitches can determine.
+/// Sets `wanted` to all causes except those that the readings cannot determine: zero change and
+/// servo mismatch unless `both_directions`, and the cyclic error of an axis whose pitch is not
+/// known.
 void all_causes(CircleModel&, bool both_directions);
 
-/// Returns the radial deviation for a cause of size 1: m/m, or m/rad.
+/// Returns the radial deviation, m, for a cause of size 1: 1 m, 1 rad (squareness), or 1 m/m (scale
+/// mismatch). The size of a bow is k R^2, m.
 double cause_at(Cause, const CircleModel&, double angle, int direction);
 
 struct CauseFit {
@@ -125,24 +129,30 @@ struct CauseFit {
   /// standard deviation of the residual of a reading; a bin averages several
   double s_reading = 0.0;
   double correlation = 0.0;  ///< correlation of adjacent bins (1 deg apart)
-  double dof = 0.0;          ///< effective degrees of freedom, smallest of all causes
+  /// effective degrees of freedom of every value; the smaller of those of the mean and of the half
+  /// difference of both directions
+  double dof = 0.0;
   double covariance(Cause a, Cause b) const;
   /// `radius_at` returns the radial deviation that the fitted causes predict, m, and `u_at` its
   /// standard uncertainty.
   double radius_at(const CircleModel&, double angle, int direction) const;
   double u_at(const CircleModel&, double angle, int direction) const;
-  std::vector<double> covariance_of{};  ///< cause_count x cause_count; 0 for causes not fitted
+  /// covariance of causes, row by row; 0 for causes that are not wanted
+  std::vector<double> covariance_of{};
 };
 
-/// Fits the causes by least squares weighted by the correlation of the residuals: the noise of the
-/// mean and of the half difference of both directions are estimated separately, each as white noise
-/// plus a first-order autoregressive process (REML). Error: too few readings.
+/// Fits the causes by least squares weighted by the correlation of the residuals. The noise of the
+/// mean and that of the half difference of both directions are estimated separately, each as white
+/// noise plus a first-order autoregressive process (REML). If fewer than a third of the bins have
+/// readings of both directions, only the direction with more bins is fitted. Error: too few
+/// readings.
 Expected<CauseFit> fit_causes(std::span<const CircleReading>, const CircleModel&);
 
 /// Estimates the bias of extreme values of a path, such as the largest of many readings, which
 /// noise always increases. Simulated paths consist of the fit and its residuals, rotated by
 /// fractions of the turn in each direction and run (by the same angle, so that noise shared by both
-/// directions stays shared). Readings that are not in the fit keep their value, with noise added.
+/// directions stays shared). Readings that are not in the fit keep their residual, reduced by the
+/// contribution of the noise, and noise is added to them.
 class CircleNoise {
  public:
   static constexpr std::size_t times = 36;
@@ -163,12 +173,13 @@ class CircleNoise {
     std::size_t first = 0, count = 0, place = 0;  ///< range of residuals_, index in this range
   };
   std::vector<CircleReading> truth_;
-  std::vector<From> from_;  ///< residual of each reading in residuals_
+  std::vector<From> from_;  ///< where `residuals_` contains the residual of each reading
   std::vector<double> residuals_;
 };
 
-/// A reversal spike: the largest residual within 5 deg after a reversal, and its width at half
-/// height.
+/// A reversal spike: the largest residual between 0.5 deg before and 5 deg after a reversal, and
+/// its width at half height. `reversal_spikes` returns one for each reversal and direction that has
+/// readings at three or more angles in this range.
 struct Spike {
   double at = 0.0;  ///< angle of the reversal, rad
   int direction = 1;
@@ -180,8 +191,8 @@ std::vector<Spike> reversal_spikes(std::span<const CircleReading>, const CircleM
                                    const CauseFit&);
 
 /// Fits the causes with a zone around reversals that is widened in steps of 1 deg from
-/// `model.leave_out` up to `most`, rad, as long as reversal spikes extend significantly beyond it.
-/// Stores the zone in `model.leave_out`.
+/// `model.leave_out` up to `most`, rad, as long as reversal spikes extend significantly beyond it
+/// and enough readings remain. Stores the zone in `model.leave_out`.
 Expected<CauseFit> fit_causes_without_spikes(std::span<const CircleReading>, CircleModel& model,
                                              double most);
 

@@ -39,8 +39,9 @@ struct ErrorCurve {
 ErrorCurve error_curve(const AxisTest& test);
 
 /// Returns the curve of a rotary axis folded into 0..2 pi with equal ends, if it covers the turn:
-/// no gap is larger than 1.5 times the largest gap between adjacent targets, and the whole curve is
-/// not longer than a turn. Positions that coincide after folding are averaged.
+/// it has at least three positions, is not longer than a turn, and the gap between its last and its
+/// first position is at most 1.5 times the largest gap between adjacent targets. Positions that
+/// coincide after folding are averaged.
 std::optional<ErrorCurve> closed_turn(const ErrorCurve& curve);
 
 struct Grid {
@@ -64,10 +65,12 @@ struct GridRule {
   std::string axis;           ///< for error messages: name of the axis
 };
 
-/// Returns the coarsest grid that contains every position of the curve, unless it is much finer
-/// than they are; else a grid of about half their smallest distance, on which the curve is
-/// interpolated. Errors name the axis: fewer than 2 targets or points; a requested step that is not
-/// an integer multiple of `unit`; more points than the control accepts, with a suggestion.
+/// Returns the grid of the requested step. Without one, it is the coarsest grid that contains every
+/// position of the curve, unless that is much finer than they are; else a grid of about half their
+/// smallest distance, on which the curve is interpolated. Errors name the axis: fewer than 2
+/// targets or points; a first point after the last target; a requested step that is not an integer
+/// multiple of `unit`, does not divide the turn or is not a power of two; more points than the
+/// control accepts, with a suggestion.
 Expected<Grid> choose_grid(const std::vector<double>& position, const GridRule& rule);
 
 /// Rounds each value to an integer number of `unit` (half away from zero, to 12 digits: 2.5 um is a

@@ -25,20 +25,20 @@ namespace nonio::math {
 double added(const LoadedTable& table, std::span<const double> at, int direction);
 
 /// Returns the sum that all tables add to `output` if the axes are at `at`; a table with an input
-/// that is not in `at` adds nothing.
+/// that is not in `at` adds nothing. An axis that is not in `direction` moves towards +.
 double added(const std::vector<LoadedTable>& tables, std::string_view output,
              const std::map<std::string, double>& at, const std::map<std::string, int>& direction);
 
-/// Returns the correction of one axis as a function of its own position: the sum of its tables,
-/// plus half of the backlash value for motion in direction +, minus half of it for motion in
-/// direction -. `present`: backlash value in the control if no table sets it. Nothing if there is
-/// no table of this axis.
+/// Returns the correction of one axis as a function of its own position: the sum of the tables
+/// whose only input is this axis, plus half of the backlash value for motion in direction +, minus
+/// half of it for motion in direction -. `present`: backlash value in the control if no table sets
+/// it. Nothing if there is no such table.
 std::optional<Correction> correction_of(const std::vector<LoadedTable>& tables,
                                         std::string_view axis, double present = 0.0);
 
-/// Checks that positions ascend, all numbers are finite, the number of values matches the points,
-/// and a table with one input that repeats has equal values at its ends. The error names the output
-/// of the table.
+/// Checks that every input has positions, positions ascend, all numbers are finite, the number of
+/// values matches the points, and a table with one input that repeats has equal values at its ends.
+/// The error names the output of the table.
 Expected<void> validate_table(const LoadedTable& table);
 
 }  // namespace nonio::math

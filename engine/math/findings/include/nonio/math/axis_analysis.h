@@ -24,15 +24,16 @@ struct AxisAnalysis {
   Quantity deviation = Quantity::deviation, position = Quantity::length;
 };
 
-/// Prepares an analysis. Error: the measurement is not one of an axis with directions of approach.
+/// Prepares an analysis. Error: the readings are not those of the measured axis, have no direction
+/// of approach, or are angles for a linear axis or lengths for a rotary one.
 Expected<AxisAnalysis> begin_axis_analysis(const AnalysisInput&);
 
 /// Contributions to the uncertainty of a value: the whole budget, or only those that do not cancel
 /// in a difference.
 enum class Made { of_all, of_environment };
 
-/// Adds a value, with U if the budget is known; the composition is recorded in the budget. A value
-/// that is not finite is omitted.
+/// Adds a value, with U if the budget is known and U is above 0; its composition is then recorded
+/// in the budget. A value that is not finite is omitted.
 void add_value(Evaluation&, const AxisAnalysis&, std::string name, double value, double U, Made);
 
 }  // namespace nonio::math

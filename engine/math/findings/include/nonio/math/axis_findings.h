@@ -24,7 +24,8 @@ namespace nonio::math {
 std::vector<Finding> axis_findings(const AxisTest&, const Observations&, const Axis* axis,
                                    double U_mean = 0.0);
 
-/// Append the findings of one topic each.
+/// This function, `scatter_findings`, `suspect_findings` and `plan_findings` append the findings of
+/// one topic each; those about scatter include those about suspect readings.
 void drift_findings(const AxisTest&, std::vector<Finding>&);
 /// Appends the findings about the reversal. `active`: backlash value of the control during the
 /// measurement, m or rad, if it is stated.
@@ -37,8 +38,8 @@ void suspect_findings(const AxisTest&, std::vector<Finding>&);
 void turn_findings(const AxisTest&, std::vector<Finding>&);
 void plan_findings(const AxisTest&, const Observations&, const Axis* axis, std::vector<Finding>&);
 
-/// Whether a deviation of this size is relevant: at least a fifth of A (of E if A is not
-/// determined).
+/// Returns whether a deviation of this size, m or rad, is relevant: at least a fifth of A (of E if
+/// A is not determined). It is also relevant if neither is determined.
 bool matters(const AxisTest&, double size);
 
 /// Whether the expanded uncertainty U is less than half of the mean reversal. Only then does a

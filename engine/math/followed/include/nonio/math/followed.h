@@ -97,8 +97,9 @@ struct FollowedAxis {
 enum class Across : bool { no, yes };  ///< yes: deviations across the axis, a straightness
 
 /// Computes the followed quantities. No errors: the result is empty if there are fewer than two
-/// complete runs or three targets, or if the readings do not scatter. material: mean temperature of
-/// the machine during the test, degC, if the file contains it.
+/// complete runs or three targets, or if the readings do not scatter. Curves need five targets and
+/// sinusoids ten; quantities that the targets do not determine are left out. material: mean
+/// temperature of the machine during the test, degC, if the file contains it.
 FollowedAxis followed_quantities(const AxisTest&, const Campaign&, const std::string& axis,
                                  std::optional<double> material, Across = Across::no);
 

@@ -60,7 +60,8 @@ struct ErrorMotion {
   double s = 0.0;                 ///< standard deviation of the asynchronous motion at one angle
   /// standard uncertainty of the mean at one angle; correlation between turns increases it
   double u_mean = 0.0;
-  double dof = 0.0;  ///< degrees of freedom of u_mean: effective number of turns minus 1
+  /// degrees of freedom of u_mean: effective number of turns minus 1, at least 1
+  double dof = 0.0;
   std::vector<double> with_once;  ///< synchronous motion with the once-per-turn part
   double synchronous_with_once = 0.0, total_with_once = 0.0;
   double fundamental() const;

@@ -71,8 +71,9 @@ struct TimeConstants {
     double c = 0.0, tau = 0.0, u_c = 0.0, u_tau = 0.0;
   };
   Answer answer = Answer::too_few;
-  std::vector<Part>
-      parts;  ///< one or two, the longest first; also for the answers too_short and unresolved
+  /// One or two time constants, the longest first; also for answers other than `resolved`, but
+  /// empty for too_few and for equal readings.
+  std::vector<Part> parts;
   double d0 = 0.0;
   double s = 0.0;        ///< standard deviation of a mean over an interval, about the curve
   double dof = 0.0;      ///< effective degrees of freedom, reduced by correlation
@@ -84,7 +85,8 @@ struct TimeConstants {
   /// Returns the distance from the final value: sum c exp(-t/tau), m.
   double rest(double t) const;
   /// A time and its standard uncertainty, s. `settled` returns the time after which abs(rest)
-  /// remains below `limit`; 0 if it is below from the start.
+  /// remains below `limit`, m; 0 if it is below from the start, without a time constant, or for a
+  /// limit that is not above 0.
   struct Time {
     double t = 0.0, u = 0.0;
   };
@@ -114,12 +116,13 @@ InTime in_time(const Observations&, std::vector<std::size_t> rows);
 /// count from the first reading. Targets that were read only once are omitted.
 std::vector<Visits> visits_of(const Observations&);
 
-/// Returns the growth over time: for each cycle, the slope over the targets of the change since the
-/// first cycle, at the mean time of the cycle. With two targets, it is the difference of their
-/// changes divided by their distance.
+/// Returns the growth over time, m/m: for each cycle that contains every target, the slope over the
+/// targets of the change since the first cycle, at the mean time of the cycle. With two targets, it
+/// is the difference of their changes divided by their distance. Empty if there is only one
+/// position.
 Track growth(const std::vector<Visits>&);
-/// Returns the change of the reversal since the first cycle: mean over the targets of (+) minus
-/// (-), for each cycle.
+/// Returns the change of the reversal since the first cycle, m: mean over the targets of (+) minus
+/// (-), for each cycle that contains every target. Empty if no target was read from both sides.
 Track reversal_change(const std::vector<Visits>&);
 
 }  // namespace nonio::math

@@ -84,7 +84,7 @@ struct Rectangle {
 /// that of the axis that moves further, and is on the diagonal itself.
 std::vector<MeasuringPath> diagonal_paths(const Rectangle& r, const MeasuringRequest& wish);
 /// Returns the path D3, from the start of D1 to half of Y at the end of X, with every second stop
-/// along X. n even.
+/// along X. `r.n` must be even.
 MeasuringPath half_diagonal_path(const Rectangle& r, const MeasuringRequest& wish);
 
 /// Step diagonals PPP NPP PNP PPN (P: the axis moves upwards, N: downwards): step in X, then Y,

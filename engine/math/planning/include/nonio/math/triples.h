@@ -114,8 +114,9 @@ enum class TripleLimit : std::uint8_t {
 
 struct TriplePlans {
   std::vector<TriplePlan> plans;  ///< the best first; empty if no plan fits
-  /// Reason if no plan fits: each limit whose removal alone would allow a plan. If there is none,
-  /// `together` contains the limits that only in combination exclude all plans.
+  /// Reason if no plan fits: each limit whose removal alone would allow a plan, or `travel` if no
+  /// plan fits even without all limits. Otherwise `together` contains all limits of the request,
+  /// because only their combination excludes every plan.
   std::vector<TripleLimit> blocked_by, together;
   std::int64_t tried = 0;  ///< number of plans that were examined
 };
@@ -136,7 +137,7 @@ double measuring_time(const TriplePlan&, const MeasuringCost&);
 
 /// Returns, for each triple and order of its legs, the cheapest plan that covers at least
 /// `least_cover` of both axes; for each number of steps the largest step that fits is tried. Empty
-/// if there is none.
+/// if there is none. Error: the request is invalid, or there are more than `most_tried` plans.
 Expected<std::vector<TriplePlan>> cheapest_plans(const TripleRequest& wish, double least_cover,
                                                  const MeasuringCost&);
 

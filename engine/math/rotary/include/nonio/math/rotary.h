@@ -38,12 +38,12 @@ struct BallCentre {
 };
 
 enum class RotaryRefusal {
-  not_finite,       ///< a coordinate or angle is not finite, or beyond 1e6 m
-  weight,           ///< a weight is not positive
-  repeated_angles,  ///< two centres have the same angle of the axis; average them first
+  not_finite,       ///< a coordinate or angle is not finite, or a coordinate is beyond 1e6 m
+  weight,           ///< a weight is not above 0 or not finite
+  repeated_angles,  ///< two centres have the same angle within a turn; average them first
   too_few,          ///< fewer than three centres
   collinear,        ///< the centres are at one point or on one line, so that no plane is determined
-  not_converging,   ///< Gauss-Newton does not converge
+  not_converging,   ///< the fit of a circle in the plane fails or does not converge
   angles_disagree,  ///< the points do not follow the encoder: wrong order, sign or measurement
 };
 
@@ -83,12 +83,12 @@ DoubleWave double_wave(const RotaryFit& fit, std::span<const BallCentre> centres
 /// there is none.
 std::string other_turning_axis(const Observations&);
 
-/// Returns the position of a rotary axis within a turn as an integer number of microradians; closer
-/// positions are the same place.
+/// Returns the position of a rotary axis within a turn, rounded to an integer number of
+/// microradians. Positions with the same number are the same place.
 long long place_in_turn(double angle);
 
-/// Returns the factor that expands a standard uncertainty to 95.45 %: 2 for many degrees of freedom
-/// (dof < 0: known sigma), Student's t for few; NaN for 0.
+/// Returns the factor that expands a standard uncertainty to 95.45 %: Student's t for dof above 0,
+/// 2 for dof < 0 (known sigma), and NaN for 0.
 double expansion_factor(int dof);
 
 /// Relation of two lines in one frame, through p and q along m and n: their shortest distance, and
@@ -101,7 +101,9 @@ struct LineRelation {
   /// Derivatives by centre (0..2) and direction (3..5) of each line.
   std::array<double, 6> distance_by_a{}, distance_by_b{}, angle_by_a{}, angle_by_b{};
 };
-/// Computes the relation. sigma_a, sigma_b: standard uncertainty of a coordinate in each fit.
+/// Computes the relation. sigma_a, sigma_b: standard uncertainty of a coordinate in each fit, m.
+/// For parallel lines (sine of the angle at most 1e-6), the distance is that of q from the first
+/// line.
 LineRelation relation_of(const RotaryFit& a, double sigma_a, const RotaryFit& b, double sigma_b);
 
 }  // namespace nonio::math

@@ -42,7 +42,8 @@ struct ChainReading {
   std::size_t ball = 0, tool = 0;
 };
 
-/// Number of axes of the chain: tables from the bed outwards, then heads from the bed outwards.
+/// Numbers of axes, balls and tools of a chain. The order of its axes is tables from the bed
+/// outwards, then heads from the bed outwards.
 struct ChainOrder {
   std::size_t tables = 0, heads = 0;
   std::size_t balls = 1, tools = 1;
@@ -60,8 +61,10 @@ struct ChainState {
 };
 
 enum class ChainRefusal {
-  not_finite,  ///< a coordinate or angle is not finite, or beyond 1e6 m; a weight is not above 0
-  too_few,     ///< there is no degree of freedom
+  /// a number of a reading is not finite, a coordinate is beyond 1e6 m, a weight is not above 0, or
+  /// a count of angles or an index of a ball or tool does not match the chain
+  not_finite,
+  too_few,         ///< there is no axis, or no degree of freedom
   not_converging,  ///< no start converges
   ambiguous,       ///< two chains with different directions fit equally well
 };
@@ -103,10 +106,12 @@ struct ChainValue {
   bool identifiable = false;
   std::vector<double> by;  ///< derivatives by the readings, in the order of `ChainFit::by`
 };
-/// Evaluates a function of the unknowns; derivatives by central differences of 1 um and 1 urad.
+/// Evaluates a function of the unknowns. Its derivatives are computed by central differences with
+/// steps of 1 um and 1 urad.
 ChainValue chain_value(const ChainFit&, const std::function<double(const ChainState&)>&);
 
-/// Returns the reading that the linear axes would show for a state.
+/// Returns the reading, m, that the linear axes would show for a state, with the angles, ball and
+/// tool of the given reading.
 Vector3 chain_reading(const ChainState&, const ChainOrder&, const ChainReading&);
 
 /// Returns the point of a line that is nearest to `to`.

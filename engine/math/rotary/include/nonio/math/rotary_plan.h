@@ -40,14 +40,16 @@ struct RotaryPlanU {
 };
 
 /// Determines the uncertainties from `trials` simulated measurements, each evaluated by fit_rotary.
-/// Errors: fewer than three balls, an invalid arc, a radius not much larger than sigma.
+/// Errors: fewer than 3 or more than 10000 balls, an invalid or too short arc, a radius of at most
+/// 100 sigma, fewer than 10 trials.
 Expected<RotaryPlanU> simulated(const RotaryPlan&, std::size_t trials, std::uint64_t seed);
 /// Computes the uncertainties from the covariance of the fit. It does not compute centre_mean and
-/// direction_mean, which are 0.
+/// direction_mean, which are 0. Errors: as `simulated`, except for the trials.
 Expected<RotaryPlanU> expected_of(const RotaryPlan&);
 
 /// Returns the smallest number of balls with which 2 u of the centre (across) and of the direction
-/// (tilt) do not exceed these limits (0: no limit). Error: `most` balls are not sufficient.
+/// (tilt) do not exceed these limits, m and rad (0: no limit). Errors: `most` balls are not
+/// sufficient, or `expected_of` reports an error.
 Expected<std::size_t> cheapest(RotaryPlan, double U_centre, double U_direction,
                                std::size_t most = 360);
 

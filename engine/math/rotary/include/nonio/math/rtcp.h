@@ -74,7 +74,8 @@ struct RtcpFit {
   double s = 0.0;  ///< standard deviation of a reading from the residuals; 0 if dof is 0
 };
 
-/// Fits the axis. Readings may be in any order; at least one line.
+/// Fits the axis of the machine. The readings may be in any order and must contain at least one
+/// line.
 tl::expected<RtcpFit, RtcpRefusal> fit_rtcp(const std::vector<RtcpReading>&, const RtcpWish&);
 
 }  // namespace nonio::math

@@ -24,14 +24,15 @@ namespace nonio::math {
 struct SphereFit {
   std::array<double, 3> centre{};
   double radius = 0.0;
-  std::array<double, 3> cofactor{};  ///< variance of a coordinate for s = 1 m
+  std::array<double, 3> cofactor{};  ///< variance of each coordinate of the centre for s = 1 m
   double rss = 0.0;                  ///< residual sum of squares, m^2
   int dof = 0;
   std::vector<double> residual;  ///< residual of each point, m
 };
 
-/// Fits a sphere; `radius`: its stated value, m. Error: the points do not determine a sphere,
-/// because they are too few, in one plane or on too small a cap, or coordinates are not finite.
+/// Fits a sphere, with the stated `radius`, m, if it is given. Error: the points do not determine a
+/// sphere, because they are too few, in one plane or on too small a cap, or coordinates are not
+/// finite or beyond 1e6 m.
 Expected<SphereFit> fit_sphere(std::span<const std::array<double, 3>> touches,
                                std::optional<double> radius = std::nullopt);
 

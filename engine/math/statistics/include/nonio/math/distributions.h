@@ -18,8 +18,8 @@ double binomial_lower(int count, int trials, double p);
 /// Returns found/scatter for a test; 0 if both are 0 (readings without scatter that do not differ),
 /// so that NaN only results from unknown values.
 double test_ratio(double found, double scatter);
-/// Whether p < level. NaN counts as significant: the test was not possible, and must not be
-/// ignored; evidence that is NaN then stops its campaign.
+/// Returns whether p < level. NaN counts as significant, because a test that was not possible must
+/// not be ignored: a finding whose evidence is NaN then stops the evaluation of its campaign.
 inline bool significant(double p, double level) { return !(p >= level); }
 /// Returns k with P(|T| > k) = 4.55 %, so 2 for many degrees of freedom; NaN if they are not
 /// positive.

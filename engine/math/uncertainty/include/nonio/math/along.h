@@ -7,7 +7,8 @@
 #include "nonio/sdk/campaign.h"
 #include "nonio/sdk/observations.h"
 
-/// Treats a diagonal between the corners `from` and `to` as one line.
+/// Functions that treat a diagonal between the corners `from` and `to` of a measurement as one
+/// line.
 namespace nonio::math {
 
 /// Returns the axes whose ends differ, sorted by name; for a face of a volume the third axis does

@@ -53,7 +53,7 @@ struct BudgetLine {
   std::vector<double> length;         ///< distance of each reading from the zero; m
   bool zeroed = false;                ///< whether its first reading is 0 by definition
   std::optional<double> expansion{};  ///< expansion coefficient of the machine along the line, 1/K
-  std::string expansion_keys{};       ///< manifest keys that state it
+  std::string expansion_keys{};       ///< manifest key that is missing for `expansion`
   std::size_t group = 0;  ///< lines of one measurement share errors that are common to a line
   /// For a fit whose residuals give the repetition: whether this line's readings are among them.
   bool in_residuals = true;
@@ -125,15 +125,17 @@ std::vector<double> reading_times(const Observations&);
 ReadingModel reading_model(const Campaign&, const Environment&, std::vector<BudgetLine>);
 
 /// Sets the expansion coefficient of the machine along a direction: sum of c^2 alpha over the axes.
+/// If it is not stated for an axis, only `expansion_keys` is set, to the missing key.
 void put_expansion(BudgetLine&, const Campaign&, std::span<const std::string> axes,
                    std::span<const double> direction);
 
 /// One result with its complete uncertainty.
 struct Expanded {
-  double u = 0.0;              ///< combined standard uncertainty
-  double k = 2.0;              ///< coverage factor of U, or of the repeatability if U is absent
-  double dof = INFINITY;       ///< effective degrees of freedom
-  std::optional<double> U;     ///< expanded uncertainty; absent if a contribution was not stated
+  double u = 0.0;         ///< combined standard uncertainty
+  double k = 2.0;         ///< coverage factor of U, or of the repeatability if U is absent
+  double dof = INFINITY;  ///< effective degrees of freedom
+  /// expanded uncertainty; absent if a contribution was not stated or u is 0
+  std::optional<double> U;
   double repeatability = 0.0;  ///< expanded uncertainty by repetition alone
 };
 
@@ -153,11 +155,11 @@ class BudgetOf {
   /// Combines the uncertainty of a result. u_repetition: standard uncertainty of this result by
   /// repetition.
   Expanded expand(double u_repetition, const Shares&) const;
-  /// Returns a value with U and k, or with its repeatability if U is not known, and records it in
-  /// the budget.
+  /// Returns a value with U and k and records it in the budget. If U is not known, the value has
+  /// its repeatability instead and is not recorded.
   Value value(std::string name, double v, Quantity, double u_repetition, const Shares&);
-  /// Sets the uncertainty of each point of a curve. All points have the same coverage factor, the
-  /// largest of all.
+  /// Sets U of each point of a curve, or its repeatability if a contribution was not stated. All
+  /// points have the same coverage factor, the largest of all.
   void put(Series&, std::span<const double> u_repetition, std::span<const Shares>) const;
 
   const UncertaintyBudget& budget() const { return budget_; }

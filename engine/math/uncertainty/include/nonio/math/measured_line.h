@@ -47,7 +47,8 @@ struct MeasuredLine {
   double u_mean(int direction = 0) const;
   double mean_reversal() const;
   /// Returns the visits that contribute to the means from this direction, or if `direction` is 0,
-  /// to the means of both directions, sorted by time.
+  /// to the means of both directions, sorted by time. The first stop has no visits if the line is
+  /// `zeroed`.
   std::vector<BudgetLine::Visit> visits(int direction) const;
   /// Returns the index of the stop at this position; the number of stops if there is none.
   std::size_t find(double position) const;

@@ -12,9 +12,9 @@
 namespace nonio::math {
 
 struct ProbedPlaces {
-  std::vector<std::array<double, 3>> at;  ///< m, in the order in which they were read
+  std::vector<std::array<double, 3>> at;  ///< positions, m, in the order in which they were read
   std::array<double, 3> middle{};         ///< point from which squareness and scale errors grow
-  double radius = 0.0;                    ///< largest distance of a place from it
+  double radius = 0.0;                    ///< largest distance of a place from `middle`, m
   /// Bound of the squareness and scale differences of the linear axes, rad, if it is known; its
   /// manifest key.
   std::optional<double> linear_axes{};

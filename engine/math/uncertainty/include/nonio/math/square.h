@@ -44,7 +44,7 @@ std::vector<SquareLines> squares_of(const Campaign&);
 struct Squareness {
   double value = 0.0;                 ///< squareness of the machine, rad
   std::optional<double> of_square{};  ///< g, if it was turned over; its u is that of `value`
-  double u = 0.0;                     ///< standard uncertainty by repetition; 0: no repetition
+  double u = 0.0;  ///< standard uncertainty by repetition; 0: a line has no repetition
   Shares shares;
   ReadingModel model;
   /// largest standard uncertainty of a reading, and its degrees of freedom, for the budget
@@ -52,9 +52,9 @@ struct Squareness {
   std::vector<Finding> findings;  ///< limits of the manifest that the readings exceed
 };
 
-/// Reason why there is no squareness, and the measurement: `one-line`, `unknown` (neither turned
-/// over nor its error stated), `too-few`, `incomplete`. `all` (below): observations of all
-/// measurements of the campaign.
+/// Reason why there is no squareness: `one-line`, `unknown` (neither turned over nor its error
+/// stated), `too-few` or `incomplete`. `which` is the name of the square for the first two reasons,
+/// else the id of the measurement. `all` (below): observations of all measurements of the campaign.
 struct NoSquareness {
   std::string why;
   std::string which;

@@ -27,15 +27,16 @@ namespace nonio::math {
 /// available (docs/uncertainty.md, M).
 struct Budget {
   double U_DEV = 0.0;   ///< contribution of the measuring instrument
-  double U_MIS = 0.0;   ///< contribution of its misalignment to the axis
+  double U_MIS = 0.0;   ///< contribution of the misalignment of the beam relative to the axis
   double U_M = 0.0;     ///< contribution of the temperature measurement of the machine
   double U_E = 0.0;     ///< contribution of the machine's expansion coefficient
   double U_MD = 0.0;    ///< contribution of the temperature of a device with a length of its own
   double U_ED = 0.0;    ///< contribution of the expansion coefficient of such a device
   double U_EVE = 0.0;   ///< contribution of environmental variation, the drift test
-  double length = 0.0;  ///< measured length to which they apply
+  double length = 0.0;  ///< measured length to which the contributions apply, m or rad
   bool rotary = false;  ///< if true, only U_DEV and U_EVE exist
-  DriftShare seen;      ///< possible contribution of drift that these readings do not exclude
+  /// possible contribution of drift that these readings do not exclude; 0 if U_EVE is 0
+  DriftShare seen;
   /// Returns S, the contributions that do not average out over the approaches: root of the sum of
   /// squares of all except U_EVE.
   double systematic() const;
@@ -46,8 +47,9 @@ struct BudgetOrGap {
   std::vector<std::string> missing;  ///< manifest keys that are required for the budget but missing
 };
 
-/// Returns the budget stated by the manifest; nothing is assumed for missing keys. environment:
-/// that of the campaign, or as extended by the readings (limits_held).
+/// Returns the budget stated by the manifest, or only the keys that are missing for it, because
+/// nothing is assumed for them. environment: that of the campaign, or as extended by the readings
+/// (limits_held).
 BudgetOrGap uncertainty_budget(const Campaign&, const Environment&, const std::string& axis,
                                const AxisTest&);
 
@@ -59,7 +61,7 @@ UncertaintyBudget contributions_of(const Budget&, const std::string& axis, bool 
 std::vector<double> shares_of(const Budget&, double U, bool systematic);
 
 /// Returns the smallest number of readings in a mean, over targets and directions that have
-/// readings.
+/// readings; 0 if there are none.
 std::size_t approaches_per_mean(const AxisTest&);
 
 /// Expanded uncertainties (k = 2) of the results of ISO 230-2; m or rad. n: approaches in each

@@ -77,7 +77,7 @@ struct DirectStraightness : MeanCurve {
 struct DiagonalReadings {
   double Lx = 0.0, Ly = 0.0;
   std::size_t n = 0;
-  GridLine D1, D2;              ///< (0, 0) -> (Lx, Ly), (0, Ly) -> (Lx, 0)
+  GridLine D1, D2;              ///< diagonals from (0, 0) to (Lx, Ly), and from (0, Ly) to (Lx, 0)
   std::vector<GridLine> third;  ///< further lines, which may determine what two diagonals do not
   /// Positioning of X on one line, or on two lines (which determine yaw), and of Y, for each
   /// direction of approach in which lines were read.
@@ -91,7 +91,8 @@ struct DiagonalReadings {
 struct KnownCurve {
   std::vector<double> value, u;
   std::vector<Shares> shares;
-  /// rms over the inner points of u, for independent noise of 1 in the readings of lines
+  /// rms over the inner points of u, for independent noise of 1 in the readings of lines and of
+  /// direct straightness
   double gain = 0.0;
 };
 
@@ -128,8 +129,8 @@ struct DiagonalResult {
   std::size_t unknowns = 0, rank = 0;
   std::size_t nullity() const { return unknowns - rank; }
   bool separable() const { return rank == unknowns; }
-  KnownCurve EYX, EXY;                   ///< end-point gauge; empty if not separable
-  KnownCurve EYX_even, EXY_even, q_odd;  ///< always given; q = c EXY + s EYX
+  KnownCurve EYX, EXY;  ///< straightnesses in the end-point gauge; empty if not separable
+  KnownCurve EYX_even, EXY_even, q_odd;  ///< parts that are always determined; q = c EXY + s EYX
   LsqGauge lsq;
   std::vector<double> d1, d2;  ///< readings of the diagonals minus positioning and yaw
   KnownCurve ECX;              ///< yaw that was subtracted; empty if there was none
@@ -146,21 +147,24 @@ struct DiagonalResult {
   Closure closure;
   /// For a direct straightness that is not `whole`, if there is a model of the readings.
   std::optional<Agreement> EYX_agrees, EXY_agrees;
-  /// Standard deviation of a mean from the residuals of the fit, with its degrees of freedom.
+  /// Standard deviation of a mean from the residuals of the fit, m, with its degrees of freedom. If
+  /// `noise_known`, it is instead the dimensionless ratio of the residuals to their given
+  /// uncertainty.
   double residual_u = 0.0;
   std::size_t dof = 0;
-  /// every u was given; if not, all are taken as equal, with the value residual_u
+  /// every u was given; if not, those of all lengths are taken as equal, with the value residual_u
   bool noise_known = false;
 };
 
-/// Solves for squareness and straightness. Error: the curves do not have the lengths that the grid
-/// requires. The lines of the model, if there is one, are Y, X, ECX, D1, D2, the third lines, EYX,
-/// EXY, with one reading for each mean; a straightness is followed by the one with the straightedge
-/// turned over.
+/// Solves for squareness and straightness. Error: the grid or a curve is invalid, the readings do
+/// not determine what two diagonals do, or the model has another number of readings. The lines of
+/// the model, if there is one, are Y, X, ECX, D1, D2, the third lines, EYX, EXY, with one reading
+/// for each mean; a straightness is followed by the one with the straightedge turned over.
 Expected<DiagonalResult> solve_diagonals(const DiagonalReadings&, const ReadingModel* = nullptr);
 
 /// Bounds of EYX that follow from a bound abs(EXY_odd) <= G (m), with EYX_odd = (q_odd - c
-/// EXY_odd)/s: EYX_even + (q_odd -+ c G)/s at each stop, m. Derived, docs/formulas.md.
+/// EXY_odd)/s: EYX_even + (q_odd -+ c G)/s at each stop, m. At both ends and at mid-travel, where
+/// the odd part is 0, both bounds are equal. Derived, docs/formulas.md.
 struct Band {
   std::vector<double> low, high;
 };

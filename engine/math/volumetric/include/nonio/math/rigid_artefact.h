@@ -66,7 +66,7 @@ struct ArtefactLines {
   struct Of {
     std::size_t placement, coordinate;
   };
-  std::vector<Of> of;        ///< placement and coordinate of each line except the last
+  std::vector<Of> of;        ///< placement and coordinate of each line except that of stated values
   std::size_t unknowns = 0;  ///< number of shared unknowns
   bool states = false;       ///< whether the last line contains stated values
 };

@@ -98,7 +98,8 @@ struct RigidValue {
 struct RigidCurve {
   std::string name;
   std::size_t axis = 0;
-  std::vector<double> position, value, u;  ///< m; for angles value and u in rad
+  /// positions, values and their u, m; values and u of angles in rad
+  std::vector<double> position, value, u;
   std::vector<Shares> shares;
 };
 

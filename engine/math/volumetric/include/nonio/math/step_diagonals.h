@@ -115,14 +115,15 @@ struct ShapeContrast {
 };
 
 struct StepSolution {
-  std::array<StepCurve, 9> curves;      ///< EXX EYX EZX EXY EYY EZY EXZ EYZ EZZ
+  std::array<StepCurve, 9> curves;      ///< in the order EXX EYX EZX EXY EYY EZY EXZ EYZ EZZ
   std::array<Estimated, 3> squareness;  ///< C0Y, B0Z, A0Z, rad
-  /// Number of unknowns, which are function values and set-up angles, and their rank, which is at
-  /// most 9n + 8 for n steps along each axis.
+  /// Number of unknowns, which are function values and, if the set-up is not known, set-up angles
+  /// (9n + 8 for n steps along each axis and four passes), and their rank.
   std::size_t unknowns = 0, rank = 0;
   double u_reading = 0.0;  ///< standard uncertainty of a reading that was used, m
   double dof = 0.0;        ///< degrees of freedom of u_reading, if from the residuals
-  /// Set-up angle of each pass, rad; empty if it is not separable from the scales.
+  /// Set-up angle of each pass, rad; empty if the set-up is known, or if the angles are not
+  /// separable from the scales.
   std::vector<double> set_up;
   std::vector<ShapeContrast> shapes;  ///< comparison with each axis series
   bool scales_known() const { return curves[0].known && curves[4].known && curves[8].known; }
@@ -133,23 +134,26 @@ struct StepSolution {
 /// then the series.
 Expected<StepSolution> solve_step_diagonals(const StepDiagonals&, const std::vector<AxisSeries>&,
                                             const StepChoices&, const ReadingModel* = nullptr);
-/// Solves by averaging; every reading must exist. The lines of the model are the passes.
+/// Solves by averaging. Error: one of the four body diagonals or a reading is missing. The lines of
+/// the model, if there is one, are the passes.
 Expected<StepSolution> average_step_diagonals(const StepDiagonals&, const StepChoices&,
                                               const ReadingModel* = nullptr);
 
 /// Tests whether the check sums (`check` above) are 0 and do not change over the steps.
 struct StepChecks {
   std::array<double, 3> constant{};  ///< mean check sum of the moves of X, Y, Z, m
-  double p_constant = 1.0;           ///< p of the most significant one, times 3
-  double trend = 0.0;                ///< change per step, m
+  double p_constant = 1.0;           ///< p of the most significant constant, times 3, at most 1
+  double trend = 0.0;                ///< change of the check sums per step, m
   double p_trend = 1.0;
-  double u_reading = 0.0;  ///< standard deviation of a reading, from their scatter, m
+  /// standard deviation of a reading, from the scatter of the check sums, m
+  double u_reading = 0.0;
   std::size_t count = 0;
 };
 StepChecks check_step_diagonals(const StepDiagonals&);
 
 /// Returns the mean total of the diagonals minus its prediction from three axis series (ascending),
-/// m: mean D - sum of (T_a/L) E_aa(T_a). Nothing if an axis or a total is missing.
+/// m: mean D - sum of (T_a/L) E_aa(T_a). Nothing if a total is missing, or an axis has no series
+/// over more than 90 % of its travel; E_aa(T_a) is scaled to the whole travel.
 std::optional<Estimated> close_lengths(const StepDiagonals&, const std::vector<AxisSeries>&,
                                        double u_reading);
 

@@ -13,9 +13,9 @@
 ///     e(p) - e(middle of the volume)
 ///     size = |e|,  u(size)^2 = n' V n with n = e/|e| and the covariance V of e
 ///
-/// The largest size is that of the largest node. Noise increases it by about u^2/(2 size) for each
-/// direction perpendicular to e; if size < 5 u this bias is at least a tenth of u, and the size is
-/// not given.
+/// `VolumeMap::size` is the largest size over the nodes. Noise increases it by about u^2/(2 size)
+/// for each direction perpendicular to e; if size < 5 u this bias is at least a tenth of u, and the
+/// size is not given.
 namespace nonio::math {
 
 struct VolumeNode {
@@ -25,9 +25,10 @@ struct VolumeNode {
 };
 
 struct VolumeMap {
-  std::vector<VolumeNode> nodes;  ///< X slowest, Z fastest; empty: not determined everywhere
-  std::size_t parts = 0;          ///< number of intervals of each axis that moves
-  std::size_t largest = 0;        ///< index of the node with the largest error
+  /// nodes with X slowest and Z fastest; empty: not determined everywhere
+  std::vector<VolumeNode> nodes;
+  std::size_t parts = 0;    ///< number of intervals of each axis that moves
+  std::size_t largest = 0;  ///< index of the node with the largest error
   double size = 0.0, u_size = 0.0;
   Shares shares_size;
   bool known() const { return !nodes.empty(); }
@@ -37,6 +38,7 @@ struct VolumeMap {
 std::vector<Corner> lattice(const Corner& low, const Corner& high, std::size_t parts);
 
 /// Interpolates the error between the nodes of a map, linearly in each coordinate, as controls do.
+/// Outside of the volume, it returns the error at the nearest point of its surface.
 Corner interpolated(const VolumeMap&, const Corner& at);
 
 }  // namespace nonio::math
