@@ -130,7 +130,8 @@ storage::Json json_of(const TableRow& row) {
   return out;
 }
 
-/// Writes the part programs of each row into a folder such as 01-56-33-65. Returns the exit status.
+/// Writes the part programs of each row into a folder that is named by the number of the row and
+/// its triple a, b, c, for example 01-56-33-65. Returns the exit status.
 int write_row_programs(const std::vector<TableRow>& rows, const TableWish& wish,
                        const math::TripleRequest& w, const Common& common) {
   if (wish.control.empty()) return complain("part programs: --control is required");

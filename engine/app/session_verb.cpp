@@ -166,7 +166,8 @@ class Session {
                    {{"files", merged_.with.files}}));
     tell_findings(*open_, merged_.findings);
     if (merged_.files.empty()) return refused("table", Error{say("session.table.refused")});
-    // The probe and the verdict also use this state.
+    // Sets the compensation that was active during the measurement in the campaign `open_`, because
+    // the next steps of the session, the sign probe and the verdict, need it too.
     Settings settled = options();
     std::vector<Finding> repeated;
     if (auto stated = tables::state_by_backup(open_->read, *present_.control, present_.files,

@@ -65,8 +65,8 @@ class FittedBefore {
   }
 
  private:
-  // Largest number of stored entries, so that steps back and forth need no new fit. An entry takes
-  // 8 MB for 1,000,000 readings.
+  // Largest number of stored entries. Several are stored, so that calculations with the residuals
+  // need no new fit after undo and redo. An entry takes 8 MB for 1,000,000 readings.
   static constexpr std::size_t most = 8;
   std::deque<std::pair<std::string, std::shared_ptr<SharedColumn>>> all_;
 };

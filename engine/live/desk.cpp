@@ -195,7 +195,8 @@ Answer Desk::state(bool may_write) {
 }
 
 /// Returns the fit of a part and waits for it, at most 2 s; the status is 409 if it is not ready
-/// then. If `picture`, a fit whose places are not computed yet is accepted as well.
+/// then. If `picture`, an answer is accepted as soon as the curves are fitted, before the residuals
+/// have been tested for remaining structure (member `places`).
 Answer Desk::fit(const std::string& part, const Request& request, bool picture) {
   std::unique_lock lock(mutex_);
   const auto is_known = [&] {

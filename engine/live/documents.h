@@ -10,9 +10,9 @@ namespace nonio::live {
 /// lines added to its history. An error if nothing differs.
 Expected<std::string> save(Bench& bench, const storage::Json& request);
 
-/// Returns what `save` would change as {"diff": "--- campaign.toml\
-/// +++ ..."}, and the model that campaign.toml on the disk states now, or its first error. The
-/// difference is empty if the file has changed since it was read.
+/// Returns what `save` would change, as `diff` in the unified format, and the model that
+/// campaign.toml on the disk states now, or its first error. The difference is empty if the file has
+/// changed since it was read.
 Expected<std::string> difference(Bench& bench, const storage::Json& request);
 
 /// Returns the bytes of the file that a run would write with the tried model: "page" of model-html

@@ -246,8 +246,8 @@ void SiteParts::complete(config::MachineRecords& records) const {
 }
 
 Expected<void> SiteParts::keep(const evaluation::RunLabel& run) const {
-  // The inventory is written before the copies: if the run ended in between, the next one would
-  // report copies without an inventory as a lost inventory.
+  // The inventory is written before the copies. In the opposite order, if the run ended in between,
+  // the next run would find copies without an inventory and report the inventory as lost.
   NONIO_TRY(const auto listed, storage::is_there(out_ / inventory_name));
   if (!listed)
     if (auto begun = put_inventory(run, parts_); !begun) return begun;

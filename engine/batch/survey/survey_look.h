@@ -20,8 +20,8 @@ class ChangeDetector {
  public:
   ChangeDetector(const SurveyInput& input, process::SignsOfLife& signs);
 
-  /// Returns the state of a campaign whose folder is known, and whose id if its manifest states
-  /// none. `rough`: do not parse the manifest, because that crashed the process before.
+  /// Returns the state of a campaign. `known` contains its folder, and also its id if the manifest
+  /// states none. `rough`: do not parse the manifest, because that crashed the process before.
   CampaignState at(const CampaignState& known, bool rough);
   /// Returns an issued number that the register does not contain; empty if there is none.
   const std::string& unknown_number() const { return unknown_; }

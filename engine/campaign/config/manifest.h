@@ -208,7 +208,7 @@ Checked<Settings> settle_options(const Info& plugin, const RawOptions& site,
                                  const std::vector<Option>& others = {});
 
 /// Parses a TOML file of templates/ into settings. A key of a nested table has the name
-/// "table.key".
+/// `table.key`.
 Expected<Settings> parse_settings(std::string_view text, const std::string& file);
 
 /// Returns the options of a plugin from the texts of a command line, with defaults for those that

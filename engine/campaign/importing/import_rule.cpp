@@ -34,8 +34,8 @@ Expected<std::vector<Token>> tokens_of(const std::string& pattern) {
       return fail(
           "pattern: expected {name} of small letters, or {*} for what does not count, found \"" +
           pattern.substr(i) + "\"");
-    // The end of an axis or date can be recognized by its form. A name that still has two readings
-    // is not imported.
+    // The end of an axis or date can be recognized by its form. A file is not imported if its name
+    // can still be divided among the placeholders in two ways.
     const auto bounded = [](const std::string& place) {
       return place == "axis" || place == "date";
     };

@@ -554,7 +554,8 @@ class SchemaWriter {
 
   Loaded loaded_;
   JsonWriter json_;
-  std::string_view by_name_;  ///< the key that distinguishes the tables being written
+  /// key whose default depends on the name of the table that is being written; empty: none
+  std::string_view by_name_;
 };
 
 }  // namespace

@@ -539,7 +539,8 @@ class OfMachine {
   const reports::MachineHistory& d_;
   const LastRun& last_run_;
   std::map<std::string, std::vector<AxisChange>> causes_;
-  /// axes that have a line about values out of their limit or a forecast
+  /// axes for which the worklist already has an entry about values out of their limit, or about a
+  /// forecast
   std::map<std::string, bool> told_;
   /// axis and quantity of values that are out of their limit or indeterminate
   std::set<std::pair<std::string, std::string>> open_;

@@ -121,8 +121,9 @@ Iso230Uncertainty iso230_2_uncertainty(const Budget& b, std::size_t n, double k)
   return U;
 }
 
-// Computes VDI from ISO with k = 3: Pa is M and U_j is |B_i|; Ps = 6 S and P with 3 S correspond to
-// k = 3.
+// Takes the uncertainties of VDI/DGQ 3441 from those of ISO 230-2, because Pa corresponds to M, U_j
+// to |B_i|, Ps_j = 6 s_j to R_i and P to A. The factor k is 3, because Ps_j and P contain 3 s_j on
+// each side of the mean.
 VdiUncertainty vdi3441_uncertainty(const Budget& b, std::size_t n) {
   const Iso230Uncertainty iso = iso230_2_uncertainty(b, n, 3.0);
   return {iso.A, iso.M, iso.R_plus, iso.R_plus, iso.B, iso.B};

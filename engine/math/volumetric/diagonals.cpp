@@ -97,8 +97,8 @@ Expected<void> check(const DiagonalReadings& r) {
   return {};
 }
 
-/// Rows A theta = y + N e, with theta = (f_1..f_{n-1}, g_1..g_{n-1}, k Ly, slopes of directly
-/// measured straightness).
+/// The linear equations A theta = y + N e for theta = (f_1..f_{n-1}, g_1..g_{n-1}, k Ly, slopes of
+/// directly measured straightness). e: errors of the readings; other symbols as in diagonals.h.
 class System {
  public:
   explicit System(const DiagonalReadings& r) : r_(r), n_(r.n) {

@@ -24,8 +24,9 @@ constexpr double least_u = 1e-9;  // m, m/m; smallest standard uncertainty used 
 
 Vector3d vector_of(const Corner& c) { return {c[0], c[1], c[2]}; }
 
-/// Returns the position of a ball. A coordinate that was not measured is set to 0, a plane
-/// perpendicular to it: a tilt of that plane changes the other coordinates in second order only.
+/// Returns the position of a ball. A coordinate that was not measured is set to 0, as if all balls
+/// were in the plane perpendicular to it, because a tilt of the artefact out of this plane changes
+/// the other coordinates in second order only.
 Vector3d place_of(const ArtefactPlacement& p, std::size_t i) {
   Vector3d at = vector_of(p.at[i]);
   for (std::size_t k = 0; k < 3; ++k)

@@ -10,8 +10,8 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// One move of an axis over its interval i, as a difference of two readings: +1 after, -1 before;
-/// the reading before the first move is the zero of the pass.
+/// One move of an axis over its interval i. Its size is the reading after the move minus the
+/// reading before it; the reading before the first move is the zero of the pass.
 struct Increment {
   std::size_t pass = 0, after = 0;  ///< number of moves of the pass up to and including this one
 };

@@ -50,7 +50,8 @@ struct CourseModel {
   void add(const MatrixXd& more, const std::vector<Quantity>& quantities);
 };
 
-/// Returns the value of `CourseNoise::scatter` with the largest evidence for these columns.
+/// Returns which of the values in `CoursePool::scatters` gives the largest evidence for these
+/// columns, as the value of `CourseNoise::scatter`.
 double most_likely_scatter(const CourseData& data, const CourseNoise& noise,
                            const CourseModel& model);
 

@@ -349,9 +349,9 @@ std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
   const std::size_t n = y.size();
   if (n < 10) return {};
   const std::vector<double> e = polished(r, y);
-  // Subtracting medians also removes noise: by a measured factor of 1.1 to 1.25 with 4 to 10
-  // readings per target.
   const double display = digit_of(o) / std::sqrt(12.0);
+  // The factor 1.2 corrects for the noise that the subtraction of medians removes: with 4 to 10
+  // readings per target, it reduces the scatter by a measured factor of 1.1 to 1.25.
   const double s_rough = std::max(1.2 * math::robust_deviation(e), display);
   if (!(s_rough > 0.0)) return {};
   std::vector<double> weight(n, 1.0);

@@ -208,7 +208,8 @@ class Search {
 Noise with_zero(const Observations& o, const std::vector<Term>& terms,
                 const std::vector<double>& weight, const Noise& noise) {
   // docs/dev/constants.md, M28.
-  // bonus for a random zero, because an uncertainty that is too small is worse than one too large
+  // smallest decrease of -2 ln likelihood for which a random zero or a stronger correlation is
+  // accepted; it is small, because an uncertainty that is too small is worse than one too large
   constexpr double worth = 1.5;
   constexpr double no_sign = 1.2;  // score below which a gain of `worth` is improbable
   // docs/dev/constants.md, M31.

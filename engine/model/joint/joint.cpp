@@ -418,7 +418,8 @@ class JointSearch {
     const double found = of_cells(left)(0);
     const VectorXd chance = of_cells(flipped());
     double mean = 0.0, squares = 0.0, n = 0.0;
-    // odd copies have the signs of whole passes flipped
+    // Only the columns of `flipped` with an odd index are used: in these, the signs of whole passes
+    // are flipped.
     for (Index k = 1; k < shuffles; k += 2) mean += chance(k), ++n;
     mean /= n;
     for (Index k = 1; k < shuffles; k += 2) squares += std::pow(chance(k) - mean, 2);

@@ -274,7 +274,7 @@ void print_loading() {
   filter.add(SCMP_ACT_ERRNO(EAGAIN), "clone", masked(0, CLONE_THREAD, CLONE_THREAD));
   filter.add(SCMP_ACT_ERRNO(EPERM), "prlimit64", is_not(0, 0));
   // memory to which no limit applies: shared without a file, or growing like a stack
-  constexpr unsigned flags = 3;  // argument of mmap
+  constexpr unsigned flags = 3;  // index of the argument `flags` of mmap, from 0
   constexpr scmp_datum_t shared = MAP_SHARED | MAP_ANONYMOUS;
   filter.add(SCMP_ACT_KILL_PROCESS, "mmap", masked(flags, shared, shared));
   filter.add(SCMP_ACT_KILL_PROCESS, "mmap", masked(flags, MAP_GROWSDOWN, MAP_GROWSDOWN));

@@ -32,8 +32,8 @@ struct RotaryPlan {
 struct RotaryPlanU {
   double across = 0.0;         ///< standard uncertainty of the worse coordinate across the axis
   double along = 0.0;          ///< standard uncertainty of the coordinate along the axis
-  double centre_rms = 0.0;     ///< root mean square distance of the centre in space
-  double centre_mean = 0.0;    ///< mean distance of the centre in space
+  double centre_rms = 0.0;     ///< root mean square distance between fitted and true centre
+  double centre_mean = 0.0;    ///< mean distance between fitted and true centre
   double tilt = 0.0;           ///< standard uncertainty of the worse tilt
   double direction_rms = 0.0;  ///< root mean square angle between fitted and true axis
   double direction_mean = 0.0;
