@@ -136,7 +136,12 @@ TableForecast forecast_of(const Campaign& campaign, const Measurement& m, const 
   };
   const auto will = math::after(raw, c);
   const auto U = math::compensated_uncertainty(campaign, m, readings, test, true);
-  const double U_B = measured.bidirectional() && will.B() < was.B() ? U.B_mean : 0.0;
+  // U of the reversal counts where these tables change it by more than their last digit.
+  constexpr double last_digit = 1e-7;  // m or rad
+  const bool compensates_reversal =
+      std::any_of(measured.position.begin(), measured.position.end(),
+                  [&](double x) { return std::fabs(c(x, 1) - c(x, -1)) > last_digit; });
+  const double U_B = measured.bidirectional() && compensates_reversal ? U.B_mean : 0.0;
   f.E[1] = math::predicted_after(was.E(), will.E(), std::max(U.E, U_B));
   f.B[1] = math::predicted_after(was.B(), will.B(), U_B);
   f.M[1] = math::predicted_after(was.M(), will.M(), U.M);

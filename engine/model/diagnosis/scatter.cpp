@@ -188,7 +188,15 @@ std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
     const double s_others = 1.4826 * math::median(others);
     const double F = math::test_ratio(s * s, std::max(s_others * s_others, display));
     // A scatter from the median has the precision of one from 0.37 times as many squares.
-    const double p = math::f_upper(F, 0.37 * k, 0.37 * (n - k)) * runs;
+    double p = math::f_upper(F, 0.37 * k, 0.37 * (n - k)) * runs;
+    // Residuals of short passes depend on each other, so that medians alone differ by chance. Half
+    // of the squares are independent; outliers of the other runs count as 3.5 deviations.
+    double of_others = 0.0;
+    for (const double x : others) of_others += std::pow(std::min(x, 3.5 * s_others), 2);
+    p = std::max(
+        p, math::f_upper(math::test_ratio(squares / k, std::max(of_others / (n - k), display)),
+                         0.5 * k, 0.5 * (n - k)) *
+               runs);
     if (F < 4.0 || p > 1e-4 || (worst && p >= worst->p)) continue;
     worst = Place{{Factor::run}, squares / all, p, s, static_cast<double>(run), Quantity::count};
   }
