@@ -9,6 +9,7 @@
 #include <string>
 
 #include "dense.h"
+#include "diagonal_readings.h"
 #include "nonio/math/distributions.h"
 
 namespace nonio::math {
@@ -19,83 +20,10 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 using Row = Eigen::RowVectorXd;
 
-constexpr std::size_t most_stops = 1000;
 /// smallest pivot that counts for the rank, relative to the largest one
 constexpr double rank_threshold = 1e-10;
 // docs/dev/constants.md, A6.
 constexpr double closure_limit = 4.0;  ///< limit of the closure error, in standard uncertainties
-
-Expected<void> check_curve(const MeanCurve& curve, std::size_t length, const std::string& what) {
-  if (curve.mean.size() != length)
-    return fail(what + ": expected " + std::to_string(length) + " means, found " +
-                std::to_string(curve.mean.size()));
-  for (const double v : curve.mean)
-    if (!std::isfinite(v)) return fail(what + ": expected numbers, found one that is not finite");
-  if (!(curve.u >= 0.0)) return fail(what + ": expected an uncertainty that is not negative");
-  return {};
-}
-
-Expected<void> check_line(const GridLine& line, std::size_t n, const std::string& what) {
-  if (auto ok = check_curve(line, line.ix.size(), what); !ok) return ok;
-  if (line.iy.size() != line.ix.size() || line.ix.size() < 2)
-    return fail(what + ": expected two stops or more, each with a place in x and in y");
-  for (const auto* places : {&line.ix, &line.iy})
-    for (const std::size_t i : *places)
-      if (i > n) return fail(what + ": a stop is outside the grid");
-  return {};
-}
-
-/// Returns the indices of the curves with this direction of approach.
-template <class T>
-std::vector<std::size_t> of_direction(const std::vector<T>& curves, int direction) {
-  std::vector<std::size_t> out;
-  for (std::size_t k = 0; k < curves.size(); ++k)
-    if (curves[k].direction == direction) out.push_back(k);
-  return out;
-}
-
-/// Checks that positioning, and yaw, exist for the directions in which a line was read.
-Expected<void> check_positioning(const DiagonalReadings& r, const GridLine& line,
-                                 const std::string& what) {
-  const auto X = of_direction(r.X, line.x_direction);
-  if (X.empty() || X.size() > 2)
-    return fail(what + ": expected positioning of X on one line or two");
-  if (X.size() == 2 && !(std::fabs(r.X[X[1]].across - r.X[X[0]].across) > 0.0))
-    return fail(what + ": expected two different lines of X");
-  if (of_direction(r.Y, line.y_direction).size() != 1)
-    return fail(what + ": expected one positioning of Y");
-  if (!r.ECX.empty() && of_direction(r.ECX, line.x_direction).size() != 1)
-    return fail(what + ": expected one yaw of X");
-  return {};
-}
-
-Expected<void> check(const DiagonalReadings& r) {
-  if (!(r.Lx > 0.0 && r.Ly > 0.0)) return fail("expected lengths above 0");
-  if (r.n < 3 || r.n > most_stops)
-    return fail("expected 3 to " + std::to_string(most_stops) + " steps, found " +
-                std::to_string(r.n));
-  if (r.D1.mean.size() != r.n + 1 || r.D2.mean.size() != r.n + 1)
-    return fail("expected " + std::to_string(r.n + 1) + " stops on each diagonal");
-  std::vector<std::pair<const GridLine*, std::string>> lines{{&r.D1, "D1"}, {&r.D2, "D2"}};
-  for (const GridLine& line : r.third) lines.emplace_back(&line, "third line");
-  for (const auto& [line, what] : lines) {
-    if (auto ok = check_line(*line, r.n, what); !ok) return ok;
-    if (auto ok = check_positioning(r, *line, what); !ok) return ok;
-  }
-  std::vector<std::pair<const MeanCurve*, std::string>> curves;
-  for (const PitchLine& line : r.X) curves.emplace_back(&line, "X");
-  for (const PitchLine& line : r.Y) curves.emplace_back(&line, "Y");
-  for (const MeanCurve& yaw : r.ECX) curves.emplace_back(&yaw, "ECX");
-  for (const auto& [direct, what] : {std::pair{&r.EYX, "EYX"}, std::pair{&r.EXY, "EXY"}}) {
-    if (!*direct) continue;
-    curves.emplace_back(&**direct, what);
-    if ((*direct)->reversed)
-      curves.emplace_back(&*(*direct)->reversed, std::string(what) + " turned over");
-  }
-  for (const auto& [curve, what] : curves)
-    if (auto ok = check_curve(*curve, r.n + 1, what); !ok) return ok;
-  return {};
-}
 
 /// The linear equations A theta = y + N e for theta = (f_1..f_{n-1}, g_1..g_{n-1}, k Ly, slopes of
 /// directly measured straightness). e: errors of the readings; other symbols as in diagonals.h.
@@ -228,14 +156,14 @@ class System {
     subtract(row, r_.Y[Y], Y * curve, b, sign * line.cy);
     const auto X = of_direction(r_.X, line.x_direction);
     const auto source = [&](std::size_t k) { return (first_x + X[k]) * curve; };
-    const double beside = y - r_.X[X[0]].across;
+    const double apart = y - r_.X[X[0]].across;
     double second = 0.0;
     if (X.size() == 2) {
-      second = beside / (r_.X[X[1]].across - r_.X[X[0]].across);
+      second = apart / (r_.X[X[1]].across - r_.X[X[0]].across);
       subtract(row, r_.X[X[1]], source(1), a, sign * line.cx * second);
     } else if (!r_.ECX.empty()) {
       const std::size_t yaw = of_direction(r_.ECX, line.x_direction).front();
-      subtract(row, r_.ECX[yaw], (first_yaw + yaw) * curve, a, -sign * line.cx * beside);
+      subtract(row, r_.ECX[yaw], (first_yaw + yaw) * curve, a, -sign * line.cx * apart);
     }
     subtract(row, r_.X[X[0]], source(0), a, sign * line.cx * (1.0 - second));
   }
