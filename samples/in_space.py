@@ -444,7 +444,7 @@ def step_diagonals(seed, ident, customer, place, date, model, travel, n, before,
     story = ["Step diagonals of a volume of %d x %d x %d mm in %d steps, before (00) and after (final) a" % (*travel, n),
              "compensation: the largest deviation at whole steps is %.1f um, then %.1f um. The axis runs beside" % (
                  before / 1000.0, after / 1000.0),
-             "them give the lengths that step diagonals do not know; the mirror stands askew by some 0.06 mrad."]
+             "them give the lengths that step diagonals do not know; the mirror is askew by some 0.06 mrad."]
     text = manifest(story, ident, customer, place, date,
                     {"maker": "Sample Machines", "model": model, "serial": "S-0%d" % seed,
                      "structure": "bridge", "control": "siemens-840d"},

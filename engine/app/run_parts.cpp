@@ -226,8 +226,7 @@ Verb cancel_part(Common& common) {
           .arguments = joined({out_argument(*wish)}, common_arguments(common)),
           .footer =
               "The command is rejected while a shard is running. The run stays open: `nonio run` "
-              "without --shard, "
-              "or another plan, continues it.",
+              "without --shard, or another plan, continues it.",
           .examples = {"nonio run cancel out"},
           .run = [wish, &common] { return cancel_run(*wish, common); }};
 }

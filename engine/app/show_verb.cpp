@@ -491,8 +491,7 @@ Verb show_verb(Common& common) {
       .footer =
           "Results with a tolerance come first: ! does not conform, ? indeterminate, ok "
           "conforms. A campaign requires action if a result does not conform or is indeterminate, "
-          "or "
-          "if a table or certificate was withheld. --json prints the text of "
+          "or if a table or certificate was withheld. --json prints the text of "
           "results.json (of a machine: nonio-history/1).\n\n"
           "Exit status: 0 shown; 1 shown, and the campaign failed; 2 usage or configuration.",
       .examples = {"nonio show samples/site/09-tolerances", "nonio show out/09-tolerances --all",

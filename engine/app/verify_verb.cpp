@@ -188,8 +188,8 @@ Verb verify_verb(Common& common) {
           "signature proves nothing: the verdict is that you do not trust the signer. No network "
           "is needed.\n\nExit status: 0 valid; 1 altered or damaged; 2 usage, configuration, or a "
           "register that cannot be read; 3 valid, but not every check was made; 4 signer not "
-          "trusted "
-          "by you; 5 not in force; 6 not a certificate; 7 no such file; 8 texts differ from the "
+          "trusted by you; 5 not in force; 6 not a certificate; 7 no such file; 8 texts differ "
+          "from the "
           "installed templates. Of several files the most severe: 1, 4, 5, 8, 6, 7, 3, 0.",
       .examples = {"nonio certificate verify --site site out/c1/certificate.pdf"},
       .run = [wanted, &common] { return verify(*wanted, common); }};

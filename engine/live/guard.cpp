@@ -282,8 +282,8 @@ std::optional<std::vector<std::pair<std::string, std::string>>> query_of(std::st
 bool same_secret(std::string_view one, std::string_view other) {
   unsigned different = one.size() == other.size() ? 0U : 1U;
   for (std::size_t i = 0; i < one.size(); ++i) {
-    const char beside = i < other.size() ? other[i] : '\0';
-    different |= static_cast<unsigned char>(one[i]) ^ static_cast<unsigned char>(beside);
+    const char second = i < other.size() ? other[i] : '\0';
+    different |= static_cast<unsigned char>(one[i]) ^ static_cast<unsigned char>(second);
   }
   return different == 0;
 }

@@ -179,7 +179,7 @@ class CycleReader {
     }
     if (const auto offset = vectors_at(reader_, "ball_offset_um", 1e-6); !offset.empty())
       c_.ball_offset = offset.front();
-    if (c_.sensor.empty()) reader_.error("sensor", "is missing: turns, stands or probe");
+    if (c_.sensor.empty()) reader_.error("sensor", "is missing: turns, stationary or probe");
     if (c_.sensor == "probe" ? !c_.senses.empty() : c_.senses.empty())
       reader_.error("sense", c_.sensor == "probe" ? "is not allowed with a probe, which senses all"
                                                   : "is missing: where the gauge points");

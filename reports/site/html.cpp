@@ -44,7 +44,7 @@ std::string whole_days(const std::string& html) {
 View page_view(const Page& page, const std::string& title, std::string next_to_navigation) {
   View view;
   view.set("language", page.words.language()).set("title", title).set("program", "Nonio");
-  view.set("root", page.to_root).set("beside", std::move(next_to_navigation));
+  view.set("root", page.to_root).set("next_to_navigation", std::move(next_to_navigation));
   view.set("script_source", std::string(script_source));
   view.set("style_source", std::string(style_source));
   view.set("script", Html{std::string(page_script)}).set("style", Html{std::string(page_style)});

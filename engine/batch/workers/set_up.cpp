@@ -44,8 +44,7 @@ void note_key(SetUp& place, bool is_stamped) {
   if (who && !is_stamped)
     place.unstamped =
         "no time-stamp server is configured (time_stamp in [signing] of site.toml): signatures can "
-        "be "
-        "verified only until the certificate of " +
+        "be verified only until the certificate of " +
         who->subject + " expires on " + sign::text_of(who->not_after) +
         " (`nonio certificate extend` can add a time stamp until then)";
 }

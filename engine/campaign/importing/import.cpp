@@ -232,8 +232,7 @@ class Importer {
     else if (request_.rule.kind != "observations")
       file.lacks.push_back(
           "axis: which axis of the machine was measured, because the rule has no placeholder "
-          "{axis}; "
-          "add it, or state axis in a file of rules");
+          "{axis}; add it, or state axis in a file of rules");
     const auto own = f.places.find("id");
     file.measurement = own != f.places.end() ? own->second : file.axis;
     if (file.measurement.empty()) file.measurement = fs::path(f.file).stem().string();

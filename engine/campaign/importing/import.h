@@ -21,7 +21,7 @@ struct ImportRule {
   std::string reader;                ///< reader of every file; empty: chosen by the content
   std::vector<std::string> exclude;  ///< a file is skipped if its path contains one of these
   std::string axis;                  ///< axis of every file; empty: the text at {axis} in the name
-  /// Texts accepted at {axis}, and the axis of the machine that each stands for; empty: names of
+  /// Texts accepted at {axis}, and the axis of the machine that each of them names; empty: names of
   /// axes.
   std::map<std::string, std::string, std::less<>> axes;
   std::string manifest;  ///< TOML text that every campaign.toml also contains

@@ -122,33 +122,6 @@ double present_backlash(const Settings& options, const std::string& axis, bool r
   return stated_backlash(options, axis, rotary).value_or(0.0);
 }
 
-TableForecast forecast_of(const Campaign& campaign, const Measurement& m, const std::string& axis,
-                          const Observations& readings, const math::ErrorCurve& raw,
-                          const Tables& tables, double present) {
-  const auto test = math::AxisTest::arrange(readings);
-  const math::ErrorCurve measured = math::error_curve(test);
-  TableForecast f{m.id, axis, test.rotary};
-  const auto was = math::before(measured);
-  f.E[0] = was.E(), f.B[0] = was.B(), f.M[0] = was.M();
-  const auto whole = math::correction_of(tables, axis, present);
-  const math::Correction c = [&](double x, int dir) {
-    return whole ? (*whole)(x, dir) - (dir > 0 ? present / 2.0 : -present / 2.0) : 0.0;
-  };
-  const auto will = math::after(raw, c);
-  const auto U = math::compensated_uncertainty(campaign, m, readings, test, true);
-  // U of the reversal counts where these tables change it by more than their last digit.
-  constexpr double last_digit = 1e-7;  // m or rad
-  const bool compensates_reversal =
-      std::any_of(measured.position.begin(), measured.position.end(),
-                  [&](double x) { return std::fabs(c(x, 1) - c(x, -1)) > last_digit; });
-  const double U_B = measured.bidirectional() && compensates_reversal ? U.B_mean : 0.0;
-  f.E[1] = math::predicted_after(was.E(), will.E(), std::max(U.E, U_B));
-  f.B[1] = math::predicted_after(was.B(), will.B(), U_B);
-  f.M[1] = math::predicted_after(was.M(), will.M(), U.M);
-  f.scatter = std::max(will.E() + range_of_scatter(test) - f.E[1], 0.0);
-  return f;
-}
-
 /// Whether one of the tables corrects this axis by its own position.
 bool corrects(const Tables& tables, const std::string& axis) {
   return std::any_of(tables.begin(), tables.end(), [&](const LoadedTable& t) {
@@ -372,23 +345,42 @@ std::vector<TableForecast> forecast(const reading::ReadCampaign& read, const Tab
     const Measurement& m = measurements[i];
     const std::string axis = control_axis(read.manifest->campaign.machine, m);
     if (m.kind != "axis" || read.observations[i].size() == 0 || !corrects(tables, axis)) continue;
-    const auto test = math::AxisTest::arrange(read.observations[i]);
-    const auto curve = math::error_curve(test);
-    if (curve.position.size() < 2) continue;
-    const auto raw = on ? math::error_curve(math::AxisTest::arrange(on->readings[i])) : curve;
-    out.push_back(forecast_of(read.manifest->campaign, m, axis, read.observations[i], raw, tables,
-                              present_backlash(on ? on->options : options, axis, test.rotary)));
+    if (math::error_curve(math::AxisTest::arrange(read.observations[i])).position.size() < 2)
+      continue;
+    out.push_back(forecast_of_axis(read.manifest->campaign, m, axis, read.observations[i],
+                                   on ? on->readings[i] : read.observations[i], tables,
+                                   on ? on->options : options));
   }
   return out;
 }
 
 TableForecast forecast_of_axis(const Campaign& campaign, const Measurement& m,
-                               const std::string& axis, const Observations& measured,
-                               const Observations& raw, const Tables& loaded,
+                               const std::string& axis, const Observations& readings,
+                               const Observations& raw, const Tables& tables,
                                const Settings& options) {
-  const auto rotary = math::AxisTest::arrange(measured).rotary;
-  return forecast_of(campaign, m, axis, measured, math::error_curve(math::AxisTest::arrange(raw)),
-                     loaded, present_backlash(options, axis, rotary));
+  const auto test = math::AxisTest::arrange(readings);
+  const double present = present_backlash(options, axis, test.rotary);
+  const math::ErrorCurve measured = math::error_curve(test);
+  TableForecast f{m.id, axis, test.rotary};
+  const auto was = math::before(measured);
+  f.E[0] = was.E(), f.B[0] = was.B(), f.M[0] = was.M();
+  const auto whole = math::correction_of(tables, axis, present);
+  const math::Correction c = [&](double x, int dir) {
+    return whole ? (*whole)(x, dir) - (dir > 0 ? present / 2.0 : -present / 2.0) : 0.0;
+  };
+  const auto will = math::after(math::error_curve(math::AxisTest::arrange(raw)), c);
+  const auto U = math::compensated_uncertainty(campaign, m, readings, test, true);
+  // U of the reversal counts where these tables change it by more than their last digit.
+  constexpr double last_digit = 1e-7;  // m or rad
+  const bool compensates_reversal =
+      std::any_of(measured.position.begin(), measured.position.end(),
+                  [&](double x) { return std::fabs(c(x, 1) - c(x, -1)) > last_digit; });
+  const double U_B = measured.bidirectional() && compensates_reversal ? U.B_mean : 0.0;
+  f.E[1] = math::predicted_after(was.E(), will.E(), std::max(U.E, U_B));
+  f.B[1] = math::predicted_after(was.B(), will.B(), U_B);
+  f.M[1] = math::predicted_after(was.M(), will.M(), U.M);
+  f.scatter = std::max(will.E() + range_of_scatter(test) - f.E[1], 0.0);
+  return f;
 }
 
 Expected<RenewedTables> renew(const reading::ReadCampaign& read, const Controller& controller,

@@ -111,8 +111,9 @@ class OfAxis {
           point(*found), point(*left), promised.value - found->value, scatter_allowed * s);
       if (!check) continue;
       ++asked;
-      const double zeta = check->beside.zeta();  // below 0: the result is better than predicted
-      if (zeta > 0.0) p = std::min(p, check->beside.p);
+      const double zeta =
+          check->from_predicted.zeta();  // below 0: the result is better than predicted
+      if (zeta > 0.0) p = std::min(p, check->from_predicted.p);
       if (out && zeta <= most) continue;
       most = zeta;
       const Quantity q = quantity_of_unit(left->unit);

@@ -27,7 +27,7 @@ Expected<Difference> difference(const Point& before, const Point& after, double 
 /// Result of comparing the step from as found to as left with the step that was predicted for a
 /// table.
 struct TableCheck {
-  Difference beside;  ///< difference from the predicted step
+  Difference from_predicted;  ///< difference from the predicted step
   /// Fraction of the error as found that the table compensated: 1 all, 0 none, below 0: made worse.
   /// None if the error as found is within twice its uncertainty.
   std::optional<double> taken{};

@@ -127,7 +127,7 @@ Expected<std::vector<Artifact>> files(const Sheet& s) {
 
 /// The controller stops reading for good at the first line that is not three numbers, and states
 /// nothing: a file that was cut, or of which a part has no effect, cannot be relied on.
-Expected<void> whole(const Artifact& f, std::size_t taken, const std::vector<Artifact>& beside) {
+Expected<void> whole(const Artifact& f, std::size_t taken, const std::vector<Artifact>& files) {
   const auto all = controllers::lines_of(f.bytes);
   std::size_t last = all.size();
   while (last > 0 && controllers::trimmed(all[last - 1]).empty()) --last;
@@ -141,7 +141,7 @@ Expected<void> whole(const Artifact& f, std::size_t taken, const std::vector<Art
                 "\"; the control stops reading there without a message");
   if (f.bytes.back() != '\n') return fail(f.name + ": the last line has no end: the file was cut");
   const std::string key = f.name + " has ";
-  for (const Artifact& a : beside) {
+  for (const Artifact& a : files) {
     const std::size_t at = f.name.empty() ? std::string::npos : a.bytes.find(key);
     if (at == std::string::npos) continue;
     const auto said =

@@ -137,7 +137,7 @@ class Packs(NightTest):
         report = f"Report: {self.out}/c1/report.pdf\n"  # a packed one cannot be opened
         self.assertEqual(self.nonio("show", self.parts / "c1").stdout, self.nonio("show", self.out / "c1").stdout.replace(report, ""))
         self.assertEqual(self.nonio("show", self.parts / "wrong", expect=1).stdout, self.nonio("show", self.out / "wrong", expect=1).stdout)
-        self.assertIn("is neither a folder nor a machine", self.nonio("show", self.parts / "nobody", expect=2).stderr)
+        self.assertIn("is neither a folder nor a machine", self.nonio("show", self.parts / "no-such", expect=2).stderr)
         opened = self.nonio("show", "--open", self.parts / "c1", expect=1).stderr
         self.assertIn(".sqlar; `nonio export c1 --out OUT` writes it out", opened)
         page = [self.nonio("status", "--actions", out, "--site", self.site, "--page", "index.html").stdout for out in (self.out, self.parts)]
@@ -246,7 +246,7 @@ class Packs(NightTest):
         # From a folder as from a pack.
         self.nonio("export", "c0", "--out", self.out, "--to", self.root / "from-folder")
         self.assertEqual(tree(self.root / "from-folder" / "c0"), tree(self.out / "c0"))
-        self.assertIn("no results of nobody", self.nonio("export", "nobody", "--out", self.parts, expect=1).stderr)
+        self.assertIn("no results of no-such", self.nonio("export", "no-such", "--out", self.parts, expect=1).stderr)
         for args in ([], ["--all", "c0"], ["--list", "--to", "x"], ["../c0"]):
             self.nonio("export", *args, "--out", self.parts, expect=2)
         self.assertIn("expected --shard", self.run_nonio("--pack", expect=2).stderr)

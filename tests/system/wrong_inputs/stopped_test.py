@@ -198,19 +198,19 @@ class Stopped(unittest.TestCase):
         run = '[run]\noutputs = ["json", "certificate", "siemens-840d", "rotary-vectors"]\n'
         cls.cases = cases()
         for k, (finding, (change, files)) in enumerate(cls.cases.items()):
-            for state in ("held", "stands"):
+            for state in ("held", "accepted"):
                 folder = cls.site / f"{finding}-{state}"
                 folder.mkdir()
                 manifest = change(text).replace('id = "adjusted"', f'id = "{finding}-{state}"') + run
                 (folder / "campaign.toml").write_text(manifest)
                 for name, data in {"x.csv": csv(rows(k)), **files}.items():
-                    if state == "stands" and finding != "file-of-another-campaign":  # other bytes, the same readings
-                        data = data + "\n" if data.startswith("HEADER") else "# stands\n" + data
+                    if state == "accepted" and finding != "file-of-another-campaign":  # other bytes, the same readings
+                        data = data + "\n" if data.startswith("HEADER") else "# accepted\n" + data
                     (folder / name).write_text(data, newline="")
         cls.night()
         for finding in cls.cases:  # all its findings are accepted, also others that the slip causes
-            manifest = cls.site / f"{finding}-stands" / "campaign.toml"
-            doubts = cls.doubts(f"{finding}-stands")
+            manifest = cls.site / f"{finding}-accepted" / "campaign.toml"
+            doubts = cls.doubts(f"{finding}-accepted")
             manifest.write_text(manifest.read_text() + "".join(
                 f'[[tables.accept]]\nfinding = "{d}"\nreason = "{REASON}"\n' for d in sorted(doubts)))
         cls.night()
@@ -266,7 +266,7 @@ class Stopped(unittest.TestCase):
     def test_tables_with_reasons(self):
         for finding in self.cases:
             with self.subTest(finding=finding):
-                name = f"{finding}-stands"
+                name = f"{finding}-accepted"
                 content = self.results(name)
                 self.assertEqual(content["errors"], [])
                 self.assertIn("plausibility." + finding, self.doubts(name))
@@ -279,7 +279,7 @@ class Stopped(unittest.TestCase):
         never = {"day-to-come", "calibrated-later", "unknown-axis", "readings-all-equal"}  # see below
         for finding in self.cases:
             with self.subTest(finding=finding):
-                name = f"{finding}-stands"  # accepting the tables does not accept the certificate
+                name = f"{finding}-accepted"  # accepting the tables does not accept the certificate
                 attention = self.waiting(name)
                 doubt = "plausibility." + finding
                 if attention:

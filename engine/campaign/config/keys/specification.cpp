@@ -34,7 +34,8 @@ constexpr Key temperature_keys[] = {
 
 constexpr Choice orders[] = {{"pendulum"}, {"unidirectional"}};
 constexpr Choice directions[] = {{"+"}, {"-"}};
-constexpr Choice sensors[] = {{"turns"}, {"stands"}, {"probe"}};
+constexpr Choice sensors[] = {
+    {"turns"}, {"stationary"}, {"probe"}, {"stands", "former name of stationary"}};
 constexpr Choice carried[] = {{"table"}, {"head"}};
 /// Allows a key only in cycles of these kinds.
 constexpr auto of(std::span<const Words> kinds) { return only({cycle_axis, kinds}); }

@@ -49,8 +49,8 @@ TEST(Table, DidWhatItPromised) {
   const auto good = check_table(found, left, -12.0, 0.1);
   ASSERT_TRUE(good);
   EXPECT_TRUE(good->as_promised);
-  EXPECT_NEAR(good->beside.value, 0.5, 1e-12);
-  EXPECT_NEAR(good->beside.u, std::sqrt(0.09 + 0.09 + 0.01), 1e-12);
+  EXPECT_NEAR(good->from_predicted.value, 0.5, 1e-12);
+  EXPECT_NEAR(good->from_predicted.u, std::sqrt(0.09 + 0.09 + 0.01), 1e-12);
   EXPECT_NEAR(*good->taken, 1.0 - 0.5 / 12.0, 1e-12);
   // Entered with the wrong sign: twice the error.
   const auto wrong = check_table(found, {0, 24.0, 0.3, {{"instrument 1", 2.0}}}, -12.0, 0.1);
