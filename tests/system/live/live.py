@@ -139,11 +139,11 @@ class Server:
         return [(p, parents[p]) for p in sorted(found - {self.process.pid})]
 
     def programs(self, word):
-        """Processes below the server whose command line contains `word`."""
+        """Processes below the server that have the argument `word`."""
         found = []
         for pid, _ in self.pids():
             try:
-                if word.encode() in pathlib.Path(f"/proc/{pid}/cmdline").read_bytes():
+                if word.encode() in pathlib.Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0"):
                     found.append(pid)
             except OSError:
                 pass
