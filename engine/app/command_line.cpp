@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "colour.h"
+#include "common.h"
 #include "platform/storage/nearest.h"
 #include "text_layout.h"
 
@@ -67,9 +68,19 @@ CLI::Validator existing(Argument::Takes takes) {
       ""};
 }
 
+CLI::Validator calendar_day() {
+  return {[](const std::string& found) {
+            return found.empty() || is_day(found)
+                       ? std::string()
+                       : "expected a day as YYYY-MM-DD, found \"" + found + "\"";
+          },
+          ""};
+}
+
 void check(CLI::Option& option, const Argument& a) {
   if (a.required) option.required();
   if (a.exists) option.check(existing(a.takes));
+  if (a.takes == Argument::Takes::day) option.check(calendar_day());
   if (!a.choices.empty()) option.check(member_of(a.choices));
   if (a.range) option.check(CLI::Range(a.range->first, a.range->second));
 }
@@ -227,9 +238,20 @@ std::string value_of(const Argument& a) {
     for (const std::string& choice : a.choices) all += (all.empty() ? "" : "|") + choice;
     return all.size() <= 24 ? all : "NAME";
   }
-  if (a.takes == Argument::Takes::folder) return "FOLDER";
-  if (a.takes != Argument::Takes::anything)
-    return a.takes == Argument::Takes::file ? "FILE" : "PATH";
+  switch (a.takes) {
+    case Argument::Takes::folder:
+      return "FOLDER";
+    case Argument::Takes::file:
+      return "FILE";
+    case Argument::Takes::path:
+      return "PATH";
+    case Argument::Takes::number:
+      return "NUMBER";
+    case Argument::Takes::day:
+      return "DAY";
+    case Argument::Takes::anything:
+      break;
+  }
   if (std::holds_alternative<std::int64_t*>(a.target) ||
       std::holds_alternative<std::uint64_t*>(a.target))
     return "N";

@@ -25,7 +25,7 @@ using Target = std::variant<bool*, std::string*, std::vector<std::string>*, std:
 struct Argument {
   /// What a value must denote, checked before the command runs; completion offers files
   /// accordingly.
-  enum class Takes { anything, folder, file, path };
+  enum class Takes { anything, folder, file, path, number, day };
 
   std::string name;  ///< name of an option, "--out", or of a positional argument in capital
                      ///< letters, "SITE"
@@ -68,6 +68,10 @@ inline Argument takes(Argument::Takes kind, Argument a) {
   a.takes = kind;
   return a;
 }
+/// Marks the value as a number, which the command parses itself to keep its digits.
+inline Argument number(Argument a) { return takes(Argument::Takes::number, std::move(a)); }
+/// Marks the value as a day, YYYY-MM-DD, checked before the command runs.
+inline Argument day(Argument a) { return takes(Argument::Takes::day, std::move(a)); }
 inline Argument one_of(std::vector<std::string> choices, Argument a) {
   a.choices = std::move(choices);
   return a;

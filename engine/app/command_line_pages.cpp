@@ -86,6 +86,8 @@ std::string bash_values(const Argument& a) {
     case Argument::Takes::file:
     case Argument::Takes::path:
       return "-f";
+    case Argument::Takes::number:
+    case Argument::Takes::day:
     case Argument::Takes::anything:
       break;
   }
@@ -157,6 +159,8 @@ std::string zsh_values(const Argument& a) {
     case Argument::Takes::file:
     case Argument::Takes::path:
       return "_files";
+    case Argument::Takes::number:
+    case Argument::Takes::day:
     case Argument::Takes::anything:
       break;
   }

@@ -45,10 +45,6 @@ class ExplainTogether {
       : options_(options), common_(common), seed_(seed) {}
 
   int run() {
-    for (const auto& [name, day] :
-         {std::pair{"--since: ", options_.since}, {"--until: ", options_.until}})
-      if (!day.empty() && !is_day(day))
-        return complain(std::string(name) + "expected a day as YYYY-MM-DD, found \"" + day + "\"");
     for (const std::string& folder : options_.folders) {
       const auto found = campaigns_in(folder);
       if (found.empty()) return complain(folder + ": there is no campaign.toml in it or below it");

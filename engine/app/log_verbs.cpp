@@ -36,10 +36,6 @@ int refuse_all(const std::vector<Error>& errors) {
   return exit_usage;
 }
 
-int wrong_day(const std::string& day) {
-  return complain("expected a day as YYYY-MM-DD, found \"" + day + "\"");
-}
-
 void say(const Common& common, const std::string& site, const char* file, const Json& entry) {
   if (common.json)
     print_json(entry);
@@ -78,7 +74,6 @@ int event(EventWish& wish, const Common& common) {
   if (e.kind.empty() || e.text.empty() || e.machine.empty())
     return complain("expected --machine, --kind and --text together");
   if (e.date.empty()) e.date = today();
-  if (!is_day(e.date)) return wrong_day(e.date);
   if (!wish.out.empty()) {
     store::Query known;
     known.machine = e.machine;
@@ -138,7 +133,6 @@ int withdraw(const AckWish& wish, const Common& common) {
   const config::Acknowledgement& a = wish.known;
   if (a.finding.empty() || a.machine.empty() || a.by.empty())
     return complain("--withdraw: expected --finding, --machine and --by");
-  if (!is_day(a.date)) return wrong_day(a.date);
   if (!a.until.empty() || !wish.value.empty() || !wish.U.empty())
     return complain("--withdraw takes no --until, --value and --U");
   if (const auto added = config::add_withdrawal(
@@ -165,8 +159,6 @@ int acknowledge(AckWish& wish, const Common& common) {
                                    {"--by", &a.by},
                                    {"--why", &a.why}})
     if (text->empty()) return complain(std::string(name) + " is missing");
-  for (const std::string& day : {a.date, a.until})
-    if (!is_day(day)) return wrong_day(day);
   if (!take_number(wish.value, a.value) || !take_number(wish.U, a.U))
     return complain("--value and --U: expected a number with a decimal point");
   if (const auto added = config::add_acknowledgement(wish.site, a); !added)
@@ -181,7 +173,6 @@ int acknowledge(AckWish& wish, const Common& common) {
 
 int forget(ForgetWish& wish, const Common& common) {
   if (wish.date.empty()) wish.date = today();
-  if (!is_day(wish.date)) return wrong_day(wish.date);
   for (const std::string& campaign : wish.campaigns) {
     if (const auto added =
             config::add_forgotten(wish.site, {wish.date, campaign, wish.by, wish.why});
@@ -213,7 +204,7 @@ Verb event_verb(Common& common) {
            one_of({"crash", "repair", "compensation", "moved", "instrument", "software", "other"},
                   {"--kind", &e.kind, "Kind of event"}),
            {"--text", &e.text, "Description, one line"},
-           {"--date", &e.date, "The day, YYYY-MM-DD; default: today"},
+           day({"--date", &e.date, "The day, YYYY-MM-DD; default: today"}),
            {"--by", &e.by, "Name of the author of the entry"},
            existing(Argument::Takes::folder,
                     {"--out", &wish->out,
@@ -243,14 +234,14 @@ Verb ack_verb(Common& common) {
            {"--machine", &a.machine, "As `nonio machine list` names it"},
            {"--axis", &a.axis, "The axis; default: all"},
            {"--quantity", &a.quantity, "The quantity, such as B_mean; default: all"},
-           {"--until", &a.until, "Last day of the acknowledgement, YYYY-MM-DD"},
-           {"--value", &wish->value,
-            "Present value of the quantity, in its unit: the finding returns if the value "
-            "changes by more than --U"},
-           {"--U", &wish->U, "Expanded uncertainty (k = 2) of that value"},
+           day({"--until", &a.until, "Last day of the acknowledgement, YYYY-MM-DD"}),
+           number({"--value", &wish->value,
+                   "Present value of the quantity, in its unit: the finding returns if the value "
+                   "changes by more than --U"}),
+           number({"--U", &wish->U, "Expanded uncertainty (k = 2) of that value"}),
            {"--by", &a.by, "Name of the author of the entry"},
            {"--why", &a.why, "Reason why it is accepted until then"},
-           {"--date", &a.date, "Day of the entry, YYYY-MM-DD; default: today"},
+           day({"--date", &a.date, "Day of the entry, YYYY-MM-DD; default: today"}),
            {"--withdraw", &wish->withdraw,
             "Withdraw the acknowledgement with exactly this --finding, --machine, --axis "
             "and --quantity"}},
@@ -270,14 +261,15 @@ Verb remove_verb(Common& common) {
   return {
       .name = "remove",
       .summary = "Records that campaigns or files were removed from the site on purpose",
-      .arguments = joined({site_argument(wish->site),
-                           required({"CAMPAIGN", &wish->campaigns,
-                                     "Their ids; or paths of other files or folders of the site, "
-                                     "such as machines/S-0042.toml or templates"}),
-                           required({"--by", &wish->by, "Name of the author of the entry"}),
-                           required({"--why", &wish->why, "Reason for the removal"}),
-                           {"--date", &wish->date, "Day of the entry, YYYY-MM-DD; default: today"}},
-                          common_arguments(common)),
+      .arguments =
+          joined({site_argument(wish->site),
+                  required({"CAMPAIGN", &wish->campaigns,
+                            "Their ids; or paths of other files or folders of the site, "
+                            "such as machines/S-0042.toml or templates"}),
+                  required({"--by", &wish->by, "Name of the author of the entry"}),
+                  required({"--why", &wish->why, "Reason for the removal"}),
+                  day({"--date", &wish->date, "Day of the entry, YYYY-MM-DD; default: today"})},
+                 common_arguments(common)),
       .footer =
           "The nightly run reports a missing campaign in every run, with exit status 1, "
           "until it is back or its removal is recorded. Appends to SITE/forgotten.toml. The "

@@ -167,8 +167,6 @@ Expected<void> ask_for_state(OpenCampaign& open, const Controller& control,
 int merge(const MergeWish& w, const Common& common) {
   const auto settings = settings_of(w.settings);
   if (!settings) return complain(settings.error().message);
-  if (!w.loaded.empty() && !is_day(w.loaded))
-    return complain("--loaded: expected a day as YYYY-MM-DD, found \"" + w.loaded + "\"");
   auto opened = open_campaign(w.folder, common);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
@@ -222,10 +220,10 @@ Verb insert_verb(Common& common) {
            {"--axis", &w->axis, "The axis (default: the measured axis, if there is only one)"},
            takes(Takes::folder, {"--out", &w->out,
                                  "Folder for the changed files (default: only print the changes)"}),
-           {"--loaded", &w->loaded,
-            "YYYY-MM-DD: the new table was loaded on this day. Records it in "
-            "machines/<asset>.toml, "
-            "and what was active during the measurement"},
+           day({"--loaded", &w->loaded,
+                "YYYY-MM-DD: the new table was loaded on this day. Records it in "
+                "machines/<asset>.toml, "
+                "and what was active during the measurement"}),
            {"--control", &w->control, "The control of the files (`nonio table controls`)"},
            settings_argument(w->settings,
                              "NAME=VALUE: an option of that control; may be given several times")},

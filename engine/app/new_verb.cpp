@@ -80,13 +80,6 @@ std::vector<std::string> split(const std::string& text) {
       words.push_back(std::exchange(word, {}));
   return words;
 }
-
-bool is_date(const std::string& text) {
-  const std::string_view form = "0000-00-00";
-  return std::equal(text.begin(), text.end(), form.begin(), form.end(),
-                    [](char c, char f) { return f == '0' ? c >= '0' && c <= '9' : c == f; });
-}
-
 Expected<void> one_line(const char* option, const std::string& text) {
   for (const char c : text)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
@@ -304,7 +297,7 @@ Expected<NewCampaign> settled(const NewWish& wish, const fs::path& folder, Quest
     if (auto done = one_line(option, *to); !done) return fail(done.error());
   }
   if (auto done = one_line("--control", c.control); !done) return fail(done.error());
-  if (!is_date(c.date))
+  if (!is_day(c.date))
     return fail("--date: expected a day such as 2026-11-03, found \"" + c.date + "\"");
   NONIO_TRY(auto axes, axes_with_files(wish, ask));
   c.axes = std::move(axes);
@@ -538,7 +531,8 @@ Verb new_verb(Common& common) {
            {"--id", &wish->id, "Id of the campaign (default: from the folder's name)"},
            {"--customer", &wish->customer, "Customer"},
            {"--operator", &wish->operator_name, "Name of the operator"},
-           {"--date", &wish->date, "Day of the measurement, such as 2026-11-03 (default: today)"},
+           day({"--date", &wish->date,
+                "Day of the measurement, such as 2026-11-03 (default: today)"}),
            {"--maker", &wish->maker, "Maker of the machine"},
            {"--machine", &wish->machine, "Model of the machine"},
            {"--serial", &wish->serial, "Its serial number; with the maker it names the machine"},

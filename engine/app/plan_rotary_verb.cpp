@@ -129,7 +129,7 @@ Verb plan_rotary_verb(Common& common) {
       .summary = "U of a rotary axis's centre and direction from balls, before the measurement",
       .arguments = joined(
           {required({"--axis", &wish->axis, "The rotary axis: A, B or C"}),
-           required({"--radius", &wish->radius, "Distance of the ball from the axis, mm"}),
+           required(number({"--radius", &wish->radius, "Distance of the ball from the axis, mm"})),
            required(within(0.001, 1000.0,
                            {"--probe-u", &wish->probe_u,
                             "Standard uncertainty of one coordinate of a ball's centre, um"})),

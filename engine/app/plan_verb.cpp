@@ -221,12 +221,13 @@ int plan_program(const ProgramWish& p, const Common& common) {
 }
 
 std::vector<Argument> program_arguments(Programs& p) {
-  return {{"--control", &p.control,
-           "Writer of part programs: gcode, siemens, heidenhain or a plugin's whole name"},
-          settings_argument(
-              p.settings,
-              "NAME=VALUE: an option of that writer (`nonio plugin list` lists them), such as "
-              "dwell_s=3, runs=2, programs=axes,diagonals; may be given several times")};
+  return {
+      {"--control", &p.control,
+       "Writer of part programs: gcode, siemens, heidenhain or a plugin's whole name"},
+      settings_argument(p.settings,
+                        "NAME=VALUE: an option of that writer (`nonio plugin list program-siemens` "
+                        "lists them), such as "
+                        "dwell_s=3, runs=2, programs=axes,diagonals; may be given several times")};
 }
 
 Verb triples_verb(Common& common) {
@@ -243,21 +244,23 @@ Verb triples_verb(Common& common) {
       .name = "triples",
       .summary = "Stops for X, Y and both diagonals of their rectangle, with equal whole steps",
       .arguments = joined(
-          {required({"--x", &plan->mm.x, "Travel of X, mm"}),
-           required({"--y", &plan->mm.y, "Travel of Y, mm"}),
-           {"--over-travel", &plan->mm.over_travel,
-            "Range kept free at each end of both axes, mm (default 0)"},
-           {"--resolution", &plan->mm.resolution,
-            "Steps are whole multiples of this value, mm (default 1)"},
-           {"--resolution-x", &plan->mm.resolution_x,
-            "Scale factor of X: its steps are whole multiples of this, mm (default --resolution)"},
-           {"--resolution-y", &plan->mm.resolution_y,
-            "The same of Y; --resolution is the diagonal's"},
-           {"--max-step", &plan->mm.max_step, "Largest step of either axis, mm (default any)"},
+          {required(number({"--x", &plan->mm.x, "Travel of X, mm"})),
+           required(number({"--y", &plan->mm.y, "Travel of Y, mm"})),
+           number({"--over-travel", &plan->mm.over_travel,
+                   "Range kept free at each end of both axes, mm (default 0)"}),
+           number({"--resolution", &plan->mm.resolution,
+                   "Steps are whole multiples of this value, mm (default 1)"}),
+           number({"--resolution-x", &plan->mm.resolution_x,
+                   "Scale factor of X: its steps are whole multiples of this, mm (default "
+                   "--resolution)"}),
+           number({"--resolution-y", &plan->mm.resolution_y,
+                   "The same of Y; --resolution is the diagonal's"}),
+           number(
+               {"--max-step", &plan->mm.max_step, "Largest step of either axis, mm (default any)"}),
            {"--max-points", &plan->wish.max_points,
             "Entries of the control's compensation table (default 1500)"},
-           {"--pitch-x", &plan->mm.pitch_x, pitch},
-           {"--pitch-y", &plan->mm.pitch_y, pitch},
+           number({"--pitch-x", &plan->mm.pitch_x, pitch}),
+           number({"--pitch-y", &plan->mm.pitch_y, pitch}),
            {"--density", &plan->wish.density,
             "Only stops that ISO 230-2 accepts: five per metre on axes of up to 2 m, no more than "
             "250 mm apart on longer ones"},
@@ -291,9 +294,9 @@ Verb program_verb(Common& common) {
           {required(
                {"--axis", &program->axes,
                 "NAME=FROM:TO, travel in mm, for A, B and C in deg; may be given several times"}),
-           {"--n", &program->n, "Steps of the diagonals (from `nonio plan triples`)"},
-           {"--step-x", &program->step_x, "Step of X on the diagonals, mm"},
-           {"--step-y", &program->step_y, "Step of Y on the diagonals, mm"},
+           number({"--n", &program->n, "Steps of the diagonals (from `nonio plan triples`)"}),
+           number({"--step-x", &program->step_x, "Step of X on the diagonals, mm"}),
+           number({"--step-y", &program->step_y, "Step of Y on the diagonals, mm"}),
            {"--machine", &program->machine, "Name of the machine, for the comments"},
            required(takes(Argument::Takes::folder,
                           {"--out", &program->programs.out, "Folder for the programs"}))},

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <iostream>
+#include <memory>
 
 #include "campaign/loader/plugins.h"
 #include "nonio/sdk/method.h"
 #include "platform/storage/json_values.h"
+#include "platform/storage/nearest.h"
 #include "text_layout.h"
 #include "verbs.h"
 
@@ -31,6 +33,11 @@ struct Listed {
   const Method* method = nullptr;
 };
 
+struct ListWish {
+  std::vector<std::string> names;
+  bool all = false;
+};
+
 std::vector<Listed> all_of(const loader::Plugins& plugins) {
   std::vector<Listed> all;
   for (const auto& p : plugins.methods()) all.push_back({"method", &p.info, &p});
@@ -42,14 +49,14 @@ std::vector<Listed> all_of(const loader::Plugins& plugins) {
   return all;
 }
 
-void print_plugins_json(const loader::Plugins& plugins) {
+void print_plugins_json(const loader::Plugins& plugins, const std::vector<Listed>& listed) {
   Json files = Json::array(), all = Json::array();
   for (const loader::PluginFile& f : plugins.files()) {
     Json file = {{"path", f.path.string()}, {"plugins", f.brought}};
     if (!f.refused.empty()) file["refused"] = f.refused;
     files.push_back(std::move(file));
   }
-  for (const Listed& p : all_of(plugins)) {
+  for (const Listed& p : listed) {
     Json options = Json::array();
     for (const Option& o : p.info->options) options.push_back(option_json(o));
     all.push_back({{"kind", p.kind},
@@ -68,40 +75,71 @@ void print_plugins_json(const loader::Plugins& plugins) {
       Json{{"abi", NONIO_ABI_TAG}, {"files", std::move(files)}, {"plugins", std::move(all)}});
 }
 
-void print_plugins(const loader::Plugins& plugins, bool with_options) {
-  const std::size_t width = line_width(STDOUT_FILENO);
-  for (const Listed& p : all_of(plugins)) {
-    std::cout << p.kind << " " << p.info->name << " " << p.info->version
-              << (p.info->opt_in ? " (on request)" : "") << "\n"
-              << wrapped(p.info->summary, 4, width);
-    if (with_options)
-      for (const Option& o : p.info->options)
-        std::cout << "    "
-                  << (p.method != nullptr ? "[[measurement]]" : "[options." + p.info->name + "]")
-                  << " " << o.name
-                  << (o.required ? " (required)" : " = " + option_json(o)["default"].dump())
-                  << (o.unit.empty() ? "" : " " + o.unit) << "\n"
-                  << wrapped(o.help, 8, width);
-    if (!with_options || p.method == nullptr) continue;
-    for (const Method::Column& c : p.method->columns)
-      std::cout << "    column " << name_in_file(c) << (c.required ? "" : " (optional)") << "\n"
-                << wrapped(c.help, 8, width);
+/// Prints the version and the options of a plugin, and the columns of a method.
+void print_options(const Listed& p, std::size_t width) {
+  std::cout << "    version " << p.info->version << "\n";
+  for (const Option& o : p.info->options)
+    std::cout << "    "
+              << (p.method != nullptr ? "[[measurement]]" : "[options." + p.info->name + "]") << " "
+              << o.name << (o.required ? " (required)" : " = " + option_json(o)["default"].dump())
+              << (o.unit.empty() ? "" : " " + o.unit) << "\n"
+              << wrapped(o.help, 8, width);
+  if (p.method == nullptr) return;
+  for (const Method::Column& c : p.method->columns)
+    std::cout << "    column " << name_in_file(c) << (c.required ? "" : " (optional)") << "\n"
+              << wrapped(c.help, 8, width);
+}
+
+/// Prints the files that were loaded, or without `all` only the rejected ones and the number of the
+/// others.
+void print_files(const std::vector<loader::PluginFile>& files, bool all) {
+  std::size_t loaded = 0;
+  for (const loader::PluginFile& f : files) {
+    if (f.refused.empty()) ++loaded;
+    if (f.refused.empty() && !all) continue;
+    std::cout << f.path.string() << "\n";
+    if (!f.refused.empty()) std::cout << "  rejected: " << f.refused << "\n";
+    for (const std::string& plugin : f.brought) std::cout << "  " << plugin << "\n";
   }
-  std::cout << "\nfiles (ABI " << NONIO_ABI_TAG << ")\n";
-  for (const loader::PluginFile& f : plugins.files()) {
-    std::cout << "  " << f.path.string() << (f.refused.empty() ? "" : "\n    refused: " + f.refused)
-              << "\n";
-    for (const std::string& plugin : f.brought) std::cout << "    " << plugin << "\n";
+  std::cout << loaded << " of " << files.size() << " plugin files loaded (ABI " << NONIO_ABI_TAG
+            << ")\n";
+}
+
+void print_plugins(const std::vector<Listed>& listed, bool with_options) {
+  const std::size_t width = line_width(STDOUT_FILENO);
+  std::size_t longest = 0;
+  for (const Listed& p : listed) longest = std::max(longest, p.info->name.size());
+  for (const Listed& p : listed) {
+    const std::size_t column = 12 + longest + 2;
+    const std::string name = padded(p.kind, 12) + padded(p.info->name, longest + 2);
+    std::cout << name
+              << wrapped(p.info->summary + (p.info->opt_in ? " (on request)" : ""), column, width)
+                     .substr(column);
+    if (with_options) print_options(p, width);
   }
 }
 
-int list_plugins(const Common& common) {
+int list_plugins(const ListWish& wish, const Common& common) {
   loader::Plugins plugins;
   plugins.load(common.plugin_folders());
-  if (common.json)
-    print_plugins_json(plugins);
-  else
-    print_plugins(plugins, !common.quiet);
+  std::vector<Listed> listed = all_of(plugins);
+  for (const std::string& name : wish.names)
+    if (std::none_of(listed.begin(), listed.end(),
+                     [&](const Listed& p) { return p.info->name == name; })) {
+      std::vector<std::string> known;
+      for (const Listed& p : listed) known.push_back(p.info->name);
+      return complain("there is no plugin " + name + storage::suggestion(name, known));
+    }
+  if (!wish.names.empty())
+    std::erase_if(listed, [&](const Listed& p) {
+      return std::find(wish.names.begin(), wish.names.end(), p.info->name) == wish.names.end();
+    });
+  if (common.json) {
+    print_plugins_json(plugins, listed);
+  } else {
+    print_plugins(listed, wish.all || !wish.names.empty());
+    if (wish.names.empty()) print_files(plugins.files(), wish.all);
+  }
   for (const std::string& conflict : plugins.conflicts()) complain(conflict);
   if (!plugins.conflicts().empty()) return exit_usage;
   const auto refused = [](const loader::PluginFile& f) { return !f.refused.empty(); };
@@ -112,11 +150,15 @@ int list_plugins(const Common& common) {
 }  // namespace
 
 Verb plugin_list_verb(Common& common) {
-  return {.name = "list",
-          .summary = "Lists loaded plugins with their options, and rejected ones with the reason",
-          .arguments = common_arguments(common),
-          .examples = {"nonio plugin list --quiet"},
-          .run = [&common] { return list_plugins(common); }};
+  auto wish = std::make_shared<ListWish>();
+  return {
+      .name = "list",
+      .summary = "Lists the loaded plugins, and rejected files with the reason",
+      .arguments = joined({{"NAME", &wish->names, "Only plugins of this name, with their options"},
+                           {"--all", &wish->all, "Options of every plugin, and the files"}},
+                          common_arguments(common)),
+      .examples = {"nonio plugin list", "nonio plugin list csv"},
+      .run = [wish, &common] { return list_plugins(*wish, common); }};
 }
 
 }  // namespace nonio::app

@@ -168,9 +168,6 @@ int query(const QueryWish& wish, const Common& common) {
   if (q.machine.empty() && q.axis.empty() && q.quantity.empty() && q.source.empty() &&
       q.from.empty() && q.to.empty() && !wish.csv)
     return print_machines(wish, common);
-  for (const std::string& day : {q.from, q.to})
-    if (!day.empty() && !is_day(day))
-      return complain("expected a day as YYYY-MM-DD, found \"" + day + "\"");
   const auto points = store::query(wish.out, q);
   if (!points) return complain(points.error().message);
   if (common.json) {
@@ -204,8 +201,8 @@ Verb machine_list_verb(Common& common) {
            {"--quantity", &q.quantity, "scale, B_mean, ln_s, A, R, ... as in results.json"},
            {"--source", &q.source,
             "\"followed\" (with covariance, for trends), or an analysis: iso230-2"},
-           {"--from", &q.from, "First day of the campaigns, YYYY-MM-DD"},
-           {"--to", &q.to, "Last day, YYYY-MM-DD"},
+           day({"--from", &q.from, "First day of the campaigns, YYYY-MM-DD"}),
+           day({"--to", &q.to, "Last day, YYYY-MM-DD"}),
            {"--superseded", &q.superseded,
             "Include results that were replaced: other readings, other options, another version"},
            {"--csv", &wish->csv, "Comma-separated, all columns, for a spreadsheet"}},

@@ -76,8 +76,6 @@ void print_planned(const batch::RunResult& run, const batch::RunOptions& options
 int plan_run(PartWish& wish, const Common& common) {
   batch::RunOptions& options = wish.options;
   if (wish.out.empty()) return complain("--out is empty; expected a folder");
-  if (!options.date.empty() && !is_day(options.date))
-    return complain("--date: expected a day as YYYY-MM-DD, found \"" + options.date + "\"");
   options.step = batch::RunOptions::Step::plan;
   prepare_run(options, wish.site, wish.out, common);
   Progress progress(common, common.quiet, common.json);
@@ -177,9 +175,10 @@ Verb plan_part(Common& common) {
            {"--force", &options.force, "Evaluate every campaign again, changed or not"},
            {"--verify-results", &options.verify_results,
             "Compare the digests of all result files, not only of those that look modified"},
-           {"--date", &options.date,
-            "Date of the run, YYYY-MM-DD, for the summary (default: today; a resumed run keeps its "
-            "date)"},
+           day({"--date", &options.date,
+                "Date of the run, YYYY-MM-DD, for the summary (default: today; a resumed run keeps "
+                "its "
+                "date)"}),
            root_argument(options),
            templates_argument(common)},
           common_arguments(common)),

@@ -107,8 +107,6 @@ int run_part(const batch::RunOptions& options, const Common& common) {
 int run_site_again(RunWish& wish, const Common& common) {
   if (wish.out.empty()) return complain("--out is empty; expected a folder");
   batch::RunOptions& options = wish.options;
-  if (!options.date.empty() && !is_day(options.date))
-    return complain("--date: expected a day as YYYY-MM-DD, found \"" + options.date + "\"");
   if (!options.only.empty() && (options.force || !options.date.empty()))
     return complain("--only goes with neither --force nor --date");
   if (wish.shard == not_given && (options.pack || !wish.scratch.empty()))
@@ -160,9 +158,9 @@ Verb run_verb(Common& common) {
            {"--verify-results", &options.verify_results,
             "Compare the digests of all result files, not only of those that look modified; a "
             "campaign with a modified file is evaluated again"},
-           {"--date", &options.date,
-            "Date of the run, YYYY-MM-DD, for the summary (default: today; a resumed run keeps "
-            "its date)"},
+           day({"--date", &options.date,
+                "Date of the run, YYYY-MM-DD, for the summary (default: today; a resumed run keeps "
+                "its date)"}),
            {"--dry-run", &options.dry_run, "Print what would be evaluated and why; write nothing"},
            {"--shard", &wish->shard,
             "i/S: only shard i = 0 .. S-1 of a run that `nonio run plan` has divided into S "

@@ -403,10 +403,6 @@ class Session {
 int session(const SessionWish& w, const Common& common) {
   const auto settings = settings_of(w.settings);
   if (!settings) return complain(settings.error().message);
-  for (const auto& [option, day] : {std::pair{"--loaded", &w.loaded}, {"--checked", &w.checked}})
-    if (!day->empty() && !is_day(*day))
-      return complain(std::string(option) + ": expected a day as YYYY-MM-DD, found \"" + *day +
-                      "\"");
   if (!w.checked.empty() && w.check.empty())
     return complain("--checked is the day of --check, which is missing");
   return Session(w, *settings, common).run();
@@ -427,13 +423,13 @@ Verb session_verb(Common& common) {
                   "Files saved from the control: FILE, or FILE,FILE,... (default: what the record "
                   "of the machine has of the day of the measurement)"}),
            {"--axis", &w->axis, "The axis (default: the measured axis, if there is only one)"},
-           {"--loaded", &w->loaded,
-            "YYYY-MM-DD: the new table was loaded on this day; records it in "
-            "machines/<asset>.toml"},
+           day({"--loaded", &w->loaded,
+                "YYYY-MM-DD: the new table was loaded on this day; records it in "
+                "machines/<asset>.toml"}),
            takes(Takes::file, {"--check", &w->check,
                                "Readings of the axis with the new table: makes the check campaign, "
                                "<CAMPAIGN>-check"}),
-           {"--checked", &w->checked, "YYYY-MM-DD: the day of --check (default: today)"},
+           day({"--checked", &w->checked, "YYYY-MM-DD: the day of --check (default: today)"}),
            takes(Takes::folder,
                  {"--out", &w->out, "Folder for the files to load (default: CAMPAIGN/load)"}),
            {"--control", &w->control, "The control of the files (`nonio table controls`)"},

@@ -19,9 +19,9 @@ namespace {
 /// example mean_um.
 Number number_of(const std::string& key, const Json& value) {
   Number n{key, value.get<double>(),
-           value.is_number_integer() ? Quantity::count
-           : key == "p"              ? Quantity::probability
-                                     : Quantity::number};
+           value.is_number_integer()             ? Quantity::count
+           : key == "p" || key.starts_with("p_") ? Quantity::probability
+                                                 : Quantity::number};
   std::size_t longest = 0;
   for (int i = 0; i <= static_cast<int>(Quantity::angle_per_kelvin); ++i) {
     const Unit unit = unit_of(static_cast<Quantity>(i));

@@ -130,7 +130,7 @@ Verb status_verb(Common& common) {
            {"--metrics", &wish->metrics,
             "OpenMetrics text for a monitoring system: age of the run, campaigns by state, actions "
             "by kind, drafts"},
-           {"--since", &list.since, "Only actions since this day (YYYY-MM-DD)"},
+           day({"--since", &list.since, "Only actions since this day (YYYY-MM-DD)"}),
            {"--customer", &list.customer, "Only the machines of this customer"},
            {"--language", &list.language, "de, en or it; else that of the run's summary.txt"},
            existing(Takes::folder,
@@ -166,7 +166,12 @@ Verb status_verb(Common& common) {
         const auto found = batch::run_status(wish->out);
         if (!found) return complain(found.error().message);
         const int exit = print_status(*found, *wish, common);
-        if (found->last && !common.json && !common.quiet) print_worklist(wish->list, common);
+        if (found->last && !common.json && !common.quiet) {
+          print_worklist(wish->list, common);
+          if (wish->list.site.empty())
+            std::cout << wrapped(SiteWords(common, language_of(*wish)).get()("entered-since"), 0,
+                                 sentence_width(STDOUT_FILENO));
+        }
         return exit;
       }};
 }

@@ -57,8 +57,6 @@ int print_page(const WorklistWish& wish, const Templates& templates, const std::
 }  // namespace
 
 int print_worklist(const WorklistWish& wish, const Common& common) {
-  if (!wish.since.empty() && !is_day(wish.since))
-    return complain("--since: expected a day as YYYY-MM-DD, found \"" + wish.since + "\"");
   const auto last_run = assessment::last_run_in(wish.out);
   if (!last_run) return complain(last_run.error().message);
   std::optional<config::SiteLogs> entered;

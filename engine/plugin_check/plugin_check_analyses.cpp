@@ -469,10 +469,10 @@ Verdict fingerprint(const Analysis& a, const Bench& bench) {
 
 const std::vector<Check<Analysis>>& analysis_checks() {
   static const std::vector<Check<Analysis>> checks = {
-      {"truth", "It gives the values of expected/values.csv.",
+      {"true-values", "It gives the values of expected/values.csv.",
        [](const Analysis& x, const Bench& bench) { return truth(x, bench); }},
       {"again", "The same input gives the same bytes.", analysis_again},
-      {"says", "It gives results for a sample that it applies to.", analysis_says},
+      {"results", "It gives results for a sample that it applies to.", analysis_says},
       {"finite", "A value that cannot be given is absent.", analysis_finite},
       {"rows", "The order of rows does not change the result.", analysis_rows},
       {"shift",
@@ -483,7 +483,7 @@ const std::vector<Check<Analysis>>& analysis_checks() {
       {"renamed", "Results do not depend on the name of the axis.", analysis_renamed},
       {"inch", "Inches give the same readings as millimetres.",
        [](const Analysis&, const Bench&) { return skipped("an analysis gets SI"); }},
-      {"hostile", "Unusual readings cause no crash, no hang and no invalid number.",
+      {"malformed", "Unusual readings cause no crash, no hang and no invalid number.",
        analysis_hostile}};
   return checks;
 }

@@ -391,7 +391,7 @@ const std::vector<Check<Controller>>& controller_checks() {
   static const std::vector<Check<Controller>> of_tables = {
       {"declared", "Name, units, steps and the confidence of each fact are declared.",
        table_declared},
-      {"truth", "Files of the maker do what table.csv states.",
+      {"true-values", "Files of the maker do what table.csv states.",
        [](const Controller& x, const Bench& bench) { return truth(x, bench); }},
       {"cancels", "Its table, read back, removes a planted error.", table_cancels},
       {"sign", "Where the error rises, the control adds a correction that falls equally.",

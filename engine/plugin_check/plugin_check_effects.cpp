@@ -481,10 +481,10 @@ Verdict fingerprint(const Effect& e, const Bench& bench) {
 const std::vector<Check<Effect>>& effect_checks() {
   static const std::vector<Check<Effect>> checks = {
       {"columns", "One column per parameter, one entry per reading, only numbers.", effect_columns},
-      {"truth", "Its columns are those of its formula file.",
+      {"true-values", "Its columns are those of its formula file.",
        [](const Effect& x, const Bench& bench) { return truth(x, bench); }},
       {"again", "The same input gives the same bytes.", effect_again},
-      {"still", "Columns are 0 for readings with the axis at rest.", effect_still},
+      {"at-rest", "Columns are 0 for readings with the axis at rest.", effect_still},
       {"rows", "The order of rows does not change the result.", effect_rows},
       {"grid", "The grid values of a shape increase.", effect_grid},
       {"neighbours", "Neighbouring grid values give similar columns.", effect_neighbours},
@@ -492,7 +492,7 @@ const std::vector<Check<Effect>>& effect_checks() {
        effect_independent},
       {"planted", "Least squares recover a planted effect.", effect_planted},
       {"explained", "explain names a planted effect, or an alias of it.", effect_explained},
-      {"hostile", "Unusual readings cause no crash, no hang and no invalid number.",
+      {"malformed", "Unusual readings cause no crash, no hang and no invalid number.",
        effect_hostile}};
   return checks;
 }

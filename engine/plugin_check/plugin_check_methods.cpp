@@ -213,11 +213,11 @@ Verdict fingerprint(const Method& m, const Bench& bench) {
 
 const std::vector<Check<Method>>& method_checks() {
   static const std::vector<Check<Method>> checks = {
-      {"kind", "What it observes is the kind of another method.", method_kind},
+      {"observed-kind", "`observed_as` names a kind that another method declares.", method_kind},
       {"keys", "Keys of [[measurement]] have help and units, and can be checked.", method_keys},
       {"columns", "Names, quantities and roles of the columns are consistent.", method_columns},
       {"round-trip", "Observations, simulated as readings, are observed again.", method_round_trip},
-      {"hostile", "Odd readings give an error or valid observations.", method_hostile}};
+      {"malformed", "Odd readings give an error or valid observations.", method_hostile}};
   return checks;
 }
 

@@ -302,7 +302,7 @@ std::vector<Check<Plugin>> checks_of_files() {
   return {{"writes", "It writes files with plain names and valid numbers.", output_writes<Plugin>},
           {"again", "The same input gives the same bytes.", output_again<Plugin>},
           {"empty", "No results or no readings: an error, or less.", output_empty<Plugin>},
-          {"hostile", "Texts of any kind do not crash it, and lead to no other folder.",
+          {"malformed", "Texts of any kind do not crash it, and lead to no other folder.",
            output_hostile<Plugin>},
           {"choices", "Every choice and both ends of each option work.", output_options<Plugin>}};
 }

@@ -395,7 +395,7 @@ Verdict fingerprint(const Reader& r, const Bench& bench) {
 const std::vector<Check<Reader>>& reader_checks() {
   static const std::vector<Check<Reader>> checks = {
       {"reads", "It reads its samples: columns of equal length, only numbers.", reader_reads},
-      {"truth", "Each reading equals that of readings.csv.", reader_truth},
+      {"true-values", "Each reading equals that of readings.csv.", reader_truth},
       {"again", "The same input gives the same bytes.", reader_again},
       {"empty", "An empty file gives no readings.", reader_empty},
       {"foreign", "It does not accept files of other kinds.", reader_foreign},

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nonio/math/budget.h"
+
 namespace nonio::math {
 
 std::vector<std::string> moving_axes(const Measurement& m) {
@@ -44,6 +46,18 @@ Observations along_diagonal(const Observations& o, const Measurement& m) {
             static_cast<std::int8_t>(direction[k] > 0.0 ? approach : -approach));
     }
   out.axes = {std::move(column)};
+  return out;
+}
+
+BudgetOrGap budget_along(const Campaign& campaign, const Environment& environment,
+                         const Measurement& m, const AxisTest& test) {
+  BudgetLine line;
+  put_expansion(line, campaign, moving_axes(m), direction_along(m));
+  Campaign with = campaign;
+  with.machine.axes.push_back(Axis{.name = m.id, .expansion = line.expansion});
+  BudgetOrGap out = uncertainty_budget(with, environment, m.id, test);
+  for (std::string& key : out.missing)
+    if (key.find("machine.axes.") == 0) key = line.expansion_keys;
   return out;
 }
 

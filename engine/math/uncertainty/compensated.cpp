@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "nonio/math/along.h"
 #include "nonio/math/budget.h"
 #include "nonio/math/drift.h"
 #include "nonio/math/uncertainty.h"
@@ -20,6 +21,17 @@ CompensatedUncertainty compensated_uncertainty(const Campaign& campaign, const M
   if (!budget) return {seen, 0.0, 0.0};
   const auto U = iso230_2_uncertainty(*budget, approaches_per_mean(test), 2.0);
   return {std::max(U.B_mean, seen), U.E, U.M};
+}
+
+double compensated_uncertainty_along(const Campaign& campaign, const Measurement& m,
+                                     const Observations& readings) {
+  const Observations line = along_diagonal(readings, m);
+  if (readings.size() == 0 || line.axes.front().approach.size() != readings.size()) return 0.0;
+  const AxisTest test = AxisTest::arrange(line);
+  const Observations* own = &readings;
+  const auto budget =
+      budget_along(campaign, limits_held(campaign, {&own, 1}).environment, m, test).budget;
+  return budget ? iso230_2_uncertainty(*budget, approaches_per_mean(test), 2.0).E : 0.0;
 }
 
 double predicted_after(double before, double after, double U) {

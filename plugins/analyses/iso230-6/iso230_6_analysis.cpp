@@ -7,7 +7,6 @@
 #include "nonio/math/along.h"
 #include "nonio/math/axis_analysis.h"
 #include "nonio/math/blindness.h"
-#include "nonio/math/budget.h"
 #include "nonio/math/iso230_2.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/plugin.h"
@@ -77,19 +76,6 @@ struct Tested {
   std::size_t approaches = 0;
   std::vector<Finding> findings;
 };
-
-/// The machine expands along the diagonal as its axes do: sum of c^2 alpha.
-BudgetOrGap budget_along(const Campaign& campaign, const Environment& environment,
-                         const Measurement& m, const AxisTest& test) {
-  BudgetLine line;
-  put_expansion(line, campaign, moving_axes(m), direction_along(m));
-  Campaign with = campaign;
-  with.machine.axes.push_back(Axis{.name = m.id, .expansion = line.expansion});
-  BudgetOrGap out = uncertainty_budget(with, environment, m.id, test);
-  for (std::string& key : out.missing)
-    if (key.find("machine.axes.") == 0) key = line.expansion_keys;
-  return out;
-}
 
 std::optional<Tested> tested(const AnalysisInput& in, std::size_t i) {
   const Measurement& m = in.campaign.measurements[i];

@@ -7,6 +7,7 @@
 #include "nonio/controllers/replay.h"
 #include "nonio/controllers/size.h"
 #include "nonio/controllers/text.h"
+#include "nonio/math/compensated.h"
 #include "resolution.h"
 
 namespace nonio::controllers {
@@ -80,21 +81,22 @@ const Measurement* measurement_named(const Campaign& campaign, std::string_view 
   return nullptr;
 }
 
-/// Directions of X in which this diagonal was read.
-std::vector<int> ways_of(const ControllerInput& in, const Measurement& m) {
+/// States the directions of X in which this diagonal was read, and its uncertainty.
+void put_readings(ReadLine& line, const ControllerInput& in, const Measurement& m) {
   const auto index = static_cast<std::size_t>(&m - in.campaign.measurements.data());
-  if (index >= in.observations.size() || in.observations[index].axes.empty()) return {1, -1};
+  if (index >= in.observations.size() || in.observations[index].axes.empty()) return;
+  const Observations& readings = in.observations[index];
+  const auto& approach = readings.axes.front().approach;
   std::vector<int> ways;
-  for (const int way : {1, -1}) {
-    const auto& approach = in.observations[index].axes.front().approach;
+  for (const int way : {1, -1})
     if (std::find(approach.begin(), approach.end(), way) != approach.end()) ways.push_back(way);
-  }
-  return ways.empty() ? std::vector{1, -1} : ways;
+  if (!ways.empty()) line.ways = ways;
+  line.U = math::compensated_uncertainty_along(in.campaign, m, readings);
 }
 
-/// The diagonals of the set that rise and fall over this rectangle: how each was read.
-std::vector<int> ways_of(const ControllerInput& in, const Results::Analysed& a, const Series& x,
-                         const Series& y, bool rising) {
+/// Returns the diagonal of the set that rises or falls over this rectangle; nullptr if there is none.
+const Measurement* diagonal_over(const ControllerInput& in, const Results::Analysed& a,
+                                 const Series& x, const Series& y, bool rising) {
   std::vector<std::string> ids = a.evaluation.uses;
   ids.push_back(a.measurement);
   constexpr double same_place = 1e-6;  // m
@@ -109,10 +111,9 @@ std::vector<int> ways_of(const ControllerInput& in, const Results::Analysed& a, 
       continue;
     const double x0 = m->from.at(x.over), x1 = m->to.at(x.over), y0 = m->from.at(y.over),
                  y1 = m->to.at(y.over);
-    if (spans(x0, x1, x) && spans(y0, y1, y) && ((x1 - x0) * (y1 - y0) > 0.0) == rising)
-      return ways_of(in, *m);
+    if (spans(x0, x1, x) && spans(y0, y1, y) && ((x1 - x0) * (y1 - y0) > 0.0) == rising) return m;
   }
-  return {1, -1};
+  return nullptr;
 }
 
 /// Both diagonals as read, at the stops of the curves.
@@ -144,8 +145,8 @@ std::optional<CrossJob> of_diagonals(const ControllerInput& in, const Results::A
     ReadLine line{rising ? "D1" : "D2",
                   {{f->over, Lx / L}, {g->over, (rising ? Ly : -Ly) / L}},
                   {},
-                  (rising ? D1 : D2)->values,
-                  ways_of(in, a, *f, *g, rising)};
+                  (rising ? D1 : D2)->values};
+    if (const Measurement* m = diagonal_over(in, a, *f, *g, rising)) put_readings(line, in, *m);
     for (std::size_t i = 0; i < x.size(); ++i)
       line.at.push_back({{f->over, x[i]}, {g->over, y[rising ? i : y.size() - 1 - i]}});
     job.lines.push_back(std::move(line));
@@ -155,8 +156,10 @@ std::optional<CrossJob> of_diagonals(const ControllerInput& in, const Results::A
 
 /// The body diagonals as read where all axes have moved equally far: they do not contain what a
 /// tilted mirror adds to single moves.
-std::vector<ReadLine> body_diagonals(const Measurement& m, const Observations& o) {
+std::vector<ReadLine> body_diagonals(const Campaign& campaign, const Measurement& m,
+                                     const Observations& o) {
   constexpr double same_part = 1e-6;
+  std::vector<std::vector<char>> equal(o.lines.size(), std::vector<char>(o.size()));
   std::vector<ReadLine> lines;
   for (const Observations::Line& of : o.lines) {
     ReadLine line{of.name.substr(std::min(m.id.size() + 1, of.name.size())), {}, {{}}, {0.0}, {1}};
@@ -183,6 +186,18 @@ std::vector<ReadLine> body_diagonals(const Measurement& m, const Observations& o
     if (std::fabs(*most) - std::fabs(*least) > same_part) continue;
     line.at.push_back(std::move(at));
     line.deviation.push_back(o.deviation[i]);
+    equal[o.line.empty() ? 0 : o.line[i]][i] = 1;
+  }
+  for (std::size_t l = 0; l < lines.size(); ++l) {
+    Observations readings = o;
+    keep_rows(readings, equal[l]);
+    Measurement along = m;
+    for (const auto& [axis, sense] : lines[l].sense) {
+      along.from[axis] = sense > 0.0 ? std::min(m.from.at(axis), m.to.at(axis))
+                                     : std::max(m.from.at(axis), m.to.at(axis));
+      along.to[axis] = m.from.at(axis) + m.to.at(axis) - along.from[axis];
+    }
+    lines[l].U = math::compensated_uncertainty_along(campaign, along, readings);
   }
   return lines;
 }
@@ -197,7 +212,7 @@ std::optional<CrossJob> of_volume(const ControllerInput& in, const Results::Anal
     if (auto curve = curve_of(e, part, o.axes[static_cast<std::size_t>(part.series[1] - 'X')].axis))
       job.curves.push_back(std::move(*curve));
   if (job.curves.empty()) return std::nullopt;
-  job.lines = body_diagonals(in.campaign.measurements[index], o);
+  job.lines = body_diagonals(in.campaign, in.campaign.measurements[index], o);
   return job;
 }
 

@@ -6,6 +6,7 @@
 
 #include "nonio/controllers/kit.h"
 #include "nonio/math/axis_test.h"
+#include "nonio/math/compensated.h"
 #include "nonio/math/loaded_table.h"
 
 namespace nonio::controllers {
@@ -193,8 +194,9 @@ void predict_lines(const CrossJob& job, const Replay& replay, OutputResult& resu
       result.notes.push_back({"table.sides-not-placed", {}, {}, job.measurement});
       return;
     }
-    keep_worst(all, {job.measurement, line.name.substr(0, line.name.find(' ')),
-                     range_of(line.deviation), range_of(*will), Quantity::deviation});
+    const double before = range_of(line.deviation);
+    keep_worst(all, {job.measurement, line.name.substr(0, line.name.find(' ')), before,
+                     math::predicted_after(before, range_of(*will), line.U), Quantity::deviation});
   }
   for (Prediction& p : all) {
     if (!(p.after < p.before))

@@ -26,7 +26,7 @@ ALL = {
 }
 OWN = {
     "reader": {
-        "truth": "deviation-x1000 deviation-in-nm deviation-turned deviation-without-sign deviation-in-microinches "
+        "true-values": "deviation-x1000 deviation-in-nm deviation-turned deviation-without-sign deviation-in-microinches "
                  "deviation-halved deviation-rounded deviation-cut-off deviation-shifted temperature-corrected target-in-m "
                  "target-in-inches target-turned target-from-one target-as-reached directions-swapped all-towards-plus "
                  "direction-by-deviation runs-from-two all-of-one-run run-a-pass four-seconds-for-six time-in-ms "
@@ -45,42 +45,42 @@ OWN = {
         "signs": "loses-plus-signs loses-minus-signs",
     },
     "effect": {
-        "truth": "in-mm in-um turned halved without-sign squared from-the-first-target towards-plus-only with-direction "
+        "true-values": "in-mm in-um turned halved without-sign squared from-the-first-target towards-plus-only with-direction "
                  "cut-off by-commanded-position wave-of-half-the-period wave-without-two-pi wave-in-degrees "
                  "wave-of-cosine-and-sine",
         "independent": "a-constant zeros wave-of-two-sines",
         "columns": "a-nan infinite an-entry-too-few an-entry-too-many a-column-too-many without-parameters "
                    "without-columns without-applies refuses-all throws",
         "rows": "by-the-order by-the-row-before",
-        "still": "while-still",
-        "hostile": "crashes-without-readings crashes-with-one-reading hangs-without-times",
+        "at-rest": "while-still",
+        "malformed": "crashes-without-readings crashes-with-one-reading hangs-without-times",
         "neighbours": "grid-with-holes",
         "grid": "grid-with-a-twin grid-that-falls grid-with-a-nan",
     },
     "analysis": {
-        "truth": "x1000 halved turned rounded first-run-only towards-plus-only every-second-reading without-the-largest "
+        "true-values": "x1000 halved turned rounded first-run-only towards-plus-only every-second-reading without-the-largest "
                  "of-another-quantity of-another-name without-a-value one-too-many",
-        "says": "refuses-all throws says-nothing hangs without-analyse without-applies",
+        "results": "refuses-all throws says-nothing hangs without-analyse without-applies",
         "rows": "the-first the-last of-neighbours",
         "shift": "rms largest-of-all",
         "scale": "to-the-square root a-constant-more",
         "mirror": "above-the-mean positive-places-only",
         "renamed": "likes-x",
         "finite": "a-nan infinite evidence-that-is-none",
-        "hostile": "crashes-without-readings crashes-with-one-reading crashes-at-huge-ones hangs-at-zeros "
+        "malformed": "crashes-without-readings crashes-with-one-reading crashes-at-huge-ones hangs-at-zeros "
                    "infinite-for-one nan-without-travel log-of-zero",
     },
     "output": {
         "writes": "refuses-all throws writes-nothing into-a-folder above absolute without-name no-json twice-the-same "
                   "prediction-of-nan evidence-of-nan without-write",
         "empty": "crashes-without-results crashes-without-readings",
-        "hostile": "crashes-at-long-texts named-by-machine named-by-customer",
+        "malformed": "crashes-at-long-texts named-by-machine named-by-customer",
         "choices": "path-by-choice crashes-by-choice crashes-at-the-end",
     },
     "table": {
         "declared": "without-a-name without-facts fact-twice fact-without-words step-of-zero step-of-nan "
                     "increments-of-nothing without-parse",
-        "truth": "reads-x1000 reads-tenths reads-inches reads-the-other-sign reads-increments reads-places-in-m "
+        "true-values": "reads-x1000 reads-tenths reads-inches reads-the-other-sign reads-increments reads-places-in-m "
                  "reads-places-from-the-first reads-without-the-last reads-without-the-first reads-the-next-entry "
                  "reads-backwards",
         "cancels": "unreadable reads-nothing writes-the-error writes-twice-as-much writes-half-of-it writes-a-tenth "

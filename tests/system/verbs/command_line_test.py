@@ -177,9 +177,14 @@ class Mistyped(VerbTest):
         files = {pathlib.Path(f["path"]): f["plugins"] for f in json.loads(self.nonio("plugin", "list", "--json").stdout)["files"]}
         effects = next(path for path in files if path.name == "effects.so")
         self.assertIn("effect backlash 1.0.0", files[effects])
-        listed = self.nonio("plugin", "list", "--quiet").stdout
+        listed = self.nonio("plugin", "list", "--all").stdout
         for path, plugins in files.items():
-            self.assertIn("".join(f"\n    {plugin}" for plugin in plugins) + "\n", listed.split(str(path))[1])
+            self.assertIn("".join(f"\n  {plugin}" for plugin in plugins) + "\n", listed.split(str(path))[1])
+        one = self.nonio("plugin", "list", "backlash").stdout
+        self.assertTrue(one.startswith("effect "), one)
+        self.assertNotIn(".so", one)
+        self.assertNotIn("[options.", self.nonio("plugin", "list").stdout)
+        self.assertIn('nearest: "backlash"', self.refused("plugin", "list", "backlsh"))
         done = self.nonio("plugin", "check", effects, "--plugin", "backlash", "--only", "names", "--json")
         self.assertEqual({"effect backlash"}, {check["plugin"] for check in json.loads(done.stdout)["checks"]})
         refused = self.nonio("plugin", "check", effects, "--plugin", "backlsh", expect=2).stderr

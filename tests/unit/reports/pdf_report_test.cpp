@@ -546,10 +546,10 @@ TEST_F(PdfReport, PlansAndTheirFindingsAreShown) {
       {.id = "triples.flat", .attention = true, .evidence = {{"gain", 3.4, Quantity::ratio}}}};
   c.results.analyses.push_back({"triple-planner", "1", "", plan});
   const std::string en = text(c), it = text(c, "it");
-  for (const char* what :
-       {"Plans: stops for the diagonals", "step X", "448", "0.9956", "Flat diagonals"})
+  for (const char* what : {"Plans: stops for the diagonals", "step X", "448", "0.9956",
+                           "Diagonals too flat for a plan"})
     EXPECT_TRUE(has(en, what)) << what;
-  EXPECT_EQ(occurrences(en, "Flat diagonals"), 3U)
+  EXPECT_EQ(occurrences(en, "Diagonals too flat for a plan"), 3U)
       << "at the top, beside the plans, with its advice";
   for (const char* what : {"Piani: fermate", "passo X", "0,9956"})
     EXPECT_TRUE(has(it, what)) << what;

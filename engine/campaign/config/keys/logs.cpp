@@ -27,7 +27,7 @@ constexpr Key event_keys[] = {
 constexpr Key acknowledged_keys[] = {
     {"date", day<&Acknowledgement::date>, "Day of the entry.", required},
     {"finding", into<&Acknowledgement::finding>,
-     "Id of the finding, or kind of a line of the daily list.", required},
+     "Id of the finding, or kind of a line of the worklist.", required},
     {"machine", into<&Acknowledgement::machine>, an_asset_or_serial, required},
     {"axis", into<&Acknowledgement::axis>, "The axis. Default: all axes."},
     {"quantity", into<&Acknowledgement::quantity>, "The quantity, such as B_mean. Default: all."},
@@ -43,13 +43,13 @@ constexpr Key acknowledged_keys[] = {
 
 constexpr Key withdrawn_keys[] = {
     {"date", day<&Withdrawal::date>, "Day of the entry.", required},
-    {"finding", into<&Withdrawal::finding>,
-     "As the acknowledgement above that is withdrawn has it.", required},
-    {"machine", into<&Withdrawal::machine>, "As the acknowledgement has it.", required},
-    {"axis", into<&Withdrawal::axis>, "As the acknowledgement has it."},
-    {"quantity", into<&Withdrawal::quantity>, "As the acknowledgement has it."},
+    {"finding", into<&Withdrawal::finding>, "Finding of the acknowledgement that is withdrawn.",
+     required},
+    {"machine", into<&Withdrawal::machine>, "The same as in the acknowledgement.", required},
+    {"axis", into<&Withdrawal::axis>, "The same as in the acknowledgement."},
+    {"quantity", into<&Withdrawal::quantity>, "The same as in the acknowledgement."},
     written_by<Withdrawal>,
-    {"why", into<&Withdrawal::why>, "Reason why it does not count any more."},
+    {"why", into<&Withdrawal::why>, "Reason for the withdrawal."},
 };
 
 constexpr Key forgotten_keys[] = {
@@ -76,7 +76,7 @@ constexpr Key acknowledged_file_keys[] = {
     {"acknowledged", checked<check_entry<Acknowledgement>, &Entries::acknowledged>,
      "Findings acknowledged by a person, [[acknowledged]].", acknowledged_keys},
     {"withdrawn", checked<check_entry<Withdrawal>, &Entries::withdrawn>,
-     "Acknowledgements above that do not count any more, [[withdrawn]].", withdrawn_keys},
+     "Withdrawals of the acknowledgements above, [[withdrawn]].", withdrawn_keys},
 };
 
 constexpr Key forgotten_file_keys[] = {

@@ -122,6 +122,6 @@ inline constexpr Key run_key{"run", nested<&T::run>, "Selected analyses and outp
 template <class T>
 inline constexpr Key options_key{
     "options", by<read_options, options, &T::options>,
-    "Options of plugins, [options.iso230-2]; `nonio plugin list` lists them."};
+    "Options of plugins, [options.iso230-2]; `nonio plugin list iso230-2` lists them."};
 
 }  // namespace nonio::config::declared

@@ -30,15 +30,16 @@ constexpr Key numbering_keys[] = {
      "number are evaluated again in the next run.",
      seconds, otherwise("60"), within(0.0, 86400.0, "expected a number from 0 to 86400")},
     {"release", chosen<&SiteFile::numbering, &Numbering::automatic>,
-     "Release of certificates: by a person, or by the nightly run if every finding with severity "
+     "Who approves certificates: a person, or the nightly run if every finding with severity "
      "warning is listed in `accept`.",
      otherwise("by-hand"), releases},
     {"accept", nested<&SiteFile::numbering, &Numbering::accepted>,
-     "Findings with severity warning that do not prevent an automatic release, each with the "
+     "Findings with severity warning that do not prevent an automatic approval, each with the "
      "reason; [] for none.",
      accepted_rule_keys, former("may_stand")},
     {"two_persons", into<&SiteFile::numbering, &Numbering::two_persons>,
-     "The author approves a certificate, and another person releases it.", otherwise("false")},
+     "The author signs off each draft, and another person, an authoriser, approves it.",
+     otherwise("false")},
 };
 
 constexpr auto certificate_of_site =
@@ -60,8 +61,7 @@ constexpr Key laboratory_keys[] = {
     {"accreditation", into<&Laboratory::accreditation>,
      "Number of the accreditation; for accredited laboratories only."},
     {"authoriser", into<&Laboratory::authoriser>,
-     "Name of the person who authorises certificates; several are separated by ';'. No other "
-     "person can approve one."},
+     "Names of the persons who may approve certificates, separated by ';'."},
     {"contact", into<&Laboratory::contact>, "Contact of the laboratory."},
     {"cmc", nested<&Laboratory::cmc>,
      "The smallest expanded uncertainty (k = 2) that the accreditation covers, a + b L: no result "

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "nonio/math/axis_test.h"
+#include "nonio/math/uncertainty.h"
 #include "nonio/sdk/campaign.h"
 #include "nonio/sdk/observations.h"
 
@@ -19,5 +21,9 @@ std::vector<double> direction_along(const Measurement&);
 /// Converts the readings to those of one axis along the diagonal; + is from its first corner to its
 /// second.
 Observations along_diagonal(const Observations&, const Measurement&);
+
+/// Computes the uncertainty budget of positioning along the diagonal, or the missing keys. The
+/// machine expands along it as its axes do: sum of c^2 alpha, c: components of its direction.
+BudgetOrGap budget_along(const Campaign&, const Environment&, const Measurement&, const AxisTest&);
 
 }  // namespace nonio::math

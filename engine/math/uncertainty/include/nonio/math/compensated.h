@@ -19,6 +19,10 @@ CompensatedUncertainty compensated_uncertainty(const Campaign&, const Measuremen
                                                const Observations&, const AxisTest&,
                                                bool has_drift);
 
+/// Computes the expanded uncertainty (k = 2) of the range of the mean deviations along a diagonal,
+/// m; 0: not known.
+double compensated_uncertainty_along(const Campaign&, const Measurement&, const Observations&);
+
 /// Returns the deviation after compensation to be stated: errors that are not known are not
 /// compensated, so it is at least min(U, before).
 double predicted_after(double before, double after, double U);

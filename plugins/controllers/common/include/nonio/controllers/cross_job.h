@@ -42,6 +42,7 @@ struct ReadLine {
   std::vector<double> deviation;
   /// directions of reading, along `sense` (1) or against it (-1); `deviation` is the mean over them
   std::vector<int> ways{1, -1};
+  double U = 0.0;  ///< expanded uncertainty of the range of `deviation`, m; 0: not known
 };
 
 /// Squareness as a shift of the zero of a gantry's second side, instead of a table: at the same
