@@ -33,7 +33,7 @@ std::string reason_of(const WaitingDraft& draft, const evaluation::KnownFinding&
 Json draft_json(const WaitingDraft& draft) {
   Json json = {{"campaign", draft.campaign},
                {"folder", draft.folder},
-               {"file", (fs::path(draft.out) / draft.campaign / draft.file).string()}};
+               {"file", batch::file_of(draft).string()}};
   if (!draft.replaces.empty()) json["replaces"] = draft.replaces;
   if (const std::string why = batch::why_stale(draft); !why.empty()) json["stale"] = why;
   if (draft.author) json["author"] = {{"name", draft.author->by}, {"at", draft.author->at}};
@@ -52,7 +52,7 @@ Json draft_json(const WaitingDraft& draft) {
 }
 
 void print(std::ostream& out, const WaitingDraft& draft) {
-  out << draft.campaign << "  " << (fs::path(draft.out) / draft.campaign / draft.file).string();
+  out << draft.campaign << "  " << batch::file_of(draft).string();
   if (!draft.replaces.empty()) out << "  replaces " << draft.replaces;
   if (draft.author) out << "  approved by " << draft.author->by << " " << draft.author->at;
   out << "\n";

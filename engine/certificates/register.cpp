@@ -400,7 +400,8 @@ Expected<evaluation::Certificate> Register::draw(const std::string& campaign,
     drawn.issue.replaces = old.front()[2];
     drawn.issue.replaces_date = old.front()[3];
     drawn.issue.changes = differences(inputs_of(integer(old.front()[0])), data);
-    note_replaced(integer(old.front()[0]), drawn.issue);
+    if (auto noted = note_replaced(integer(old.front()[0]), drawn.issue); !noted)
+      return fail(noted.error());
   }
   if (auto ended = end(transaction); !ended) return fail(ended.error());
   return drawn;

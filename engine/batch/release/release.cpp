@@ -353,8 +353,12 @@ class Releaser {
 
 }  // namespace
 
+fs::path file_of(const certificates::WaitingDraft& draft) {
+  return storage::results_folder(draft.out, draft.campaign) / draft.file;
+}
+
 std::string why_stale(const certificates::WaitingDraft& draft) {
-  const fs::path file = fs::path(draft.out) / draft.campaign / draft.file;
+  const fs::path file = file_of(draft);
   const auto now = storage::sha256_of_file(file);
   if (now && *now == draft.sha256) return {};
   return "the draft " + file.string() +

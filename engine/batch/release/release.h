@@ -52,6 +52,8 @@ Released release(const ReleaseRequest& request, const RunOptions& base, const Ru
 Expected<std::vector<certificates::WaitingDraft>> waiting_drafts(
     const std::filesystem::path& folder);
 
+/// Returns the path of the draft's file, in a folder or in a pack.
+std::filesystem::path file_of(const certificates::WaitingDraft& draft);
 /// Returns why the draft cannot be approved in its present state; returns an empty text if it can.
 std::string why_stale(const certificates::WaitingDraft& draft);
 

@@ -67,10 +67,16 @@ Finding place_finding(const model::Place& place, Quantity deviation) {
 }
 
 Finding plan_finding(const model::Plan& plan) {
-  return {.id = "plan." + plan.id,
-          .evidence = {{"readings", static_cast<double>(plan.readings), Quantity::count},
-                       {"power", plan.power, Quantity::number}},
-          .texts = {{"one", plan.one}, {"other", plan.other}, {"of", plan.of}}};
+  // the same in all languages
+  const std::string duration =
+      plan.duration
+          ? ", " + fixed_text(std::max(1.0, std::round(*plan.duration / 60.0)), 0) + " min"
+          : "";
+  return {
+      .id = "plan." + plan.id,
+      .evidence = {{"readings", static_cast<double>(plan.readings), Quantity::count},
+                   {"power", plan.power, Quantity::number}},
+      .texts = {{"one", plan.one}, {"other", plan.other}, {"of", plan.of}, {"duration", duration}}};
 }
 
 Finding description_finding(const model::Description& d, const PartModel& part) {

@@ -14,8 +14,8 @@ namespace nonio::tables {
 /// Returns the tables that correct this axis by its own position.
 std::vector<LoadedTable> own_tables(const std::vector<LoadedTable>&, const std::string& axis);
 
-/// Whether both sets of tables give an axis the same correction, except for a constant, within 0.06
-/// um or 0.06 arcsec (half of the last digit that a control prints).
+/// Returns whether both sets of tables correct an axis equally, except for a constant: within 0.11
+/// um or 0.11 arcsec, so that one of them may be rounded to a tenth of them.
 bool same_correction(const std::vector<LoadedTable>& a, const std::vector<LoadedTable>& b,
                      const std::string& axis);
 

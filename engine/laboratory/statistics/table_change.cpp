@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "nonio/math/distributions.h"
 
@@ -102,14 +103,6 @@ CurveChange change_of(const MeasuredCurve& before, const MeasuredCurve& after, d
   d.middle = (*low + *high) / 2.0, d.length = *high - *low;
   return d;
 }
-
-/// Residuals after the weighted least-squares fit of a constant for each direction and a slope.
-struct Rest {
-  double chi2 = 0.0;
-  double rms = 0.0;    ///< rms of the residuals after removal of constants and slope
-  double slope = 0.0;  ///< slope, from a fit without a prior of the slope
-  double whole = 0.0;  ///< rms after removal of the constants only
-};
 
 using Three = std::array<double, 3>;
 
@@ -343,7 +336,7 @@ std::optional<CurveChange> comparable(const MeasuredCurve& before, const Measure
                                       double resolution) {
   if (before.position.size() < 2 || after.position.size() < 2) return std::nullopt;
   CurveChange d = change_of(before, after, resolution);
-  if (d.x.size() < fewest_places) return std::nullopt;
+  if (std::set<double>(d.x.begin(), d.x.end()).size() < fewest_places) return std::nullopt;
   if (!(d.length > 0.5 * (after.position.back() - after.position.front()))) return std::nullopt;
   return d;
 }

@@ -30,9 +30,6 @@ void fill_measured(Observations& o) {
 
 namespace {
 
-// docs/dev/constants.md, M13.
-constexpr double enough = 4.0;  // standard deviations between two explanations that are separable
-
 struct Course {  // A planned measurement of an axis.
   std::string id;
   std::vector<double> targets;
@@ -116,8 +113,11 @@ std::vector<Further> further_runs(const Part& part, const Axis& axis) {
   if (!read) return out;
   const double interval = std::max(read->duration, 1.0) / static_cast<double>(part.table.size());
   for (const Course& course : courses_of(part.table, *read)) {
-    out.push_back({course.id, "", part.table});
-    append(out.back().table, course, interval);
+    Further& f = out.emplace_back(Further{course.id, "", part.table});
+    append(f.table, course, interval);
+    if (read->timed)
+      f.duration =
+          course.pause + interval * static_cast<double>(f.table.size() - part.table.size());
   }
   return out;
 }
@@ -128,7 +128,7 @@ namespace {
 /// decreasing power.
 std::vector<Plan> cheapest(std::vector<Plan> plans) {
   std::stable_sort(plans.begin(), plans.end(), [](const Plan& a, const Plan& b) {
-    const bool a_enough = a.power >= enough, b_enough = b.power >= enough;
+    const bool a_enough = a.power >= enough_power, b_enough = b.power >= enough_power;
     if (a_enough != b_enough) return a_enough;
     return a_enough ? a.readings < b.readings : a.power > b.power;
   });
@@ -154,7 +154,8 @@ std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
     const Observations& o = f.table;
     const auto columns = columns_of(o, candidate.term, candidate.term.shape);
     if (!columns || columns->cols() != linear) continue;
-    Plan plan{f.id, o.size() - part.table.size(), INFINITY, candidate.term.name(), "", f.of};
+    Plan plan{f.id,      o.size() - part.table.size(), INFINITY, candidate.term.name(), "", f.of,
+              f.duration};
     for (const std::string& alias : candidate.aliases) {
       const auto other = std::find_if(catalogue.begin(), catalogue.end(),
                                       [&](const Term& t) { return t.name() == alias; });
@@ -182,8 +183,8 @@ std::vector<Plan> plans_for_pair(const Part& part, const std::vector<Term>& mode
     }
     const double power = std::min(distance(f.table, model, said, pair[0], s),
                                   distance(f.table, model, said, pair[1], s));
-    plans.push_back(
-        {f.id, f.table.size() - part.table.size(), power, pair[0].name(), pair[1].name(), f.of});
+    plans.push_back({f.id, f.table.size() - part.table.size(), power, pair[0].name(),
+                     pair[1].name(), f.of, f.duration});
   }
   return cheapest(std::move(plans));
 }

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "nonio/model/explain.h"
 
 namespace nonio::model {
+
+// docs/dev/constants.md, M13.
+constexpr double enough_power = 4.0;  ///< standard deviations between two separable explanations
 
 /// A table with one additional planned measurement, whose deviations are 0.
 struct Further {
   std::string id, of;  ///< kind and object of the measurement, as `Plan::id` and `Plan::of`
   Observations table;
+  std::optional<double> duration{};  ///< as `Plan::duration`
 };
 
 /// Fills the other measured columns of planned readings at the end of the table with their last

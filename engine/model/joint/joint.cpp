@@ -7,6 +7,7 @@
 #include <map>
 #include <random>
 
+#include "diagnosis/plans.h"
 #include "diagnosis/verdict.h"
 #include "joint/system.h"
 #include "nonio/math/distributions.h"
@@ -29,8 +30,8 @@ constexpr std::size_t most_dates = 32;
 
 class JointSearch {
  public:
-  JointSearch(const JointReadings& readings, std::uint64_t seed)
-      : r_(readings), system_(readings), seed_(seed) {
+  JointSearch(const std::vector<Member>& members, const JointReadings& readings, std::uint64_t seed)
+      : of_(members), r_(readings), system_(readings), seed_(seed) {
     for (const MemberReadings& m : r_.members) {
       y_.emplace_back(m.y);
       dof_ += m.dof;
@@ -46,6 +47,7 @@ class JointSearch {
     prune();
     settle_differences();
     put_effects(out);
+    put_plans(out);
     put_campaigns(out);
     judge(out);
     return out;
@@ -434,6 +436,63 @@ class JointSearch {
       out.verdict = Verdict::Kind::unknown;
   }
 
+  /// Returns the term of an effect in the catalogue of a campaign; nullptr if it is not in it.
+  static const Term* term_of(const Member& member, const std::string& effect) {
+    for (const Term& term : member.catalogue)
+      if (term.name() == effect) return &term;
+    return nullptr;
+  }
+
+  /// Returns a named effect as a candidate of campaign m, with the values that hold there; nothing
+  /// if the campaign does not determine it.
+  std::optional<Candidate> candidate_of(const JointEffect& effect, std::size_t m) const {
+    const Term* const term = term_of(of_[m], effect.effect);
+    const std::size_t g = effect.holds == Holds::shared    ? 0
+                          : effect.holds == Holds::changed ? (m < effect.after ? 0 : 1)
+                                                           : m;
+    if (term == nullptr || g >= effect.groups.size() || effect.groups[g].empty())
+      return std::nullopt;
+    Candidate one;
+    one.term = *term;
+    one.aliases = effect.aliases;
+    for (const Parameter& p : effect.groups[g])
+      if (!p.shape) one.parameters.push_back(p);
+    one.term.shape.clear();
+    for (const Parameter& p : effect.groups.front())
+      if (p.shape) one.term.shape.push_back(p.value);
+    return one;
+  }
+
+  void put_plans(JointExplanation& out) const {
+    // Campaigns of one machine have similar plans, so that a part of them is enough.
+    constexpr std::size_t most_campaigns = 8;
+    const std::size_t step = (of_.size() + most_campaigns - 1) / most_campaigns;
+    for (const JointEffect& effect : out.effects) {
+      std::optional<JointPlan> best;
+      const auto is_better = [&](const Plan& plan) {
+        if (!best) return true;
+        const Plan& known = best->plan;
+        const bool enough = plan.power >= enough_power;
+        if (enough != (known.power >= enough_power)) return enough;
+        return enough ? plan.readings < known.readings : plan.power > known.power;
+      };
+      for (std::size_t m = of_.size() - 1; m < of_.size() && !effect.aliases.empty(); m -= step) {
+        const auto candidate = candidate_of(effect, m);
+        if (!candidate) continue;
+        std::vector<Term> model = of_[m].model;
+        for (const JointEffect& other : out.effects)
+          if (const Term* const term = term_of(of_[m], other.effect);
+              term != nullptr && other.effect != effect.effect)
+            model.push_back(*term);
+        for (Plan& plan :
+             plans_for(*of_[m].part, model, *candidate, of_[m].catalogue, r_.members[m].s))
+          if (is_better(plan)) best = {m, std::move(plan)};
+      }
+      if (best) out.plans.push_back(std::move(*best));
+    }
+  }
+
+  const std::vector<Member>& of_;
   const JointReadings& r_;
   JointSystem system_;
   std::uint64_t seed_;
@@ -448,7 +507,7 @@ class JointSearch {
 Expected<JointExplanation> explain_together(const std::vector<Member>& members,
                                             std::uint64_t seed) {
   NONIO_TRY(const auto readings, read_together(members));
-  return JointSearch(readings, seed).run();
+  return JointSearch(members, readings, seed).run();
 }
 
 }  // namespace nonio::model

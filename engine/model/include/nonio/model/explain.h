@@ -68,6 +68,9 @@ struct Plan {
   double power = 0.0;        ///< distance of the two explanations in standard deviations
   std::string one, other;    ///< names of the two effects
   std::string of{};          ///< axes of the plan, or what is measured ("EYX"), in space
+  /// Time at the pace of the present readings, with the pause before it, s; absent if these have no
+  /// times.
+  std::optional<double> duration{};
 };
 
 /// Predicted improvement by one more run, if the noise stays as it is and the best explanation is

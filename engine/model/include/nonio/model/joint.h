@@ -46,6 +46,12 @@ struct JointEffect {
   std::vector<std::string> aliases{};
 };
 
+/// A further measurement of the machine of one campaign that would separate two effects.
+struct JointPlan {
+  std::size_t campaign = 0;  ///< index of the campaign that it extends
+  Plan plan;
+};
+
 struct JointExplanation {
   /// For each campaign: RMS with its model, RMS with the named effects in addition, noise floor. m
   /// or rad.
@@ -57,6 +63,10 @@ struct JointExplanation {
   std::vector<Campaign> campaigns;
   std::vector<JointEffect> candidates;  ///< each as the only addition, the best first
   std::vector<JointEffect> effects;     ///< named effects, in the order in which they were found
+  /// For each named effect with aliases: the further measurement that separates it from them with
+  /// the fewest readings, over all campaigns, else the one with the largest power. The power is
+  /// that with the readings of the one campaign alone, so it is a lower limit.
+  std::vector<JointPlan> plans{};
   /// RMS with the models, with the named effects in addition, and of the noise; all readings, m or
   /// rad
   double rms = 0.0, rms_after = 0.0, noise = 0.0;
