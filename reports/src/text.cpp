@@ -126,6 +126,11 @@ Expected<Glyphs> shape(std::string_view text, const Fonts& fonts, bool bold, std
 }
 
 Expected<void> check_text(std::string_view text, const Fonts& fonts, std::string_view field) {
+  const auto in_both = [&](char byte) {
+    const auto c = static_cast<unsigned char>(byte);
+    return c < 0x80 && !is_control(c) && fonts.regular.glyph(c) != 0 && fonts.bold.glyph(c) != 0;
+  };
+  if (std::all_of(text.begin(), text.end(), in_both)) return {};  // nearly always
   for (const bool bold : {false, true})
     if (auto glyphs = shape(text, fonts, bold, field); !glyphs) return fail(glyphs.error());
   return {};
