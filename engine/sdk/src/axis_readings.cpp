@@ -89,12 +89,14 @@ void fill_times(const Observations& o, AxisReadings& r) {
 
 void fill_temperatures(const Observations& o, AxisReadings& r) {
   r.temperature = known_temperatures(o, r);
+  if (!r.temperature) {
+    std::fill(r.K.begin(), r.K.end(), 0.0);
+    return r.interpolated.clear();
+  }
   double sum = 0.0, n = 0.0;
   for (std::size_t i = 0; i < o.size(); ++i)
     if (r.moved[i]) sum += r.K[i], ++n;
-  for (std::size_t i = 0; i < o.size(); ++i)
-    r.K[i] = r.temperature && r.moved[i] ? r.K[i] - sum / n : 0.0;
-  if (!r.temperature) r.interpolated.clear();
+  for (std::size_t i = 0; i < o.size(); ++i) r.K[i] = r.moved[i] ? r.K[i] - sum / n : 0.0;
 }
 
 }  // namespace detail
