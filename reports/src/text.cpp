@@ -104,7 +104,7 @@ Expected<Glyphs> shape(std::string_view text, const Fonts& fonts, bool bold, std
     if (c == U' ' && has_room_after(last)) continue;
     Glyph glyph = glyph_of(c, font, fonts.wide);
     const bool accent = c == acute_above;
-    const bool over_a_letter = bears_accent(last) && !glyph.wide && !out.back().wide &&
+    const bool over_a_letter = accent && bears_accent(last) && !glyph.wide && !out.back().wide &&
                                glyph.advance == 0;  // what the canvas relies on
     glyph.character = c;
     if (glyph.id == 0 || (accent && !over_a_letter)) {
