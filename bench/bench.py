@@ -60,6 +60,48 @@ def beside(commands):
     return walls
 
 
+def processor_seconds(pid):
+    """CPU time of a process and of its children that have ended."""
+    try:
+        fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+    except OSError:
+        return 0.0
+    return sum(int(x) for x in fields[11:15]) / os.sysconf("SC_CLK_TCK")
+
+
+def evaluating(parent):
+    """CPU time of the processes that evaluate, by their ids: only they have two filters of system calls."""
+    found = {}
+    for pid in pathlib.Path(f"/proc/{parent}/task/{parent}/children").read_text().split():
+        try:
+            status = pathlib.Path(f"/proc/{pid}/status").read_text()
+        except OSError:
+            continue
+        if re.search(r"^Seccomp_filters:\s+2$", status, re.M):
+            found[pid] = processor_seconds(pid)
+    return found
+
+
+def budget(command, campaigns):
+    """The CPU time of each stage of a run, from its own reports of the stages."""
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+                               preexec_fn=lambda: os.sched_setaffinity(0, {0}))
+    spent, evaluated, stage, began = {}, {}, "start", 0.0
+    for line in process.stdout:
+        event = json.loads(line)
+        if event["event"] == "stage":
+            now = processor_seconds(process.pid)
+            spent[stage] = now - began
+            stage, began = event["name"], now
+        elif event["event"] == "campaign":
+            evaluated.update(evaluating(process.pid))
+    usage = os.wait4(process.pid, 0)[2]
+    spent[stage] = usage.ru_utime + usage.ru_stime - began
+    spent["of campaigns: reading, analyses, tables, documents"] = sum(evaluated.values())
+    for name, seconds in spent.items():
+        print(f"{1e3 * seconds / campaigns:8.2f} ms  {name}")
+
+
 def stages(nonio, site, out):
     """A line a stage, all in one process."""
     program = nonio.parent / "bench_campaign"
@@ -97,7 +139,9 @@ def main():
         walls = beside([[*run, root / f"beside-{core}", "--jobs", "1"] for core in range(2)])
         print(f"two runs of one worker at once, one on each core: {sum(one / wall for wall in walls):.2f} times; "
               "what this machine and its disk give")
-        print("where a campaign's CPU time goes:", flush=True)
+        print("CPU time of the run for each campaign:")
+        budget([args.nonio, "run", site, "--json", "--jobs", "1", "--out", root / "budget"], n)
+        print("where the CPU time of evaluating and storing goes, in one process:", flush=True)
         stages(pathlib.Path(args.nonio).resolve(), site, root / "stages")
         print("the limit, CPU time a campaign:")
         least = limit.print_limits(root / "one")

@@ -104,7 +104,7 @@ Expected<Glyphs> shape(std::string_view text, const Fonts& fonts, bool bold, std
     if (c == U' ' && has_room_after(last)) continue;
     Glyph glyph = glyph_of(c, font, fonts.wide);
     const bool accent = c == acute_above;
-    const bool over_a_letter = bears_accent(last) && !glyph.wide && !out.back().wide &&
+    const bool over_a_letter = accent && bears_accent(last) && !glyph.wide && !out.back().wide &&
                                glyph.advance == 0;  // what the canvas relies on
     glyph.character = c;
     if (glyph.id == 0 || (accent && !over_a_letter)) {
@@ -126,6 +126,11 @@ Expected<Glyphs> shape(std::string_view text, const Fonts& fonts, bool bold, std
 }
 
 Expected<void> check_text(std::string_view text, const Fonts& fonts, std::string_view field) {
+  const auto in_both = [&](char byte) {
+    const auto c = static_cast<unsigned char>(byte);
+    return c < 0x80 && !is_control(c) && fonts.regular.glyph(c) != 0 && fonts.bold.glyph(c) != 0;
+  };
+  if (std::all_of(text.begin(), text.end(), in_both)) return {};  // nearly always
   for (const bool bold : {false, true})
     if (auto glyphs = shape(text, fonts, bold, field); !glyphs) return fail(glyphs.error());
   return {};

@@ -32,7 +32,7 @@ using Action = CampaignState::Action;
 /// A worker is replaced after this many campaigns: starting one is then cheap, and what plugins
 /// leave in its memory does not accumulate. If plugins from other folders than the program's own
 /// are loaded, every campaign gets its own process, since they were not tested with this program.
-constexpr std::size_t campaigns_per_worker = 64;
+constexpr std::size_t campaigns_per_worker = 256;
 
 std::string day_of(std::time_t time) {
   std::tm local{};

@@ -292,7 +292,7 @@ Expected<Effect> formula_effect(const Formula& formula, const Axis& axis, bool t
   const auto wrong = [&](const std::string& why) {
     return fail(Error{"formula " + formula.name + ": " + why, {}, formula.line});
   };
-  auto expression = Expression::parse(formula, axis);
+  auto expression = Expression::parse(formula, axis, tried);
   if (!expression) return wrong(expression.error().message);
   Effect e;
   e.info = {formula.name, "formula", formula.expression, {}};

@@ -4,6 +4,7 @@
 #include <muParser.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -208,11 +209,14 @@ double Expression::value() {
 }
 
 bool Expression::uses(const std::string& name) const {
-  try {
-    return parser_->parser.GetUsedVar().count(name) != 0;
-  } catch (const mu::ParserError&) {
-    return false;
-  }
+  const std::string& text = parser_->parser.GetExpr();
+  const auto in_a_name = [&](std::size_t i) {
+    return i < text.size() && (std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '_');
+  };
+  std::size_t at = text.find(name);
+  while (at != text.npos && (in_a_name(at - 1) || in_a_name(at + name.size())))
+    at = text.find(name, at + 1);
+  return at != text.npos;
 }
 
 }  // namespace nonio::config

@@ -200,6 +200,7 @@ Expected<StoredMachine> StoreReader::campaign(const std::string& id, const std::
 
 Expected<StoredMachine> StoreReader::stored(Of of, const std::string& name,
                                             const std::string& until) {
+  const Database::Reading one_moment(database_);
   StoredMachine out;
   const std::string which =
       std::string(counted_evaluation) + (of == Of::machine ? of_machine : of_campaign);

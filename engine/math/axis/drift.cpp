@@ -161,11 +161,18 @@ double factor_of_largest(std::size_t values) {
   return low;
 }
 
-}  // namespace
+/// Returns what `compute` returns. The last result is kept, because analyses, uncertainties and the
+/// table of each control need the same one. Results of long tests are not kept, to save memory.
+template <auto compute>
+auto kept(const AxisTest& test) {
+  constexpr std::size_t most_readings = 10'000;
+  if (test.readings().size() > most_readings) return compute(test);
+  thread_local std::pair<AxisTest, decltype(compute(test))> last;
+  if (last.first != test) last = {test, compute(test)};
+  return last.second;
+}
 
-double Drift::u_at(double x) const { return std::hypot(offset.u, slope.u * (x - middle)); }
-
-Drift estimate_drift(const AxisTest& test) {
+Drift fit_drift(const AxisTest& test) {
   Drift drift;
   if (test.targets.size() < 2 || test.most_approaches() < 2) return drift;
   const bool slopes = test.targets.size() >= 4;
@@ -190,8 +197,6 @@ Drift estimate_drift(const AxisTest& test) {
   return drift;
 }
 
-namespace {
-
 // Returns the contribution of drift to the largest standard deviation of a direction, from which R
 // is computed: s minus the square root of s^2 minus the mean square that drift may contribute.
 // Among equal values of s the larger contribution is used, so that rounding does not decide.
@@ -214,9 +219,7 @@ double in_scatter(const AxisTest& test, const Drift& drift, bool minus) {
   return share;
 }
 
-}  // namespace
-
-DriftShare drift_share(const AxisTest& test) {
+DriftShare share_of_drift(const AxisTest& test) {
   constexpr double k = 2.0;
   DriftShare share;
   const Drift drift = estimate_drift(test);
@@ -245,5 +248,13 @@ DriftShare drift_share(const AxisTest& test) {
                                          square_of(by_slope * drift.slope.u) + square_of(u_mean));
   return share;
 }
+
+}  // namespace
+
+double Drift::u_at(double x) const { return std::hypot(offset.u, slope.u * (x - middle)); }
+
+Drift estimate_drift(const AxisTest& test) { return kept<fit_drift>(test); }
+
+DriftShare drift_share(const AxisTest& test) { return kept<share_of_drift>(test); }
 
 }  // namespace nonio::math

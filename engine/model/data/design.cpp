@@ -181,20 +181,29 @@ VectorXd root_weights(const Observations& o, const std::vector<double>& weight) 
 void take_out_zeros(const Observations& o, const VectorXd& root_weight, MatrixXd& columns) {
   const auto lines = static_cast<Index>(lines_of(o));
   const Index n = columns.rows();
-  std::vector<Index> line(static_cast<std::size_t>(n));
+  struct Stretch {  // rows of one line that follow one another
+    Index begin, end, line;
+  };
+  std::vector<Stretch> stretches;
   VectorXd weight = VectorXd::Zero(lines), sum(lines);
   for (Index i = 0; i < n; ++i) {
-    line[static_cast<std::size_t>(i)] = static_cast<Index>(line_of(o, static_cast<std::size_t>(i)));
-    weight(line[static_cast<std::size_t>(i)]) += root_weight(i) * root_weight(i);
+    const auto line = static_cast<Index>(line_of(o, static_cast<std::size_t>(i)));
+    if (stretches.empty() || stretches.back().line != line) stretches.push_back({i, i, line});
+    stretches.back().end = i + 1;
+    weight(line) += root_weight(i) * root_weight(i);
   }
   weight = (weight.array() > 0.0).select(weight.cwiseInverse(), 0.0);
   for (Index k = 0; k < columns.cols(); ++k) {
     sum.setZero();
-    for (Index i = 0; i < n; ++i)
-      sum(line[static_cast<std::size_t>(i)]) += root_weight(i) * columns(i, k);
+    for (const auto& [begin, end, line] : stretches) {
+      double of_line = sum(line);  // not added up in memory, which is slow
+      for (Index i = begin; i < end; ++i) of_line += root_weight(i) * columns(i, k);
+      sum(line) = of_line;
+    }
     sum.array() *= weight.array();
-    for (Index i = 0; i < n; ++i)
-      columns(i, k) -= root_weight(i) * sum(line[static_cast<std::size_t>(i)]);
+    for (const auto& [begin, end, line] : stretches)
+      columns.col(k).segment(begin, end - begin) -=
+          sum(line) * root_weight.segment(begin, end - begin);
   }
 }
 

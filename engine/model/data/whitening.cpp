@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "whitening.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace nonio::model {
@@ -72,17 +74,25 @@ MatrixXd Whitening::operator()(const MatrixXd& columns) const {
   MatrixXd out = root_.asDiagonal() * columns;
   if (independent()) return out;
   const std::size_t lines = lines_of(o_);
-  std::vector<double> near(lines), level(lines);
-  for (Index k = 0; k < out.cols(); ++k) {
-    near.assign(lines, 0.0), level.assign(lines, 0.0);
+  // Each step waits for the one before, so four columns take about the time of one.
+  constexpr Index at_once = 4;
+  struct State {
+    double near = 0.0, level = 0.0;
+  };
+  std::vector<std::array<State, at_once>> of_line;
+  for (Index first = 0; first < out.cols(); first += at_once) {
+    const Index columns_here = std::min(at_once, out.cols() - first);
+    of_line.assign(lines, {});
     for (Index i = 0; i < out.rows(); ++i) {
       const Step& s = step_[static_cast<std::size_t>(i)];
-      const std::size_t line = line_of(o_, static_cast<std::size_t>(i));
-      double &a = near[line], &l = level[line];
-      a *= s.keep_near, l *= s.keep_level;
-      const double v = out(i, k) - a - s.loading * l;
-      a += s.gain_near * v, l += s.gain_level * v;
-      out(i, k) = s.over_root * v;
+      auto& states = of_line[line_of(o_, static_cast<std::size_t>(i))];
+      for (Index k = 0; k < columns_here; ++k) {
+        auto& [a, l] = states[static_cast<std::size_t>(k)];
+        a *= s.keep_near, l *= s.keep_level;
+        const double v = out(i, first + k) - a - s.loading * l;
+        a += s.gain_near * v, l += s.gain_level * v;
+        out(i, first + k) = s.over_root * v;
+      }
     }
   }
   return out;

@@ -53,7 +53,7 @@ void append_real(std::string& out, double value, char after) {
   do *--at = static_cast<char>('0' + whole % 10);
   while ((whole /= 10) != 0);
   if (value < 0.0 && hundredths != 0) *--at = '-';
-  out.append(at, text.data() + text.size());
+  out.append(at, static_cast<std::size_t>(text.data() + text.size() - at));
 }
 
 }  // namespace nonio::pdf

@@ -108,4 +108,13 @@ Expected<void> Database::Transaction::end() {
   return {};
 }
 
+Database::Reading::Reading(Database& database)
+    : file_(database.kind_ == Kind::sqlite ? database.connection_.get() : nullptr) {
+  if (file_ != nullptr) database.put("BEGIN");
+}
+
+Database::Reading::~Reading() {
+  if (file_ != nullptr) file_->rollback();
+}
+
 }  // namespace nonio::storage

@@ -91,6 +91,19 @@ class Database {
     bool open_ = true;
   };
 
+  /// While it exists, all reads of an SQLite file are as of one moment, and its lock is taken once.
+  /// A connection to a server has a transaction of its own.
+  class Reading {
+   public:
+    explicit Reading(Database& database);
+    Reading(const Reading&) = delete;
+    Reading& operator=(const Reading&) = delete;
+    ~Reading();
+
+   private:
+    Connection* file_;  ///< null: nothing to be ended
+  };
+
  private:
   Database(std::unique_ptr<Connection> connection, Kind kind);
 

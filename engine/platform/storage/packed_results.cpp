@@ -45,7 +45,11 @@ std::string_view row_at(const std::string& rows, std::size_t at) {
 }
 std::string_view id_in(std::string_view row) { return row.substr(0, row.find('\t')); }
 
-bool is_there_to_read(const fs::path& path) { return ::access(path.c_str(), F_OK) == 0; }
+/// By stat, because the kernel copies the credentials of the process for access.
+bool is_there_to_read(const fs::path& path) {
+  struct stat info {};
+  return ::stat(path.c_str(), &info) == 0;
+}
 
 }  // namespace
 

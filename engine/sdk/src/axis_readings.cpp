@@ -75,27 +75,28 @@ void fill_times(const Observations& o, AxisReadings& r) {
   r.timed = complete(o.time, r.moved);
   const auto line_of = [&](std::size_t i) { return o.line.empty() ? 0U : o.line[i]; };
   const std::size_t lines = std::max<std::size_t>(o.line.empty() ? 1 : o.lines.size(), 1);
-  std::vector<double> first(lines, std::numeric_limits<double>::infinity()), count(lines, 0.0);
+  // By line: its first time, or how many of its readings were met.
+  std::vector<double> of_line(lines, r.timed ? std::numeric_limits<double>::infinity() : 0.0);
+  for (std::size_t i = 0; r.timed && i < o.size(); ++i)
+    if (r.moved[i]) of_line[line_of(i)] = std::min(of_line[line_of(i)], o.time[i]);
   for (std::size_t i = 0; i < o.size(); ++i) {
     if (!r.moved[i]) continue;
-    r.t[i] = r.timed ? o.time[i] : o.order_known ? count[line_of(i)]++ : 0.0;
-    first[line_of(i)] = std::min(first[line_of(i)], r.t[i]);
-  }
-  for (std::size_t i = 0; i < o.size(); ++i) {
-    if (!r.moved[i]) continue;
-    r.t[i] -= first[line_of(i)];
+    double& at = of_line[line_of(i)];
+    r.t[i] = r.timed ? o.time[i] - at : o.order_known ? at++ : 0.0;
     r.duration = std::max(r.duration, r.t[i]);
   }
 }
 
 void fill_temperatures(const Observations& o, AxisReadings& r) {
   r.temperature = known_temperatures(o, r);
+  if (!r.temperature) {
+    std::fill(r.K.begin(), r.K.end(), 0.0);
+    return r.interpolated.clear();
+  }
   double sum = 0.0, n = 0.0;
   for (std::size_t i = 0; i < o.size(); ++i)
     if (r.moved[i]) sum += r.K[i], ++n;
-  for (std::size_t i = 0; i < o.size(); ++i)
-    r.K[i] = r.temperature && r.moved[i] ? r.K[i] - sum / n : 0.0;
-  if (!r.temperature) r.interpolated.clear();
+  for (std::size_t i = 0; i < o.size(); ++i) r.K[i] = r.moved[i] ? r.K[i] - sum / n : 0.0;
 }
 
 }  // namespace detail

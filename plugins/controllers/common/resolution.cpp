@@ -43,20 +43,21 @@ double variance_at(const math::AxisTest& test, std::size_t i, Side side) {
   return sides > 0.0 ? sum / (sides * sides) : 0.0;
 }
 
-/// Keeps the steepest step. variance: of each value, or none is known.
+/// Keeps the steepest step. variance(i): of value i.
+template <class Variance>
 void look_at(const std::vector<double>& position, const std::vector<double>& value,
-             const std::vector<double>& variance, double resolution, bool rotary,
+             const Variance& variance, double resolution, bool rotary,
              std::optional<Unresolved>& found) {
   for (std::size_t i = 1; i < value.size(); ++i) {
     const double step = std::fabs(value[i] - value[i - 1]);
     const double slope = step / (position[i] - position[i - 1]);
-    const double scatter = variance.empty() ? 0.0 : std::sqrt(variance[i] + variance[i - 1]);
-    const double explained = std::max(digits * resolution, 3.0 * scatter) * (1.0 + 1e-9);
-    const double limit = step > explained ? impossible : steepest;
-    if (!(step > (rotary ? least_angle : least_step)) || !(slope > limit) ||
+    if (!(step > (rotary ? least_angle : least_step)) || !(slope > steepest) ||
         (found && !(slope > found->slope)))
       continue;
-    found = {position[i - 1], position[i], step, resolution, slope, limit};
+    const double scatter = std::sqrt(variance(i) + variance(i - 1));
+    const double explained = std::max(digits * resolution, 3.0 * scatter) * (1.0 + 1e-9);
+    const double limit = step > explained ? impossible : steepest;
+    if (slope > limit) found = {position[i - 1], position[i], step, resolution, slope, limit};
   }
 }
 
@@ -71,12 +72,12 @@ std::optional<Unresolved> unresolved_step(const math::AxisTest& test,
   for (const auto& [value, side] :
        {std::pair{&curve.mean, Side::both}, std::pair{&curve.plus, Side::plus},
         std::pair{&curve.minus, Side::minus}}) {
-    std::vector<double> variance;
-    for (const double x : curve.position) {
-      const auto [at, after] = std::equal_range(test.targets.begin(), test.targets.end(), x);
+    const auto variance = [&, side = side](std::size_t k) {
+      const auto [at, after] =
+          std::equal_range(test.targets.begin(), test.targets.end(), curve.position[k]);
       const auto i = static_cast<std::size_t>(at - test.targets.begin());
-      variance.push_back(at == after ? 0.0 : variance_at(test, i, side));
-    }
+      return at == after ? 0.0 : variance_at(test, i, side);
+    };
     look_at(curve.position, *value, variance, resolution, test.rotary, found);
   }
   return found;
@@ -90,7 +91,8 @@ std::optional<Unresolved> unresolved_step(const ControllerInput& in, const std::
   for (std::size_t i = 0; i < std::min(all.size(), in.observations.size()); ++i)
     if (all[i].id == measurement) resolution = resolution_of(in.observations[i].deviation);
   std::optional<Unresolved> found;
-  look_at(position, value, {}, resolution, false, found);
+  const auto not_known = [](std::size_t) { return 0.0; };
+  look_at(position, value, not_known, resolution, false, found);
   return found;
 }
 

@@ -22,6 +22,7 @@ class AxisTest {
     double deviation;  ///< deviation x_ij, m or rad
     std::uint32_t run;
     std::uint32_t row;  ///< row in the observations
+    bool operator==(const Reading&) const = default;
   };
 
   bool rotary = false;
@@ -51,6 +52,8 @@ class AxisTest {
   /// runs. The test is empty, which is not an error, if there is no axis column or it has no
   /// directions of approach.
   static AxisTest arrange(const Observations&);
+
+  bool operator==(const AxisTest&) const = default;
 
  private:
   std::span<const Reading> part(std::size_t k) const {
