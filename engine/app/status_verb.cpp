@@ -139,7 +139,7 @@ Verb status_verb(Common& common) {
                      "the run are applied already"}),
            {"--page", &list.page,
             "Print one of the pages instead: index.html, due.html, due.ics, instruments.html, "
-            "compare.html, machines/NAME.html"}},
+            "compare.html, machines/NAME.html; with --json, add the first five to the actions"}},
           common_arguments(common)),
       .footer =
           "The first line states number, date and age of the last run and its campaigns; with "

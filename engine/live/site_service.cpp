@@ -78,12 +78,13 @@ void SiteService::look_at_campaign() {
   campaigns_->index().look_soon();
 }
 
-void SiteService::tell(const char* what) {
+void SiteService::tell(const std::string& what) {
   campaigns_->index().look_soon();
+  if (what == "worklist" && !wish_.out.empty()) shown();  // so that no page waits for it
   publish(what);
 }
 
-void SiteService::publish(const char* what) {
+void SiteService::publish(const std::string& what) {
   const std::uint64_t version = ++version_;
   events_.publish({version, what, "", storage::dump_line({{"version", version}})});
 }

@@ -1,6 +1,6 @@
 // ---- the campaigns of a site: a list with search and filter, its machines, and one campaign with its verdict and documents ----
 const campaigns = (() => {
-  const query = {search: "", state: "", page: 0}, size = 50;
+  const query = {search: "", state: "", page: 0}, ofMachines = {search: "", page: 0}, size = 50;
   const states = ["new", "failed", "attention", "ok", "does not conform", "cannot be decided", "conforms", "draft", "certificate"];
   const wordOf = (state) => say("list.is_" + state.replace(/ /g, "_"));
   const link = (key, text, onclick, more = {}) => el("button", {type: "button", class: "link", "data-key": key, onclick, ...more}, text);
@@ -38,15 +38,26 @@ const campaigns = (() => {
   }
   function table(answer, tools) {
     if (answer.found === 0) return answer.complete ? [el("p", {id: "campaign-none"}, answer.all === 0 ? say("list.none") : say("list.no_such"))] : [];
-    const pages = Math.ceil(answer.found / size), from = answer.page * size + 1, turn = (by_) => () => {
-      query.page += by_;
-      tools.again();
-    };
     return [el("div", {class: "scroll", role: "group", tabindex: 0, "aria-label": say("site.campaigns")}, el("table", {class: "lines campaigns-table"}, el("thead", {}, el("tr", {}, ...["day", "machine", "customer", "state", "documents", "actions"].map((w) => el("th", {scope: "col"}, say("list." + w))))),
       el("tbody", {}, ...answer.campaigns.map((c) => row(c, tools))))),
-    pages > 1 ? el("p", {class: "pager"}, el("button", {type: "button", id: "page-before", "data-key": "page-before", disabled: query.page === 0, onclick: turn(-1)}, say("list.before")), " ",
+    pager(answer, query, tools.again)];
+  }
+  function pager(answer, of, again) {
+    const pages = Math.ceil(answer.found / size), from = of.page * size + 1, turn = (by_) => () => {
+      of.page += by_;
+      again();
+    };
+    return pages > 1 ? el("p", {class: "pager"}, el("button", {type: "button", id: "page-before", "data-key": "page-before", disabled: of.page === 0, onclick: turn(-1)}, say("list.before")), " ",
       say("list.range", {from, to: Math.min(from + size - 1, answer.found), n: answer.found}), " ",
-      el("button", {type: "button", id: "page-after", "data-key": "page-after", disabled: query.page + 1 >= pages, onclick: turn(1)}, say("list.after"))) : null];
+      el("button", {type: "button", id: "page-after", "data-key": "page-after", disabled: of.page + 1 >= pages, onclick: turn(1)}, say("list.after"))) : null;
+  }
+  let wait = 0;
+  /// Sets a value of a query and loads its first page; after a moment while a person types.
+  function asks(of, key, value, again) {
+    of[key] = value;
+    of.page = 0;
+    clearTimeout(wait);
+    wait = setTimeout(again, key === "search" ? 200 : 0);
   }
   const count = (answer) => (answer.complete ? say("site.number", {n: answer.found, all: answer.all}) : say("list.reading", {n: answer.all}));
 
@@ -54,7 +65,6 @@ const campaigns = (() => {
   async function list(tools) {
     const answer = await load();
     if (query.page > 0 && answer.campaigns.length === 0) query.page = 0;
-    let wait = 0;
     const again = async () => {
       try {
         const next = await load();
@@ -65,14 +75,8 @@ const campaigns = (() => {
         tools.complain(e);
       }
     };
-    const changed = (key, value) => {
-      query[key] = value;
-      query.page = 0;
-      clearTimeout(wait);
-      wait = setTimeout(again, key === "search" ? 200 : 0);
-    };
-    const search = el("input", {type: "search", id: "campaign-filter", "data-key": "campaign-filter", value: query.search, oninput: () => changed("search", search.value)});
-    const state = el("select", {id: "campaign-state", "data-key": "campaign-state", onchange: () => changed("state", state.value)},
+    const search = el("input", {type: "search", id: "campaign-filter", "data-key": "campaign-filter", value: query.search, oninput: () => asks(query, "search", search.value, again)});
+    const state = el("select", {id: "campaign-state", "data-key": "campaign-state", onchange: () => asks(query, "state", state.value, again)},
       el("option", {value: ""}, say("list.any")), ...states.map((s) => el("option", {value: s, selected: s === query.state}, wordOf(s))));
     return [el("h1", {tabindex: -1}, say("site.campaigns")), tools.out ? null : el("p", {class: "note"}, say("site.no_out")),
       answer.all === 0 && answer.complete && tools.edit ? el("section", {}, el("p", {}, say("list.begin")), tools.drop()) : null,
@@ -82,18 +86,33 @@ const campaigns = (() => {
       el("p", {class: "muted", role: "status", id: "campaign-count"}, answer.all === 0 && answer.complete ? "" : count(answer)), el("div", {id: "campaign-list"}, ...table(answer, {...tools, again}).filter(Boolean))].filter(Boolean);
   }
 
-  async function machines() {
-    const {machines: all} = await net.ask("/api/machines");
+  async function machines(complain) {
+    const load_ = () => net.ask("/api/machines?" + new URLSearchParams({search: ofMachines.search, page: ofMachines.page, size}));
+    const first = await load_();
+    ofMachines.page = first.page;
+    const again = async () => {
+      try {
+        const next = await load_();
+        if (by("machine-list")) fill(by("machine-list"), ...machineTable(next, again));
+      } catch (e) {
+        complain(e);
+      }
+    };
+    const search = el("input", {type: "search", id: "machine-filter", "data-key": "machine-filter", value: ofMachines.search, oninput: () => asks(ofMachines, "search", search.value, again)});
+    return [el("h1", {tabindex: -1}, say("site.machines")), first.all === 0 ? el("p", {}, say("list.no_machines")) : el("p", {class: "filters"}, el("label", {}, say("list.search") + " ", search)),
+      el("div", {id: "machine-list"}, ...machineTable(first, again))];
+  }
+  function machineTable(answer, again) {
     const columns = ["machine", "model", "customer", "last", "state", "number_of", "history"];
-    return [el("h1", {tabindex: -1}, say("site.machines")), all.length === 0 ? el("p", {}, say("list.no_machines")) :
-      el("div", {class: "scroll", role: "group", tabindex: 0, "aria-label": say("site.machines")}, el("table", {class: "lines machines-table"}, el("thead", {}, el("tr", {}, ...columns.map((w) => el("th", {scope: "col"}, say("list." + w))))),
-        el("tbody", {}, ...all.map((m) => {
+    if (answer.found === 0) return answer.all === 0 ? [] : [el("p", {role: "status"}, say("list.no_such_machine"))];
+    return [el("div", {class: "scroll", role: "group", tabindex: 0, "aria-label": say("site.machines")}, el("table", {class: "lines machines-table"}, el("thead", {}, el("tr", {}, ...columns.map((w) => el("th", {scope: "col"}, say("list." + w))))),
+        el("tbody", {}, ...answer.machines.map((m) => {
           return el("tr", {}, el("td", {}, link("machine-" + m.machine, entries.visible(m.machine), () => {
             Object.assign(query, {search: m.machine, state: "", page: 0});
             location.hash = "#to=campaigns";
           })), el("td", {}, entries.visible(m.model)), el("td", {}, entries.visible(m.customer)), el("td", {class: "day"}, m.day || "\u2013"), el("td", {}, badge(m.state), " ", badge(m.verdict)),
           el("td", {class: "number"}, m.campaigns), el("td", {}, m.page ? el("a", {href: "#to=" + encodeURIComponent(m.page), "data-key": "history-" + m.machine}, say("list.history")) : "\u2013"));
-        }))))];
+        })))), pager(answer, ofMachines, again)].filter(Boolean);
   }
 
   /// Instruments with their last calibration: the earliest end of validity first, so that expired ones are at the top.
