@@ -174,7 +174,7 @@ Answer SiteService::answer(const Request& request) {
   }
   const auto user = user_of(request.head);
   if (!user) return user.error();
-  if (path == "/api/sign-out") return end_session(request);
+  if (path == "/api/sign-out") return end_session(request, *user);
   const bool may = user->role >= needed(request.route);
   if (request.route.writes || !may) return recorded(request, *user, may);
   Request of_user = request;

@@ -76,7 +76,7 @@ class SiteService : public Starting {
   Answer recorded(const Request& request, const User& user, bool may);
   tl::expected<User, Answer> user_of(const Head& head);
   Answer begin_session(const Request& request);
-  Answer end_session(const Request& request);
+  Answer end_session(const Request& request, const User& user);
   Answer get(const std::string& path, const Request& request, const User* user);
   Answer post(const std::string& what, const Request& request, const User* user);
   Answer worklist();
