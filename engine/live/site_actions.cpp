@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Carries out what people do on the page of a site: entries, approvals, verifications, runs.
+#include "certificates/certificate_list.h"
 #include "certificates/person_name.h"
 #include "live/site_service.h"
 #include "platform/storage/files.h"
@@ -99,8 +100,8 @@ Answer SiteService::end_session(const Request& request, const User& user) {
 }
 
 /// Approves a certificate. A person with a password has to repeat it, and the command takes the
-/// name from users.toml; a person who is logged in at a proxy and has no password has to type the
-/// name.
+/// name from users.toml. A person who is logged in at a proxy and has no password has to type the
+/// name, which is no authentication: if the site requires two persons, the request is refused.
 Answer SiteService::release(const Json& body, const User* user) {
   const auto folder = folder_of(body.at("campaign").get<std::string>());
   if (!folder)
@@ -115,8 +116,12 @@ Answer SiteService::release(const Json& body, const User* user) {
     if (!checked.fits) return refused(403, "password");
     arguments.push_back(verb_option("user", user->account));
   } else {
-    if (user != nullptr && !is_same_name(body.value("confirmed", ""), user->name))
-      return refused(403, "name");
+    if (user != nullptr) {
+      const auto numbering = certificates::numbering_of(wish_.folder);
+      if (!numbering) return refusal(503, numbering.error().message);
+      if (numbering->two_persons) return refused(403, "two_persons", {{"account", user->account}});
+      if (!is_same_name(body.value("confirmed", ""), user->name)) return refused(403, "name");
+    }
     arguments.push_back(verb_option("by", body.at("by").get<std::string>()));
   }
   add_options(arguments, body, {"as"});

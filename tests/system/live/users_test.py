@@ -7,6 +7,7 @@ import unittest
 
 from live import LiveTest, Server, nonio
 import campaigns_test
+from sign_in_test import hashed
 
 HEADER, HOST = "X-Remote-User", "nonio.example.org"
 ROLES = ("view", "measure", "approve", "administer")
@@ -94,6 +95,17 @@ class Users(LiveTest):
             status, answer = self.ask(s, "POST", "/api/event", "measure-1", {"machine": "M", "kind": "other", "text": "x", "date": "2026-01-01"})
             self.assertEqual((503, "audit"), (status, json.loads(answer)["id"]), "what cannot be recorded is not done")
             self.assertFalse((self.site / "events.toml").exists())
+
+    def test_a_user_without_a_password_is_not_one_of_two_persons(self):
+        with self.serve("--edit") as s:
+            made = json.loads(self.ask(s, "POST", "/api/campaigns", "measure-1", self.campaign(), {"Content-Type": "application/octet-stream"})[1])["campaign"]
+            approve = lambda: (lambda r: (r[0], json.loads(r[1]).get("id")))(self.ask(s, "POST", "/api/release", "approve-1", {"campaign": made, "by": "x", "confirmed": "Person approve", "as": "authoriser"}))
+            self.assertEqual((422, None), approve(), "one person: the name is enough, and there is no draft")
+            with (self.site / "site.toml").open("a") as site:
+                site.write("[certificate]\ntwo_persons = true\n")
+            self.assertEqual((403, "two_persons"), approve())
+            (self.site / "users.toml").write_text(USERS.replace('role = "approve"\n', f'role = "approve"\n{hashed("a long password 1").stdout}'))
+            self.assertEqual((403, "password"), approve(), "the remedy: with a password it is asked for")
 
     def test_the_option_is_for_a_proxy(self):
         self.assertIn("--host", nonio("serve", self.site, "--user-header", HEADER, expect=2).stderr)
