@@ -7,6 +7,7 @@
 #include "platform/storage/scratch_folder.h"
 
 namespace nonio::live {
+namespace fs = std::filesystem;
 using storage::Json;
 
 namespace {
@@ -132,6 +133,18 @@ Answer SiteService::release(const Json& body, const User* user) {
   Answer out = entered(with_places(std::move(arguments)), password);
   campaigns_->index().look_at(*folder);
   return out;
+}
+
+/// Sends a file of a campaign's results to an address of the site's [mail].
+Answer SiteService::mail(const Json& body) {
+  const fs::path file =
+      result_file(body.at("campaign").get<std::string>(), body.at("file").get<std::string>());
+  if (file.empty()) return refused(404, "no_result");
+  std::vector<std::string> arguments{"certificate", "send", "--json",
+                                     verb_option("site", wish_.folder.string())};
+  add_options(arguments, body, {"to"});
+  arguments.push_back(file.string());
+  return of_verb(arguments);
 }
 
 Answer SiteService::verify(const Request& request) {

@@ -206,16 +206,20 @@ Answer SiteService::page(const std::string& name) {
   return {200, "application/octet-stream", end.out, {}};
 }
 
+/// Returns the path of a file of a campaign's results; empty if there is no such file.
+fs::path SiteService::result_file(const std::string& campaign, const std::string& file) const {
+  if (wish_.out.empty() || !config::is_campaign_id(campaign)) return {};
+  const fs::path folder = storage::results_folder(wish_.out, campaign);
+  std::error_code error;
+  const bool is_link = fs::is_symlink(fs::symlink_status(folder, error));
+  return is_link || !is_plain_file_in(folder, file) ? fs::path() : folder / file;
+}
+
 /// Returns a file of a campaign's results as a download.
 Answer SiteService::result(const std::string& campaign, const std::string& file) {
-  const fs::path folder = wish_.out.empty() || !config::is_campaign_id(campaign)
-                              ? fs::path()
-                              : storage::results_folder(wish_.out, campaign);
-  std::error_code error;
-  if (folder.empty() || fs::is_symlink(fs::symlink_status(folder, error)) ||
-      !is_plain_file_in(folder, file))
-    return refused(404, "no_result");
-  const auto bytes = storage::read_file(folder / file);
+  const fs::path path = result_file(campaign, file);
+  if (path.empty()) return refused(404, "no_result");
+  const auto bytes = storage::read_file(path);
   if (!bytes) return refusal(422, bytes.error().message);
   return {200, "application/octet-stream", *bytes, {}};
 }

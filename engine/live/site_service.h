@@ -90,6 +90,8 @@ class SiteService : public Starting {
   Answer metrics();
   Answer page(const std::string& name);
   Answer result(const std::string& campaign, const std::string& file);
+  std::filesystem::path result_file(const std::string& campaign, const std::string& file) const;
+  Answer mail(const storage::Json& body);
   Answer state(const User* user);
   Answer settings(const User* user) const;
   Answer events(const Request& request);

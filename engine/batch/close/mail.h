@@ -13,6 +13,8 @@ namespace nonio::batch {
 struct Letter {
   std::string subject;  ///< subject of the mail in UTF-8; line ends are sent as spaces
   std::string text;     ///< body of the mail in UTF-8
+  std::string file{};   ///< name of the attached file; empty: none
+  std::string bytes{};  ///< its content
 };
 
 /// Returns whether this worklist line is severe enough for a mail, according to the setting `on`.

@@ -13,24 +13,25 @@ const campaigns = (() => {
     return state ? el("span", {class: "badge " + state.replace(/ /g, "-")}, `${marks[state] || "?"} ${wordOf(state)}`) : null;
   }
   /// Files by purpose: the report, the certificate or its draft, and the rest.
-  function documents(c, fetchFile) {
+  function documents(c, {fetchFile, send}) {
     const id = c.id, get = (file) => () => fetchFile(`${id}/${file}`), first = [], rest = [];
     for (const file of c.files) {
       const word = file === "certificate.pdf" ? "list.certificate" : file === "certificate-draft.pdf" ? "list.draft" : /report.*\.pdf$/.test(file) ? "list.report" : null;
       if (word) first.push(link(`get-${c.folder}-${file}`, say(word), get(file)));
+      if (word && word !== "list.draft" && send) first.push(link(`send-${c.folder}-${file}`, say("mail.short"), () => send(id, file), {"aria-label": `${say("mail.title")}: ${say(word)}`}));
       else if (file !== "run.json") rest.push(el("li", {}, link(`get-${c.folder}-${file}`, file, get(file))));
     }
     return [...first, rest.length ? el("details", {}, el("summary", {}, say("list.files", {n: rest.length})), el("ul", {class: "plain"}, ...rest)) : null].filter(Boolean);
   }
-  function row(c, {buttons, fetchFile}) {
+  function row(c, tools) {
     return el("tr", {"data-folder": c.folder}, el("td", {class: "day"}, c.day || "\u2013"),
       el("td", {}, el("a", {href: hrefOf(c.folder), "data-key": "one-" + c.folder}, entries.visible(nameOf(c))), c.machine && c.model ? el("span", {class: "muted block"}, entries.visible(c.model)) : null),
       el("td", {}, entries.visible(c.customer || ""), el("span", {class: "muted block"}, entries.visible(c.id || c.folder))),
       el("td", {}, badge(c.state), " ", badge(c.verdict), c.changed ? el("span", {class: "muted block"}, say("list.changed")) : null,
         c.certificate ? el("span", {class: "muted block"}, say("list.number", {number: c.certificate})) : null,
         c.message ? el("span", {class: "flag block"}, entries.visible(c.message)) : null),
-      el("td", {class: "files"}, ...documents(c, fetchFile)),
-      el("td", {}, el("div", {class: "acts"}, ...buttons(c.folder, c.folder))));
+      el("td", {class: "files"}, ...documents(c, tools)),
+      el("td", {}, el("div", {class: "acts"}, ...tools.buttons(c.folder, c.folder))));
   }
   async function load() {
     const p = new URLSearchParams({search: query.search, state: query.state, page: query.page, size});
@@ -176,7 +177,7 @@ const campaigns = (() => {
       el("div", {class: "answer"}, fitted.places(folder), has ? el("section", {id: "verdict-of", "aria-labelledby": "verdict-title"}, el("h2", {id: "verdict-title"}, say("one.verdict")), ...decisions(results)) : el("p", {}, say("one.not_yet"))),
       c.findings.length ? el("section", {"aria-labelledby": "found-title"}, el("h2", {id: "found-title"}, say("one.found")), el("ul", {id: "found"}, ...c.findings.map((f) => el("li", {}, entries.visible(f))))) : null,
       missing(results),
-      c.files.length ? el("section", {"aria-labelledby": "documents-title"}, el("h2", {id: "documents-title"}, say("list.documents")), el("div", {class: "acts wide"}, ...documents(c, tools.fetchFile))) : null,
+      c.files.length ? el("section", {"aria-labelledby": "documents-title"}, el("h2", {id: "documents-title"}, say("list.documents")), el("div", {class: "acts wide"}, ...documents(c, tools))) : null,
       tools.released && tools.released.folder === folder ? tools.releasedNote() : null,
       draft ? el("section", {"aria-labelledby": "approve-title"}, el("h2", {id: "approve-title"}, say("one.approve")), el("ul", {class: "plain"}, certificates.draft(draft, tools.approve, tools.fetchFile, tools.release))) : null].filter(Boolean);
   }

@@ -193,7 +193,7 @@
   }
 
   // ---- pages that this script draws ----
-  const tools = () => ({edit: state.edit, approve: state.approve, out: state.out, running: state.running, buttons: campaignButtons, fetchFile, runAll: () => runAgain(""), complain, drop: measure.drop, release, released, releasedNote});
+  const tools = () => ({edit: state.edit, approve: state.approve, out: state.out, running: state.running, buttons: campaignButtons, fetchFile, send: state.approve ? (id, file) => entries.send(id, file, act).catch(complain) : null, runAll: () => runAgain(""), complain, drop: measure.drop, release, released, releasedNote});
   /// Shows a new campaign, and evaluates it at once if the server has an output folder.
   async function created(answer) {
     told(answer);
