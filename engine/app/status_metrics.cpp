@@ -6,6 +6,8 @@
 #include <chrono>
 #include <map>
 
+#include "batch/state/run_status.h"
+#include "nonio/sdk/format.h"
 #include "platform/storage/files.h"
 
 namespace nonio::app {
@@ -62,6 +64,31 @@ void put_lines(const dom::object& summary, Metrics& metrics) {
   for (const auto& [kind, count] : kinds) metrics.value(std::to_string(count), "kind", kind);
 }
 
+/// Counts the dates of OUT/due.ics: machines whose certificate needs a new calibration.
+void put_due(const std::filesystem::path& out, Metrics& metrics) {
+  using namespace std::chrono;
+  const auto file = storage::read_file(out / "due.ics");
+  if (!file) return;
+  const sys_days today = floor<days>(system_clock::now());
+  const auto text_of_day = [](sys_days at) {
+    const year_month_day day(at);
+    return std::to_string(int(day.year()) * 10000 + unsigned(day.month()) * 100 +
+                          unsigned(day.day()));
+  };
+  const std::string now = text_of_day(today), soon = text_of_day(today + days(30));
+  std::size_t overdue = 0, near = 0;
+  constexpr std::string_view key = "DTSTART;VALUE=DATE:";
+  for (std::size_t at = file->find(key); at != std::string::npos; at = file->find(key, at + 1)) {
+    const std::string day = file->substr(at + key.size(), now.size());
+    ++(day < now ? overdue : near);
+    if (day > soon) --near;
+  }
+  metrics.family("nonio_certificates_due",
+                 "Machines whose next calibration is overdue, or due within 30 days");
+  metrics.value(std::to_string(overdue), "within", "overdue");
+  metrics.value(std::to_string(near), "within", "30_days");
+}
+
 }  // namespace
 
 Expected<std::string> metrics_of(const std::filesystem::path& out) {
@@ -90,6 +117,10 @@ Expected<std::string> metrics_of(const std::filesystem::path& out) {
   std::int64_t number = 0;
   [[maybe_unused]] const auto stated = summary["night"].get(number);
   metrics.value(std::to_string(number));
+  if (const auto status = batch::run_status(out); status && status->seconds) {
+    metrics.family("nonio_last_run_seconds", "Duration of the last complete run");
+    metrics.value(fixed_text(*status->seconds, 1));
+  }
   metrics.family("nonio_campaigns", "Campaigns of the last run, by state");
   for (const auto& count : counts)
     if (std::int64_t n = 0; count.value.get(n) == simdjson::SUCCESS)
@@ -99,6 +130,7 @@ Expected<std::string> metrics_of(const std::filesystem::path& out) {
   metrics.value(std::to_string(length_of(summary, "drafts")));
   metrics.family("nonio_certificates_issued", "Certificates that the last run has seen issued");
   metrics.value(std::to_string(length_of(summary, "issued")));
+  put_due(out, metrics);
   return metrics.made();
 }
 

@@ -97,6 +97,8 @@ int print_status(const RunStatus& found, const StatusWish& wish, const Common& c
                                {"age_s", found.age},
                                {"campaigns", found.last->seen},
                                {"failed", found.last->failed}};
+    if (found.last && found.seconds)
+      json["last_complete"]["seconds"] = rounded_to_places(*found.seconds, 1);
     if (!wrong.empty()) json["wrong"] = wrong;
     print_json(json);
   } else if (!common.quiet || !wrong.empty()) {
