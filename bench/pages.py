@@ -18,36 +18,20 @@ import time
 
 import campaigns
 
-MANIFEST = '''format = 1
-[campaign]
-id = "c{k:07}"
-customer = "Customer {customer}"
-site = "Hall {customer}"
-date = {day}
-[machine]
-maker = "Maker"
-model = "M {model}"
-serial = "{machine:06}"
-[machine.axes.X]
-kind = "linear"
-travel = [0.0, 400.0]
-tolerance_um = {{ A = {limit} }}
-[instrument]
+INSTRUMENT = '''[instrument]
 maker = "Maker"
 model = "Laser"
 serial = "{instrument}"
 calibrated = 2026-01-01
 U_fixed_um = 0.2
 U_per_m_um = 0.5
-[[measurement]]
-id = "X"
-kind = "axis"
-axis = "X"
-file = "x.csv"
-[run]
-analyses = ["iso230-2"]
-outputs = []
 '''
+MANIFEST = campaigns.MANIFEST
+for short, whole in (('date = 2026-11-03\n', 'customer = "Customer {customer}"\nsite = "Hall {customer}"\ndate = {day}\n'),
+                     ('model = "M"\n', 'maker = "Maker"\nmodel = "M {model}"\nserial = "{machine:06}"\n'),
+                     ('kind = "linear"\n', 'kind = "linear"\ntravel = [0.0, 400.0]\ntolerance_um = {{ A = {limit} }}\n'),
+                     ('[[measurement]]\n', INSTRUMENT + '[[measurement]]\n')):
+    MANIFEST = MANIFEST.replace(short, whole)
 
 
 def make(site, count):
@@ -58,7 +42,7 @@ def make(site, count):
         folder.mkdir(parents=True)
         machine = k % max(1, count // 10)
         (folder / "campaign.toml").write_text(MANIFEST.format(
-            k=k, customer=machine % max(1, count // 100), machine=machine, model=machine % 20, limit=rng.choice((2.0, 30.0)), instrument=rng.randrange(50),
+            k, customer=machine % max(1, count // 100), machine=machine, model=machine % 20, limit=rng.choice((2.0, 30.0)), instrument=rng.randrange(50),
             day=f"20{16 + 10 * k // count:02}-{rng.randrange(1, 13):02}-{rng.randrange(1, 29):02}"))
         (folder / "x.csv").write_text(campaigns.readings(k))
 
