@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 
 #include "campaign/config/toml_reader.h"
 #include "certificates/password.h"
@@ -50,6 +51,11 @@ Expected<std::vector<User>> parse_users(std::string_view text) {
   if (!errors.empty()) return fail(errors.front());
   if (out.empty()) return fail(Error{"expected at least one [[user]]", users_name});
   return out;
+}
+
+bool has_users(const fs::path& site) {
+  struct stat info {};
+  return ::lstat((site / users_name).c_str(), &info) == 0 || errno != ENOENT;
 }
 
 Expected<std::vector<User>> read_users(const fs::path& site) {

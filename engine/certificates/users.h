@@ -33,6 +33,9 @@ inline constexpr const char* users_name = config::users_name;
 /// Parses users.toml; an error states the first mistake with its line. No account may occur twice,
 /// and no two accounts may have the same name, because two approvals must come from two persons.
 Expected<std::vector<User>> parse_users(std::string_view text);
+/// Whether the site has a file with users, also one that cannot be read, for example a link that
+/// leads nowhere.
+bool has_users(const std::filesystem::path& site);
 /// Reads the file of a site. Refused: a file above 1 MB, a symbolic link, and a file that group or
 /// others may write, because its writer decides who may approve.
 Expected<std::vector<User>> read_users(const std::filesystem::path& site);

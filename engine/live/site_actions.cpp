@@ -90,13 +90,15 @@ Answer SiteService::begin_session(const Request& request) {
 }
 
 Answer SiteService::end_session(const Request& request, const User& user) {
+  // The session ends even if that cannot be recorded.
+  const std::string cookie = sign_in_.end(request.head);
   if (!audit_.write({{"account", user.account},
                      {"name", user.name},
                      {"request", "/api/sign-out"},
                      {"state", "done"}}))
     return refused(503, "audit");
   Answer out = json_answer(200, {{"version", version_.load()}});
-  out.headers.emplace_back("Set-Cookie", sign_in_.end(request.head));
+  out.headers.emplace_back("Set-Cookie", cookie);
   return out;
 }
 

@@ -167,11 +167,9 @@ Answer SiteService::answer(const Request& request) {
   if (path == "/api/sign-in") return begin_session(request);
   if (request.route.open) return shell_file(request, path == "/" ? shells_.site : shells_.campaign);
   if (wish_.user_header.empty() && !wish_.sign_in) {
-    std::error_code
-        error;  // users.toml was added after the start, so requests without a user are refused
-    return std::filesystem::exists(wish_.folder / certificates::users_name, error)
-               ? refused(503, "users_new")
-               : answer_to(request, nullptr);
+    // users.toml was added after the start, so requests without a user are refused
+    return certificates::has_users(wish_.folder) ? refused(503, "users_new")
+                                                 : answer_to(request, nullptr);
   }
   const auto user = user_of(request.head);
   if (!user) return user.error();

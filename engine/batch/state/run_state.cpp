@@ -40,7 +40,7 @@ Expected<void> keep_seconds(const fs::path& out, double seconds) {
 
 /// None if no run has stored its duration, or if a copy of the folder has lost the times of files.
 std::optional<double> seconds_in(const fs::path& out) {
-  constexpr std::time_t longest = 366 * 86400;
+  constexpr std::time_t longest = std::time_t{366} * 86400;
   struct stat info {};
   const fs::path path = out / state_folder / seconds_name;
   if (::stat(path.c_str(), &info) != 0 || info.st_mtim.tv_sec > longest) return std::nullopt;

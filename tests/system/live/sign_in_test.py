@@ -97,6 +97,8 @@ class SignIn(LiveTest):
             file.symlink_to(other)
             self.assertEqual(503, person.ask("GET", "/api/site/state")[0])
         self.assertIn(f"{file}: it is a symbolic link", nonio("serve", self.site, expect=2).stderr)
+        other.unlink()
+        self.assertIn(f"{file}: it is a symbolic link", nonio("serve", self.site, expect=2).stderr, "one that leads nowhere does not open the site")
 
     def test_without_a_session_there_is_nothing(self):
         with self.serve() as s:
