@@ -20,20 +20,32 @@ struct BackupWish {
   std::string folder, file, out;
 };
 
-void report_left_out(const storage::BackupSummary& summary) {
-  for (const std::string& name : summary.left_out)
-    complain(name + " is not in the backup: it is neither a file, a folder nor a link");
+/// Reports what is not in the backup, and returns it for the JSON.
+Json report_left_out(const fs::path& folder, const storage::BackupSummary& summary) {
+  Json all = Json::array();
+  for (const std::string& name : summary.left_out) {
+    std::error_code error;
+    const fs::path target = fs::read_symlink(folder / name, error);
+    all.push_back(error ? Json{{"name", name}}
+                        : Json{{"name", name}, {"link_to", target.string()}});
+    complain(error ? name + " is not in the backup: it is neither a file, a folder nor a link"
+                   : name + " is a link to " + target.string() +
+                         ", which is outside of the folder: what it contains is not in the backup; "
+                         "save it by another nonio backup");
+  }
+  return all;
 }
 
 int backup(const BackupWish& wish, const Common& common) {
   const auto written = storage::write_backup(wish.folder, wish.file);
   if (!written) return complain(text_of(written.error()));
-  report_left_out(*written);
+  const Json left_out = report_left_out(wish.folder, *written);
   if (common.json)
     print_json(Json{{"schema", "nonio-backup/1"},
                     {"file", wish.file},
                     {"files", written->files},
-                    {"bytes", written->bytes}});
+                    {"bytes", written->bytes},
+                    {"left_out", left_out}});
   else if (!common.quiet)
     std::cout << wish.file << ": " << written->files << " files, " << written->bytes
               << " bytes, read back and compared\n";
@@ -122,7 +134,9 @@ Verb backup_verb(Common& common) {
           "name. Save the output folder first and the site after it: then the register has every "
           "number that the output has. A register or a history on a server is not in it; save it "
           "with "
-          "pg_dump.\n\nExit status: 0 done; 2 no archive was written.",
+          "pg_dump. A link that leads outside of the folder is kept as a link and named, because "
+          "what "
+          "it leads to is not in the archive.\n\nExit status: 0 done; 2 no archive was written.",
       .examples = {"nonio backup out out.tar", "nonio backup site site.tar"},
       .run = [wish, &common] { return backup(*wish, common); }};
 }

@@ -137,6 +137,7 @@ std::vector<Verb> table_of_commands(Common& common, const Program& program) {
   certificate.insert(certificate.begin() + 1, approve_verb(common));
   certificate.insert(certificate.begin() + 3, apart(verify_verb(common)));
   certificate.insert(certificate.begin() + 4, extend_verb(common));
+  certificate.push_back(send_verb(common));
   add("Prepare", {apart(new_verb(common)), apart(import_verb(common)), apart(check_verb(common)),
                   apart(plan_verb(common))});
   add("Evaluate", {std::move(run), status_verb(common), apart(show_verb(common)),

@@ -97,6 +97,8 @@ int print_status(const RunStatus& found, const StatusWish& wish, const Common& c
                                {"age_s", found.age},
                                {"campaigns", found.last->seen},
                                {"failed", found.last->failed}};
+    if (found.last && found.seconds)
+      json["last_complete"]["seconds"] = rounded_to_places(*found.seconds, 1);
     if (!wrong.empty()) json["wrong"] = wrong;
     print_json(json);
   } else if (!common.quiet || !wrong.empty()) {
@@ -139,7 +141,7 @@ Verb status_verb(Common& common) {
                      "the run are applied already"}),
            {"--page", &list.page,
             "Print one of the pages instead: index.html, due.html, due.ics, instruments.html, "
-            "compare.html, machines/NAME.html"}},
+            "compare.html, machines/NAME.html; with --json, add the first five to the actions"}},
           common_arguments(common)),
       .footer =
           "The first line states number, date and age of the last run and its campaigns; with "

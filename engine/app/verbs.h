@@ -24,6 +24,7 @@ Verb remove_verb(Common& common);
 /// Returns the commands about the register: list, withdraw, audit.
 std::vector<Verb> register_verbs(Common& common);
 Verb approve_verb(Common& common);
+Verb send_verb(Common& common);
 Verb verify_verb(Common& common);
 Verb extend_verb(Common& common);
 Verb model_verb(Common& common);

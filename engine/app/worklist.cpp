@@ -12,6 +12,7 @@
 #include "campaign/config/template_files.h"
 #include "laboratory/assessment/assess.h"
 #include "laboratory/assessment/curves.h"
+#include "platform/storage/json_values.h"
 #include "text_layout.h"
 #include "verbs.h"
 
@@ -25,6 +26,24 @@ void keep_lines(const WorklistWish& wish, reports::SiteHistory& site) {
     return (!wish.customer.empty() && l.customer != wish.customer) ||
            (!wish.since.empty() && !l.since.empty() && l.since < wish.since);
   });
+}
+
+/// Prints the lines as JSON; with `--page all` also the pages over all machines.
+int print_lines(const WorklistWish& wish, const Templates& templates, const std::string& language,
+                const assessment::LastRun& last_run, const reports::SiteHistory& whole,
+                const reports::SiteHistory& site) {
+  std::cout << "{\n \"schema\": \"nonio-morning/1\",\n \"night\": " << last_run.run
+            << ",\n \"date\": \"" << last_run.date
+            << "\",\n \"lines\": " << assessment::lines_json(site, templates);
+  if (!wish.page.empty()) {
+    const auto pages = reports::site_lists(whole, templates, language);
+    if (!pages) return complain(pages.error().message);
+    storage::Json all = storage::Json::object();
+    for (const Artifact& page : *pages) all[page.name] = page.bytes;
+    std::cout << ",\n \"pages\": " << storage::dump_line(all);
+  }
+  std::cout << "\n}\n";
+  return std::any_of(site.lines.begin(), site.lines.end(), reports::asks) ? exit_failed : exit_done;
 }
 
 /// Prints one page of the site with its present content on stdout. Returns the exit status.
@@ -83,22 +102,18 @@ int print_worklist(const WorklistWish& wish, const Common& common) {
                       "/site.toml; expected de, en or it");
     language = "en";
   }
-  if (!wish.page.empty()) return print_page(wish, *templates, language, *assessment);
+  if (!wish.page.empty() && !common.json)
+    return print_page(wish, *templates, language, *assessment);
   reports::SiteHistory site = assessment->site();
   const std::size_t all = site.lines.size();
   keep_lines(wish, site);
-  const bool asks = std::any_of(site.lines.begin(), site.lines.end(), reports::asks);
-  if (common.json) {
-    std::cout << "{\n \"schema\": \"nonio-morning/1\",\n \"night\": " << last_run->run
-              << ",\n \"date\": \"" << last_run->date
-              << "\",\n \"lines\": " << assessment::lines_json(site, *templates) << "\n}\n";
-    return asks ? exit_failed : exit_done;
-  }
+  if (common.json)
+    return print_lines(wish, *templates, language, *last_run, assessment->site(), site);
   if (site.lines.empty()) site.hidden = all;
   const auto text = reports::worklist_text(site, *templates, language, site.lines.size());
   if (!text) return complain(text.error().message);
   std::cout << wrapped(*text, 0, sentence_width(STDOUT_FILENO), 4);
-  return asks ? exit_failed : exit_done;
+  return std::any_of(site.lines.begin(), site.lines.end(), reports::asks) ? exit_failed : exit_done;
 }
 
 }  // namespace nonio::app

@@ -142,10 +142,12 @@ void write_mail(RunResult& run, const RunOptions& options, const RunEvents& even
   events.note(run.notes.back());
 }
 
+constexpr const char* webhook_failed = "webhook-failed";  // why it did not take the last lines
+
 /// Sends new lines that require action to the webhook, each once: OUT/.nonio/webhook.json contains
-/// the ids of lines that were accepted. If the receiver fails, no result is delayed, and the next
-/// run tries again.
-void post_news(RunResult& run, const RunOptions& options, const RunEvents& events,
+/// the ids of lines that were accepted. It is tried once, after the run has ended; the next run
+/// tries again, and its summary names the failure.
+void post_news(const RunResult& run, const RunOptions& options, const RunEvents& events,
                const reading::Context& context) {
   using storage::Json;
   constexpr const char* name = "webhook.json";
@@ -167,10 +169,16 @@ void post_news(RunResult& run, const RunOptions& options, const RunEvents& event
                        {"lines", lines}};
     if (const auto sent = send_webhook(*context.site.webhook, options.site, storage::dump(body));
         !sent) {
-      run.notes.push_back("the webhook did not take " + std::to_string(lines.size()) +
-                          " lines, the next run sends them again: " + sent.error().message);
-      events.note(run.notes.back());
+      const std::string why = "the webhook did not take " + std::to_string(lines.size()) +
+                              " lines after run " + std::to_string(run.run.number) + ": " +
+                              sent.error().message;
+      events.note(why + "; the next run sends them again");
+      if (auto kept = storage::publish(folder, {{webhook_failed, why}}); !kept)
+        events.note(kept.error().message);
       ids = still;
+    } else {
+      std::error_code none;
+      fs::remove(folder / webhook_failed, none);
     }
   }
   if (ids == taken) return;
@@ -178,23 +186,24 @@ void post_news(RunResult& run, const RunOptions& options, const RunEvents& event
     events.note(kept.error().message);
 }
 
-/// Removes leftovers, lists the certificates, makes the worklist, sends mail and webhook (not for a
-/// reopened run), writes the summary, and records that the run has ended.
+/// Removes leftovers, lists the certificates, makes the worklist, sends the mail (not for a reopened
+/// run, as the webhook), writes the summary, records that the run has ended, and calls the webhook.
 Expected<void> close_run(RunResult& run, const RunOptions& options, const RunEvents& events,
                          const SetUp& place, RunState& state) {
   const reading::Context& context = place.context;
   if (auto tidied = tidy_all(run, options.out, state.resumed); !tidied) return tidied;
   if (auto noted = note_certificates(run, options, context, state); !noted) return noted;
   const WorklistPages worklist = worklist_of(run, options, events, context);
-  if (!state.reopened) {
-    write_mail(run, options, events, context, worklist);
-    post_news(run, options, events, context);
-  }
+  if (!state.reopened) write_mail(run, options, events, context, worklist);
+  if (const auto failed = storage::read_small_file(options.out / state_folder / webhook_failed))
+    run.notes.push_back(*failed + "; they are sent again after this run");
   const config::TerminalWords words(context.templates, context.site.language);
   if (auto written = write_summary(run, options.out, options.version, words, worklist); !written)
     return written;
   if (auto kept = place.parts.keep(state.of()); !kept) return kept;
-  return end_run(options.out, state, {state.of(), run.campaigns.size(), run.failed()});
+  auto ended = end_run(options.out, state, {state.of(), run.campaigns.size(), run.failed()});
+  if (ended && !state.reopened) post_news(run, options, events, context);
+  return ended;
 }
 
 /// Reports campaigns and parts of the site that have vanished, with at most 100 messages;

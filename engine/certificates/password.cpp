@@ -20,10 +20,10 @@ constexpr std::size_t salt_bytes = 16, hash_bytes = 32;
 
 /// Removes `name`, for example "m=", and a number from 1 to `most` from the beginning of the text.
 /// Returns whether the text began with both.
-bool takes_number(std::string_view& text, std::string_view name, std::uint32_t most) {
+bool takes_number(std::string_view& text, std::string_view name, std::uint32_t most,
+                  std::uint32_t& number) {
   if (!text.starts_with(name)) return false;
   text.remove_prefix(name.size());
-  std::uint32_t number = 0;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
   if (read.ec != std::errc() || number == 0 || number > most) return false;
   text.remove_prefix(static_cast<std::size_t>(read.ptr - text.data()));
@@ -65,9 +65,12 @@ bool is_password_hash(const std::string& text) {
   constexpr std::string_view begin = "$argon2id$v=19$";
   if (!rest.starts_with(begin)) return false;
   rest.remove_prefix(begin.size());
-  constexpr std::uint32_t most_kibibytes = 1U << 20U, most_passes = 100, most_lanes = 16;
-  if (!takes_number(rest, "m=", most_kibibytes) || !takes_number(rest, ",t=", most_passes) ||
-      !takes_number(rest, ",p=", most_lanes) || !rest.starts_with('$'))
+  constexpr std::uint32_t most_passes = 100, most_lanes = 16;
+  std::uint32_t memory = 0, times = 0, threads = 0;
+  if (!takes_number(rest, "m=", most_hash_kibibytes, memory) ||
+      !takes_number(rest, ",t=", most_passes, times) ||
+      !takes_number(rest, ",p=", most_lanes, threads) || !rest.starts_with('$') ||
+      memory * times > most_hash_kibibytes)
     return false;
   rest.remove_prefix(1);
   const std::size_t end = rest.find('$');

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -15,8 +16,12 @@ inline constexpr std::size_t shortest_password = 12, longest_password = 200;
 /// Returns a new hash. An error if the password does not have 12 to 200 bytes, or contains a
 /// control character.
 Expected<std::string> password_hash(std::string_view password);
-/// Returns whether the text has the form of a hash that `password_hash` returns. A hash whose check
-/// would need more than 1 GiB of memory is rejected.
+/// Largest product of memory (KiB) and passes of a hash. The hash of a new password has 192 MiB; the
+/// limit is five times as much, so that its check takes at most about half a second: no other
+/// user can sign in meanwhile.
+inline constexpr std::uint32_t most_hash_kibibytes = 1U << 20U;
+/// Returns whether the text has the form of a hash that `password_hash` returns, within
+/// `most_hash_kibibytes`.
 bool is_password_hash(const std::string& text);
 /// Whether the password matches the hash. Takes a tenth of a second, even for an empty hash, which
 /// matches no password, so that the time does not show whether a user exists. Passwords of more

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "certificates/users.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
 
 #include "campaign/config/toml_reader.h"
 #include "certificates/password.h"
@@ -50,8 +53,24 @@ Expected<std::vector<User>> parse_users(std::string_view text) {
   return out;
 }
 
+bool has_users(const fs::path& site) {
+  struct stat info {};
+  return ::lstat((site / users_name).c_str(), &info) == 0 || errno != ENOENT;
+}
+
 Expected<std::vector<User>> read_users(const fs::path& site) {
-  NONIO_TRY(const auto text, storage::read_small_file(site / users_name));
+  const fs::path file = site / users_name;
+  struct stat info {};
+  if (::lstat(file.c_str(), &info) == 0) {
+    if (S_ISLNK(info.st_mode))
+      return fail(
+          Error{"it is a symbolic link; expected the file itself, in the folder of the site",
+                file.string()});
+    if ((info.st_mode & (S_IWGRP | S_IWOTH)) != 0)
+      return fail(
+          Error{"other users can write it; expected chmod 640 " + file.string(), file.string()});
+  }
+  NONIO_TRY(const auto text, storage::read_small_file(file));
   return parse_users(text);
 }
 

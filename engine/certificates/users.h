@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "campaign/config/secret_files.h"
 #include "nonio/sdk/error.h"
 
 /// Reads SITE/users.toml: the users of a site's page and their roles, and the persons who approve
@@ -27,12 +28,16 @@ struct User {
                            ///< with a password
 };
 
-inline constexpr const char* users_name = "users.toml";
+inline constexpr const char* users_name = config::users_name;
 
 /// Parses users.toml; an error states the first mistake with its line. No account may occur twice,
 /// and no two accounts may have the same name, because two approvals must come from two persons.
 Expected<std::vector<User>> parse_users(std::string_view text);
-/// Reads the file of a site; a file above 1 MB is refused.
+/// Whether the site has a file with users, also one that cannot be read, for example a link that
+/// leads nowhere.
+bool has_users(const std::filesystem::path& site);
+/// Reads the file of a site. Refused: a file above 1 MB, a symbolic link, and a file that group or
+/// others may write, because its writer decides who may approve.
 Expected<std::vector<User>> read_users(const std::filesystem::path& site);
 /// Returns the user with this account; none if there is no such user.
 std::optional<User> user_with(const std::vector<User>& users, const std::string& account);

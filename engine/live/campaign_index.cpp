@@ -28,13 +28,6 @@ std::string small(std::string_view text) {
   return out;
 }
 
-std::string file_stamp(const fs::path& path) {
-  struct stat s {};
-  if (::stat(path.c_str(), &s) != 0) return "-";
-  return std::to_string(s.st_size) + " " + std::to_string(s.st_mtim.tv_sec) + "." +
-         std::to_string(s.st_mtim.tv_nsec) + " " + std::to_string(s.st_ino);
-}
-
 std::string in_unit(double si, Quantity q) {
   std::string text;
   append_shortest(text, printed(si, q));
@@ -172,19 +165,24 @@ void take_record(const fs::path& results, const std::string& manifest_sha256,
     c.verdict = verdict_of(*text, campaign);
 }
 
-bool is_newer(const ListedCampaign& a, const ListedCampaign& b) {
-  return a.day != b.day ? a.day > b.day : a.id != b.id ? a.id < b.id : a.folder < b.folder;
-}
-
 bool fits(const ListedCampaign& c, const std::string& state) {
   return state.empty() || c.state == state || c.verdict == state || (state == "draft" && c.draft) ||
          (state == "certificate" && !c.certificate.empty());
 }
 
-std::vector<std::string> words_of(const std::string& text) {
+}  // namespace
+
+std::string file_stamp(const fs::path& path) {
+  struct stat s {};
+  if (::stat(path.c_str(), &s) != 0) return "-;";
+  return std::to_string(s.st_size) + " " + std::to_string(s.st_mtim.tv_sec) + "." +
+         std::to_string(s.st_mtim.tv_nsec) + " " + std::to_string(s.st_ino) + ";";
+}
+
+std::vector<std::string> words_of(const std::string& search) {
   std::vector<std::string> words;
   std::string word;
-  for (const char c : small(text) + " ")
+  for (const char c : small(search) + " ")
     if (c != ' ')
       word += c;
     else if (!word.empty())
@@ -192,7 +190,21 @@ std::vector<std::string> words_of(const std::string& text) {
   return words;
 }
 
-}  // namespace
+bool has_all(const std::string& text, const std::vector<std::string>& words) {
+  return std::all_of(words.begin(), words.end(),
+                     [&](const std::string& word) { return text.find(word) != std::string::npos; });
+}
+
+std::size_t begin_of_page(std::size_t page, std::size_t size, std::size_t all) {
+  const std::size_t last = all == 0 ? 0 : (all - 1) / size;
+  return std::min(page, last) * size;
+}
+
+bool CampaignIndex::IsNewer::operator()(const ListedCampaign* a, const ListedCampaign* b) const {
+  return a->day != b->day ? a->day > b->day
+         : a->id != b->id ? a->id < b->id
+                          : a->folder < b->folder;
+}
 
 CampaignIndex::CampaignIndex(fs::path site, fs::path out, std::function<void()> changed,
                              std::function<bool()> is_watched, std::chrono::duration<double> pause)
@@ -252,7 +264,11 @@ CampaignIndex::Seen CampaignIndex::read(const std::string& folder) const {
 void CampaignIndex::look_at(const std::string& folder) {
   Seen fresh = read(folder);
   const std::lock_guard lock(mutex_);
-  seen_[folder] = std::move(fresh);
+  Seen& seen = seen_[folder];
+  order_.erase(&seen.campaign);
+  seen = std::move(fresh);
+  order_.insert(&seen.campaign);
+  ++version_;
 }
 
 void CampaignIndex::look_soon() {
@@ -289,8 +305,11 @@ bool CampaignIndex::look_at_all() {
   }
   const std::lock_guard lock(mutex_);
   const std::size_t gone = std::erase_if(seen_, [&](const auto& one) {
-    return !std::binary_search(folders.begin(), folders.end(), one.first);
+    if (std::binary_search(folders.begin(), folders.end(), one.first)) return false;
+    order_.erase(&one.second.campaign);
+    return true;
   });
+  version_ += gone;
   is_new = is_new || gone > 0 || !complete_;
   complete_ = true;
   return is_new;
@@ -320,34 +339,27 @@ CampaignPage CampaignIndex::find(const CampaignQuery& query) const {
   const auto words = words_of(query.search);
   const std::lock_guard lock(mutex_);
   std::vector<const ListedCampaign*> found;
-  for (const auto& [folder, one] : seen_) {
-    const ListedCampaign& c = one.campaign;
-    const bool has_all = std::all_of(words.begin(), words.end(), [&](const std::string& word) {
-      return c.words.find(word) != std::string::npos;
-    });
+  for (const ListedCampaign* one : order_) {
+    const ListedCampaign& c = *one;
     const bool is_wanted = query.folder.empty() || c.folder == query.folder;
-    if (has_all && is_wanted && fits(c, query.state)) found.push_back(&c);
+    if (is_wanted && has_all(c.words, words) && fits(c, query.state)) found.push_back(one);
   }
   CampaignPage page{found.size(), seen_.size(), complete_, {}};
   const std::size_t size = std::max<std::size_t>(query.size, 1);
-  const std::size_t pages = found.empty() ? 1 : (found.size() + size - 1) / size;
-  const std::size_t from = std::min(query.page, pages - 1) * size;
+  const std::size_t from = begin_of_page(query.page, size, found.size());
   const std::size_t to = std::min(from + size, found.size());
-  const auto at = [&](std::size_t i) { return found.begin() + static_cast<std::ptrdiff_t>(i); };
-  std::partial_sort(found.begin(), at(to), found.end(),
-                    [](const auto* a, const auto* b) { return is_newer(*a, *b); });
   for (std::size_t i = from; i < to; ++i) page.campaigns.push_back(*found[i]);
   return page;
 }
 
 void CampaignIndex::each(const std::function<void(const ListedCampaign&)>& take) const {
   const std::lock_guard lock(mutex_);
-  std::vector<const ListedCampaign*> sorted;
-  sorted.reserve(seen_.size());
-  for (const auto& [folder, one] : seen_) sorted.push_back(&one.campaign);
-  std::sort(sorted.begin(), sorted.end(),
-            [](const auto* a, const auto* b) { return is_newer(*a, *b); });
-  for (const ListedCampaign* one : sorted) take(*one);
+  for (const ListedCampaign* one : order_) take(*one);
+}
+
+std::uint64_t CampaignIndex::version() const {
+  const std::lock_guard lock(mutex_);
+  return version_;
 }
 
 bool CampaignIndex::has(const std::string& folder) const {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -36,6 +37,17 @@ struct ListedCampaign {
   std::map<std::string, std::string> values{};
   std::string words{};  ///< all searchable text in lower case
 };
+
+/// Returns a text that changes when the file is written or replaced; "-;" if it does not exist.
+std::string file_stamp(const std::filesystem::path& path);
+
+/// Returns the words of a search in lower case.
+std::vector<std::string> words_of(const std::string& search);
+/// Whether all words of a search occur in a text in lower case.
+bool has_all(const std::string& text, const std::vector<std::string>& words);
+/// Returns the first place of a page in a list of `all` entries; of the last page, if `page` is
+/// beyond it.
+std::size_t begin_of_page(std::size_t page, std::size_t size, std::size_t all);
 
 struct CampaignQuery {
   std::string search{};  ///< words that must all occur
@@ -70,6 +82,8 @@ class CampaignIndex {
   CampaignPage find(const CampaignQuery& query) const;
   /// Calls `take` for all campaigns in the order of `find`; `take` must not call the index.
   void each(const std::function<void(const ListedCampaign&)>& take) const;
+  /// Returns a number that grows with each change of a campaign.
+  std::uint64_t version() const;
   bool has(const std::string& folder) const;
   std::size_t size() const;
   /// Reads this campaign at once.
@@ -83,6 +97,9 @@ class CampaignIndex {
   struct Seen {
     ListedCampaign campaign;
     std::string stamp;
+  };
+  struct IsNewer {
+    bool operator()(const ListedCampaign* a, const ListedCampaign* b) const;
   };
   std::string stamp_of(const std::string& folder, const std::string& id) const;
   Seen read(const std::string& folder) const;
@@ -100,6 +117,8 @@ class CampaignIndex {
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::map<std::string, Seen> seen_{};  ///< campaigns as they were last read, by folder
+  std::set<const ListedCampaign*, IsNewer> order_{};  ///< the campaigns of `seen_`
+  std::uint64_t version_ = 1;
   bool over_ = false, soon_ = true, complete_ = false;
   std::thread thread_;
 };

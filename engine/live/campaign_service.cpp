@@ -74,8 +74,7 @@ Expected<Shells> shells_of(const LiveWish& wish) {
 /// Whether users sign in at this server and not at a proxy; false also if there is no users.toml.
 /// An error if users.toml cannot be read, or if it is needed for signing in and states no password.
 Expected<bool> requires_sign_in(const LiveWish& wish) {
-  NONIO_TRY(const auto there, storage::is_there(wish.folder / certificates::users_name));
-  if (!there && wish.user_header.empty()) return false;
+  if (!certificates::has_users(wish.folder) && wish.user_header.empty()) return false;
   NONIO_TRY(const auto users, certificates::read_users(wish.folder));
   if (!wish.user_header.empty()) return false;
   if (std::none_of(users.begin(), users.end(),

@@ -12,7 +12,6 @@ using certificates::User;
 
 namespace {
 
-constexpr std::size_t most_sessions = 1000;
 constexpr const char* cookie_rules = "; Path=/; HttpOnly; SameSite=Strict";
 
 std::size_t place_of(const std::string& account) {
@@ -51,7 +50,7 @@ SignIn::Checked SignIn::check(const std::string& account, const std::string& pas
   const std::lock_guard lock(checking_);
   Wrong& wrong = user ? wrong_[user->account + (of_session ? " in a session" : "")]
                       : wrong_of_others_[place_of(account)];
-  if (const auto left = wrong.until - Clock::now(); left > Clock::duration::zero())
+  if (const auto left = wrong.until - now_(); left > Clock::duration::zero())
     return {false, static_cast<int>(std::chrono::ceil<std::chrono::seconds>(left).count())};
   if (certificates::fits_password(password, user ? user->password : std::string())) {
     wrong = {};
@@ -60,7 +59,7 @@ SignIn::Checked SignIn::check(const std::string& account, const std::string& pas
   constexpr int most_doublings = 6, most_seconds = 60;
   const int seconds = std::min(1 << std::min(wrong.times, most_doublings), most_seconds);
   ++wrong.times;
-  wrong.until = Clock::now() + std::chrono::seconds(seconds);
+  wrong.until = now_() + std::chrono::seconds(seconds);
   return {};
 }
 
@@ -70,12 +69,15 @@ Expected<std::string> SignIn::begin(const User& user, bool secure) {
   const std::lock_guard lock(mutex_);
   // Cookies do not distinguish ports, so each server uses its own name.
   if (cookie_.empty()) cookie_ = "nonio-" + name.substr(0, 8);
-  const auto now = Clock::now();
+  const auto now = now_();
   std::erase_if(sessions_, [&](const auto& one) { return now - one.second.since > lasting; });
-  if (sessions_.size() >= most_sessions)
-    sessions_.erase(std::min_element(
-        sessions_.begin(), sessions_.end(),
-        [](const auto& a, const auto& b) { return a.second.since < b.second.since; }));
+  std::vector<std::map<std::string, Session>::iterator> own;
+  for (auto it = sessions_.begin(); it != sessions_.end(); ++it)
+    if (it->second.account == user.account) own.push_back(it);
+  if (own.size() >= most_of_account)
+    sessions_.erase(*std::min_element(own.begin(), own.end(), [](const auto& a, const auto& b) {
+      return a->second.since < b->second.since;
+    }));
   sessions_[storage::sha256(token)] = {user.account, user.password, now};
   return cookie_ + "=" + token + cookie_rules +
          "; Max-Age=" + std::to_string(std::chrono::seconds(lasting).count()) +
@@ -93,7 +95,7 @@ std::optional<User> SignIn::user_of(const Head& head, const std::vector<User>& u
   if (found == sessions_.end()) return std::nullopt;
   const Session& session = found->second;
   auto user = certificates::user_with(users, session.account);
-  if (user && user->password == session.password_hash && Clock::now() - session.since <= lasting)
+  if (user && user->password == session.password_hash && now_() - session.since <= lasting)
     return user;
   sessions_.erase(found);
   return std::nullopt;

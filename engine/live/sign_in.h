@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -20,9 +21,13 @@ namespace nonio::live {
 class SignIn {
  public:
   using Clock = std::chrono::steady_clock;
+  using Now = std::function<Clock::time_point()>;
+  explicit SignIn(Now now = Clock::now) : now_(std::move(now)) {}
   /// Longest duration of a session. It also ends with the server, with a change of the password,
   /// and with the removal of the user.
   static constexpr std::chrono::hours lasting{12};
+  /// Sessions of one account; one more ends the oldest of this account.
+  static constexpr std::size_t most_of_account = 20;
 
   /// Result of checking a password.
   struct Checked {
@@ -31,7 +36,8 @@ class SignIn {
                      ///< or because too many checks wait; otherwise 0
   };
   /// Checks a password. Checks run one after the other, so that guessing uses at most one
-  /// processor, and only a few may wait. After wrong passwords the account is not checked for 1, 2,
+  /// processor, and at most two others are waited for; each takes as long as
+  /// `certificates::is_password_hash` permits. After wrong passwords the account is not checked for 1, 2,
   /// 4 ... 60 s, whether it exists or not. `of_session`: for a person who is signed in; wrong
   /// passwords of others do not block this person.
   Checked check(const std::string& account, const std::string& password,
@@ -57,6 +63,7 @@ class SignIn {
   };
   std::string key_of(const Head& head) const;
 
+  Now now_;
   std::mutex mutex_, checking_;
   std::string cookie_{};                       ///< name of the cookie; random for each start of a
                                                ///< server

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Carries out what people do on the page of a site: entries, approvals, verifications, runs.
+#include "certificates/certificate_list.h"
 #include "certificates/person_name.h"
 #include "live/site_service.h"
 #include "platform/storage/files.h"
 #include "platform/storage/scratch_folder.h"
 
 namespace nonio::live {
+namespace fs = std::filesystem;
 using storage::Json;
 
 namespace {
@@ -87,15 +89,22 @@ Answer SiteService::begin_session(const Request& request) {
   return out;
 }
 
-Answer SiteService::end_session(const Request& request) {
+Answer SiteService::end_session(const Request& request, const User& user) {
+  // The session ends even if that cannot be recorded.
+  const std::string cookie = sign_in_.end(request.head);
+  if (!audit_.write({{"account", user.account},
+                     {"name", user.name},
+                     {"request", "/api/sign-out"},
+                     {"state", "done"}}))
+    return refused(503, "audit");
   Answer out = json_answer(200, {{"version", version_.load()}});
-  out.headers.emplace_back("Set-Cookie", sign_in_.end(request.head));
+  out.headers.emplace_back("Set-Cookie", cookie);
   return out;
 }
 
 /// Approves a certificate. A person with a password has to repeat it, and the command takes the
-/// name from users.toml; a person who is logged in at a proxy and has no password has to type the
-/// name.
+/// name from users.toml. A person who is logged in at a proxy and has no password has to type the
+/// name, which is no authentication: if the site requires two persons, the request is refused.
 Answer SiteService::release(const Json& body, const User* user) {
   const auto folder = folder_of(body.at("campaign").get<std::string>());
   if (!folder)
@@ -110,8 +119,12 @@ Answer SiteService::release(const Json& body, const User* user) {
     if (!checked.fits) return refused(403, "password");
     arguments.push_back(verb_option("user", user->account));
   } else {
-    if (user != nullptr && !is_same_name(body.value("confirmed", ""), user->name))
-      return refused(403, "name");
+    if (user != nullptr) {
+      const auto numbering = certificates::numbering_of(wish_.folder);
+      if (!numbering) return refusal(503, numbering.error().message);
+      if (numbering->two_persons) return refused(403, "two_persons", {{"account", user->account}});
+      if (!is_same_name(body.value("confirmed", ""), user->name)) return refused(403, "name");
+    }
     arguments.push_back(verb_option("by", body.at("by").get<std::string>()));
   }
   add_options(arguments, body, {"as"});
@@ -122,6 +135,18 @@ Answer SiteService::release(const Json& body, const User* user) {
   Answer out = entered(with_places(std::move(arguments)), password);
   campaigns_->index().look_at(*folder);
   return out;
+}
+
+/// Sends a file of a campaign's results to an address of the site's [mail].
+Answer SiteService::mail(const Json& body) {
+  const fs::path file =
+      result_file(body.at("campaign").get<std::string>(), body.at("file").get<std::string>());
+  if (file.empty()) return refused(404, "no_result");
+  std::vector<std::string> arguments{"certificate", "send", "--json",
+                                     verb_option("site", wish_.folder.string())};
+  add_options(arguments, body, {"to"});
+  arguments.push_back(file.string());
+  return of_verb(arguments);
 }
 
 Answer SiteService::verify(const Request& request) {

@@ -3,11 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
-#include <map>
-#include <set>
 
-#include "campaign/config/machines.h"
-#include "campaign/reading/plausibility/traceability.h"
 #include "laboratory/assessment/describe.h"
 #include "live/campaign_form.h"
 #include "live/session.h"
@@ -22,6 +18,7 @@ namespace {
 
 constexpr const char* of_file = "application/octet-stream";
 constexpr std::size_t most_dropped = 32 << 20;
+constexpr std::size_t most_lines = 200;  // lines of one page of a list
 
 Json to_json(const ListedCampaign& c) {
   Json json = {{"folder", c.folder}, {"id", c.id}, {"state", c.state}};
@@ -49,33 +46,6 @@ std::size_t number_of(const Request& request, const char* name, std::size_t othe
   return read.ec == std::errc() && read.ptr == text->data() + text->size() ? number : otherwise;
 }
 
-/// Returns the values whose keys begin with one of these prefixes, as an object.
-Json values_with(const ListedCampaign& c, std::initializer_list<const char*> beginnings) {
-  Json out = Json::object();
-  for (const auto& value : c.values)
-    if (std::any_of(beginnings.begin(), beginnings.end(),
-                    [&](const char* beginning) { return value.first.starts_with(beginning); }))
-      out[value.first] = value.second;
-  return out;
-}
-
-std::string value_of(const ListedCampaign& c, const std::string& key) {
-  const auto found = c.values.find(key);
-  return found == c.values.end() ? std::string() : found->second;
-}
-
-std::string joined(std::initializer_list<std::string> texts) {
-  std::string out;
-  for (const std::string& one : texts)
-    if (!one.empty()) out += (out.empty() ? "" : " ") + one;
-  return out;
-}
-
-std::string instrument_of(const ListedCampaign& c) {
-  return joined({value_of(c, "instrument.maker"), value_of(c, "instrument.model"),
-                 value_of(c, "instrument.serial")});
-}
-
 }  // namespace
 
 SiteCampaigns::SiteCampaigns(fs::path site, fs::path out, Call call, std::function<void()> changed,
@@ -83,7 +53,13 @@ SiteCampaigns::SiteCampaigns(fs::path site, fs::path out, Call call, std::functi
     : site_(std::move(site)),
       out_(std::move(out)),
       call_(std::move(call)),
-      index_(site_, out_, std::move(changed), std::move(is_watched)) {}
+      index_(
+          site_, out_,
+          [this, changed = std::move(changed)] {
+            lists();  // so that no page waits for them
+            changed();
+          },
+          std::move(is_watched)) {}
 
 std::vector<Route> SiteCampaigns::routes() {
   return {{Method::get, "/api/campaigns"},
@@ -99,19 +75,18 @@ Answer SiteCampaigns::answer(const std::string& what, const Request& request) {
   if (request.route.method == Method::post)
     return what == "preview" ? preview(request) : create(request);
   return what == "campaigns"     ? list(request)
-         : what == "machines"    ? machines()
-         : what == "instruments" ? instruments()
-                                 : records();
+         : what == "machines"    ? machines(request)
+         : what == "instruments" ? lists()->instruments
+                                 : lists()->records;
 }
 
 Answer SiteCampaigns::list(const Request& request) const {
-  constexpr std::size_t most = 200;
   CampaignQuery query;
   query.search = request.query("search").value_or("");
   query.folder = request.query("folder").value_or("");
   query.state = request.query("state").value_or("");
   query.page = number_of(request, "page", 0);
-  query.size = std::clamp<std::size_t>(number_of(request, "size", query.size), 1, most);
+  query.size = std::clamp<std::size_t>(number_of(request, "size", query.size), 1, most_lines);
   const CampaignPage page = index_.find(query);
   Json all = Json::array();
   for (const ListedCampaign& c : page.campaigns) all.push_back(to_json(c));
@@ -124,109 +99,41 @@ Answer SiteCampaigns::list(const Request& request) const {
                            {"campaigns", std::move(all)}});
 }
 
-/// Lists the machines by name, each with its newest campaign.
-Answer SiteCampaigns::machines() const {
-  struct Machine {
-    Json json;
-    std::size_t campaigns = 0;
-  };
-  std::map<std::string, Machine> found;
-  index_.each([&](const ListedCampaign& c) {
-    if (c.machine.empty()) return;
-    Machine& m = found[c.machine];
-    if (m.campaigns++ > 0) return;
-    m.json = {{"machine", c.machine},   {"maker", value_of(c, "machine.maker")},
-              {"model", c.model},       {"serial", value_of(c, "machine.serial")},
-              {"customer", c.customer}, {"day", c.day},
-              {"state", c.state},       {"verdict", c.verdict}};
-  });
-  Json all = Json::array();
-  for (auto& [name, m] : found) {
-    m.json["campaigns"] = m.campaigns;
-    const std::string page = assessment::page_of_machine(name);
+/// Returns the lists of the present campaigns. They are made again only after a change, because this
+/// takes half a second at 100,000 campaigns.
+std::shared_ptr<const CampaignLists> SiteCampaigns::lists() {
+  const std::lock_guard lock(listing_);
+  if (!lists_ || lists_->version != index_.version() || lists_->stamp != stamp_of_records(site_))
+    lists_ = std::make_shared<const CampaignLists>(campaign_lists(index_, site_));
+  return lists_;
+}
+
+/// Lists one page of the matching machines by name, each with its newest campaign.
+Answer SiteCampaigns::machines(const Request& request) {
+  const auto all = lists();
+  const auto words = words_of(request.query("search").value_or(""));
+  std::vector<const std::pair<const std::string, CampaignLists::Machine>*> found;
+  for (const auto& one : all->machines)
+    if (has_all(one.second.words, words)) found.push_back(&one);
+  const std::size_t size =
+      std::clamp<std::size_t>(number_of(request, "size", most_lines), 1, most_lines);
+  const std::size_t from = begin_of_page(number_of(request, "page", 0), size, found.size());
+  Json shown = Json::array();
+  for (std::size_t i = from; i < std::min(from + size, found.size()); ++i) {
+    Json json = found[i]->second.json;
+    json["campaigns"] = found[i]->second.campaigns;
+    const std::string page = assessment::page_of_machine(found[i]->first);
     std::error_code error;
     if (!out_.empty() && fs::is_regular_file(out_ / "machines" / page, error))
-      m.json["page"] = "machines/" + page;
-    all.push_back(std::move(m.json));
+      json["page"] = "machines/" + page;
+    shown.push_back(std::move(json));
   }
-  return json_answer(200, {{"schema", "nonio-live-machines/1"}, {"machines", std::move(all)}});
-}
-
-/// Lists the instruments by name, each with its newest calibration and at most 20 of the newest
-/// campaigns that used it.
-Answer SiteCampaigns::instruments() const {
-  struct Instrument {
-    Json json;
-    std::size_t campaigns = 0;
-  };
-  constexpr std::size_t most = 20;
-  std::map<std::string, Instrument> found;
-  index_.each([&](const ListedCampaign& c) {
-    const std::string name = instrument_of(c);
-    if (name.empty()) return;
-    Instrument& i = found[name];
-    const std::string calibrated = value_of(c, "instrument.calibrated");
-    if (i.campaigns == 0)
-      i.json = {{"name", name}, {"calibrated", ""}, {"campaigns", Json::array()}};
-    if (calibrated > i.json["calibrated"].get<std::string>()) {
-      i.json["calibrated"] = calibrated;
-      i.json["certificate"] = value_of(c, "instrument.certificate");
-      i.json["until"] = reading::last_valid_day(calibrated, value_of(c, "instrument.valid_until"));
-    }
-    if (i.campaigns++ < most)
-      i.json["campaigns"].push_back(
-          {{"folder", c.folder}, {"id", c.id}, {"day", c.day}, {"machine", c.machine}});
-  });
-  Json all = Json::array();
-  for (auto& [name, i] : found) {
-    i.json["number"] = i.campaigns;
-    all.push_back(std::move(i.json));
-  }
-  return json_answer(200,
-                     {{"schema", "nonio-live-instruments/1"}, {"instruments", std::move(all)}});
-}
-
-/// Lists each customer, machine, instrument and stated table with the values of its newest
-/// campaign, and machines that have only a record.
-Answer SiteCampaigns::records() const {
-  Json customers = Json::array(), machines = Json::array(), instruments = Json::array(),
-       columns = Json::array();
-  std::set<std::string> seen;
-  const auto is_new = [&](const std::string& kind, const std::string& name) {
-    return !name.empty() && seen.insert(kind + name).second;
-  };
-  index_.each([&](const ListedCampaign& c) {
-    const std::string instrument = instrument_of(c);
-    if (is_new("customer ", c.customer))
-      customers.push_back({{"name", c.customer}, {"values", values_with(c, {"campaign."})}});
-    if (is_new("machine ", c.machine))
-      machines.push_back(
-          {{"name", c.machine}, {"values", values_with(c, {"campaign.", "machine."})}});
-    if (is_new("instrument ", instrument))
-      instruments.push_back({{"name", instrument},
-                             {"values", values_with(c, {"instrument.", "environment.",
-                                                        "certificate.", "campaign.operator"})}});
-    std::string names;
-    for (const std::string& one : c.columns) names += one + "\n";
-    if (is_new("columns ", names)) columns.push_back(c.columns);
-  });
-  if (const auto records = config::read_machines(site_))
-    for (const config::RecordFile& file : *records) {
-      if (!file.record || !is_new("machine ", file.asset)) continue;
-      const config::MachineRecord& r = *file.record;
-      machines.push_back({{"name", r.asset},
-                          {"values",
-                           {{"machine.asset", r.asset},
-                            {"machine.maker", r.maker},
-                            {"machine.model", r.model},
-                            {"machine.serial", r.serial},
-                            {"machine.control", r.control}}}});
-    }
-  return json_answer(200, {{"schema", "nonio-live-records/1"},
-                           {"customers", std::move(customers)},
-                           {"machines", std::move(machines)},
-                           {"instruments", std::move(instruments)},
-                           {"columns", std::move(columns)}});
+  return json_answer(200, {{"schema", "nonio-live-machines/1"},
+                           {"found", found.size()},
+                           {"all", all->machines.size()},
+                           {"page", from / size},
+                           {"size", size},
+                           {"machines", std::move(shown)}});
 }
 
 namespace {

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
-#include "live/campaign_index.h"
+#include "live/campaign_lists.h"
 #include "live/service.h"
 #include "live/tool.h"
 
@@ -28,16 +30,17 @@ class SiteCampaigns {
 
  private:
   Answer list(const Request& request) const;
-  Answer machines() const;
-  Answer instruments() const;
-  Answer records() const;
+  Answer machines(const Request& request);
+  std::shared_ptr<const CampaignLists> lists();
   Answer preview(const Request& request);
   Answer create(const Request& request);
   tl::expected<std::string, Answer> take_folder(const std::string& id);
 
   std::filesystem::path site_, out_;
   Call call_;
-  CampaignIndex index_;
+  std::mutex listing_;
+  std::shared_ptr<const CampaignLists> lists_;
+  CampaignIndex index_;  ///< declared last, because its thread uses all other members
 };
 
 }  // namespace nonio::live

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "live/site_news.h"
 
-#include <sys/stat.h>
-
 #include <chrono>
 #include <utility>
 
@@ -10,19 +8,12 @@
 #include "campaign/config/site_logs.h"
 #include "certificates/certificate_list.h"
 #include "certificates/register_place.h"
+#include "live/campaign_index.h"
 
 namespace nonio::live {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// Returns a text that changes when the file is written or replaced; "-" if it does not exist.
-std::string news_stamp(const fs::path& path) {
-  struct stat s {};
-  if (::stat(path.c_str(), &s) != 0) return "-";
-  return std::to_string(s.st_size) + " " + std::to_string(s.st_mtim.tv_sec) + " " +
-         std::to_string(s.st_mtim.tv_nsec) + " " + std::to_string(s.st_ino) + ";";
-}
 
 RunNow run_now(const fs::path& out) {
   if (out.empty()) return {.state = "none"};
@@ -43,6 +34,14 @@ fs::path register_of(const fs::path& site) {
 }
 
 }  // namespace
+
+std::string worklist_stamp(const fs::path& site, const fs::path& out) {
+  std::string stamp;
+  for (const char* name :
+       {config::events_name, config::acknowledged_name, config::forgotten_name, "site.toml"})
+    stamp += file_stamp(site / name);
+  return out.empty() ? stamp : stamp + file_stamp(out / "summary.json");
+}
 
 SiteNews::SiteNews(fs::path site, fs::path out, Tell tell)
     : site_(std::move(site)),
@@ -78,17 +77,15 @@ void SiteNews::look_now() {
 SiteNews::Seen SiteNews::look() const {
   Seen out;
   out.run = run_now(out_);
-  for (const char* name :
-       {config::events_name, config::acknowledged_name, config::forgotten_name, "site.toml"})
-    out.worklist += news_stamp(site_ / name);
-  if (!out_.empty()) out.worklist += news_stamp(out_ / "summary.json");
+  out.worklist = worklist_stamp(site_, out_);
   if (!register_.empty())
-    out.drafts = news_stamp(register_) + news_stamp(register_.string() + "-wal");
+    out.drafts = file_stamp(register_) + file_stamp(register_.string() + "-wal");
   return out;
 }
 
 void SiteNews::watch() {
   constexpr auto pause = std::chrono::seconds(1);
+  tell_("worklist");
   while (true) {
     {
       std::unique_lock lock(mutex_);

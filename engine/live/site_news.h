@@ -22,6 +22,9 @@ struct RunNow {
   bool operator==(const RunNow&) const = default;
 };
 
+/// Returns a text that changes when the results or entries of the worklist change.
+std::string worklist_stamp(const std::filesystem::path& site, const std::filesystem::path& out);
+
 /// Checks once per second whether the worklist of a site has changed by a run, by entries of people
 /// (here or on a terminal), or by an approval.
 class SiteNews {

@@ -37,16 +37,19 @@ std::vector<std::string> SiteService::with_places(std::vector<std::string> argum
 /// Runs a command and returns what it prints with --json, with the command line added.
 Answer SiteService::of_verb(const std::vector<std::string>& arguments, const std::string& input) {
   const ToolEnd end = call(arguments, input);
-  Json out = storage::parse_or_discard(end.out);
+  return of_end(end, storage::parse_or_discard(end.out), command_line(arguments));
+}
+
+Answer SiteService::of_end(const ToolEnd& end, Json out, const std::string& command) {
   if (!out.is_object()) {
     out = {{"error", end.errors.empty() ? "it printed nothing" : end.errors},
            {"status", 422},
            {"lang", "en"}};
-    out["command"] = command_line(arguments);
+    out["command"] = command;
     return json_answer(422, out);
   }
   out["exit_status"] = end.status;
-  out["command"] = command_line(arguments);
+  out["command"] = command;
   if (!end.errors.empty()) out["words"] = end.errors;
   return json_answer(end.status == 2 ? 422 : 200, out);
 }
@@ -58,10 +61,32 @@ Answer SiteService::entered(const std::vector<std::string>& arguments, const std
   return out;
 }
 
+/// Returns the worklist and its pages. They are computed again only if their files have changed,
+/// because this takes seconds at 100,000 campaigns.
+std::shared_ptr<const SiteService::Shown> SiteService::shown() {
+  const std::lock_guard lock(showing_);
+  auto next = std::make_shared<Shown>(Shown{worklist_stamp(wish_.folder, wish_.out)});
+  if (shown_ && shown_->stamp == next->stamp) return shown_;
+  std::vector<std::string> arguments{"status", "--actions", "--json",
+                                     verb_option("site", wish_.folder.string()),
+                                     wish_.out.string()};
+  const std::string command = command_line(arguments);
+  arguments.push_back(verb_option("page", "all"));
+  const ToolEnd end = call(arguments);
+  Json out = storage::parse_or_discard(end.out);
+  const bool is_whole = out.is_object() && out.contains("pages");
+  if (is_whole) {
+    for (auto& [name, text] : out["pages"].items())
+      next->pages[name] = std::move(text.get_ref<std::string&>());
+    out.erase("pages");
+  }
+  next->lines = of_end(end, std::move(out), command);
+  if (is_whole) shown_ = next;
+  return next;
+}
+
 Answer SiteService::worklist() {
-  if (wish_.out.empty()) return refused(409, "no_out");
-  return of_verb({"status", "--actions", "--json", verb_option("site", wish_.folder.string()),
-                  wish_.out.string()});
+  return wish_.out.empty() ? refused(409, "no_out") : shown()->lines;
 }
 
 Answer SiteService::metrics() {
@@ -167,6 +192,13 @@ Answer SiteService::page(const std::string& name) {
   if (wish_.out.empty() || !(plain.ends_with(".html") || plain == "due.ics") ||
       !is_plain_file_in(folder, plain))
     return refused(404, "no_page");
+  if (!below) {
+    const auto all = shown();
+    const auto found = all->pages.find(name);
+    return found != all->pages.end()  ? Answer{200, "application/octet-stream", found->second, {}}
+           : all->lines.status != 200 ? all->lines
+                                      : refused(404, "no_page");
+  }
   const ToolEnd end = call({"status", "--actions", verb_option("site", wish_.folder.string()),
                             verb_option("page", name), wish_.out.string()});
   if (end.status != 0) return refusal(422, end.errors);
@@ -174,16 +206,20 @@ Answer SiteService::page(const std::string& name) {
   return {200, "application/octet-stream", end.out, {}};
 }
 
+/// Returns the path of a file of a campaign's results; empty if there is no such file.
+fs::path SiteService::result_file(const std::string& campaign, const std::string& file) const {
+  if (wish_.out.empty() || !config::is_campaign_id(campaign)) return {};
+  const fs::path folder = storage::results_folder(wish_.out, campaign);
+  std::error_code error;
+  const bool is_link = fs::is_symlink(fs::symlink_status(folder, error));
+  return is_link || !is_plain_file_in(folder, file) ? fs::path() : folder / file;
+}
+
 /// Returns a file of a campaign's results as a download.
 Answer SiteService::result(const std::string& campaign, const std::string& file) {
-  const fs::path folder = wish_.out.empty() || !config::is_campaign_id(campaign)
-                              ? fs::path()
-                              : storage::results_folder(wish_.out, campaign);
-  std::error_code error;
-  if (folder.empty() || fs::is_symlink(fs::symlink_status(folder, error)) ||
-      !is_plain_file_in(folder, file))
-    return refused(404, "no_result");
-  const auto bytes = storage::read_file(folder / file);
+  const fs::path path = result_file(campaign, file);
+  if (path.empty()) return refused(404, "no_result");
+  const auto bytes = storage::read_file(path);
   if (!bytes) return refusal(422, bytes.error().message);
   return {200, "application/octet-stream", *bytes, {}};
 }

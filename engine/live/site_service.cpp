@@ -27,7 +27,7 @@ constexpr std::size_t most_desks = 4, most_unsaved = 32;
 /// Returns the role that a request requires.
 Role needed(const Route& route) {
   if (route.path == "/api/audit") return Role::administer;
-  if (route.path == "/api/release") return Role::approve;
+  if (route.path == "/api/release" || route.path == "/api/mail") return Role::approve;
   // Changes of the model are visible to everyone who views the campaign.
   if (route.method == Method::post && route.path.starts_with("/c/")) return Role::measure;
   return route.writes ? Role::measure : Role::view;
@@ -47,7 +47,8 @@ void SiteService::add_routes() {
   routes_.push_back({Method::post, "/api/verify", false, false,
                      "application/pdf application/xml text/xml application/json",
                      most_certificate});
-  for (const char* path : {"/api/ack", "/api/event", "/api/release", "/api/run", "/api/run/cancel"})
+  for (const char* path :
+       {"/api/ack", "/api/event", "/api/release", "/api/mail", "/api/run", "/api/run/cancel"})
     routes_.push_back({Method::post, path, false, true, of_json});
   if (wish_.sign_in) {
     constexpr std::size_t most_of_sign_in = 4096;
@@ -78,12 +79,13 @@ void SiteService::look_at_campaign() {
   campaigns_->index().look_soon();
 }
 
-void SiteService::tell(const char* what) {
+void SiteService::tell(const std::string& what) {
   campaigns_->index().look_soon();
+  if (what == "worklist" && !wish_.out.empty()) shown();  // so that no page waits for it
   publish(what);
 }
 
-void SiteService::publish(const char* what) {
+void SiteService::publish(const std::string& what) {
   const std::uint64_t version = ++version_;
   events_.publish({version, what, "", storage::dump_line({{"version", version}})});
 }
@@ -165,15 +167,13 @@ Answer SiteService::answer(const Request& request) {
   if (path == "/api/sign-in") return begin_session(request);
   if (request.route.open) return shell_file(request, path == "/" ? shells_.site : shells_.campaign);
   if (wish_.user_header.empty() && !wish_.sign_in) {
-    std::error_code
-        error;  // users.toml was added after the start, so requests without a user are refused
-    return std::filesystem::exists(wish_.folder / certificates::users_name, error)
-               ? refused(503, "users_new")
-               : answer_to(request, nullptr);
+    // users.toml was added after the start, so requests without a user are refused
+    return certificates::has_users(wish_.folder) ? refused(503, "users_new")
+                                                 : answer_to(request, nullptr);
   }
   const auto user = user_of(request.head);
   if (!user) return user.error();
-  if (path == "/api/sign-out") return end_session(request);
+  if (path == "/api/sign-out") return end_session(request, *user);
   const bool may = user->role >= needed(request.route);
   if (request.route.writes || !may) return recorded(request, *user, may);
   Request of_user = request;
@@ -199,7 +199,7 @@ Answer SiteService::recorded(const Request& request, const User& user, bool may)
       else if (from.is_object() && from.contains(name))
         entry[name] = "(longer than 500 bytes)";
   };
-  add(body, {"machine", "finding", "why", "text", "reasons"});
+  add(body, {"machine", "finding", "why", "text", "reasons", "file", "to"});
   if (path != "/api/ack" && path != "/api/event") add(body, {"campaign"});
   // Recorded before it is carried out; if that fails, the request is refused.
   entry["state"] = may ? "begins" : "refused";
@@ -272,6 +272,7 @@ Answer SiteService::post(const std::string& what, const Request& request, const 
     if (what == "ack") return acknowledge(body);
     if (what == "event") return event(body);
     if (what == "release") return release(body, user);
+    if (what == "mail") return mail(body);
     if (what == "run") return run(body);
     if (!run_->cancel()) return refused(409, "no_run");
     return json_answer(202, {{"version", version_.load()}});

@@ -59,7 +59,7 @@ class SiteService : public Starting {
       publish("run");
     });
     news_ = std::make_unique<SiteNews>(wish_.folder, wish_.out,
-                                       [this](const std::string& what) { tell(what.c_str()); });
+                                       [this](const std::string& what) { tell(what); });
     return {};
   }
   const std::vector<Route>& routes() const override { return routes_; }
@@ -76,13 +76,22 @@ class SiteService : public Starting {
   Answer recorded(const Request& request, const User& user, bool may);
   tl::expected<User, Answer> user_of(const Head& head);
   Answer begin_session(const Request& request);
-  Answer end_session(const Request& request);
+  Answer end_session(const Request& request, const User& user);
   Answer get(const std::string& path, const Request& request, const User* user);
   Answer post(const std::string& what, const Request& request, const User* user);
   Answer worklist();
+  /// The worklist and the pages over all machines, as they were at a state of the site.
+  struct Shown {
+    std::string stamp;
+    Answer lines{};
+    std::map<std::string, std::string> pages{};
+  };
+  std::shared_ptr<const Shown> shown();
   Answer metrics();
   Answer page(const std::string& name);
   Answer result(const std::string& campaign, const std::string& file);
+  std::filesystem::path result_file(const std::string& campaign, const std::string& file) const;
+  Answer mail(const storage::Json& body);
   Answer state(const User* user);
   Answer settings(const User* user) const;
   Answer events(const Request& request);
@@ -93,6 +102,7 @@ class SiteService : public Starting {
   Answer verify(const Request& request);
   Answer run(const storage::Json& body);
   Answer of_verb(const std::vector<std::string>& arguments, const std::string& input = {});
+  static Answer of_end(const ToolEnd& end, storage::Json out, const std::string& command);
   Answer entered(const std::vector<std::string>& arguments, const std::string& input = {});
   ToolEnd call(const std::vector<std::string>& arguments, const std::string& input = {});
   std::vector<std::string> with_places(std::vector<std::string> arguments) const;
@@ -100,8 +110,8 @@ class SiteService : public Starting {
   bool is_campaign(const std::string& folder) const;
   std::string id_of(const std::string& folder) const;
   std::shared_ptr<Desk> desk(const std::string& campaign);
-  void tell(const char* what);
-  void publish(const char* what);
+  void tell(const std::string& what);
+  void publish(const std::string& what);
   void look_at_campaign();
 
   LiveWish wish_;
@@ -119,6 +129,8 @@ class SiteService : public Starting {
   std::atomic<std::uint64_t> version_ = 1;
   std::set<int> channels_;  ///< channels of running commands
   std::atomic<bool> over_ = false;
+  std::mutex showing_;
+  std::shared_ptr<const Shown> shown_;  ///< as it was computed last
   std::unique_ptr<SiteCampaigns> campaigns_;
   std::unique_ptr<SiteRun> run_;
   std::unique_ptr<SiteNews> news_;  ///< declared last, because its thread uses all other members

@@ -13,6 +13,7 @@
 #include <Poco/Net/SSLManager.h>
 #include <Poco/Net/SecureSMTPClientSession.h>
 #include <Poco/Net/SecureStreamSocket.h>
+#include <Poco/Net/StringPartSource.h>
 #include <Poco/URI.h>
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -92,10 +93,18 @@ void fill(net::MailMessage& message, const config::Mail& mail, const Letter& let
   for (const std::string& to : mail.to)
     message.addRecipient(net::MailRecipient(net::MailRecipient::PRIMARY_RECIPIENT, to));
   message.setSubject(encoded_subject(letter.subject));
-  message.setContentType("text/plain; charset=UTF-8");
+  const std::string type = "text/plain; charset=UTF-8";
+  if (letter.file.empty()) {
+    message.setContentType(type);
+    message.setContent(letter.text, net::MailMessage::ENCODING_BASE64);
+  } else {  // the message deletes its parts
+    message.addContent(new net::StringPartSource(letter.text, type),
+                       net::MailMessage::ENCODING_BASE64);
+    message.addAttachment(letter.file, new net::StringPartSource(
+                                           letter.bytes, "application/octet-stream", letter.file));
+  }
   message.set("Auto-Submitted", "auto-generated");  // RFC 3834: prevents automatic replies
   message.setDate(Poco::Timestamp());
-  message.setContent(letter.text, net::MailMessage::ENCODING_BASE64);
 }
 
 /// Returns the descriptor of a file in memory that contains `bytes`; -1 if it cannot be made.

@@ -13,6 +13,8 @@ namespace nonio::batch {
 struct Letter {
   std::string subject;  ///< subject of the mail in UTF-8; line ends are sent as spaces
   std::string text;     ///< body of the mail in UTF-8
+  std::string file{};   ///< name of the attached file; empty: none
+  std::string bytes{};  ///< its content
 };
 
 /// Returns whether this worklist line is severe enough for a mail, according to the setting `on`.
@@ -30,7 +32,7 @@ Expected<void> send_mail(const config::Mail& mail, const std::filesystem::path& 
 /// body by the secret. A status other than 2xx is an error. Runs in a child process that may take
 /// `seconds` (s) in total; the secret appears in no error.
 Expected<void> send_webhook(const config::Webhook& webhook, const std::filesystem::path& site,
-                            const std::string& body, double seconds = 20.0);
+                            const std::string& body, double seconds = 5.0);
 
 /// Posts the body in this process; exported as `nonio_post` by a library that is loaded late.
 using PostTo = Expected<std::string> (*)(const config::Webhook& webhook,

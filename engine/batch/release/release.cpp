@@ -156,8 +156,7 @@ class Releaser {
   /// Requires a password from a person who has one, and prevents others from using that person's
   /// name.
   Expected<void> no_user_is_named() const {
-    NONIO_TRY(const bool there, storage::is_there(options_.site / certificates::users_name));
-    if (!there) return {};
+    if (!certificates::has_users(options_.site)) return {};
     NONIO_TRY(const auto users, certificates::read_users(options_.site));
     for (const certificates::User& user : users)
       if (!user.password.empty() &&

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "batch/state/run_state.h"
 
+#include <fcntl.h>
 #include <sys/stat.h>
 
 #include <array>
@@ -21,6 +22,32 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* state_name = "night.json";
+constexpr const char* seconds_name = "seconds";
+
+/// Stores the duration of a run as the time of an empty file, in seconds after 1970: the same input
+/// gives the same bytes in every file.
+Expected<void> keep_seconds(const fs::path& out, double seconds) {
+  const fs::path folder = out / state_folder;
+  if (auto kept = storage::publish(folder, {{seconds_name, ""}}); !kept) return kept;
+  const auto whole = static_cast<std::time_t>(seconds);
+  const timespec at{whole, static_cast<long>((seconds - static_cast<double>(whole)) * 1e9)};
+  const timespec times[2] = {at, at};
+  const fs::path path = folder / seconds_name;
+  if (::utimensat(AT_FDCWD, path.c_str(), times, AT_SYMLINK_NOFOLLOW) != 0)
+    return fail(Error{std::strerror(errno), path.string()});
+  return {};
+}
+
+/// None if no run has stored its duration, or if a copy of the folder has lost the times of files.
+std::optional<double> seconds_in(const fs::path& out) {
+  constexpr std::time_t longest = std::time_t{366} * 86400;
+  struct stat info {};
+  const fs::path path = out / state_folder / seconds_name;
+  if (::stat(path.c_str(), &info) != 0 || info.st_mtim.tv_sec > longest) return std::nullopt;
+  const double seconds =
+      static_cast<double>(info.st_mtim.tv_sec) + 1e-9 * static_cast<double>(info.st_mtim.tv_nsec);
+  return seconds > 0.0 ? std::optional(seconds) : std::nullopt;
+}
 
 storage::Json json_of(const RunEnd& end) {
   return {{"night", end.run.number},
@@ -182,6 +209,7 @@ Expected<RunState> begin_run(const RunOptions& options, const std::string& site,
   run.force = options.force;
   run.date = options.date.empty() ? today() : options.date;
   run.issued_before = issued_so_far;
+  run.began = std::chrono::steady_clock::now();
   NONIO_TRY(const auto state, read_state(out));
   if (state) {
     const storage::Json& json = *state;
@@ -201,7 +229,10 @@ Expected<RunState> begin_run(const RunOptions& options, const std::string& site,
 }
 
 Expected<void> end_run(const fs::path& out, const RunState& run, const RunEnd& end) {
-  return write_state(out, run, end);
+  if (auto written = write_state(out, run, end); !written || run.reopened) return written;
+  const auto lasted = run.began ? std::chrono::steady_clock::now() - *run.began
+                                : std::chrono::steady_clock::duration::zero();
+  return keep_seconds(out, std::chrono::duration<double>(lasted).count());
 }
 
 const char* to_text(RunStatus::State state) {
@@ -238,6 +269,7 @@ Expected<RunStatus> run_status(const fs::path& out) {
   if (status.last && ::stat(path.c_str(), &summary) != 0)
     return fail("cannot read " + path.string() + ": " + std::strerror(errno));
   status.age = std::difftime(std::time(nullptr), summary.st_mtim.tv_sec);
+  status.seconds = seconds_in(out);
   return status;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -36,6 +37,8 @@ struct RunState {
   bool reopened = false;  ///< whether this is a complete run of which one campaign is evaluated
                           ///< again
   std::string site{};     ///< folder of the site that the results belong to
+  /// When this process began the run; none if the run was done in shards, or reopened.
+  std::optional<std::chrono::steady_clock::time_point> began{};
   evaluation::RunLabel of() const { return {number, date}; }
 };
 

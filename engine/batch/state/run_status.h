@@ -24,6 +24,8 @@ struct RunStatus {
   evaluation::RunLabel run{};              ///< the last run that began
   std::optional<RunEnd> last{};            ///< the last run that is complete
   double age = 0.0;                        ///< seconds since the last summary was written
+  std::optional<double> seconds{};         ///< duration of the last complete run, s; none if it was
+                                           ///< done in shards
   std::uint64_t shards = 0, reported = 0;  ///< number of shards of a planned run, and number of
                                            ///< those that have reported
   std::string used_by{};  ///< description of the process that uses the folder; empty if none

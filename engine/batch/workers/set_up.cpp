@@ -50,15 +50,15 @@ void note_key(SetUp& place, bool is_stamped) {
 }
 
 /// Returns a plugin folder, or a plugin, that belongs to a user other than root and the owner of
-/// the program, or that every user can change; empty if there is none. The program's own folder is
+/// the program, or that a group or every user can change; empty if there is none. The program's own folder is
 /// not checked, because whoever can change it can change the program too.
 std::string changeable_by_others(const RunOptions& options) {
   struct stat own {};
   ::stat(options.own_plugins.c_str(), &own);
   const auto others_can = [&](const fs::path& path) {
     struct stat info {};
-    return ::stat(path.c_str(), &info) == 0 &&
-           ((info.st_uid != 0 && info.st_uid != own.st_uid) || (info.st_mode & S_IWOTH) != 0);
+    return ::stat(path.c_str(), &info) == 0 && ((info.st_uid != 0 && info.st_uid != own.st_uid) ||
+                                                (info.st_mode & (S_IWGRP | S_IWOTH)) != 0);
   };
   std::vector<fs::path> folders = options.plugin_folders;
   std::erase(folders, options.own_plugins);

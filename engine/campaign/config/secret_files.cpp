@@ -14,7 +14,7 @@ namespace nonio::config {
 namespace fs = std::filesystem;
 
 std::vector<fs::path> secret_files(const SiteFile& file, const fs::path& site) {
-  std::vector<fs::path> files;
+  std::vector<fs::path> files{site / users_name};
   const char* folder = std::getenv("CREDENTIALS_DIRECTORY");
   const auto add = [&](const std::string& path, const std::string& credential) {
     if (!path.empty()) files.push_back(site / path);

@@ -10,7 +10,11 @@
 
 namespace nonio::config {
 
-/// Returns all files that contain keys or passwords, in the site and in systemd's credentials.
+/// The file of a site with its users and the hashes of their passwords.
+inline constexpr const char* users_name = "users.toml";
+
+/// Returns all files that contain keys, passwords or their hashes, in the site and in systemd's
+/// credentials.
 std::vector<std::filesystem::path> secret_files(const SiteFile& file,
                                                 const std::filesystem::path& site);
 

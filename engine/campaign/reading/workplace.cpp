@@ -29,7 +29,12 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   context.site = std::move(*read);
   NONIO_TRY(auto machines, config::read_machines(site));
   context.machines = std::move(machines);
-  process::hide_from_plugins(config::secret_files(context.site, site));
+  auto secrets = config::secret_files(context.site, site);
+  // A site without site.toml cannot be found from its campaign.
+  for (fs::path above = fs::absolute(campaign); above.has_relative_path();
+       above = above.parent_path())
+    secrets.push_back(above / config::users_name);
+  process::hide_from_plugins(std::move(secrets));
   place->plugins.load(plugin_folders);
   if (!place->plugins.conflicts().empty()) return fail(place->plugins.conflicts().front());
   place->notes = place->plugins.refusal_notes();

@@ -20,6 +20,7 @@
 #include "nonio/sdk/units.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
+#include "platform/storage/pack.h"
 
 namespace nonio::assessment {
 namespace fs = std::filesystem;
@@ -287,13 +288,16 @@ Quantity quantity_of_unit(const std::string& symbol) {
 double si(double shown, Quantity quantity) { return shown / unit_of(quantity).per_si; }
 
 Links::Links(const fs::path& out)
-    : root_((out / "").native()), hashed_(storage::own_folder(out, "a") != out / "a") {}
+    : root_((out / "").native()), hashed_(storage::own_folder(out, "a") != out / "a") {
+  std::error_code error;
+  packed_ = fs::exists(out / storage::packs_folder / storage::catalogue_name, error) || error;
+}
 
 std::string Links::of(const std::string& campaign) const {
   std::string folder = campaign + "/";
   if (hashed_) folder = storage::own_folder(root_, campaign).native().substr(root_.size()) + "/";
   bool report = ::access((root_ + folder + "report.pdf").c_str(), F_OK) == 0;
-  if (!report)  // the report may be in a pack
+  if (!report && packed_)
     report =
         storage::is_there(storage::results_folder(root_, campaign) / "report.pdf").value_or(false);
   return folder + (report ? "report.pdf" : evaluation::results_name);

@@ -33,6 +33,7 @@ class Links {
  private:
   std::string root_;
   bool hashed_;
+  bool packed_ = true;  ///< whether reports may be in packs
 };
 /// Returns the link for one campaign.
 std::string link_of(const std::filesystem::path& out, const std::string& campaign);

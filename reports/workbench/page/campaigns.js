@@ -1,6 +1,6 @@
 // ---- the campaigns of a site: a list with search and filter, its machines, and one campaign with its verdict and documents ----
 const campaigns = (() => {
-  const query = {search: "", state: "", page: 0}, size = 50;
+  const query = {search: "", state: "", page: 0}, ofMachines = {search: "", page: 0}, size = 50;
   const states = ["new", "failed", "attention", "ok", "does not conform", "cannot be decided", "conforms", "draft", "certificate"];
   const wordOf = (state) => say("list.is_" + state.replace(/ /g, "_"));
   const link = (key, text, onclick, more = {}) => el("button", {type: "button", class: "link", "data-key": key, onclick, ...more}, text);
@@ -13,24 +13,25 @@ const campaigns = (() => {
     return state ? el("span", {class: "badge " + state.replace(/ /g, "-")}, `${marks[state] || "?"} ${wordOf(state)}`) : null;
   }
   /// Files by purpose: the report, the certificate or its draft, and the rest.
-  function documents(c, fetchFile) {
+  function documents(c, {fetchFile, send}) {
     const id = c.id, get = (file) => () => fetchFile(`${id}/${file}`), first = [], rest = [];
     for (const file of c.files) {
       const word = file === "certificate.pdf" ? "list.certificate" : file === "certificate-draft.pdf" ? "list.draft" : /report.*\.pdf$/.test(file) ? "list.report" : null;
       if (word) first.push(link(`get-${c.folder}-${file}`, say(word), get(file)));
+      if (word && word !== "list.draft" && send) first.push(link(`send-${c.folder}-${file}`, say("mail.short"), () => send(id, file), {"aria-label": `${say("mail.title")}: ${say(word)}`}));
       else if (file !== "run.json") rest.push(el("li", {}, link(`get-${c.folder}-${file}`, file, get(file))));
     }
     return [...first, rest.length ? el("details", {}, el("summary", {}, say("list.files", {n: rest.length})), el("ul", {class: "plain"}, ...rest)) : null].filter(Boolean);
   }
-  function row(c, {buttons, fetchFile}) {
+  function row(c, tools) {
     return el("tr", {"data-folder": c.folder}, el("td", {class: "day"}, c.day || "\u2013"),
       el("td", {}, el("a", {href: hrefOf(c.folder), "data-key": "one-" + c.folder}, entries.visible(nameOf(c))), c.machine && c.model ? el("span", {class: "muted block"}, entries.visible(c.model)) : null),
       el("td", {}, entries.visible(c.customer || ""), el("span", {class: "muted block"}, entries.visible(c.id || c.folder))),
       el("td", {}, badge(c.state), " ", badge(c.verdict), c.changed ? el("span", {class: "muted block"}, say("list.changed")) : null,
         c.certificate ? el("span", {class: "muted block"}, say("list.number", {number: c.certificate})) : null,
         c.message ? el("span", {class: "flag block"}, entries.visible(c.message)) : null),
-      el("td", {class: "files"}, ...documents(c, fetchFile)),
-      el("td", {}, el("div", {class: "acts"}, ...buttons(c.folder, c.folder))));
+      el("td", {class: "files"}, ...documents(c, tools)),
+      el("td", {}, el("div", {class: "acts"}, ...tools.buttons(c.folder, c.folder))));
   }
   async function load() {
     const p = new URLSearchParams({search: query.search, state: query.state, page: query.page, size});
@@ -38,15 +39,26 @@ const campaigns = (() => {
   }
   function table(answer, tools) {
     if (answer.found === 0) return answer.complete ? [el("p", {id: "campaign-none"}, answer.all === 0 ? say("list.none") : say("list.no_such"))] : [];
-    const pages = Math.ceil(answer.found / size), from = answer.page * size + 1, turn = (by_) => () => {
-      query.page += by_;
-      tools.again();
-    };
     return [el("div", {class: "scroll", role: "group", tabindex: 0, "aria-label": say("site.campaigns")}, el("table", {class: "lines campaigns-table"}, el("thead", {}, el("tr", {}, ...["day", "machine", "customer", "state", "documents", "actions"].map((w) => el("th", {scope: "col"}, say("list." + w))))),
       el("tbody", {}, ...answer.campaigns.map((c) => row(c, tools))))),
-    pages > 1 ? el("p", {class: "pager"}, el("button", {type: "button", id: "page-before", "data-key": "page-before", disabled: query.page === 0, onclick: turn(-1)}, say("list.before")), " ",
+    pager(answer, query, tools.again)];
+  }
+  function pager(answer, of, again) {
+    const pages = Math.ceil(answer.found / size), from = of.page * size + 1, turn = (by_) => () => {
+      of.page += by_;
+      again();
+    };
+    return pages > 1 ? el("p", {class: "pager"}, el("button", {type: "button", id: "page-before", "data-key": "page-before", disabled: of.page === 0, onclick: turn(-1)}, say("list.before")), " ",
       say("list.range", {from, to: Math.min(from + size - 1, answer.found), n: answer.found}), " ",
-      el("button", {type: "button", id: "page-after", "data-key": "page-after", disabled: query.page + 1 >= pages, onclick: turn(1)}, say("list.after"))) : null];
+      el("button", {type: "button", id: "page-after", "data-key": "page-after", disabled: of.page + 1 >= pages, onclick: turn(1)}, say("list.after"))) : null;
+  }
+  let wait = 0;
+  /// Sets a value of a query and loads its first page; after a moment while a person types.
+  function asks(of, key, value, again) {
+    of[key] = value;
+    of.page = 0;
+    clearTimeout(wait);
+    wait = setTimeout(again, key === "search" ? 200 : 0);
   }
   const count = (answer) => (answer.complete ? say("site.number", {n: answer.found, all: answer.all}) : say("list.reading", {n: answer.all}));
 
@@ -54,7 +66,6 @@ const campaigns = (() => {
   async function list(tools) {
     const answer = await load();
     if (query.page > 0 && answer.campaigns.length === 0) query.page = 0;
-    let wait = 0;
     const again = async () => {
       try {
         const next = await load();
@@ -65,14 +76,8 @@ const campaigns = (() => {
         tools.complain(e);
       }
     };
-    const changed = (key, value) => {
-      query[key] = value;
-      query.page = 0;
-      clearTimeout(wait);
-      wait = setTimeout(again, key === "search" ? 200 : 0);
-    };
-    const search = el("input", {type: "search", id: "campaign-filter", "data-key": "campaign-filter", value: query.search, oninput: () => changed("search", search.value)});
-    const state = el("select", {id: "campaign-state", "data-key": "campaign-state", onchange: () => changed("state", state.value)},
+    const search = el("input", {type: "search", id: "campaign-filter", "data-key": "campaign-filter", value: query.search, oninput: () => asks(query, "search", search.value, again)});
+    const state = el("select", {id: "campaign-state", "data-key": "campaign-state", onchange: () => asks(query, "state", state.value, again)},
       el("option", {value: ""}, say("list.any")), ...states.map((s) => el("option", {value: s, selected: s === query.state}, wordOf(s))));
     return [el("h1", {tabindex: -1}, say("site.campaigns")), tools.out ? null : el("p", {class: "note"}, say("site.no_out")),
       answer.all === 0 && answer.complete && tools.edit ? el("section", {}, el("p", {}, say("list.begin")), tools.drop()) : null,
@@ -82,18 +87,33 @@ const campaigns = (() => {
       el("p", {class: "muted", role: "status", id: "campaign-count"}, answer.all === 0 && answer.complete ? "" : count(answer)), el("div", {id: "campaign-list"}, ...table(answer, {...tools, again}).filter(Boolean))].filter(Boolean);
   }
 
-  async function machines() {
-    const {machines: all} = await net.ask("/api/machines");
+  async function machines(complain) {
+    const load_ = () => net.ask("/api/machines?" + new URLSearchParams({search: ofMachines.search, page: ofMachines.page, size}));
+    const first = await load_();
+    ofMachines.page = first.page;
+    const again = async () => {
+      try {
+        const next = await load_();
+        if (by("machine-list")) fill(by("machine-list"), ...machineTable(next, again));
+      } catch (e) {
+        complain(e);
+      }
+    };
+    const search = el("input", {type: "search", id: "machine-filter", "data-key": "machine-filter", value: ofMachines.search, oninput: () => asks(ofMachines, "search", search.value, again)});
+    return [el("h1", {tabindex: -1}, say("site.machines")), first.all === 0 ? el("p", {}, say("list.no_machines")) : el("p", {class: "filters"}, el("label", {}, say("list.search") + " ", search)),
+      el("div", {id: "machine-list"}, ...machineTable(first, again))];
+  }
+  function machineTable(answer, again) {
     const columns = ["machine", "model", "customer", "last", "state", "number_of", "history"];
-    return [el("h1", {tabindex: -1}, say("site.machines")), all.length === 0 ? el("p", {}, say("list.no_machines")) :
-      el("div", {class: "scroll", role: "group", tabindex: 0, "aria-label": say("site.machines")}, el("table", {class: "lines machines-table"}, el("thead", {}, el("tr", {}, ...columns.map((w) => el("th", {scope: "col"}, say("list." + w))))),
-        el("tbody", {}, ...all.map((m) => {
+    if (answer.found === 0) return answer.all === 0 ? [] : [el("p", {role: "status"}, say("list.no_such_machine"))];
+    return [el("div", {class: "scroll", role: "group", tabindex: 0, "aria-label": say("site.machines")}, el("table", {class: "lines machines-table"}, el("thead", {}, el("tr", {}, ...columns.map((w) => el("th", {scope: "col"}, say("list." + w))))),
+        el("tbody", {}, ...answer.machines.map((m) => {
           return el("tr", {}, el("td", {}, link("machine-" + m.machine, entries.visible(m.machine), () => {
             Object.assign(query, {search: m.machine, state: "", page: 0});
             location.hash = "#to=campaigns";
           })), el("td", {}, entries.visible(m.model)), el("td", {}, entries.visible(m.customer)), el("td", {class: "day"}, m.day || "\u2013"), el("td", {}, badge(m.state), " ", badge(m.verdict)),
           el("td", {class: "number"}, m.campaigns), el("td", {}, m.page ? el("a", {href: "#to=" + encodeURIComponent(m.page), "data-key": "history-" + m.machine}, say("list.history")) : "\u2013"));
-        }))))];
+        })))), pager(answer, ofMachines, again)].filter(Boolean);
   }
 
   /// Instruments with their last calibration: the earliest end of validity first, so that expired ones are at the top.
@@ -157,7 +177,7 @@ const campaigns = (() => {
       el("div", {class: "answer"}, fitted.places(folder), has ? el("section", {id: "verdict-of", "aria-labelledby": "verdict-title"}, el("h2", {id: "verdict-title"}, say("one.verdict")), ...decisions(results)) : el("p", {}, say("one.not_yet"))),
       c.findings.length ? el("section", {"aria-labelledby": "found-title"}, el("h2", {id: "found-title"}, say("one.found")), el("ul", {id: "found"}, ...c.findings.map((f) => el("li", {}, entries.visible(f))))) : null,
       missing(results),
-      c.files.length ? el("section", {"aria-labelledby": "documents-title"}, el("h2", {id: "documents-title"}, say("list.documents")), el("div", {class: "acts wide"}, ...documents(c, tools.fetchFile))) : null,
+      c.files.length ? el("section", {"aria-labelledby": "documents-title"}, el("h2", {id: "documents-title"}, say("list.documents")), el("div", {class: "acts wide"}, ...documents(c, tools))) : null,
       tools.released && tools.released.folder === folder ? tools.releasedNote() : null,
       draft ? el("section", {"aria-labelledby": "approve-title"}, el("h2", {id: "approve-title"}, say("one.approve")), el("ul", {class: "plain"}, certificates.draft(draft, tools.approve, tools.fetchFile, tools.release))) : null].filter(Boolean);
   }

@@ -100,5 +100,11 @@ const entries = (() => {
         events.length === 0 ? el("p", {}, say("entry.none")) : table({label: say("entry.events", {n: events.length}), columns: ["entry.date", "entry.machine", "entry.kind", "entry.text", "entry.who"]},
           [...events].reverse().slice(0, 200).map((e) => el("tr", {}, cell(e.date), cell([e.machine, e.axis].filter(Boolean).join(" ")), cell(say("event.kind_" + e.kind)), cell(e.text), cell(e.by)))))];
   }
-  return {acknowledge, withdraw, event, entryOf, show, visible, as, confirms, me, mine, remember, field, table};
+  /// A file of the results to an address of the site.
+  async function send(campaign, file, act) {
+    const {mail} = (await net.ask("/api/settings")).run, told = el("p", {}, el("b", {}, `${visible(campaign)}: ${visible(file)}`));
+    if (mail.length === 0) return void box.dialog(say("mail.title"), told, el("p", {}, say("mail.none")));
+    form(say("mail.title"), told, [field("to", "mail.to", {options: mail.map((one) => [one, one])})], say("mail.do"), ({to}) => act("mail", {campaign, file, to}, say("mail.done", {to})));
+  }
+  return {send, acknowledge, withdraw, event, entryOf, show, visible, as, confirms, me, mine, remember, field, table};
 })();

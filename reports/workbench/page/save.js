@@ -33,7 +33,14 @@ const nonioSave = (() => {
     canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
     return new Promise((done) => canvas.toBlob(done, "image/png"));
   }
-  const cell = (v) => (typeof v === "number" ? (isFinite(v) ? String(Number(v.toPrecision(9))) : "") : /[",\n]/.test(v) ? `"${v.replace(/"/g, '""')}"` : v);
+  // A number that is text, as the cells of a table are, is no formula.
+  const isNumber = (text) => /^[+\-\u2212]?\d+([.,]\d+)?(e[+-]?\d+)?$/i.test(text);
+  /// A field of a CSV file. An apostrophe precedes a text that a spreadsheet would take for a formula, as in csv_text of the program.
+  function cell(v) {
+    if (typeof v === "number") return isFinite(v) ? String(Number(v.toPrecision(9))) : "";
+    const text = /^[=+\-@\t\r]/.test(v) && !isNumber(v) ? "'" + v : v;
+    return /[",\r\n]/.test(text) ? `"${text.replace(/"/g, '""')}"` : text;
+  }
   function hand(blob, name) {
     const link = Object.assign(document.createElement("a"), {href: URL.createObjectURL(blob), download: name});
     document.body.append(link);

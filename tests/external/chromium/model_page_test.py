@@ -130,6 +130,11 @@ def check_chart(browser, page):
         pass
     table = browser.value("handed.csv.text()").splitlines()
     assert table[0].startswith("axis,series,line,") and sum(",readings," in row for row in table) == everything, table[:3]
+    # A text that a spreadsheet would take for a formula is guarded, as by the program.
+    browser.value("""nonioSave.buttons(document.querySelector('#picture-0 svg'), () => [['=1+1', '-5.1', '+a', '@x, y', 'b'], [-3, 1.5, '', '', '']]).at(-1).click(), null""")
+    while (guarded := browser.value("handed.csv.text()")).startswith("axis"):
+        pass
+    assert guarded == "'=1+1,-5.1,'+a,\"'@x, y\",b\n-3,1.5,,,\n", guarded
     drawn = browser.value("handed.svg.text()")
     assert ElementTree.fromstring(drawn) is not None and 'stroke="rgb(' in drawn and "var(" not in drawn
     pixels = browser.value("createImageBitmap(handed.png).then((image) => [image.width, image.height])")

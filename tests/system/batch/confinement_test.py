@@ -284,6 +284,17 @@ class Confinement(NightTest):
             self.assertNotIn("it has the key", said(*compare))
             self.assertNotIn("it has the key", said("run", self.site, "--out", self.out))
 
+    def test_the_hashes_of_passwords_are_hidden_from_plugins(self):
+        self.campaign("a", run=GOOD)
+        for name, hidden in (("users.toml", True), ("other.toml", False)):
+            (self.site / name).write_text("format = 1\n")
+            for args in (("compare", self.site / "a"), ("run", self.site, "--out", self.out, "--force")):
+                said = subprocess.run([NONIO, *map(str, args), "--plugin-path", PLUGINS / "on_load_reads"], env={**os.environ, "NONIO_TEST_KEY": str(self.site / name)}, capture_output=True, text=True, timeout=120).stderr
+                if hidden:
+                    self.assertNotIn("it has the key", said)
+                elif args[0] == "compare":  # in a run plugins read no file of a site at all
+                    self.assertIn("it has the key", said)
+
     def test_a_verb_loads_what_hangs_once(self):
         start = time.monotonic()
         self.verb("plugin", "list", plugins="on_load_hangs")
@@ -311,10 +322,11 @@ class Confinement(NightTest):
         self.campaign("a")
         plugins = self.root / "plugins"
         shutil.copytree(PLUGINS / "hostile", plugins)
-        plugins.chmod(0o777)
         args = ("--plugin-path", str(plugins))
-        done = self.run_nonio(*args, expect=2)
-        self.assertIn(f"root would run code that other users can change: {plugins}", done.stderr)
+        for mode in (0o777, 0o775):
+            plugins.chmod(mode)
+            done = self.run_nonio(*args, expect=2)
+            self.assertIn(f"root would run code that other users can change: {plugins}", done.stderr)
         self.run_nonio(*args, "--root", expect=0)
         plugins.chmod(0o755)
         self.assertIn("running as root is not needed", self.run_nonio(*args, "--force", expect=0).stderr)

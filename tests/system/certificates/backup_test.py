@@ -77,6 +77,24 @@ class Backup(NumberedTest):
         self.assertEqual(self.content(self.root / "python"), wanted)
         subprocess.run(["tar", "-tf", file], check=True, stdout=subprocess.DEVNULL)
 
+    def test_what_is_behind_a_link_is_named(self):
+        folder, elsewhere = self.root / "folder", self.root / "elsewhere"
+        for path in (folder / "own/c1", elsewhere / "c2"):
+            path.mkdir(parents=True)
+            (path / "campaign.toml").write_text("format = 1\n")
+        (folder / "inside").symlink_to("own")
+        (folder / "2025").symlink_to(elsewhere)
+        (folder / "own/relative").symlink_to("../../elsewhere/c2/campaign.toml")
+        os.mkfifo(folder / "pipe")
+        for given in (folder, self.root / "way"):  # also where the folder is behind a link itself
+            if given != folder:
+                given.symlink_to(folder)
+            done = subprocess.run([NONIO, "backup", given, self.root / f"{given.name}.tar", "--json", "--quiet"], capture_output=True, text=True, check=True)
+            self.assertEqual([{"name": "2025", "link_to": str(elsewhere)}, {"name": "own/relative", "link_to": "../../elsewhere/c2/campaign.toml"}, {"name": "pipe"}],
+                             sorted(json.loads(done.stdout)["left_out"], key=lambda one: one["name"]))
+            self.assertIn(f"2025 is a link to {elsewhere}, which is outside of the folder: what it contains is not in the backup", done.stderr)
+            self.assertNotIn("inside", done.stderr)
+
     def test_what_is_damaged_or_foreign_is_refused_before_anything_is_written(self):
         folder = self.root / "folder"
         folder.mkdir()
@@ -227,6 +245,19 @@ class Backup(NumberedTest):
         with sqlite3.connect(self.out / "history.sqlite") as store:
             self.assertEqual(store.execute("SELECT count(*) FROM evaluation").fetchone(), (rows,))
         store.close()
+        # Each former version of the history is made again from the results; 1 to 3 had fewer tables.
+        shown = lambda: json.loads(run(NONIO, "machine", "history", self.out, "--json").stdout)["series"]
+        wanted = shown()
+        for version in range(1, 7):
+            with sqlite3.connect(self.out / "history.sqlite") as store:
+                store.execute("UPDATE store SET value = ? WHERE name = 'schema'", (version,))
+                store.execute(f"PRAGMA user_version = {version}")
+                if version < 4:
+                    store.execute("DROP TABLE evaluation")
+            store.close()
+            self.night()
+            self.assertEqual(wanted, shown(), version)
+            self.assertEqual(self.issued_files(), before)
 
 
 if __name__ == "__main__":

@@ -105,7 +105,8 @@ class CampaignsOfASite(LiveTest):
             folder = self.site / f"c{n}"
             folder.mkdir()
             (folder / "campaign.toml").write_text(f'format = 1\n[campaign]\nid = "c{n}"\ncustomer = "{r.choice(["Rossi", "Bianchi"])}"\ndate = 2026-01-{n % 28 + 1:02}\n'
-                                                  f'[machine]\nmaker = "M"\nserial = "{n % 7}"\n')
+                                                  f'[machine]\nmaker = "M"\nserial = "{n % 7}"\n[machine.axes.X]\nkind = "linear"\n'
+                                                  '[[measurement]]\nid = "X"\nkind = "axis"\naxis = "X"\nfile = "x.csv"\n')
         (self.site / "c3/campaign.toml").write_text('id = "c3\n')
         with self.serve() as s:
             first = s.until("/api/campaigns?size=25", lambda a: a["complete"] and a["all"] == 60, "complete")
@@ -116,11 +117,18 @@ class CampaignsOfASite(LiveTest):
             every = {c["folder"]: c for c in s.get("/api/campaigns?size=200")["campaigns"]}
             self.assertIn("message", every["c3"], "a broken manifest is listed with what is wrong")
             wanted = {f for f, c in every.items() if c.get("customer") == "Rossi" and c.get("machine") == "M 4"}
+            self.assertTrue(wanted)
             self.assertEqual(wanted, {c["folder"] for c in s.get("/api/campaigns?size=200&search=rossi%20m%204")["campaigns"]} & {f for f, c in every.items() if c.get("machine") == "M 4"})
             self.assertEqual(["c1"], [c["folder"] for c in s.get("/api/campaigns?folder=c1")["campaigns"]])
             self.assertEqual(0, s.get("/api/campaigns?state=failed")["found"])
             self.assertEqual(60, s.get("/api/campaigns?state=new")["found"])
             self.assertEqual(s.get("/api/campaigns?page=999999999")["found"], 60)
+            pages = [s.get(f"/api/machines?size=3&page={page}") for page in (0, 1, 2, 9)]
+            self.assertEqual([[f"M {n}" for n in some] for some in ((0, 1, 2), (3, 4, 5), (6,), (6,))], [[m["machine"] for m in p["machines"]] for p in pages])
+            self.assertEqual([(7, 7, 0), (7, 7, 1), (7, 7, 2), (7, 7, 2)], [(p["found"], p["all"], p["page"]) for p in pages])
+            fitting = s.get("/api/machines?search=2026-01-28%20m")  # the newest campaigns are of four machines or fewer
+            self.assertTrue(0 < fitting["found"] < 7 and all(m["day"] == "2026-01-28" for m in fitting["machines"]), fitting)
+            self.assertEqual(0, s.get("/api/machines?search=nowhere")["found"])
 
     # ---- files ----
     def test_a_dropped_file_is_shown_as_a_run_would_read_it(self):

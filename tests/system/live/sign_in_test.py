@@ -73,13 +73,32 @@ class SignIn(LiveTest):
         for wrong in ("", "too short", "x" * 201, "a tab\tin the password"):
             self.assertEqual("", hashed(wrong, expect=2).stdout)
         text = users("bianchi")
-        for other in (text.replace("$argon2id$v=19", "$argon2i$v=19"), text.replace("m=65536", "m=99999999"), text.replace(value, "secret password"), text.replace("t=3", "t=0"), text.replace(value, value.rsplit("$", 1)[0])):
+        for other in (text.replace("$argon2id$v=19", "$argon2i$v=19"), text.replace("m=65536", "m=99999999"), text.replace("t=3", "t=17"), text.replace(value, "secret password"), text.replace("t=3", "t=0"), text.replace(value, value.rsplit("$", 1)[0])):
             (self.site / "users.toml").write_text(other)
             error = nonio("serve", self.site, expect=2).stderr
             self.assertIn("users.toml", error)
             self.assertNotIn("secret password", error)
         (self.site / "users.toml").write_text('format = 1\n[[user]]\naccount = "a"\nname = "A"\nrole = "view"\n')
         self.assertIn("--hash-password", nonio("serve", self.site, expect=2).stderr, "no person could sign in")
+
+    def test_only_its_owner_may_write_the_file(self):
+        file, other = self.site / "users.toml", self.site.parent / "users.toml"
+        for mode in (0o660, 0o646):
+            file.chmod(mode)
+            self.assertIn(f"{file}: other users can write it; expected chmod 640", nonio("serve", self.site, expect=2).stderr)
+        file.chmod(0o640)
+        with self.serve() as s:
+            person = Person(s, "sample")
+            file.chmod(0o664)
+            self.assertEqual((503, "users"), (lambda r: (r[0], r[1]["id"]))(person.ask("GET", "/api/site/state")))
+            file.chmod(0o640)
+            self.assertEqual(200, person.ask("GET", "/api/site/state")[0])
+            file.rename(other)
+            file.symlink_to(other)
+            self.assertEqual(503, person.ask("GET", "/api/site/state")[0])
+        self.assertIn(f"{file}: it is a symbolic link", nonio("serve", self.site, expect=2).stderr)
+        other.unlink()
+        self.assertIn(f"{file}: it is a symbolic link", nonio("serve", self.site, expect=2).stderr, "one that leads nowhere does not open the site")
 
     def test_without_a_session_there_is_nothing(self):
         with self.serve() as s:
@@ -146,6 +165,7 @@ class SignIn(LiveTest):
             status, fields, _ = one.ask("POST", "/api/sign-out", {}, all_=True)
             self.assertEqual((200, True), (status, "Max-Age=0" in fields["Set-Cookie"]))
             self.assertEqual(403, one.ask("GET", "/api/site/state")[0])
+            self.assertEqual([("sample", "B. Sample", "done")], [(e["account"], e["name"], e["state"]) for e in self.log() if e["request"] == "/api/sign-out"])
             self.assertEqual(200, other.ask("GET", "/api/site/state")[0], "of another browser")
             # Another password ends it, and so does the end of the user.
             (self.site / "users.toml").write_text(users("bianchi", "sample").replace(line_of("sample"), hashed(PASSWORDS["sample"]).stdout))

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Users of a site behind a reverse proxy: each role does what it may and nothing else, under its own name; whatever was tried is
 in the audit log."""
+import email
+import email.policy
 import json
 import shutil
 import unittest
 
 from live import LiveTest, Server, nonio
 import campaigns_test
+from sign_in_test import hashed
 
 HEADER, HOST = "X-Remote-User", "nonio.example.org"
 ROLES = ("view", "measure", "approve", "administer")
@@ -94,6 +97,44 @@ class Users(LiveTest):
             status, answer = self.ask(s, "POST", "/api/event", "measure-1", {"machine": "M", "kind": "other", "text": "x", "date": "2026-01-01"})
             self.assertEqual((503, "audit"), (status, json.loads(answer)["id"]), "what cannot be recorded is not done")
             self.assertFalse((self.site / "events.toml").exists())
+
+    def test_a_user_without_a_password_is_not_one_of_two_persons(self):
+        with self.serve("--edit") as s:
+            made = json.loads(self.ask(s, "POST", "/api/campaigns", "measure-1", self.campaign(), {"Content-Type": "application/octet-stream"})[1])["campaign"]
+            approve = lambda: (lambda r: (r[0], json.loads(r[1]).get("id")))(self.ask(s, "POST", "/api/release", "approve-1", {"campaign": made, "by": "x", "confirmed": "Person approve", "as": "authoriser"}))
+            self.assertEqual((422, None), approve(), "one person: the name is enough, and there is no draft")
+            with (self.site / "site.toml").open("a") as site:
+                site.write("[certificate]\ntwo_persons = true\n")
+            self.assertEqual((403, "two_persons"), approve())
+            (self.site / "users.toml").write_text(USERS.replace('role = "approve"\n', f'role = "approve"\n{hashed("a long password 1").stdout}'))
+            self.assertEqual((403, "password"), approve(), "the remedy: with a password it is asked for")
+
+    def test_a_certificate_is_sent_to_an_address_of_the_site(self):
+        letter, program = self.site.parent / "letter", self.site.parent / "sendmail"
+        program.write_text(f'#!/bin/sh\necho "$@" > {letter}.to\ncat > {letter}\n')
+        program.chmod(0o755)
+        (self.out / "c1").mkdir(parents=True)
+        (self.out / "c1/certificate.pdf").write_bytes(content := bytes(range(256)) * 50)
+        (self.out / "secret").write_text("x")
+        post = lambda s, role, **more: (lambda r: (r[0], json.loads(r[1])))(self.ask(s, "POST", "/api/mail", f"{role}-1", {"campaign": "c1", "file": "certificate.pdf", "to": "lab@example.org", **more}))
+        with self.serve("--edit") as s:
+            self.assertIn("[mail]", post(s, "approve")[1]["error"])
+            with (self.site / "site.toml").open("a") as site:
+                site.write(f'[mail]\nto = ["other@example.org", "lab@example.org"]\nfrom = "nonio@example.org"\nsendmail = "{program}"\n')
+            self.assertEqual((403, "role"), (lambda r: (r[0], r[1]["id"]))(post(s, "measure")))
+            self.assertEqual(422, post(s, "approve", to="evil@example.org")[0])
+            for wrong in ({"file": "../secret"}, {"file": "run.json"}, {"campaign": "../c1"}, {"campaign": "c2"}):
+                self.assertEqual((404, "no_result"), (lambda r: (r[0], r[1]["id"]))(post(s, "approve", **wrong)), wrong)
+            self.assertFalse(letter.exists())
+            self.assertEqual(200, post(s, "approve")[0])
+            program.write_text("#!/bin/sh\nexit 1\n")
+            self.assertEqual(1, post(s, "approve")[1].get("exit_status", 1))
+        self.assertTrue(letter.with_suffix(".to").read_text().endswith(" -- lab@example.org\n"), "to the chosen address only")
+        parts = list(email.message_from_bytes(letter.read_bytes(), policy=email.policy.default).iter_attachments())
+        self.assertEqual([("c1-certificate.pdf", content)], [(p.get_filename(), p.get_content()) for p in parts])
+        log = [(e["account"], e["state"], e.get("to"), e.get("file")) for e in self.log() if e["request"] == "/api/mail" and e["state"] != "begins"]
+        self.assertIn(("approve-1", "done", "lab@example.org", "certificate.pdf"), log)
+        self.assertEqual(("approve-1", "failed", "lab@example.org", "certificate.pdf"), log[-1])
 
     def test_the_option_is_for_a_proxy(self):
         self.assertIn("--host", nonio("serve", self.site, "--user-header", HEADER, expect=2).stderr)

@@ -10,6 +10,7 @@ import ssl
 import subprocess
 import tempfile
 import threading
+import time
 import unittest
 
 NONIO = os.environ["NONIO"]
@@ -43,7 +44,7 @@ class Server(http.server.ThreadingHTTPServer):
 class Handler(http.server.BaseHTTPRequestHandler):
     def do_POST(self):
         body = self.rfile.read(int(self.headers["Content-Length"]))
-        self.server.got.append((self.path, dict(self.headers), body))
+        self.server.got.append((self.path, dict(self.headers), body, time.time()))
         if self.server.status is None:
             self.server.over.wait(60)
             return
@@ -89,11 +90,18 @@ class Webhook(unittest.TestCase):
     def run_site(self, expect=0):
         done = subprocess.run([NONIO, "run", self.site, "--out", self.out, "--quiet"], capture_output=True, text=True, check=False, timeout=300)
         self.assertEqual(done.returncode, expect, done.stderr)
+        self.said = done.stderr
         return (self.out / "summary.txt").read_text() if expect == 0 else done.stderr
+
+    def refused(self):
+        """What a run reports that the webhook did not take its lines."""
+        self.run_site()
+        self.assertIn("the webhook did not take", self.said)
+        return self.said
 
     def taken(self, server):
         """The last message, whose signature is compared with an independent one."""
-        path, headers, body = server.got[-1]
+        path, headers, body, _ = server.got[-1]
         self.assertEqual(path, "/hook?of=lab")
         self.assertEqual(headers["Content-Type"], "application/json")
         self.assertEqual(headers["X-Nonio-Signature"], "sha256=" + hmac.new(SECRET, body, hashlib.sha256).hexdigest())
@@ -117,15 +125,16 @@ class Webhook(unittest.TestCase):
         for number, (status, name) in enumerate(((500, "b"), (302, "c")), 3):
             server.status = status
             self.campaign(name)
-            self.assertIn(f"answered {status}", self.run_site())
+            self.assertIn(f"answered {status}", self.refused())
             self.assertEqual(self.taken(server)[0], number)
         server.status = 204
         self.campaign("d")
-        self.assertNotIn("webhook", self.run_site())
+        self.assertIn("after run 4: " + server.url() + " answered 302", self.run_site(), "the summary names the failure of the run before")
+        self.assertNotIn("webhook", self.said)
         self.assertEqual(self.taken(server), (5, ["b", "c", "d"]))
-        self.assertEqual([p for p, _, _ in server.got if p == "/elsewhere"], [])
+        self.assertEqual([one for one in server.got if one[0] == "/elsewhere"], [])
         count = len(server.got)
-        self.run_site()
+        self.assertNotIn("webhook", self.run_site())
         self.assertEqual(len(server.got), count)
 
     def test_a_server_that_is_away_or_silent_fails_no_run(self):
@@ -133,10 +142,16 @@ class Webhook(unittest.TestCase):
         server.status = None
         self.hook(server.url())
         self.campaign("a")
-        self.assertIn("the webhook did not take", self.run_site())
+        self.refused()
+        # Everything was stored before the server was called, and the run states how long it took without it.
+        called = server.got[-1][3]
+        stored = [p.stat().st_mtime for p in (self.out / "summary.json", self.out / "summary.txt", self.out / ".nonio/night.json", self.out / "a/results.json")]
+        self.assertLess(max(stored), called)
+        ended = (self.out / ".nonio/webhook-failed").stat().st_mtime
+        self.assertLess(ended - called, 20.0, "5 s, and what a loaded machine adds")
         server.end()
         self.campaign("b")
-        self.assertIn("the webhook did not take", self.run_site())
+        self.refused()
         other = self.server()
         self.hook(other.url(host="localhost"))
         self.run_site()
@@ -164,10 +179,11 @@ class Webhook(unittest.TestCase):
             self.hook(server.url("https", "localhost"), f'trust = "{self.root / trust}"\n' if trust else "")
             if self.out.exists():  # a line that is new in each run
                 self.campaign(f"more{trust.split('.')[0]}{len(list(self.site.iterdir()))}")
-            self.assertIn("the webhook did not take", self.run_site())
+            self.refused()
             self.assertEqual(server.got, [])
         self.hook(good.url("https", "localhost"), f'trust = "{self.root / "good.pem"}"\n')
-        self.assertNotIn("webhook", self.run_site())
+        self.run_site()
+        self.assertNotIn("webhook", self.said)
         self.assertIn("a", self.taken(good)[1])
 
     def test_what_is_refused(self):
@@ -179,7 +195,7 @@ class Webhook(unittest.TestCase):
         server = self.server()
         self.hook(server.url())
         self.secret.chmod(0o644)
-        self.assertIn("chmod 600", self.run_site())
+        self.assertIn("chmod 600", self.refused())
         self.assertEqual(server.got, [])
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The nightly run with a model: analysis model-fit, tables from the model, exclusions."""
+import datetime
 import json
 import re
 import shutil
@@ -68,6 +69,12 @@ class Nightly(VerbTest):
             self.assertEqual(values["nonio_campaigns", state], count)
         self.assertEqual(sum(n for (name, _), n in values.items() if name == "nonio_worklist_lines"), len(summary["lines"]))
         self.assertLess(values["nonio_last_run_age_seconds", None], 600)
+        self.assertTrue(0 < values["nonio_last_run_seconds", None] < 600)
+        self.assertEqual((0, 0), tuple(values["nonio_certificates_due", w] for w in ("overdue", "30_days")))
+        day = lambda n: (datetime.datetime.now(datetime.timezone.utc) + datetime.timedelta(days=n)).strftime("DTSTART;VALUE=DATE:%Y%m%d\r\n")
+        (out / "due.ics").write_text(day(-2) + day(1) + day(29) + day(32) + day(400))
+        text = self.nonio("status", out, "--metrics", expect=0).stdout
+        self.assertIn('nonio_certificates_due{within="overdue"} 1\nnonio_certificates_due{within="30_days"} 2\n', text)
         self.assertIn("summary.json", self.nonio("status", self.site, "--metrics", expect=2).stderr)
 
     def test_what_fails_and_what_is_missing_are_findings(self):

@@ -282,7 +282,8 @@ TEST(Manifest, SiteFile) {
   EXPECT_EQ(site->database->url, "postgresql://u@h/d");
   EXPECT_EQ(site->database->schema, "nonio");
   EXPECT_FALSE(site->numbering.server);
-  EXPECT_EQ(config::secret_files(*site, "/site"), std::vector<std::filesystem::path>{"/site/p"});
+  EXPECT_EQ(config::secret_files(*site, "/site"),
+            (std::vector<std::filesystem::path>{"/site/users.toml", "/site/p"}));
   for (const char* bad :
        {"url = \"postgresql://u:Geheim77@h/d\"", "url = \"Geheim77\"",
         "password_file = \"Geheim77\"", "url = \"postgresql://h/d\"\nschema = \"1a\"",

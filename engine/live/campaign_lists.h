@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "live/campaign_index.h"
+#include "live/service.h"
+#include "platform/storage/json_values.h"
+
+namespace nonio::live {
+
+/// Lists of all that the campaigns of a site name, made from one version of the index.
+struct CampaignLists {
+  struct Machine {
+    storage::Json json;   ///< the machine with its newest campaign
+    std::string words{};  ///< searchable words of its newest campaign
+    std::size_t campaigns = 0;
+  };
+  std::uint64_t version = 0;
+  std::string stamp{};  ///< stamp of the records of the machines
+  std::map<std::string, Machine> machines{};
+  Answer instruments{}, records{};
+};
+
+/// Returns a text that changes with each file in SITE/machines.
+std::string stamp_of_records(const std::filesystem::path& site);
+
+/// Makes the lists: each machine, instrument and customer with its newest campaign, and for forms
+/// the values of that campaign, and machines that have only a record.
+CampaignLists campaign_lists(const CampaignIndex& index, const std::filesystem::path& site);
+
+}  // namespace nonio::live
