@@ -18,9 +18,10 @@ struct Users {
   std::vector<User> all;
 };
 
+constexpr const char* a_hash = "expected a line that nonio serve SITE --hash-password has printed";
+
 void check_user(config::TableReader& reader, User& user, Users& users) {
-  if (!user.password.empty() && !is_password_hash(user.password))
-    reader.error("password", "expected a line that nonio serve SITE --hash-password has printed");
+  if (!user.password.empty() && !is_password_hash(user.password)) reader.error("password", a_hash);
   if (const std::string mistake = mistake_in_name(user.name); !mistake.empty())
     reader.error("name", mistake);
   for (const User& other : users.all)
@@ -46,7 +47,7 @@ constexpr config::Key user_keys[] = {
      "What the person may do; each role may do what those before it may.", required, roles},
     {"password", into<&User::password>,
      "Hash of the password, as `nonio serve SITE --hash-password` prints it.", secret,
-     spelled({.letters = "a-zA-Z0-9$=,+/", .begins = "$argon2id$v=19$m="})},
+     spelled({.letters = "a-zA-Z0-9$=,+/", .begins = "$argon2id$v=19$m="}, a_hash)},
 };
 
 constexpr config::Key file_keys[] = {
