@@ -2,10 +2,12 @@
 #include <filesystem>
 #include <iostream>
 
+#include "campaign/modelling/model_json.h"
 #include "campaign/modelling/model_prediction.h"
 #include "campaign/modelling/readings_csv.h"
 #include "campaign_verb.h"
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -46,11 +48,12 @@ int compare(const std::string& folder, const std::string& csv, const Common& com
   if (!csv.empty() && !all.empty())
     if (const std::string why = write_csv(csv, all); !why.empty())
       return complain(why, exit_failed);
+  const auto document = modelling::compare_json(all, open.campaign(), words, warnings, errors);
   if (common.json)
-    std::cout << modelling::compare_json(all, open.campaign(), words, warnings, errors);
+    std::cout << storage::dump(document);
   else
-    for (const modelling::Compared& one : all)
-      print_comparison(std::cout, one, open.campaign(), words);
+    for (const auto& part : document.at("parts"))
+      print_comparison(std::cout, part, words.terminal());
   return errors.empty() ? exit_done : exit_failed;
 }
 
@@ -63,13 +66,13 @@ int predict(const std::string& folder, const CompareOptions& options, const Comm
   const bool kept = options.zero == "kept";
   const auto all = modelling::predictions(seen->read, unseen->read, kept);
   if (!all) return complain(text_of(all.error()));
-  const modelling::ModelWords words = words_for(*unseen, common);
-  if (common.json) {
-    std::cout << modelling::predict_json(*all, seen->campaign(), unseen->campaign(), words, kept);
-    return exit_done;
-  }
-  for (const modelling::Predicted& one : *all)
-    std::cout << words.prediction(one.prediction, one.unseen) << '\n';
+  const auto document = modelling::predict_json(*all, seen->campaign(), unseen->campaign(),
+                                                words_for(*unseen, common), kept);
+  if (common.json)
+    std::cout << storage::dump(document);
+  else
+    for (const auto& part : document.at("parts"))
+      std::cout << part.at("says").get<std::string>() << '\n';
   return exit_done;
 }
 

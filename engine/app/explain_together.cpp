@@ -9,18 +9,18 @@
 
 #include "campaign/config/manifest.h"
 #include "campaign/modelling/joint_model.h"
+#include "campaign/modelling/model_json.h"
 #include "campaign_verb.h"
 #include "nonio/sdk/format.h"
+#include "platform/storage/json_values.h"
+#include "platform/storage/nearest.h"
 #include "tables.h"
-#include "text_layout.h"
 
 namespace nonio::app {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t most_candidates = 5;
 
 /// Returns the campaigns at or below a folder, sorted by path. Links and hidden folders are not
 /// followed.
@@ -67,10 +67,11 @@ class ExplainTogether {
     }
     const reading::Context& context = place_->context;
     const config::TerminalWords say(context.templates, common_.json ? "en" : context.site.language);
+    const auto document = modelling::together_json(*found, say, seed_, left_out, errors_);
     if (common_.json)
-      std::cout << modelling::together_json(*found, say, seed_, left_out, errors_);
+      std::cout << storage::dump(document);
     else
-      for (const modelling::Together& t : *found) print(t, say);
+      for (const auto& part : modelling::parts_of(document)) print_together(std::cout, part, say);
     if (!common_.json && !left_out.empty() && !common_.quiet)
       complain("not explained together: " + storage::listed(left_out));
     return errors_.empty() ? exit_done : exit_failed;
@@ -121,43 +122,6 @@ class ExplainTogether {
     return (name.empty() || name == m.asset || name == m.serial || name == m.model) &&
            (options_.since.empty() || c.date >= options_.since) &&
            (options_.until.empty() || (!c.date.empty() && c.date <= options_.until));
-  }
-
-  void print(const modelling::Together& t, const config::TerminalWords& say) const {
-    const model::JointExplanation& x = t.explanation;
-    const Quantity q = t.deviation();
-    std::size_t readings = 0;
-    for (const auto& one : t.parts) readings += one.part.table.size();
-    sentence(std::cout, 0,
-             say("joint.head", {{"part", t.part},
-                                {"count", std::to_string(t.campaigns.size())},
-                                {"first", t.campaigns.front()},
-                                {"last", t.campaigns.back()},
-                                {"readings", std::to_string(readings)}}));
-    line(std::cout, "RMS", with_unit(x.rms, q, say));
-    line(std::cout, say("floor"), with_unit(x.noise, q, say));
-    sentence(std::cout, 2, modelling::sentence_of(t, say));
-    for (const model::JointEffect& e : x.effects) {
-      sentence(std::cout, 2, modelling::sentence_of(e, t, say));
-      if (!e.aliases.empty())
-        sentence(std::cout, 4, say("joint.aliases", {{"effects", storage::listed(e.aliases)}}));
-    }
-    print_candidates(x, q, say);
-  }
-
-  static void print_candidates(const model::JointExplanation& x, Quantity q,
-                               const config::TerminalWords& say) {
-    if (x.candidates.empty() || !(x.candidates.front().evidence > 0.0)) return;
-    std::cout << "  " << padded(say("candidate"), 22) << padded(say("evidence.alone"), 12)
-              << padded(say("rms-after"), 15) << say("joint.values") << "\n";
-    for (std::size_t k = 0; k < std::min(most_candidates, x.candidates.size()); ++k) {
-      const model::JointEffect& e = x.candidates[k];
-      if (!(e.evidence > 0.0)) break;
-      std::cout << "  " << padded(e.effect, 22) << padded(say.number(short_text(e.evidence, 4)), 12)
-                << padded(with_unit(e.rms, q, say), 15)
-                << say(e.holds == model::Holds::shared ? "joint.is-shared" : "joint.is-own")
-                << "\n";
-    }
   }
 
   const TogetherOptions& options_;

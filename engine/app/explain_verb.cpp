@@ -3,10 +3,12 @@
 #include <iostream>
 #include <utility>
 
+#include "campaign/modelling/model_json.h"
 #include "campaign/reading/names.h"
 #include "campaign_verb.h"
 #include "explain_together.h"
 #include "nonio/sdk/format.h"
+#include "platform/storage/json_values.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -120,7 +122,8 @@ class Explain {
     known_ = change->after;
     if (!common_.json) {
       std::cout << words_->terminal()("step", {{"number", std::to_string(steps_.size())}}) << ": ";
-      print_change(std::cout, *change, *words_);
+      print_change(std::cout, modelling::change_json(*change, open_.campaign(), *words_),
+                   words_->terminal());
     }
     return true;
   }
@@ -129,15 +132,13 @@ class Explain {
     for (const std::string& warning : warnings_) tell(warning);
     for (modelling::Explained& e : all_)
       if (options_.what_if) e.what_if = model::foresee(e.part.part, e.explanation);
-    if (common_.json) {
-      std::cout << modelling::explain_json(all_, open_.campaign(), *words_, options_.seed, steps_,
-                                           warnings_, errors_);
-      return;
-    }
-    for (const modelling::Explained& e : all_) {
-      print_explanation(std::cout, e, open_.campaign(), options_.folder, options_.all, *words_);
-      if (e.what_if) print_foresight(std::cout, e, words_->terminal());
-    }
+    const auto document = modelling::explain_json(all_, open_.campaign(), *words_, options_.seed,
+                                                  steps_, warnings_, errors_);
+    if (common_.json)
+      std::cout << storage::dump(document);
+    else
+      for (const auto& part : modelling::parts_of(document))
+        print_explanation(std::cout, part, options_.folder, options_.all, words_->terminal());
   }
 
   const ExplainOptions& options_;

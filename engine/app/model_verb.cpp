@@ -4,7 +4,9 @@
 #include <iostream>
 
 #include "campaign/modelling/held_terms.h"
+#include "campaign/modelling/model_json.h"
 #include "campaign_verb.h"
+#include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
 #include "tables.h"
 #include "verbs.h"
@@ -29,11 +31,13 @@ int show_model(const ModelOptions& options, const Common& common) {
   const modelling::ModelWords words = words_for(open, common);
   std::vector<Error> errors = open.read.errors;
   const auto all = compare_parts(std::move(*parts), errors);
+  auto document = modelling::compare_json(all, open.campaign(), words, {}, errors);
+  document["history"] = modelling::steps_json(*history);
   if (common.json) {
-    std::cout << modelling::compare_json(all, open.campaign(), words, {}, errors);
+    std::cout << storage::dump(document);
   } else {
-    for (const modelling::Compared& one : all) print_model(std::cout, one, words);
-    print_history(std::cout, *history, words.terminal());
+    for (const auto& part : document.at("parts")) print_model(std::cout, part, words.terminal());
+    print_history(std::cout, document.at("history"), words.terminal());
   }
   return errors.empty() ? exit_done : exit_failed;
 }
@@ -64,10 +68,11 @@ int change(const ModelOptions& options, const Common& common, bool add) {
   const auto changed = modelling::change_model(open.folder, open.read, effect, add);
   if (!changed) return complain(text_of(changed.error()), exit_failed);
   const modelling::ModelWords words = words_for(open, common);
+  const auto document = modelling::change_json(*changed, open.campaign(), words);
   if (common.json)
-    std::cout << modelling::change_json(*changed, open.campaign(), words);
+    std::cout << storage::dump(document);
   else
-    print_change(std::cout, *changed, words);
+    print_change(std::cout, document, words.terminal());
   return open.read.errors.empty() ? exit_done : exit_failed;
 }
 
@@ -113,10 +118,12 @@ int change_campaign(const ModelOptions& options, const Common& common,
   OpenCampaign& open = *opened;
   const auto changed = modelling::change_campaign(open.folder, open.read, edit);
   if (!changed) return complain(text_of(changed.error()) + "; nothing was changed", exit_failed);
+  const modelling::ModelWords words = words_for(open, common);
+  const auto document = modelling::change_json(changed->front(), open.campaign(), words);
   if (common.json)
-    std::cout << modelling::change_json(changed->front(), open.campaign(), words_for(open, common));
+    std::cout << storage::dump(document);
   else
-    print_step(std::cout, changed->front().step, words_for(open, common).terminal());
+    print_step(std::cout, document.at("step"), words.terminal());
   return open.read.errors.empty() ? exit_done : exit_failed;
 }
 

@@ -3,8 +3,10 @@
 #include <iostream>
 #include <memory>
 
+#include "campaign/config/keys.h"
 #include "campaign/loader/plugins.h"
 #include "campaign/schema/schema.h"
+#include "certificates/users.h"
 #include "platform/storage/files.h"
 #include "verbs.h"
 
@@ -13,15 +15,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Schema = std::string (*)(const loader::Plugins&);
+/// Returns the declaration of a file of a site.
+using File = const config::Key& (*)();
 
-int write_schema(Schema schema, const std::string& out, const Common& common) {
+/// Writes the schema of a file, of campaign.toml if `file` is null.
+int write_schema(File file, const std::string& out, const Common& common) {
   loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   if (!plugins.conflicts().empty()) return complain(plugins.conflicts().front());
   for (const std::string& note : plugins.refusal_notes())
     complain("its names and options are not in the schema: " + note);
-  const std::string text = schema(plugins);
+  const std::string text =
+      file == nullptr ? schema::campaign_schema(plugins) : schema::file_schema(file(), plugins);
   if (out.empty()) {
     std::cout << text;
     return exit_done;
@@ -33,7 +38,7 @@ int write_schema(Schema schema, const std::string& out, const Common& common) {
   return written ? exit_done : complain(text_of(written.error()), exit_failed);
 }
 
-Verb schema_of(const std::string& file, Schema schema, Common& common) {
+Verb schema_of(const std::string& file, File declaration, Common& common) {
   auto out = std::make_shared<std::string>();
   return {
       .name = file,
@@ -44,7 +49,7 @@ Verb schema_of(const std::string& file, Schema schema, Common& common) {
       .footer = "An editor finds the schema by the first line of " + file +
                 ".toml, with the path from there:\n\n    #:schema ../" + file + ".schema.json",
       .examples = {"nonio schema " + file + " --out site/" + file + ".schema.json"},
-      .run = [=, &common] { return write_schema(schema, *out, common); }};
+      .run = [=, &common] { return write_schema(declaration, *out, common); }};
 }
 
 }  // namespace
@@ -52,13 +57,13 @@ Verb schema_of(const std::string& file, Schema schema, Common& common) {
 Verb schema_verb(Common& common) {
   return {.name = "schema",
           .summary = "Writes JSON schemas, so that editors complete and check the files of a site",
-          .verbs = {schema_of("campaign", schema::campaign_schema, common),
-                    schema_of("site", schema::site_schema, common),
-                    schema_of("machine", schema::machine_schema, common),
-                    schema_of("events", schema::events_schema, common),
-                    schema_of("acknowledged", schema::acknowledged_schema, common),
-                    schema_of("forgotten", schema::forgotten_schema, common),
-                    schema_of("users", schema::users_schema, common)}};
+          .verbs = {schema_of("campaign", nullptr, common),
+                    schema_of("site", config::site_file, common),
+                    schema_of("machine", config::machine_file, common),
+                    schema_of("events", config::events_file, common),
+                    schema_of("acknowledged", config::acknowledged_file, common),
+                    schema_of("forgotten", config::forgotten_file, common),
+                    schema_of("users", certificates::users_file, common)}};
 }
 
 }  // namespace nonio::app

@@ -6,35 +6,12 @@
 #include "campaign/evaluation/record.h"
 #include "campaign/evaluation/results_json.h"
 #include "platform/storage/files.h"
-#include "platform/storage/json_values.h"
+#include "platform/storage/json_numbers.h"
 #include "results_folder.h"
 
 namespace nonio::app {
 using storage::Json;
 namespace fs = std::filesystem;
-
-namespace {
-
-/// Converts an evidence of a finding to a number; its unit is given by the suffix of its name, for
-/// example mean_um.
-Number number_of(const std::string& key, const Json& value) {
-  Number n{key, value.get<double>(),
-           value.is_number_integer()             ? Quantity::count
-           : key == "p" || key.starts_with("p_") ? Quantity::probability
-                                                 : Quantity::number};
-  std::size_t longest = 0;
-  for (int i = 0; i <= static_cast<int>(Quantity::angle_per_kelvin); ++i) {
-    const Unit unit = unit_of(static_cast<Quantity>(i));
-    if (unit.suffix.size() <= longest || !key.ends_with(unit.suffix)) continue;
-    longest = unit.suffix.size();
-    n.quantity = static_cast<Quantity>(i);
-  }
-  n.name.resize(key.size() - longest);
-  n.value /= unit_of(n.quantity).per_si;
-  return n;
-}
-
-}  // namespace
 
 Expected<Shown> evaluated_now(const fs::path& folder, const Common& common, Documents documents) {
   auto place = reading::open_workplace(folder, common.plugin_folders(), common.template_folders(),
@@ -73,7 +50,7 @@ Finding finding_of(const Json& json) {
     if (value.is_string())
       f.texts.emplace_back(key, value.get<std::string>());
     else
-      f.evidence.push_back(number_of(key, value));
+      f.evidence.push_back(storage::number_of(key, value));
   f.advice = json.value("advice", "");
   f.measurement = json.value("measurement", "");
   return f;

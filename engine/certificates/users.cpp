@@ -4,9 +4,9 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 
+#include "campaign/config/keys/shared.h"
 #include "campaign/config/toml_reader.h"
 #include "certificates/password.h"
 #include "certificates/person_name.h"
@@ -17,40 +17,70 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Names of the roles in the order of `Role`, as users_file() declares them.
-constexpr std::array role_names{"view", "measure", "approve", "administer"};
+struct Users {
+  std::vector<User> all;
+};
 
+constexpr const char* a_hash = "expected a line that nonio serve SITE --hash-password has printed";
+
+void check_user(config::TableReader& reader, User& user, Users& users) {
+  if (!user.password.empty() && !is_password_hash(user.password)) reader.error("password", a_hash);
+  if (const std::string mistake = mistake_in_name(user.name); !mistake.empty())
+    reader.error("name", mistake);
+  for (const User& other : users.all)
+    if (&other != &user &&
+        (other.account == user.account || likeness_of(other.name) == likeness_of(user.name)))
+      reader.error("account", "account and name of each [[user]] have to be its own, found \"" +
+                                  user.account + "\", \"" + user.name + "\" again");
+}
+
+namespace declared {
+
+using namespace config::declared;
+
+constexpr config::Choice roles[] = {choice(Role::view, "view"), choice(Role::measure, "measure"),
+                                    choice(Role::approve, "approve"),
+                                    choice(Role::administer, "administer")};
+
+constexpr config::Key user_keys[] = {
+    {"account", into<&User::account>,
+     "Account, as the reverse proxy states it or the person types it.", required},
+    {"name", into<&User::name>, "Name of the person, as documents print it.", required},
+    {"role", into<&User::role>,
+     "What the person may do; each role may do what those before it may.", required, roles},
+    {"password", into<&User::password>,
+     "Hash of the password, as `nonio serve SITE --hash-password` prints it.", secret,
+     spelled({.letters = "a-zA-Z0-9$=,+/", .begins = "$argon2id$v=19$m="}, a_hash)},
+};
+
+constexpr config::Key file_keys[] = {
+    format_key,
+    {"user", checked<check_user, &Users::all>, "Users of the page of a site, [[user]].", user_keys},
+};
+
+constexpr config::Key users_toml{"users.toml", file<Users>,
+                                 "Who may do what on the page of a site.", file_keys};
+
+}  // namespace declared
 }  // namespace
 
-const char* to_text(Role role) { return role_names[static_cast<std::size_t>(role)]; }
+const config::Key& users_file() { return declared::users_toml; }
+
+const char* to_text(Role role) {
+  return declared::roles[static_cast<std::size_t>(role)].name.data();
+}
 
 Expected<std::vector<User>> parse_users(std::string_view text) {
   const std::string file = users_name;
   NONIO_TRY(const auto root, config::parse_toml(text, file));
   std::vector<Error> errors;
-  config::TableReader top(root, config::users_file(), file, errors);
-  top.integer("format");
-  std::vector<User> out;
-  for (config::TableReader& reader : top.tables("user")) {
-    User user{reader.text("account"), reader.text("name")};
-    const auto* const role = std::find(role_names.begin(), role_names.end(), reader.text("role"));
-    user.role = static_cast<Role>(role - role_names.begin());
-    user.password = reader.text("password");
-    if (!user.password.empty() && !is_password_hash(user.password))
-      reader.error("password", "expected a line that nonio serve SITE --hash-password has printed");
-    if (const std::string mistake = mistake_in_name(user.name); !mistake.empty())
-      reader.error("name", mistake);
-    for (const User& other : out)
-      if (other.account == user.account || likeness_of(other.name) == likeness_of(user.name))
-        reader.error("account", "account and name of each [[user]] have to be its own, found \"" +
-                                    user.account + "\", \"" + user.name + "\" again");
-    reader.finish();
-    out.push_back(std::move(user));
-  }
+  config::TableReader top(root, declared::users_toml, file, errors);
+  Users users;
+  top.fill(users);
   top.finish();
   if (!errors.empty()) return fail(errors.front());
-  if (out.empty()) return fail(Error{"expected at least one [[user]]", users_name});
-  return out;
+  if (users.all.empty()) return fail(Error{"expected at least one [[user]]", users_name});
+  return users.all;
 }
 
 bool has_users(const fs::path& site) {

@@ -10,6 +10,10 @@
 #include "campaign/config/secret_files.h"
 #include "nonio/sdk/error.h"
 
+namespace nonio::config {
+struct Key;
+}
+
 /// Reads SITE/users.toml: the users of a site's page and their roles, and the persons who approve
 /// certificates.
 namespace nonio::certificates {
@@ -30,6 +34,8 @@ struct User {
 
 inline constexpr const char* users_name = config::users_name;
 
+/// Returns the declaration of the file.
+const config::Key& users_file();
 /// Parses users.toml; an error states the first mistake with its line. No account may occur twice,
 /// and no two accounts may have the same name, because two approvals must come from two persons.
 Expected<std::vector<User>> parse_users(std::string_view text);

@@ -17,6 +17,7 @@
 #include "campaign/reading/error_text.h"
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/format.h"
+#include "platform/storage/json_values.h"
 
 namespace py = pybind11;
 namespace fs = std::filesystem;
@@ -229,7 +230,7 @@ class OpenedCampaign {
       all.push_back({std::move(part), std::move(comparison)});
     }
     const modelling::ModelWords words(place_->context.templates, "en");
-    return {modelling::compare_json(all, campaign(), words, {}, read.errors),
+    return {storage::dump(modelling::compare_json(all, campaign(), words, {}, read.errors)),
             modelling::readings_csv(all)};
   }
 
@@ -243,7 +244,8 @@ class OpenedCampaign {
       all.push_back({std::move(part), std::move(explanation)});
     }
     const modelling::ModelWords words(place_->context.templates, "en");
-    return modelling::explain_json(all, campaign(), words, seed, {}, {}, read.errors);
+    return storage::dump(
+        modelling::explain_json(all, campaign(), words, seed, {}, {}, read.errors));
   }
 
  private:

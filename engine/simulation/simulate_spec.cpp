@@ -71,111 +71,41 @@ class ParameterKeys {
   config::Key table_{"effect", config::Key::Holds::table, {}};
 };
 
-/// Reads the [[effect]] tables.
-class EffectReader {
- public:
-  EffectReader(Specification& s, const std::string& file, std::vector<Error>& errors)
-      : s_(s), file_(file), errors_(errors) {}
-
-  void read(config::TableReader& top) {
-    for (config::TableReader& reader : top.tables("effect")) read_effect(reader);
+/// Returns the effect whose kind its name contains, and sets its axis, except for an effect in
+/// space; null after an error is reported.
+const Effect* find_effect(config::TableReader& reader, EffectSpec& e, const Specification& s) {
+  const std::size_t colon = e.name.find(':');
+  const std::string kind = e.name.substr(0, colon),
+                    on = colon == std::string::npos ? "" : e.name.substr(colon + 1);
+  std::vector<std::string> kinds, axes;
+  const Machine& machine = s.campaign.machine;
+  for (const Axis& a : machine.axes) axes.push_back(a.name);
+  const Effect* found = nullptr;
+  for (const Effect& one : s.catalogue) {
+    kinds.push_back(one.info.name);
+    if (one.info.name == kind) found = &one;
   }
-
- private:
-  void complain(std::uint64_t line, std::string message) {
-    errors_.push_back(Error{std::move(message), file_, line});
-  }
-
-  /// Returns the effect whose kind `name` contains, and sets `axis` to its axis, except for an
-  /// effect in space; null after an error is reported.
-  const Effect* find_effect(config::TableReader& reader, const std::string& name, Axis& axis) {
-    const std::size_t colon = name.find(':');
-    const std::string kind = name.substr(0, colon),
-                      on = colon == std::string::npos ? "" : name.substr(colon + 1);
-    std::vector<std::string> kinds, axes;
-    const Machine& machine = s_.campaign.machine;
-    for (const Axis& a : machine.axes) axes.push_back(a.name);
-    const Effect* found = nullptr;
-    for (const Effect& e : s_.catalogue) {
-      kinds.push_back(e.info.name);
-      if (e.info.name == kind) found = &e;
-    }
-    if (colon == std::string::npos)
-      reader.error("name", "expected kind:axis, \"backlash:X\"; found \"" + name + "\"");
-    else if (found == nullptr)
-      reader.error("name",
-                   "no effect is called \"" + kind + "\"" + storage::suggestion(kind, kinds));
-    else if (found->instances)
-      return found;  // an effect in space: straightness:EYX
-    else if (machine.axis(on) == nullptr)
-      reader.error("name",
-                   "the machine has no axis \"" + on + "\"" + storage::suggestion(on, axes));
-    else
-      axis = *machine.axis(on);
-    return axis.name.empty() ? nullptr : found;
-  }
-
-  void read_effect(config::TableReader& named) {
-    EffectSpec e;
-    e.line = named.line();
-    e.name = named.text("name");
-    if (e.name.empty()) return;
-    const Effect* found = find_effect(named, e.name, e.axis);
-    if (found == nullptr) return;
-    e.effect = *found;
-    const ParameterKeys keys(e.effect, e.axis.rotary);
-    config::TableReader reader = named.declared(keys.table());
-    reader.text("name");
-    const auto value = [&](const Effect::Parameter& parameter) {
-      const auto written = reader.number(key_of(parameter, e.axis.rotary));
-      if (!written) return written;
-      return std::optional(*written / unit_of(quantity_on(parameter, e.axis.rotary)).per_si);
-    };
-    for (const Effect::Parameter& parameter : e.effect.linear) {
-      const auto given = value(parameter);
-      const std::string key = key_of(parameter, e.axis.rotary);
-      if (!given && !reader.raw().contains(key))
-        complain(e.line, "effect." + key + " is missing: " + parameter.help + " of " + e.name);
-      e.linear.push_back(given.value_or(0.0));
-    }
-    for (const Effect::Shape& shape : e.effect.shapes) e.shape.push_back(value(shape.parameter));
-    reader.finish();
-    s_.effects.push_back(std::move(e));
-  }
-
-  Specification& s_;
-  const std::string& file_;
-  std::vector<Error>& errors_;
-};
-
-/// Reads [simulation]: the seed, rotary axes and squares. Returns its formulas, which campaign.toml
-/// must not contain.
-std::vector<Formula> read_simulation(config::TableReader& top, Specification& s) {
-  auto reader = top.table("simulation");
-  if (!reader) return {};
-  const auto seed = reader->integer("seed");
-  if (!seed)
-    reader->error("seed", "expected a whole number: the same seed gives the same readings");
-  s.seed = static_cast<std::uint64_t>(seed.value_or(1));
-  std::vector<Formula> hidden;
-  for (config::TableReader& formula : reader->tables("formula")) {
-    formula.fill(hidden.emplace_back());
-    config::check_formula(formula, hidden, s.campaign.machine);
-    formula.finish();
-  }
-  read_things(*reader, s);
-  reader->finish();
-  return hidden;
+  if (colon == std::string::npos)
+    reader.error("name", "expected kind:axis, \"backlash:X\"; found \"" + e.name + "\"");
+  else if (found == nullptr)
+    reader.error("name", "no effect is called \"" + kind + "\"" + storage::suggestion(kind, kinds));
+  else if (found->instances)
+    return found;  // an effect in space: straightness:EYX
+  else if (machine.axis(on) == nullptr)
+    reader.error("name", "the machine has no axis \"" + on + "\"" + storage::suggestion(on, axes));
+  else
+    e.axis = *machine.axis(on);
+  return e.axis.name.empty() ? nullptr : found;
 }
 
 /// Adds formulas as effects; errors of invalid formulas were reported before.
-void add_formulas(const std::vector<Formula>& formulas, Specification& s, const std::string& file,
-                  std::vector<Error>& errors) {
+void add_formulas(const std::vector<Formula>& formulas, Specification& s,
+                  config::TableReader& reader) {
   for (const Formula& f : formulas) {
     if (std::any_of(s.catalogue.begin(), s.catalogue.end(),
                     [&](const Effect& e) { return e.info.name == f.name; }))
-      errors.push_back(
-          Error{"formula \"" + f.name + "\": there is an effect of this name", file, f.line});
+      reader.error(Error{"formula \"" + f.name + "\": there is an effect of this name",
+                         reader.file(), f.line});
     const Axis* axis = s.campaign.machine.axis(f.axis);
     if (axis == nullptr) continue;
     if (auto effect = config::formula_effect(f, *axis)) s.catalogue.push_back(std::move(*effect));
@@ -183,6 +113,46 @@ void add_formulas(const std::vector<Formula>& formulas, Specification& s, const 
 }
 
 }  // namespace
+
+void read_effects(config::TableReader& top, const config::Key& key, std::vector<EffectSpec>& all,
+                  Specification& s) {
+  for (config::TableReader& named : top.tables(key)) {
+    EffectSpec e;
+    e.line = named.line();
+    named.fill(e);
+    const Effect* const found = e.name.empty() ? nullptr : find_effect(named, e, s);
+    if (found == nullptr) continue;
+    e.effect = *found;
+    const ParameterKeys keys(e.effect, e.axis.rotary);
+    config::TableReader reader = named.declared(keys.table());
+    const config::Key* declared = keys.table().keys.data();
+    config::value_of<std::string>(reader, *declared);
+    const auto value = [&](const Effect::Parameter& parameter) {
+      auto written = config::value_of<double>(reader, *++declared);
+      if (written) *written /= unit_of(quantity_on(parameter, e.axis.rotary)).per_si;
+      return written;
+    };
+    for (const Effect::Parameter& parameter : e.effect.linear) {
+      const auto given = value(parameter);
+      const std::string name(declared->name);
+      if (!given && !reader.contains(name))
+        reader.error(Error{"effect." + name + " is missing: " + parameter.help + " of " + e.name,
+                           reader.file(), e.line});
+      e.linear.push_back(given.value_or(0.0));
+    }
+    for (const Effect::Shape& shape : e.effect.shapes) e.shape.push_back(value(shape.parameter));
+    reader.finish();
+    all.push_back(std::move(e));
+  }
+}
+
+void check_hidden(config::TableReader& reader, Formula&, Specification& s) {
+  config::check_formula(reader, s.hidden, s.campaign.machine);
+}
+
+void check_simulation(config::TableReader& reader, Specification& s) {
+  add_formulas(s.hidden, s, reader);
+}
 
 config::Checked<Specification> read_specification(std::string_view text, const std::string& file,
                                                   const std::vector<Effect>& effects,
@@ -195,13 +165,11 @@ config::Checked<Specification> read_specification(std::string_view text, const s
   if (!manifest) return tl::unexpected(manifest.error());
   s.campaign = std::move(manifest->campaign);
   std::vector<Error> errors;
-  config::TableReader top(*root, config::specification_file(), file, errors);
-  const std::vector<Formula> hidden = read_simulation(top, s);
+  config::TableReader top(*root, specification_file(), file, errors);
   s.catalogue = effects;
-  add_formulas(s.campaign.formulas, s, file, errors);
-  add_formulas(hidden, s, file, errors);
-  s.cycles = read_cycles(top, s.campaign, methods, errors);
-  EffectReader(s, file, errors).read(top);
+  s.methods = &methods;
+  add_formulas(s.campaign.formulas, s, top);
+  top.fill(s);
   if (!errors.empty()) return tl::unexpected(std::move(errors));
   return s;
 }

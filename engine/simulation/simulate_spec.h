@@ -18,9 +18,11 @@ namespace nonio::simulation {
 struct CycleSpec {
   Measurement measurement;
   Axis axis;
-  std::uint64_t line = 0;       ///< line in the specification
-  std::vector<double> targets;  ///< targets, ascending, without random shifts, m or rad
-  double offset = 0.0;          ///< largest random shift of a target, m or rad
+  std::uint64_t line = 0;  ///< line in the specification
+  /// Targets, ascending, without random shifts, m or rad; while it is read, as written.
+  std::vector<double> targets;
+  std::optional<double> first, last, distance;  ///< range that replaces the targets, as written
+  double offset = 0.0;  ///< largest random shift of a target, m or rad; while it is read, a share
   std::uint32_t runs = 5;
   bool pendulum = true;  ///< true: each run in both directions; false: every run in `direction`
   double direction = 1.0;
@@ -44,7 +46,7 @@ struct CycleSpec {
   std::vector<std::array<double, 3>> balls;   ///< positions of the balls with the rotary axes at 0,
                                               ///< m
   std::string carrier;                        ///< another rotary axis that turns too; empty: none
-  std::vector<double> carrier_at;             ///< positions of the carrier, rad
+  std::vector<double> carrier_at;             ///< positions of the carrier, rad; first as written
   std::vector<std::array<double, 3>> senses;  ///< directions of gauges, unit vectors
   std::string sensor;                         ///< for rtcp: "turns" (gauges that turn with the
                                               ///< axis), "probe", or else gauges at rest
@@ -59,7 +61,7 @@ struct CycleSpec {
 /// True position of a rotary axis, and its position in the control. m, unit vectors.
 struct RotarySpec {
   std::string axis;
-  std::array<double, 3> centre{}, direction{};
+  std::array<double, 3> centre{}, direction{0.0, 0.0, 1.0};
   std::optional<std::array<double, 3>> control_centre{}, control_direction{};
   std::string carries;  ///< part that the axis carries: table, head
 };
@@ -85,7 +87,9 @@ struct Specification {
   Campaign campaign;
   std::string manifest;  ///< text of the specification without the tables of the simulation
   std::uint64_t seed = 1;
-  std::vector<Effect> catalogue;  ///< the plugins' effects, and formulas
+  std::vector<Formula> hidden;                   ///< formulas that campaign.toml must not contain
+  std::vector<Effect> catalogue;                 ///< the plugins' effects, and formulas
+  const std::vector<Method>* methods = nullptr;  ///< the plugins' methods
   std::vector<CycleSpec> cycles;  ///< one per measurement, in the order of the measurements
   std::vector<EffectSpec> effects;
   std::vector<RotarySpec> rotaries;
@@ -102,16 +106,27 @@ config::Checked<Specification> read_specification(std::string_view text, const s
                                                   const std::vector<Effect>& effects,
                                                   const std::vector<Method>& methods);
 
+/// Returns the declaration of the part of a specification that campaign.toml does not contain. The
+/// functions below read or check its keys, as those of campaign/config/checks.h do.
+const config::Key& specification_file();
 /// Reads the [[cycle]] tables, one for each measurement, in the order of the measurements.
-std::vector<CycleSpec> read_cycles(config::TableReader& top, const Campaign& campaign,
-                                   const std::vector<Method>& methods, std::vector<Error>& errors);
+void read_cycles(config::TableReader&, const config::Key&, std::vector<CycleSpec>&, Specification&);
+void read_effects(config::TableReader&, const config::Key&, std::vector<EffectSpec>&,
+                  Specification&);
+void check_simulation(config::TableReader&, Specification&);
+void check_hidden(config::TableReader&, Formula&, Specification&);
+void check_rotary(config::TableReader&, RotarySpec&, Specification&);
+void check_square(config::TableReader&, SquareSpec&, Specification&);
 
-/// Reads [[simulation.rotary]] and [[simulation.square]].
-void read_things(config::TableReader& simulation, Specification& s);
-/// Returns the vectors of the array `key`, three numbers each, multiplied by `scale`. An array
-/// whose size is 0 or not a multiple of three is reported as an error to `reader`.
-std::vector<std::array<double, 3>> vectors_at(config::TableReader& reader, std::string_view key,
-                                              double scale);
+using Vector = std::array<double, 3>;
+/// Read the vectors of an array, three numbers each; directions become unit vectors. An array whose
+/// size is 0 or not a multiple of three is an error.
+void read_points(config::TableReader&, const config::Key&, std::vector<Vector>&);
+void read_directions(config::TableReader&, const config::Key&, std::vector<Vector>&);
+void read_point(config::TableReader&, const config::Key&, Vector&);
+void read_direction(config::TableReader&, const config::Key&, Vector&);
+void read_optional_point(config::TableReader&, const config::Key&, std::optional<Vector>&);
+void read_optional_direction(config::TableReader&, const config::Key&, std::optional<Vector>&);
 
 /// Return the quantity of a parameter on this kind of axis, and its key: "b_um", "a_um_per_m".
 Quantity quantity_on(const Effect::Parameter& parameter, bool rotary);

@@ -11,7 +11,7 @@ WORDS = {"backlash", "certificate", "circles", "csv", "dcc", "descriptions", "ec
          "scale", "square", "squareness", "straightness", "temperature"}
 # What may name some, where, and why.
 SAMPLES = ("engine/plugin_check/plugin_check_",)  # a sample for each kind of measurement
-SIMULATED = SAMPLES + ("engine/simulation/", "engine/campaign/config/keys/specification.cpp")  # the kinds that are simulated without a method
+SIMULATED = SAMPLES + ("engine/simulation/",)  # the kinds that are simulated without a method
 KNOWN = {
     "circle": SIMULATED + ("engine/laboratory/assessment/lines.cpp",),  # words of the worklist
     "pitch-curve": ("engine/laboratory/assessment/lines.cpp",),

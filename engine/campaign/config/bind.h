@@ -249,9 +249,6 @@ inline constexpr Key::Into file{table, nullptr, nullptr, &binding::tag<T>};
 /// also receives the struct that contains the member.
 template <auto read, Key::Holds holds, auto... path>
 inline constexpr Key::Into by = binding::by<read, holds, binding::Path<path...>>();
-/// Declares tables that the code reads by name, each into a T.
-template <class T>
-inline constexpr Key::Into tables_of{tables, nullptr, nullptr, &binding::tag<T>};
 
 /// Concatenates two arrays of keys.
 template <std::size_t n, std::size_t m>

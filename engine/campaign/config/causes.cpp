@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 
+#include "campaign/config/checks.h"
 #include "campaign/config/toml_reader.h"
 #include "nonio/sdk/axis_readings.h"
 
@@ -16,20 +17,6 @@ namespace {
 
 constexpr int values_of_a_range = 24;
 
-Cause read_cause(TableReader& reader) {
-  Cause c;
-  c.file = reader.file();
-  reader.fill(c);
-  c.formula.line = reader.line_of("expression");
-  for (const char* language : {"", "en"})
-    if (const auto found = c.titles.find(language); found != c.titles.end())
-      c.title = found->second;
-  if (c.title.empty() && reader.raw().contains("title"))
-    reader.error("title", "expected a text, or one for en among the texts by language");
-  reader.finish();
-  return c;
-}
-
 /// Returns the name of a file in messages: its path in the site or in the templates.
 std::string place_of(std::string_view name) {
   return name.starts_with(site_causes)
@@ -38,6 +25,24 @@ std::string place_of(std::string_view name) {
 }
 
 }  // namespace
+
+void check_cause(TableReader& reader, Cause& c, Causes& causes) {
+  c.file = reader.file();
+  c.formula.line = reader.line_of("expression");
+  for (const char* language : {"", "en"})
+    if (const auto found = c.titles.find(language); found != c.titles.end())
+      c.title = found->second;
+  if (c.title.empty() && reader.contains("title"))
+    reader.error("title", "expected a text, or one for en among the texts by language");
+  const auto [first, is_new] = causes.places->try_emplace(
+      c.formula.name, c.file + ":" + std::to_string(reader.line_of("name")));
+  if (!is_new)
+    reader.error("name", "\"" + c.formula.name + "\" is in " + first->second +
+                             " already; give one of them another name");
+  if (!reader.has_errors() && causes.of_site)
+    if (const auto effect = c.effect(false); !effect)
+      reader.error("expression", effect.error().message);
+}
 
 double Cause::price() const {
   return 2.0 * std::log(prior == "very-rare" ? 100.0 : prior == "rare" ? 10.0 : 1.0);
@@ -86,20 +91,10 @@ void read_file(const std::string& name, std::string_view text,
   for (Error& warning : warnings_of(rename_former_keys(*root, causes_file()), file))
     out.warnings.push_back(std::move(warning));
   TableReader top(*root, causes_file(), file, out.errors);
-  top.integer("format");
-  for (TableReader& reader : top.tables("cause")) {
-    Cause cause = read_cause(reader);
-    const auto [first, is_new] =
-        there.try_emplace(cause.formula.name, file + ":" + std::to_string(reader.line_of("name")));
-    if (!is_new)
-      reader.error("name", "\"" + cause.formula.name + "\" is in " + first->second +
-                               " already; give one of them another name");
-    if (!reader.has_errors() && name.starts_with(site_causes))
-      if (const auto effect = cause.effect(false); !effect)
-        reader.error("expression", effect.error().message);
-    out.causes.push_back(std::move(cause));
-  }
+  Causes causes{.places = &there, .of_site = name.starts_with(site_causes)};
+  top.fill(causes);
   top.finish();
+  std::move(causes.all.begin(), causes.all.end(), std::back_inserter(out.causes));
 }
 
 /// Returns the causes in these templates, with the errors and warnings of their files. The last

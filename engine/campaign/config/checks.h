@@ -46,6 +46,14 @@ bool given_before(const std::vector<T>& all, std::string T::*name) {
   return false;
 }
 
+/// The causes in one file, and the place of each cause in all files so far, by its name.
+struct Causes {
+  std::vector<Cause> all{};
+  std::map<std::string, std::string>* places = nullptr;
+  bool of_site = false;  ///< whether the formulas have to be tried
+};
+void check_cause(TableReader&, Cause&, Causes&);
+
 /// The entries in one of the files of site_logs.h.
 struct Entries {
   std::vector<Event> events;

@@ -66,8 +66,7 @@ struct Key {
   };
 
   /// Kind of value of a key, and the function that reads it into a member of the struct that the
-  /// table fills. bind.h makes it. A key that is made from `Holds` alone is only checked, unless
-  /// code reads it by name.
+  /// table fills. bind.h makes it. A key that is made from `Holds` alone is only checked.
   struct Into {
     Holds holds;
     void (*read)(TableReader&, const Key&, void* object) = nullptr;
@@ -148,13 +147,8 @@ const Key& machine_file();
 const Key& events_file();
 const Key& acknowledged_file();
 const Key& forgotten_file();
-/// Returns the declaration of SITE/users.toml, the accounts of a site's live page.
-const Key& users_file();
 /// Returns the declaration of causes/*.toml of the templates and of a site.
 const Key& causes_file();
-/// Returns the declaration of the part of a specification of `nonio model simulate` that
-/// campaign.toml does not contain.
-const Key& specification_file();
 /// Key that conditions name (`When::key`) for the kind of axis that a cycle moves. Files do not
 /// contain it: the code that reads cycles sets its value with `TableReader::settle`.
 inline constexpr std::string_view cycle_axis = "(axis)";

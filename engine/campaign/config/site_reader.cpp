@@ -161,9 +161,10 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   if (site.database && !site.database->register_schema.empty()) {
     const auto in_file = (*root)["certificate"]["register"].value_or(std::string());
     if (!in_file.empty())
-      top.table("database")
-          ->error("register", "[certificate] register states \"" + in_file +
-                                  "\"; expected the register here or there");
+      top.tables(*find_key(site_file().keys, "database"))
+          .front()
+          .error("register", "[certificate] register states \"" + in_file +
+                                 "\"; expected the register here or there");
     site.numbering.server = site.database;
     site.numbering.server->schema = site.database->register_schema;
   }

@@ -46,14 +46,6 @@ void TableReader::fill(void* object, const void* type) {
       check(key);
 }
 
-const Key& TableReader::find(std::string_view name, Key::Holds as) const {
-  const Key* key = find_key(declaration_->keys, name);
-  if (key == nullptr || key->holds != as)
-    throw std::logic_error(std::string(declaration_->name) + " (" + place(name) + "): " +
-                           (key == nullptr ? "read and not declared" : "read not as declared"));
-  return *key;
-}
-
 const toml::node* TableReader::take(const Key& key) {
   read_.push_back(&key);
   const toml::node* node = table_.get(key.name);
@@ -355,29 +347,6 @@ void TableReader::check(const Key& key) {
     default:
       throw std::logic_error(place(key.name) + ": declared without a member");
   }
-}
-
-std::string TableReader::text(std::string_view name) {
-  return value_of<std::string>(*this, find(name, Key::Holds::text)).value_or("");
-}
-std::optional<double> TableReader::number(std::string_view name) {
-  return value_of<double>(*this, find(name, Key::Holds::number));
-}
-std::optional<int> TableReader::integer(std::string_view name) {
-  return value_of<int>(*this, find(name, Key::Holds::whole));
-}
-std::optional<bool> TableReader::flag(std::string_view name) {
-  return value_of<bool>(*this, find(name, Key::Holds::flag));
-}
-std::optional<std::vector<double>> TableReader::numbers(std::string_view name) {
-  return number_list(find(name, Key::Holds::numbers));
-}
-std::optional<TableReader> TableReader::table(std::string_view name) {
-  auto all = tables(find(name, Key::Holds::table));
-  return all.empty() ? std::nullopt : std::optional(all.front());
-}
-std::vector<TableReader> TableReader::tables(std::string_view name) {
-  return tables(find(name, Key::Holds::tables));
 }
 
 std::vector<TableReader> TableReader::tables(const Key& key) {

@@ -16,8 +16,7 @@
 namespace nonio::config {
 
 /// Reads one table of a TOML file according to its declaration. Errors of the file are collected,
-/// not thrown. To read a key that is not declared, or is declared with another kind, is a
-/// programming error and throws std::logic_error.
+/// not thrown.
 class TableReader {
  public:
   /// Makes a reader of a whole file. `declaration` must outlive the reader.
@@ -31,15 +30,6 @@ class TableReader {
   void fill(T& object) {
     fill(&object, &binding::tag<T>);
   }
-
-  // Read keys that are declared without a member, by name.
-  std::string text(std::string_view key);
-  std::optional<double> number(std::string_view key);
-  std::optional<int> integer(std::string_view key);
-  std::optional<bool> flag(std::string_view key);
-  std::optional<std::vector<double>> numbers(std::string_view key);
-  std::optional<TableReader> table(std::string_view key);
-  std::vector<TableReader> tables(std::string_view key);
 
   /// Sets the value of `key` for conditions of the declaration, for tables that do not contain the
   /// key.
@@ -90,7 +80,6 @@ class TableReader {
   }
 
   void fill(void* object, const void* type);
-  const Key& find(std::string_view name, Key::Holds as) const;
   /// Returns the value of a key; null if it is missing, which is reported if the key is needed.
   const toml::node* take(const Key& key);
   bool holds(const When& when) const;

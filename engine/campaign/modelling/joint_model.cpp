@@ -6,10 +6,9 @@
 #include <map>
 #include <set>
 
-#include "campaign/modelling/model_verdict.h"
+#include "campaign/modelling/model_json.h"
 #include "nonio/math/distributions.h"
 #include "nonio/sdk/format.h"
-#include "platform/storage/json_values.h"
 
 namespace nonio::modelling {
 
@@ -119,16 +118,75 @@ std::pair<std::size_t, std::size_t> extremes(const model::JointEffect& e) {
   return out;
 }
 
-Json parameters_of(const std::vector<model::Parameter>& group) {
-  Json list = Json::array();
-  for (const model::Parameter& p : group) {
-    Json one = {{"name", p.name}, {"value", printed(p.value, p.quantity)}};
-    if (std::isfinite(p.u)) one["u"] = printed(p.u, p.quantity);
-    one["unit"] = unit_of(p.quantity).symbol;
-    if (p.shape) one["searched"] = true;
-    list.push_back(std::move(one));
+std::size_t most_severe(const std::vector<Together>& all) {
+  const auto rank = [](const Together& t) {
+    return t.explanation.verdict == model::Verdict::Kind::missing   ? 0
+           : t.explanation.verdict == model::Verdict::Kind::unknown ? 1
+                                                                    : 2;
+  };
+  return static_cast<std::size_t>(
+      std::min_element(all.begin(), all.end(),
+                       [&](const Together& a, const Together& b) { return rank(a) < rank(b); }) -
+      all.begin());
+}
+
+std::string sentence_of(const model::JointEffect& e, const Together& t,
+                        const config::TerminalWords& say) {
+  const Quantity q = t.deviation();
+  if (e.holds == Holds::shared)
+    return say("joint.shared",
+               {{"effect", e.effect}, {"value", value_text(e.groups.front(), e.size, q)}});
+  if (e.holds == Holds::changed) {
+    if (is_curve(e.groups[0]))
+      return say("joint.changed-curve", {{"effect", e.effect},
+                                         {"last", place_text(t, e.after - 1)},
+                                         {"first", place_text(t, e.after)},
+                                         {"value", value_text(e.groups[0], e.size, q)}});
+    const char* id = is_absent(e.groups[0])   ? "joint.appears"
+                     : is_absent(e.groups[1]) ? "joint.vanishes"
+                                              : "joint.changed";
+    return say(id, {{"effect", e.effect},
+                    {"last", place_text(t, e.after - 1)},
+                    {"first", place_text(t, e.after)},
+                    {"before", value_text(e.groups[0], e.size, q)},
+                    {"after", value_text(e.groups[1], e.size, q)}});
   }
-  return list;
+  const auto [low, high] = extremes(e);
+  if (is_curve(e.groups[low]))
+    return say("joint.own-curve",
+               {{"effect", e.effect}, {"value", value_text(e.groups[low], e.size, q)}});
+  return say("joint.own", {{"effect", e.effect},
+                           {"low", value_text(e.groups[low], e.size, q)},
+                           {"of-low", place_text(t, low)},
+                           {"high", value_text(e.groups[high], e.size, q)},
+                           {"of-high", place_text(t, high)}});
+}
+
+std::string sentence_of(const Together& t, const config::TerminalWords& say) {
+  const model::JointExplanation& x = t.explanation;
+  const Quantity q = t.deviation();
+  // an effect in many campaigns may be so small that it needs a further digit
+  constexpr int usual = 3, most = 5;
+  const auto text_of = [&](double v, int digits) { return short_text(printed(v, q), digits); };
+  const int digits = text_of(x.rms, usual) == text_of(x.rms_after, usual) ? most : usual;
+  const auto text = [&](double v) {
+    return text_of(v, digits) + " " + std::string(unit_of(q).symbol);
+  };
+  std::vector<std::string> names;
+  for (const model::JointEffect& e : x.effects) names.push_back(e.effect);
+  const config::TerminalWords::Parts parts{{"part", t.part},
+                                           {"count", std::to_string(t.campaigns.size())},
+                                           {"effects", storage::listed(names)},
+                                           {"before", text(x.rms)},
+                                           {"after", text(x.rms_after)},
+                                           {"floor", text(x.noise)}};
+  std::string out = say(x.verdict == model::Verdict::Kind::missing   ? "joint.missing"
+                        : x.verdict == model::Verdict::Kind::unknown ? "joint.unknown"
+                                                                     : "joint.nothing",
+                        parts);
+  if (x.verdict == model::Verdict::Kind::missing && !x.explains_all)
+    out += " " + say("joint.more", parts);
+  return out;
 }
 
 Json effect_json(const model::JointEffect& e, const Together& t, const config::TerminalWords& say) {
@@ -139,7 +197,7 @@ Json effect_json(const model::JointEffect& e, const Together& t, const config::T
   json["score"] = e.evidence;
   json["p"] = e.p;
   if (e.holds == Holds::shared) {
-    json["parameters"] = parameters_of(e.groups.front());
+    json["parameters"] = parameters_json(e.groups.front());
   } else {
     Json values = Json::array();
     for (std::size_t g = 0; g < e.groups.size(); ++g) {
@@ -148,7 +206,7 @@ Json effect_json(const model::JointEffect& e, const Together& t, const config::T
         one["campaign"] = t.campaigns[g];
       else
         one[g == 0 ? "to" : "from"] = t.campaigns[e.after - (g == 0 ? 1 : 0)];
-      if (!e.groups[g].empty()) one["parameters"] = parameters_of(e.groups[g]);
+      if (!e.groups[g].empty()) one["parameters"] = parameters_json(e.groups[g]);
       values.push_back(std::move(one));
     }
     json["values"] = std::move(values);
@@ -186,8 +244,12 @@ Json part_of_json(const Together& t, const config::TerminalWords& say) {
   storage::put(json, "noise_floor", x.noise, q);
   storage::put(json, "rms_after", x.rms_after, q);
   Json candidates = Json::array(), effects = Json::array();
-  for (const model::JointEffect& e : x.candidates)
-    if (e.evidence > 0.0) candidates.push_back(effect_json(e, t, say));
+  for (const model::JointEffect& e : x.candidates) {
+    if (!(e.evidence > 0.0)) continue;
+    Json one = effect_json(e, t, say);
+    if (candidates.size() < most_best) one["best"] = true;
+    candidates.push_back(std::move(one));
+  }
   json["candidates"] = std::move(candidates);
   Json verdict = {{"kind", to_text(x.verdict)}};
   Json same = Json::array(), differs = Json::array();
@@ -272,93 +334,20 @@ Expected<std::vector<Together>> explain_together(
   return out;
 }
 
-std::size_t most_severe(const std::vector<Together>& all) {
-  const auto rank = [](const Together& t) {
-    return t.explanation.verdict == model::Verdict::Kind::missing   ? 0
-           : t.explanation.verdict == model::Verdict::Kind::unknown ? 1
-                                                                    : 2;
-  };
-  return static_cast<std::size_t>(
-      std::min_element(all.begin(), all.end(),
-                       [&](const Together& a, const Together& b) { return rank(a) < rank(b); }) -
-      all.begin());
-}
-
-std::string sentence_of(const model::JointEffect& e, const Together& t,
-                        const config::TerminalWords& say) {
-  const Quantity q = t.deviation();
-  if (e.holds == Holds::shared)
-    return say("joint.shared",
-               {{"effect", e.effect}, {"value", value_text(e.groups.front(), e.size, q)}});
-  if (e.holds == Holds::changed) {
-    if (is_curve(e.groups[0]))
-      return say("joint.changed-curve", {{"effect", e.effect},
-                                         {"last", place_text(t, e.after - 1)},
-                                         {"first", place_text(t, e.after)},
-                                         {"value", value_text(e.groups[0], e.size, q)}});
-    const char* id = is_absent(e.groups[0])   ? "joint.appears"
-                     : is_absent(e.groups[1]) ? "joint.vanishes"
-                                              : "joint.changed";
-    return say(id, {{"effect", e.effect},
-                    {"last", place_text(t, e.after - 1)},
-                    {"first", place_text(t, e.after)},
-                    {"before", value_text(e.groups[0], e.size, q)},
-                    {"after", value_text(e.groups[1], e.size, q)}});
-  }
-  const auto [low, high] = extremes(e);
-  if (is_curve(e.groups[low]))
-    return say("joint.own-curve",
-               {{"effect", e.effect}, {"value", value_text(e.groups[low], e.size, q)}});
-  return say("joint.own", {{"effect", e.effect},
-                           {"low", value_text(e.groups[low], e.size, q)},
-                           {"of-low", place_text(t, low)},
-                           {"high", value_text(e.groups[high], e.size, q)},
-                           {"of-high", place_text(t, high)}});
-}
-
-std::string sentence_of(const Together& t, const config::TerminalWords& say) {
-  const model::JointExplanation& x = t.explanation;
-  const Quantity q = t.deviation();
-  // an effect in many campaigns may be so small that it needs a further digit
-  constexpr int usual = 3, most = 5;
-  const auto text_of = [&](double v, int digits) { return short_text(printed(v, q), digits); };
-  const int digits = text_of(x.rms, usual) == text_of(x.rms_after, usual) ? most : usual;
-  const auto text = [&](double v) {
-    return text_of(v, digits) + " " + std::string(unit_of(q).symbol);
-  };
-  std::vector<std::string> names;
-  for (const model::JointEffect& e : x.effects) names.push_back(e.effect);
-  const config::TerminalWords::Parts parts{{"part", t.part},
-                                           {"count", std::to_string(t.campaigns.size())},
-                                           {"effects", storage::listed(names)},
-                                           {"before", text(x.rms)},
-                                           {"after", text(x.rms_after)},
-                                           {"floor", text(x.noise)}};
-  std::string out = say(x.verdict == model::Verdict::Kind::missing   ? "joint.missing"
-                        : x.verdict == model::Verdict::Kind::unknown ? "joint.unknown"
-                                                                     : "joint.nothing",
-                        parts);
-  if (x.verdict == model::Verdict::Kind::missing && !x.explains_all)
-    out += " " + say("joint.more", parts);
-  return out;
-}
-
-std::string together_json(const std::vector<Together>& all, const config::TerminalWords& say,
-                          std::uint64_t seed, const std::vector<std::string>& left_out,
-                          const std::vector<Error>& errors) {
+Json together_json(const std::vector<Together>& all, const config::TerminalWords& say,
+                   std::uint64_t seed, const std::vector<std::string>& left_out,
+                   const std::vector<Error>& errors) {
   Json json = {{"schema", "nonio-explain/1"}};
-  if (!all.empty()) json.update(part_of_json(all[most_severe(all)], say));
-  if (all.size() > 1) {
-    Json parts = Json::array();
-    for (const Together& t : all) parts.push_back(part_of_json(t, say));
-    json["parts"] = std::move(parts);
-  }
+  Json parts = Json::array();
+  for (const Together& t : all) parts.push_back(part_of_json(t, say));
+  if (!all.empty()) json.update(parts[most_severe(all)]);
+  if (all.size() > 1) json["parts"] = std::move(parts);
   if (!left_out.empty()) json["left_out"] = left_out;
   json["seed"] = seed;
   Json list = Json::array();
   for (const Error& e : errors) list.push_back(storage::to_json(e));
   if (!list.empty()) json["errors"] = std::move(list);
-  return storage::dump(json);
+  return json;
 }
 
 }  // namespace nonio::modelling

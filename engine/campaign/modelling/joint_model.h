@@ -7,6 +7,7 @@
 #include "campaign/modelling/campaign_model.h"
 #include "campaign/modelling/model_words.h"
 #include "nonio/model/joint.h"
+#include "platform/storage/json_values.h"
 
 namespace nonio::modelling {
 
@@ -30,18 +31,9 @@ Expected<std::vector<Together>> explain_together(
     const std::vector<const reading::ReadCampaign*>& campaigns, std::uint64_t seed,
     std::vector<std::string>& left_out);
 
-/// Returns the index of the part with the most severe verdict.
-std::size_t most_severe(const std::vector<Together>& all);
-
-/// Returns a sentence with the values of an effect in the campaigns.
-std::string sentence_of(const model::JointEffect& effect, const Together& together,
-                        const config::TerminalWords& say);
-/// Returns the verdict as a sentence.
-std::string sentence_of(const Together& together, const config::TerminalWords& say);
-
 /// Returns the JSON nonio-explain/1 of several campaigns (docs/json.md).
-std::string together_json(const std::vector<Together>& all, const config::TerminalWords& say,
-                          std::uint64_t seed, const std::vector<std::string>& left_out,
-                          const std::vector<Error>& errors);
+storage::Json together_json(const std::vector<Together>& all, const config::TerminalWords& say,
+                            std::uint64_t seed, const std::vector<std::string>& left_out,
+                            const std::vector<Error>& errors);
 
 }  // namespace nonio::modelling

@@ -2,17 +2,18 @@
 #include "campaign/modelling/model_history.h"
 
 #include "platform/storage/files.h"
-#include "platform/storage/json_values.h"
+#include "platform/storage/json_numbers.h"
 
 namespace nonio::modelling {
 
 namespace {
 
-std::optional<double> get(const storage::Json& json, const char* name, Quantity q) {
-  const auto found = json.find(storage::key(name, q));
-  if (found == json.end()) return std::nullopt;
-  return found->get<double>() / unit_of(q).per_si;
-}
+constexpr std::pair<const char*, std::optional<double> ModelStep::*> step_numbers[] = {
+    {"rms_before", &ModelStep::rms_before},
+    {"rms_after", &ModelStep::rms_after},
+    {"cv_rms_before", &ModelStep::cv_before},
+    {"cv_rms_after", &ModelStep::cv_after},
+    {"noise_floor", &ModelStep::floor}};
 
 ModelStep step_of(const storage::Json& json) {
   ModelStep step;
@@ -29,14 +30,11 @@ ModelStep step_of(const storage::Json& json) {
   }
   step.effect = json.at("effect").get<std::string>();
   step.added = action == "add";
-  if (json.contains("rms_before_arcsec") || json.contains("rms_after_arcsec"))
-    step.quantity = Quantity::angular_deviation;
-  const Quantity q = step.quantity;
-  step.rms_before = get(json, "rms_before", q);
-  step.rms_after = get(json, "rms_after", q);
-  step.cv_before = get(json, "cv_rms_before", q);
-  step.cv_after = get(json, "cv_rms_after", q);
-  step.floor = get(json, "noise_floor", q);
+  for (const auto& [name, member] : step_numbers)
+    if (const auto number = storage::get(json, name)) {
+      step.*member = number->value;
+      step.quantity = number->quantity;
+    }
   return step;
 }
 
@@ -52,13 +50,10 @@ std::string history_line(const ModelStep& step) {
     json = {{"action", "period"}, {"axis", step.period->axis}, {"period_mm", step.period->mm}};
   else
     json = {{"action", step.added ? "add" : "drop"}, {"effect", step.effect}};
-  storage::put(json, "rms_before", step.rms_before, step.quantity);
-  storage::put(json, "rms_after", step.rms_after, step.quantity);
-  storage::put(json, "cv_rms_before", step.cv_before, step.quantity);
-  storage::put(json, "cv_rms_after", step.cv_after, step.quantity);
-  storage::put(json, "noise_floor", step.floor, step.quantity);
+  for (const auto& [name, member] : step_numbers)
+    storage::put(json, name, step.*member, step.quantity);
   if (!step.why.empty()) json["why"] = step.why;
-  return json.dump(-1, ' ', false, storage::Json::error_handler_t::replace) + "\n";
+  return storage::dump_line(json) + "\n";
 }
 
 Expected<std::vector<ModelStep>> parse_history(std::string_view text) {

@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "campaign/modelling/after_table.h"
+#include "campaign/modelling/held_terms.h"
 #include "campaign/modelling/model_history.h"
-#include "platform/storage/json_values.h"
 
 namespace nonio::modelling {
 
@@ -20,25 +21,11 @@ bool is_stated(const model::Parameter& p, const std::vector<model::Term>& terms)
          });
 }
 
-storage::Json parameters_json(const std::vector<model::Parameter>& parameters,
-                              const std::vector<model::Term>* terms) {
-  storage::Json list = storage::Json::array();
-  for (const model::Parameter& p : parameters) {
-    storage::Json one = storage::Json::object();
-    if (terms != nullptr) one["effect"] = p.effect;
-    one["name"] = p.name;
-    const double value = printed(p.value, p.quantity), u = printed(p.u, p.quantity);
-    if (std::isfinite(value)) one["value"] = value;
-    if (std::isfinite(u)) one["u"] = u;
-    one["unit"] = unit_of(p.quantity).symbol;
-    if (!p.group.empty()) one["group"] = p.group;
-    if (p.shape) one["searched"] = true;
-    if (p.held) one["held"] = true;
-    if (terms != nullptr && is_stated(p, *terms)) one["stated"] = true;
-    if (!p.shape && std::fabs(p.value) < 2.0 * p.u) one["below_uncertainty"] = true;
-    list.push_back(std::move(one));
-  }
-  return list;
+/// Returns the value of a parameter that the model fixes, as it is written there: "12.3 arcsec".
+std::string written_value(const PartModel& part, const model::Parameter& p) {
+  for (const PartModel::Held& held : part.held)
+    if (held.parameter.effect == p.effect) return *entry_of(held.text).value;
+  return {};
 }
 
 storage::Json places_json(const std::vector<model::Place>& places, const ModelWords& words,
@@ -92,10 +79,16 @@ storage::Json suspects_json(const std::vector<model::Suspect>& suspects, const P
   return list;
 }
 
-void put_floor(storage::Json& json, const model::Comparison& c, Quantity q) {
-  if (!c.floor) return;
-  storage::put(json, "noise_floor", c.floor->s, q);
-  storage::put(json, "noise_floor_u", c.floor->u, q);
+/// Writes the noise floor, or why it is not known.
+void put_floor(storage::Json& json, const model::Comparison& c, const PartModel& part) {
+  if (c.floor) {
+    storage::put(json, "noise_floor", c.floor->s, part.deviation());
+    storage::put(json, "noise_floor_u", c.floor->u, part.deviation());
+    return;
+  }
+  const std::vector<std::uint32_t>& run = part.part.table.run;
+  const bool runs = std::adjacent_find(run.begin(), run.end(), std::not_equal_to<>()) != run.end();
+  json["noise_floor_unknown"] = runs ? "short-runs" : "no-repeats";
 }
 
 const char* zero_text(model::Noise::Zero zero) {
@@ -150,7 +143,7 @@ storage::Json model_json(const PartModel& part, const model::Comparison& c,
   storage::Json json = {{"effects", part.names()}};
   storage::put(json, "rms", c.fit.rms, part.deviation());
   storage::put(json, "cv_rms", c.cv_rms, part.deviation());
-  json["parameters"] = parameters_json(c.fit.parameters, &c.fit.terms);
+  json["parameters"] = parameters_json(c.fit.parameters, &part, c.fit.terms);
   storage::Json curves = storage::Json::array();
   for (std::size_t t = 0; t < c.fit.terms.size(); ++t)
     if (const auto curve = curve_of(part, c.fit, t))
@@ -161,6 +154,7 @@ storage::Json model_json(const PartModel& part, const model::Comparison& c,
 
 void put_part(storage::Json& json, const PartModel& part) {
   json["axis"] = part.part.name;
+  json["kind"] = kind_of(part.part);
   if (part.part.kind == model::Part::Kind::course) json["part"] = part.part.name;
   json["measurements"] = part.part.measurements;
   json["observations"] = part.part.table.size();
@@ -192,6 +186,32 @@ void put_after_table(storage::Json& json, const PartModel& part, const model::Fi
   json["after_table"] = std::move(one);
 }
 
+/// Returns the warnings about a fit as sentences: values below their uncertainty, gains that are
+/// too large, parameters that are not identifiable, positions or orders that are not stated,
+/// interpolated temperatures, time constants of thermal tests, and noise that is not independent or
+/// not constant.
+std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,
+                                     const ModelWords& words) {
+  std::vector<std::string> out;
+  for (const std::string& effect : below_uncertainty(fit))
+    out.push_back(words.below_uncertainty(effect));
+  for (const model::Parameter& p : fit.parameters)
+    if (p.quantity == Quantity::deviation_per_kelvin &&
+        std::fabs(p.value) - 2.0 * p.u > model::most_per_kelvin)
+      out.push_back(words.gain_too_large(p));
+  for (std::size_t t = 0; t < fit.lost.size(); ++t)
+    if (fit.lost[t] > 0) out.push_back(words.not_identifiable(fit.terms[t].name(), fit.lost[t]));
+  if (part.part.kind == model::Part::Kind::space && model::has_unstated_position(part.part))
+    out.push_back(words.has_unstated_position());
+  for (const std::string& measurement : part.part.order_assumed)
+    out.push_back(words.order_assumed(measurement));
+  if (!part.part.table.order_known) out.push_back(words.order_unknown());
+  if (part.interpolated.count > 0) out.push_back(words.temperature_interpolated(part.interpolated));
+  for (std::string& said : words.time_constants(part, fit)) out.push_back(std::move(said));
+  for (std::string& said : words.noise(fit, part)) out.push_back(std::move(said));
+  return out;
+}
+
 storage::Json compared_json(const Compared& c, const Campaign& campaign, const ModelWords& words,
                             Extent extent = Extent::whole) {
   const Quantity q = c.part.deviation();
@@ -201,7 +221,7 @@ storage::Json compared_json(const Compared& c, const Campaign& campaign, const M
   json["model"] = model_json(c.part, comparison, words);
   storage::put(json, "rms", comparison.fit.rms, q);
   storage::put(json, "cv_rms", comparison.cv_rms, q);
-  put_floor(json, comparison, q);
+  put_floor(json, comparison, c.part);
   put_noise(json, comparison.fit, q);
   storage::put(json, "s", comparison.fit.s, q);
   json["redundancy"] = comparison.fit.redundancy;
@@ -238,7 +258,7 @@ storage::Json candidate_json(const model::Candidate& c, const PartModel& part, d
   storage::put(json, "score_alone", c.alone, Quantity::number);
   storage::put(json, "score_within", c.within, Quantity::number);
   if (c.term.price > 0.0) storage::put(json, "prior_price", c.term.price, Quantity::number);
-  json["parameters"] = parameters_json(c.parameters, nullptr);
+  json["parameters"] = parameters_json(c.parameters);
   json["aliases"] = c.aliases;
   if (!c.with_descriptions.empty())
     json["with_descriptions"] = json["beside"] = c.with_descriptions;
@@ -330,14 +350,23 @@ storage::Json verdict_json(const Explained& e, const ModelWords& words) {
   return json;
 }
 
-storage::Json what_if_json(const std::vector<model::Foresight>& all) {
+/// Returns what one more run would change; `now` are the parameters of the present fit.
+storage::Json what_if_json(const std::vector<model::Foresight>& all,
+                           const std::vector<model::Parameter>& now = {}) {
   storage::Json list = storage::Json::array();
   for (const model::Foresight& one : all) {
     storage::Json parameters = storage::Json::array(), evidence = storage::Json::array();
-    for (const auto& f : one.parameters)
-      parameters.push_back({{"effect", f.effect},
-                            {"name", f.parameter},
-                            {"factor", printed(f.factor, Quantity::ratio)}});
+    for (const auto& f : one.parameters) {
+      storage::Json of = {{"effect", f.effect},
+                          {"name", f.parameter},
+                          {"factor", printed(f.factor, Quantity::ratio)}};
+      for (const model::Parameter& p : now)
+        if (p.effect == f.effect && p.name == f.parameter)
+          of.update({{"u", printed(p.u, p.quantity)},
+                     {"then", printed(p.u * f.factor, p.quantity)},
+                     {"unit", unit_of(p.quantity).symbol}});
+      parameters.push_back(std::move(of));
+    }
     for (const auto& x : one.evidence)
       evidence.push_back({{"effect", x.effect},
                           {"score", printed(x.now, Quantity::ratio)},
@@ -373,7 +402,6 @@ storage::Json statements_json(const std::vector<model::Statement>& statements,
 /// effects are not identifiable separately.
 void put_course(storage::Json& json, const PartModel& part, const model::Explanation& e) {
   if (part.part.kind != model::Part::Kind::course) return;
-  json["part"] = part.part.name;
   storage::Json cv = {{"kind", "blocks"}, {"n", model::course_blocks}};
   storage::put(cv, "rms", e.comparison.cv_rms, part.deviation());
   json["cv"] = std::move(cv);
@@ -387,23 +415,30 @@ void put_course(storage::Json& json, const PartModel& part, const model::Explana
   json["indistinguishable"] = std::move(groups);
 }
 
-void put_explained(storage::Json& json, const Explained& e, const Campaign& campaign,
-                   const ModelWords& words) {
+storage::Json explained_json(const Explained& e, const Campaign& campaign,
+                             const ModelWords& words) {
   const model::Explanation& x = e.explanation;
   const Quantity q = e.part.deviation();
-  json["observations"] = e.part.part.table.size();
+  storage::Json json = storage::Json::object();
+  put_part(json, e.part);
   put_course(json, e.part, x);
   json["model"] = model_json(e.part, x.comparison, words);
-  put_floor(json, x.comparison, q);
+  put_floor(json, x.comparison, e.part);
   put_noise(json, x.comparison.fit, q);
   put_lack_of_fit(json, x.comparison, q, words);
   json["fails"] = places_json(x.fails, words, q);
   storage::Json candidates = storage::Json::array(), unseen = storage::Json::array();
-  for (const model::Candidate& c : x.candidates)
-    if (is_ranked(c))
-      candidates.push_back(candidate_json(c, e.part, x.comparison.fit.rms, words));
-    else
+  for (const model::Candidate& c : x.candidates) {
+    if (!is_ranked(c)) {
       unseen.push_back(unseen_json(c, e.part, campaign, words));
+      continue;
+    }
+    storage::Json one = candidate_json(c, e.part, x.comparison.fit.rms, words);
+    const bool is_together =
+        std::find(x.together.begin(), x.together.end(), c.term.name()) != x.together.end();
+    if (c.score > 0.0 && (candidates.size() < most_best || is_together)) one["best"] = true;
+    candidates.push_back(std::move(one));
+  }
   json["candidates"] = std::move(candidates);
   json["unseen"] = std::move(unseen);
   json["together"] = x.together;
@@ -436,13 +471,8 @@ void put_explained(storage::Json& json, const Explained& e, const Campaign& camp
   }
   json["suspects"] = suspects_json(x.comparison.suspects, e.part, campaign, words);
   json["warnings"] = warnings_of(e.part, x.comparison.fit, words);
-  if (e.what_if) json["what_if"] = what_if_json(*e.what_if);
-}
-
-storage::Json steps_json(const std::vector<ModelStep>& steps) {
-  storage::Json list = storage::Json::array();
-  for (const ModelStep& step : steps) list.push_back(storage::parse(history_line(step)));
-  return list;
+  if (e.what_if) json["what_if"] = what_if_json(*e.what_if, x.comparison.fit.parameters);
+  return json;
 }
 
 void put_trouble(storage::Json& json, const std::vector<std::string>& warnings,
@@ -455,26 +485,27 @@ void put_trouble(storage::Json& json, const std::vector<std::string>& warnings,
 
 }  // namespace
 
-std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,
-                                     const ModelWords& words) {
-  std::vector<std::string> out;
-  for (const std::string& effect : below_uncertainty(fit))
-    out.push_back(words.below_uncertainty(effect));
-  for (const model::Parameter& p : fit.parameters)
-    if (p.quantity == Quantity::deviation_per_kelvin &&
-        std::fabs(p.value) - 2.0 * p.u > model::most_per_kelvin)
-      out.push_back(words.gain_too_large(p));
-  for (std::size_t t = 0; t < fit.lost.size(); ++t)
-    if (fit.lost[t] > 0) out.push_back(words.not_identifiable(fit.terms[t].name(), fit.lost[t]));
-  if (part.part.kind == model::Part::Kind::space && model::has_unstated_position(part.part))
-    out.push_back(words.has_unstated_position());
-  for (const std::string& measurement : part.part.order_assumed)
-    out.push_back(words.order_assumed(measurement));
-  if (!part.part.table.order_known) out.push_back(words.order_unknown());
-  if (part.interpolated.count > 0) out.push_back(words.temperature_interpolated(part.interpolated));
-  for (std::string& said : words.time_constants(part, fit)) out.push_back(std::move(said));
-  for (std::string& said : words.noise(fit, part)) out.push_back(std::move(said));
-  return out;
+storage::Json parameters_json(const std::vector<model::Parameter>& parameters,
+                              const PartModel* part, const std::vector<model::Term>& terms) {
+  storage::Json list = storage::Json::array();
+  for (const model::Parameter& p : parameters) {
+    storage::Json one = storage::Json::object();
+    if (part != nullptr) one["effect"] = p.effect;
+    one["name"] = p.name;
+    const double value = printed(p.value, p.quantity), u = printed(p.u, p.quantity);
+    if (std::isfinite(value))
+      one["value"] = p.quantity == Quantity::count ? Json(std::llround(value)) : Json(value);
+    if (std::isfinite(u)) one["u"] = u;
+    one["unit"] = unit_of(p.quantity).symbol;
+    if (!p.group.empty()) one["group"] = p.group;
+    if (p.shape) one["searched"] = true;
+    if (p.held) one["held"] = true;
+    if (p.held && part != nullptr) one["written"] = written_value(*part, p);
+    if (is_stated(p, terms)) one["stated"] = true;
+    if (!p.shape && std::fabs(p.value) < 2.0 * p.u) one["below_uncertainty"] = true;
+    list.push_back(std::move(one));
+  }
+  return list;
 }
 
 std::string part_json(const Compared& compared, const Campaign& campaign, const ModelWords& words,
@@ -484,62 +515,61 @@ std::string part_json(const Compared& compared, const Campaign& campaign, const 
 
 std::string part_json(const Explained& explained, const Campaign& campaign,
                       const ModelWords& words) {
-  storage::Json one = storage::Json::object();
-  put_part(one, explained.part);
-  put_explained(one, explained, campaign, words);
-  return storage::dump(one);
+  return storage::dump(explained_json(explained, campaign, words));
 }
 
-std::string compare_json(const std::vector<Compared>& all, const Campaign& campaign,
-                         const ModelWords& words, const std::vector<std::string>& warnings,
-                         const std::vector<Error>& errors) {
+storage::Json steps_json(const std::vector<ModelStep>& steps) {
+  storage::Json list = storage::Json::array();
+  for (const ModelStep& step : steps) list.push_back(storage::parse(history_line(step)));
+  return list;
+}
+
+storage::Json compare_json(const std::vector<Compared>& all, const Campaign& campaign,
+                           const ModelWords& words, const std::vector<std::string>& warnings,
+                           const std::vector<Error>& errors) {
   storage::Json json = {{"schema", "nonio-compare/1"}, {"campaign", campaign.id}};
   json["model"] = {{"effects", campaign.model}};
   storage::Json parts = storage::Json::array();
   for (const Compared& c : all) parts.push_back(compared_json(c, campaign, words));
   json["parts"] = std::move(parts);
   put_trouble(json, warnings, errors);
-  return storage::dump(json);
+  return json;
 }
 
 std::string foresight_json(const std::vector<model::Foresight>& all) {
   return storage::dump(what_if_json(all));
 }
 
-std::string explain_json(const std::vector<Explained>& all, const Campaign& campaign,
-                         const ModelWords& words, std::uint64_t seed,
-                         const std::vector<ModelStep>& steps,
-                         const std::vector<std::string>& warnings,
-                         const std::vector<Error>& errors) {
+storage::Json explain_json(const std::vector<Explained>& all, const Campaign& campaign,
+                           const ModelWords& words, std::uint64_t seed,
+                           const std::vector<ModelStep>& steps,
+                           const std::vector<std::string>& warnings,
+                           const std::vector<Error>& errors) {
   storage::Json json = {{"schema", "nonio-explain/1"}, {"campaign", campaign.id}};
-  if (!all.empty()) {
-    put_explained(json, all[most_severe(all)], campaign, words);
-    json["axis"] = all[most_severe(all)].part.part.name;
-  }
+  storage::Json parts = storage::Json::array();
+  for (const Explained& e : all) parts.push_back(explained_json(e, campaign, words));
+  if (!all.empty()) json.update(parts[most_severe(all)]);
   // displacements over time are written as parts even if there is only one
-  if (all.size() != 1 || all.front().part.part.kind == model::Part::Kind::course) {
-    storage::Json parts = storage::Json::array();
-    for (const Explained& e : all) {
-      storage::Json one = storage::Json::object();
-      put_part(one, e.part);
-      put_explained(one, e, campaign, words);
-      parts.push_back(std::move(one));
-    }
+  if (all.size() != 1 || all.front().part.part.kind == model::Part::Kind::course)
     json["parts"] = std::move(parts);
-  }
   json["seed"] = seed;
   if (!steps.empty()) json["steps"] = steps_json(steps);
   put_trouble(json, warnings, errors);
-  return storage::dump(json);
+  return json;
 }
 
-std::string change_json(const Change& change, const Campaign& campaign, const ModelWords& words) {
+storage::Json parts_of(const storage::Json& document) {
+  return document.contains("parts") ? document.at("parts") : storage::Json::array({document});
+}
+
+storage::Json change_json(const Change& change, const Campaign& campaign, const ModelWords& words) {
   storage::Json json = {{"schema", "nonio-model/1"}, {"campaign", campaign.id}};
   json["step"] = storage::parse(history_line(change.step));
   json["effects"] = change.effects;
+  if (!change.no_before.empty()) json["no_before"] = change.no_before;
   if (change.before) json["before"] = compared_json(*change.before, campaign, words);
   if (change.after) json["after"] = compared_json(*change.after, campaign, words);
-  return storage::dump(json);
+  return json;
 }
 
 }  // namespace nonio::modelling

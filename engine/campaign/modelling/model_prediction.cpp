@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "campaign/modelling/model_prediction.h"
 
-#include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
 
 namespace nonio::modelling {
@@ -59,8 +58,8 @@ Expected<std::vector<Predicted>> predictions(const reading::ReadCampaign& seen,
   return out;
 }
 
-std::string predict_json(const std::vector<Predicted>& all, const Campaign& seen,
-                         const Campaign& unseen, const ModelWords& words, bool zero_kept) {
+storage::Json predict_json(const std::vector<Predicted>& all, const Campaign& seen,
+                           const Campaign& unseen, const ModelWords& words, bool zero_kept) {
   storage::Json json = {{"schema", "nonio-predict/1"},
                         {"campaign", unseen.id},
                         {"model_of", seen.id},
@@ -88,7 +87,7 @@ std::string predict_json(const std::vector<Predicted>& all, const Campaign& seen
     parts.push_back(std::move(part));
   }
   json["parts"] = std::move(parts);
-  return storage::dump(json);
+  return json;
 }
 
 }  // namespace nonio::modelling

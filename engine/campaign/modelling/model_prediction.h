@@ -6,6 +6,7 @@
 
 #include "campaign/modelling/model_words.h"
 #include "nonio/model/prediction.h"
+#include "platform/storage/json_values.h"
 
 /// Applies the model of one campaign to the readings of another campaign.
 namespace nonio::modelling {
@@ -25,7 +26,7 @@ Expected<std::vector<Predicted>> predictions(const reading::ReadCampaign& seen,
                                              const reading::ReadCampaign& unseen, bool zero_kept);
 
 /// Returns the JSON nonio-predict/1 (docs/json.md).
-std::string predict_json(const std::vector<Predicted>& all, const Campaign& seen,
-                         const Campaign& unseen, const ModelWords& words, bool zero_kept);
+storage::Json predict_json(const std::vector<Predicted>& all, const Campaign& seen,
+                           const Campaign& unseen, const ModelWords& words, bool zero_kept);
 
 }  // namespace nonio::modelling

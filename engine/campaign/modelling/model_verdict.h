@@ -45,6 +45,9 @@ struct Correlated {
 };
 std::vector<Correlated> correlated(const model::Fit& fit);
 
+/// Largest number of candidates that the JSON marks as best, in addition to those of the best set.
+inline constexpr std::size_t most_best = 5;
+
 /// Whether a candidate has a score, so that it can be ranked; these readings cannot show the
 /// others.
 bool is_ranked(const model::Candidate& candidate);

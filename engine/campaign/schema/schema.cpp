@@ -564,28 +564,8 @@ std::string campaign_schema(const loader::Plugins& plugins) {
   return SchemaWriter(plugins).write(config::CampaignKeys(plugins.methods()).file());
 }
 
-std::string site_schema(const loader::Plugins& plugins) {
-  return SchemaWriter(plugins).write(config::site_file());
-}
-
-std::string machine_schema(const loader::Plugins& plugins) {
-  return SchemaWriter(plugins).write(config::machine_file());
-}
-
-std::string events_schema(const loader::Plugins& plugins) {
-  return SchemaWriter(plugins).write(config::events_file());
-}
-
-std::string acknowledged_schema(const loader::Plugins& plugins) {
-  return SchemaWriter(plugins).write(config::acknowledged_file());
-}
-
-std::string forgotten_schema(const loader::Plugins& plugins) {
-  return SchemaWriter(plugins).write(config::forgotten_file());
-}
-
-std::string users_schema(const loader::Plugins& plugins) {
-  return SchemaWriter(plugins).write(config::users_file());
+std::string file_schema(const config::Key& file, const loader::Plugins& plugins) {
+  return SchemaWriter(plugins).write(file);
 }
 
 }  // namespace nonio::schema

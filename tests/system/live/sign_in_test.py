@@ -77,6 +77,7 @@ class SignIn(LiveTest):
             (self.site / "users.toml").write_text(other)
             error = nonio("serve", self.site, expect=2).stderr
             self.assertIn("users.toml", error)
+            self.assertIn("--hash-password", error)
             self.assertNotIn("secret password", error)
         (self.site / "users.toml").write_text('format = 1\n[[user]]\naccount = "a"\nname = "A"\nrole = "view"\n')
         self.assertIn("--hash-password", nonio("serve", self.site, expect=2).stderr, "no person could sign in")

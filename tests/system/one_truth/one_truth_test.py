@@ -327,6 +327,81 @@ class Samples(Truth):
             self.check_site(site, out)
 
 
+def leaves(value):
+    """Every text and number in a JSON value."""
+    if isinstance(value, (dict, list)):
+        for inner in value.values() if isinstance(value, dict) else value:
+            yield from leaves(inner)
+    else:
+        yield value
+
+
+def unmatched(line, document):
+    """The numbers of a printed line that are not in the JSON to the printed digits, without those inside of its texts."""
+    texts = {s for s in leaves(document) if isinstance(s, str) and re.search(r"[^\W\d]", s)}
+    for s in sorted((s for s in texts if s in line), key=len, reverse=True):
+        line = re.sub(r"(?<!\w)%s(?!\w)" % re.escape(s), " ", line)
+    numbers = [v for v in leaves(document) if isinstance(v, (int, float)) and not isinstance(v, bool)]
+    for token in re.findall(r"< 0\.0001|-?\d+(?:\.\d+)?(?:e[-+]?\d+)?", line):
+        decimals = len(token.partition(".")[2])
+        zeros = 0 if "." in token else len(token) - len(token.rstrip("0"))
+        half = 0.5 * 10.0 ** (zeros - decimals) * (1 + 1e-9)
+        if not any(v < 1e-4 if token.startswith("<") else abs(v - float(token)) <= half for v in numbers):
+            yield token
+
+
+class Terminal(unittest.TestCase):
+    """9. compare, explain and model show print no number that is not in their JSON."""
+
+    def check(self, printed, document):
+        """Every number of the text is in the document; returns the parts of the document."""
+        parts = document.get("parts", [document])
+        for line in printed.splitlines():
+            self.assertEqual(list(unmatched(line, document)), [], line)
+        for name, label in (("rms", "RMS"), ("noise_floor", "noise floor")):
+            shown = [float(v) for v in re.findall(r"(?m)^  %s +(-?[\d.]+(?:e-?\d+)?) " % label, printed)]
+            wanted = [v for part in parts for k, v in (part["model"] if name == "rms" else part).items() if k in (f"{name}_um", f"{name}_arcsec")]
+            self.assertEqual(len(shown), len(wanted), label)
+            for a, b in zip(shown, wanted):
+                self.assertAlmostEqual(a, b, delta=0.006 * abs(b) + 1e-12, msg=label)
+        return parts
+
+    def text_of(self, command, folder, *options):
+        return run("model", command, folder, "--quiet", *options, expect=(0, 1, 2)).stdout.replace(str(folder), folder.parent.name)
+
+    def json_of(self, command, folder, *options):
+        text = run("model", command, folder, "--quiet", "--json", *options, expect=(0, 1, 2)).stdout
+        return json.loads(text) if text else None
+
+    def test_all_samples(self):
+        folders = sorted(p.parent for place in ("site", "tutorial") for p in (SOURCE / "samples" / place).rglob("campaign.toml"))
+        self.assertGreater(len(folders), 30)
+        for folder in folders:
+            with self.subTest(campaign=folder.name):
+                compared, explained = self.json_of("compare", folder), self.json_of("explain", folder, "--what-if")
+                if compared is None:  # nothing that a model explains was measured
+                    self.assertEqual([explained, self.text_of("compare", folder), self.text_of("explain", folder)], [None, "", ""])
+                    continue
+                self.check(self.text_of("compare", folder), compared)
+                self.check(re.split(r"(?m)^history$", self.text_of("show", folder))[0], compared)
+                parts = self.check(self.text_of("explain", folder, "--all", "--what-if"), explained)
+                self.best_are_shown(self.text_of("explain", folder), parts)
+
+    def best_are_shown(self, printed, parts):
+        """Without --all, the candidates are those that the JSON marks; of the others there is the number."""
+        with_evidence = [c for part in parts for c in part.get("candidates", []) if c.get("score", 0) > 0]
+        best = [c["effect"] for c in with_evidence if c.get("best")]
+        self.assertEqual(re.findall(r"(?m)^  (\S+:\S+) +#* +[-\d]", printed), best)
+        self.assertEqual(sum(map(int, re.findall(r"(\d+)[^\n\d]*\(--all\)", printed))), len(with_evidence) - len(best))
+
+    def test_several_campaigns(self):
+        for folder in sorted((SOURCE / "samples/laboratory").glob("LAB-*"))[:3]:
+            with self.subTest(machine=folder.name):
+                printed = self.text_of("explain", folder)
+                parts = self.check(printed, self.json_of("explain", folder))
+                self.assertIn(parts[0]["verdict"]["says"], printed)
+
+
 class Certificates(Truth):
     """The certificate of samples/certificates, issued with a key of its own."""
 

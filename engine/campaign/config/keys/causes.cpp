@@ -43,11 +43,11 @@ constexpr Key cause_keys[] = {
 
 constexpr Key causes_keys[] = {
     format_key,
-    {"cause", tables_of<Cause>, "A cause, [[cause]].", cause_keys},
+    {"cause", checked<check_cause, &Causes::all>, "A cause, [[cause]].", cause_keys},
 };
 
-constexpr Key causes_toml = {"causes/*.toml", table, "Causes that `nonio model explain` searches.",
-                             causes_keys};
+constexpr Key causes_toml = {"causes/*.toml", file<Causes>,
+                             "Causes that `nonio model explain` searches.", causes_keys};
 
 }  // namespace declared
 

@@ -95,27 +95,8 @@ constexpr Key forgotten_toml = {"forgotten.toml", file<Entries>,
                                 "Campaigns and other files of a site that were removed on purpose.",
                                 forgotten_file_keys};
 
-constexpr Choice roles[] = {{"view"}, {"measure"}, {"approve"}, {"administer"}};
-constexpr Key user_keys[] = {
-    {"account", text, "Account, as the reverse proxy states it or the person types it.", required},
-    {"name", text, "Name of the person, as documents print it.", required},
-    {"role", text, "What the person may do; each role may do what those before it may.", required,
-     roles},
-    {"password", text, "Hash of the password, as `nonio serve SITE --hash-password` prints it.",
-     secret, spelled({.letters = "a-zA-Z0-9$=,+/", .begins = "$argon2id$v=19$m="})},
-};
-
-constexpr Key users_file_keys[] = {
-    format_key,
-    {"user", tables, "Users of the page of a site, [[user]].", user_keys},
-};
-
-constexpr Key users_toml = {"users.toml", table, "Who may do what on the page of a site.",
-                            users_file_keys};
-
 }  // namespace declared
 
-const Key& users_file() { return declared::users_toml; }
 const Key& events_file() { return declared::events_toml; }
 const Key& acknowledged_file() { return declared::acknowledged_toml; }
 const Key& forgotten_file() { return declared::forgotten_toml; }

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "campaign/config/keys.h"
 #include "campaign/loader/plugins.h"
 
 namespace nonio::schema_test {
@@ -61,7 +62,7 @@ TEST(Schema, HoldsTheNamesOfWhatIsLoaded) {
 }
 
 TEST(Schema, HoldsTheOptionsOfPlugins) {
-  const Json s = Json::parse(schema::site_schema(plugins()));
+  const Json s = Json::parse(schema::file_schema(config::site_file(), plugins()));
   const Json& options = s["properties"]["options"];
   EXPECT_EQ(options["additionalProperties"], false);
   const Json& both = options["properties"]["both"];
@@ -110,8 +111,8 @@ TEST(Schema, HoldsTheKeysOfMethodsOnlyForTheirKinds) {
 }
 
 TEST(Schema, IsGoodWithoutPlugins) {
-  for (const std::string& text :
-       {schema::campaign_schema(loader::Plugins()), schema::site_schema(loader::Plugins())}) {
+  for (const std::string& text : {schema::campaign_schema(loader::Plugins()),
+                                  schema::file_schema(config::site_file(), loader::Plugins())}) {
     const Json s = Json::parse(text);
     EXPECT_EQ(s["$schema"], "http://json-schema.org/draft-07/schema#");
     EXPECT_EQ(text.find("\"enum\": []"), std::string::npos);
