@@ -66,12 +66,14 @@ class ExplainTogether {
       return exit_failed;
     }
     const reading::Context& context = place_->context;
-    const config::TerminalWords say(context.templates, common_.json ? "en" : context.site.language);
-    const auto document = modelling::together_json(*found, say, seed_, left_out, errors_);
+    const modelling::ModelWords words(context.templates,
+                                      common_.json ? "en" : context.site.language);
+    const auto document = modelling::together_json(*found, words, seed_, left_out, errors_);
     if (common_.json)
       std::cout << storage::dump(document);
     else
-      for (const auto& part : modelling::parts_of(document)) print_together(std::cout, part, say);
+      for (const auto& part : modelling::parts_of(document))
+        print_together(std::cout, part, words.terminal());
     if (!common_.json && !left_out.empty() && !common_.quiet)
       complain("not explained together: " + storage::listed(left_out));
     return errors_.empty() ? exit_done : exit_failed;

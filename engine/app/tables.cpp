@@ -403,6 +403,9 @@ void print_together(std::ostream& out, const Json& part, const TerminalWords& sa
     if (!e.at("aliases").empty())
       sentence(out, 4, say("joint.aliases", {{"effects", list_in(e, "aliases")}}));
   }
+  for (const Json& plan : part.at("plans"))
+    sentence(out, 2,
+             say("next.apart") + " (" + text_in(plan, "campaign") + "): " + text_in(plan, "says"));
   const Json& candidates = part.at("candidates");
   if (candidates.empty()) return;
   out << "  " << padded(say("candidate"), 22) << padded(say("evidence.alone"), 12)

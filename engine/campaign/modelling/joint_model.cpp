@@ -220,7 +220,8 @@ Json effect_json(const model::JointEffect& e, const Together& t, const config::T
   return json;
 }
 
-Json part_of_json(const Together& t, const config::TerminalWords& say) {
+Json part_of_json(const Together& t, const ModelWords& words) {
+  const config::TerminalWords say = words.terminal();
   const model::JointExplanation& x = t.explanation;
   const Quantity q = t.deviation();
   Json json = {{"axis", t.part}};
@@ -264,6 +265,12 @@ Json part_of_json(const Together& t, const config::TerminalWords& say) {
   verdict["p_left"] = x.p_left;
   verdict["says"] = sentence_of(t, say);
   json["effects"] = std::move(effects);
+  json["plans"] = Json::array();
+  for (const model::JointPlan& one : x.plans) {
+    Json plan = plan_json(one.plan, words);
+    plan["campaign"] = t.campaigns[one.campaign];
+    json["plans"].push_back(std::move(plan));
+  }
   json["verdict"] = std::move(verdict);
   return json;
 }
@@ -334,12 +341,11 @@ Expected<std::vector<Together>> explain_together(
   return out;
 }
 
-Json together_json(const std::vector<Together>& all, const config::TerminalWords& say,
-                   std::uint64_t seed, const std::vector<std::string>& left_out,
-                   const std::vector<Error>& errors) {
+Json together_json(const std::vector<Together>& all, const ModelWords& words, std::uint64_t seed,
+                   const std::vector<std::string>& left_out, const std::vector<Error>& errors) {
   Json json = {{"schema", "nonio-explain/1"}};
   Json parts = Json::array();
-  for (const Together& t : all) parts.push_back(part_of_json(t, say));
+  for (const Together& t : all) parts.push_back(part_of_json(t, words));
   if (!all.empty()) json.update(parts[most_severe(all)]);
   if (all.size() > 1) json["parts"] = std::move(parts);
   if (!left_out.empty()) json["left_out"] = left_out;

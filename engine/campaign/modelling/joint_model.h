@@ -32,7 +32,7 @@ Expected<std::vector<Together>> explain_together(
     std::vector<std::string>& left_out);
 
 /// Returns the JSON nonio-explain/1 of several campaigns (docs/json.md).
-storage::Json together_json(const std::vector<Together>& all, const config::TerminalWords& say,
+storage::Json together_json(const std::vector<Together>& all, const ModelWords& words,
                             std::uint64_t seed, const std::vector<std::string>& left_out,
                             const std::vector<Error>& errors);
 

@@ -304,19 +304,6 @@ storage::Json sensors_json(const model::Sensors& s, Quantity q) {
   return json;
 }
 
-storage::Json plans_json(const std::vector<model::Plan>& plans, const ModelWords& words) {
-  storage::Json list = storage::Json::array();
-  for (const model::Plan& plan : plans) {
-    storage::Json one = {
-        {"plan", plan.id}, {"readings", plan.readings}, {"separates", {plan.one, plan.other}}};
-    if (!plan.of.empty()) one["of"] = plan.of;
-    storage::put(one, "power", plan.power, Quantity::number);
-    one["says"] = words.plan(plan);
-    list.push_back(std::move(one));
-  }
-  return list;
-}
-
 /// Returns the values of an effect in each group with their expanded uncertainty.
 storage::Json values_json(const std::vector<model::Parameter>& parameters) {
   storage::Json list = storage::Json::array();
@@ -460,7 +447,8 @@ storage::Json explained_json(const Explained& e, const Campaign& campaign,
   json["descriptions"] = std::move(descriptions);
   json["statements"] = statements_json(x.statements, words, q);
   json["verdict"] = verdict_json(e, words);
-  json["plans"] = plans_json(x.plans, words);
+  json["plans"] = storage::Json::array();
+  for (const model::Plan& plan : x.plans) json["plans"].push_back(plan_json(plan, words));
   json["next"] = words.next(x, e.part);
   if (x.sensors) json["sensors"] = sensors_json(*x.sensors, q);
   if (const std::string text = words.no_sign(x, e.part); !text.empty()) json["no_sign"] = text;
@@ -484,6 +472,16 @@ void put_trouble(storage::Json& json, const std::vector<std::string>& warnings,
 }
 
 }  // namespace
+
+Json plan_json(const model::Plan& plan, const ModelWords& words) {
+  Json one = {
+      {"plan", plan.id}, {"readings", plan.readings}, {"separates", {plan.one, plan.other}}};
+  if (!plan.of.empty()) one["of"] = plan.of;
+  if (plan.duration) storage::put(one, "duration", *plan.duration, Quantity::time);
+  storage::put(one, "power", plan.power, Quantity::number);
+  one["says"] = words.plan(plan);
+  return one;
+}
 
 storage::Json parameters_json(const std::vector<model::Parameter>& parameters,
                               const PartModel* part, const std::vector<model::Term>& terms) {

@@ -38,6 +38,8 @@ Json explain_json(const std::vector<Explained>& all, const Campaign& campaign,
                   const ModelWords& words, std::uint64_t seed, const std::vector<ModelStep>& steps,
                   const std::vector<std::string>& warnings, const std::vector<Error>& errors);
 Json change_json(const Change& change, const Campaign& campaign, const ModelWords& words);
+/// Returns the JSON of a planned measurement, with its sentence.
+Json plan_json(const model::Plan& plan, const ModelWords& words);
 Json steps_json(const std::vector<ModelStep>& steps);
 /// Returns the parts of a document: its `parts`, or a list of the document itself.
 Json parts_of(const Json& document);
