@@ -9,7 +9,7 @@
 /// Parses lengths and axes on the command line.
 namespace nonio::app {
 
-/// Converts a length in mm to SI. The argument is a text, so that a decimal comma gets a better
+/// Converts a length from mm to m. The argument is a text, so that a decimal comma gets a better
 /// error message than that of CLI11.
 Expected<double> length_of(const std::string& option, const std::string& text);
 

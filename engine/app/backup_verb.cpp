@@ -66,7 +66,7 @@ Expected<Json> issued_since(const fs::path& site, const fs::path& out) {
   if (!listed) return fail(listed.error());
   for (const fs::path& folder : folders) {
     const auto text = storage::read_file(folder / "results.json");
-    if (!text) continue;  // not a folder with results
+    if (!text) continue;  // the folder contains no results
     const Json results = storage::parse_or_discard(*text);
     if (!results.is_object() || !results.contains("certificate")) continue;
     const auto text_of = [&of = results["certificate"]](const char* name) {

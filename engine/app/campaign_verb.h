@@ -28,11 +28,13 @@ tl::expected<OpenCampaign, int> open_campaign(
     const std::string& folder, const Common& common,
     reading::TemplatesFor what = reading::TemplatesFor::documents);
 
-/// Fits each part. The error of a part that cannot be fitted is printed and added to `errors`.
+/// Compares each part with its model. The error of a part that cannot be compared is printed and
+/// added to `errors`.
 std::vector<modelling::Compared> compare_parts(std::vector<modelling::PartModel> parts,
                                                std::vector<Error>& errors);
 
-/// Returns the sentences in the language of the site, or in English for JSON.
+/// Returns the templates and the language of the sentences about a model: the language of the site,
+/// or English for JSON.
 modelling::ModelWords words_for(const OpenCampaign& open, const Common& common);
 
 /// Returns the arguments "CAMPAIGN" and --templates, and the common ones.

@@ -227,7 +227,8 @@ class Composer {
     return i >= approach.size() || approach[i] == 0 ? "" : approach[i] > 0 ? "+" : "-";
   }
 
-  /// Whether the readings have the columns run, direction, target and deviation.
+  /// Returns whether the readings are of a single axis and have the columns run, direction, target
+  /// and deviation.
   static bool is_of_one_axis(const Observations& o) {
     return o.axes.size() == 1 && o.lines.size() <= 1 && o.sense.empty();
   }
@@ -449,7 +450,8 @@ class Composer {
   config::TerminalWords say_;
   Json results_;
   storage::Workbook book_{};
-  std::map<std::string, std::string> names_{};  ///< name of each measurement's sheet
+  std::map<std::string, std::string> names_{};  ///< names of the sheets with readings, by
+                                                ///< measurement
   std::vector<Chart> charts_{};
 };
 

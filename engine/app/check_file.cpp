@@ -34,7 +34,7 @@ class FileCheck {
  public:
   FileCheck(const fs::path& file, const FileWish& wish, const Common& common)
       : name_(file.filename().string()), columns_(wish.columns), common_(common) {
-    // If the file cannot be read as the stated axis, or the one in its name, other axes are tried.
+    // The stated axis is tried before all other axes.
     if (!wish.axis.empty()) axes_.insert(axes_.begin(), wish.axis);
   }
 
@@ -53,7 +53,7 @@ class FileCheck {
   }
 
  private:
-  /// Returns the reader that recognises the file; with stated columns, the one that can show the
+  /// Returns the reader that recognizes the file; with stated columns, the one that can show the
   /// rows of its table. Null if there is none.
   const Reader* reader_of(std::string_view bytes,
                           const std::optional<reading::StatedTable>& table) const {
@@ -128,7 +128,7 @@ class FileCheck {
     if (read) {
       const Observations& o = read->readings;
       json["reader"] = read->reader->info.name;
-      // X and A are only assumed; any other axis is stated by the file.
+      // X and A are assumed if no axis is known; any other axis comes from the file or the caller.
       if (read->axis != "X" && read->axis != "A") json["axis"] = read->axis;
       json["rotary"] = o.axes.front().rotary;
       json["readings"] = o.size();

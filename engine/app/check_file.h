@@ -15,9 +15,9 @@ struct FileWish {
                                        ///< unknown
 };
 
-/// Does `nonio check FILE`: reports which reader reads a file of readings of one axis, and the
-/// readings; if none does, why, and the first rows of its table. Prints `nonio-check-file/1` with
-/// --json. Returns status 1 if the file cannot be read.
+/// Does `nonio check FILE`: reports the reader of a file of readings of one axis, and the readings.
+/// If no reader reads the file, reports the reason and the first rows of its table. Prints
+/// `nonio-check-file/1` with --json. Returns status 1 if the file cannot be read.
 int check_file(const std::filesystem::path& file, const FileWish& wish, const Common& common);
 
 }  // namespace nonio::app

@@ -105,14 +105,14 @@ Words names_of(const std::vector<Verb>& verbs) {
   return names;
 }
 
-/// The command that the words denote.
+/// The command that the typed words denote.
 struct Found {
   const Verb* verb = nullptr;
   std::string path;              ///< path of the command, for example "nonio plan"
   std::string typed;             ///< the path as typed, possibly with a former name
   Words rest{};                  ///< the words after the command
   std::string wrong{};           ///< error for a word that is not a command; empty: none
-  const Alias* alias = nullptr;  ///< the former name that was typed
+  const Alias* alias = nullptr;  ///< the former name that was typed; null: none
 };
 
 /// Returns the longest former name at the beginning of the words; null if there is none.

@@ -10,10 +10,10 @@
 #include <variant>
 #include <vector>
 
-/// The command line as data: one table of commands and their arguments. Parsing, help, hints for
-/// mistyped words, the man page, shell completion and the reference are made from it. `Option` of
-/// the SDK cannot replace `Argument`: it describes values that a plugin looks up by name, while an
-/// argument has a position, flags, lists, paths that must exist, and a member that it sets.
+/// The command line as data: one table of commands and their arguments, from which parsing, help,
+/// hints for mistyped words, the man page, shell completion and the reference are made. `Option` of
+/// the SDK cannot replace `Argument`, because it has no position, flags, lists or paths that must
+/// exist, and sets no member.
 namespace nonio::app {
 
 inline constexpr int exit_done = 0, exit_failed = 1, exit_usage = 2, exit_interrupted = 130;
@@ -62,8 +62,8 @@ inline Argument existing(Argument::Takes kind, Argument a) {
   a.exists = true;
   return a;
 }
-/// Marks the argument as a path of this kind that need not exist, or as several ones separated by
-/// ','.
+/// Marks the argument as a path of this kind that need not exist, or as several paths separated by
+/// commas.
 inline Argument takes(Argument::Takes kind, Argument a) {
   a.takes = kind;
   return a;
@@ -97,7 +97,7 @@ struct Verb {
   std::vector<std::string> examples{};
   std::function<int()> run{};
   std::vector<Verb> verbs{};
-  std::string heading{};  ///< heading under which the help lists it; empty: not listed
+  std::string heading{};  ///< heading under which the help lists the command; empty: not listed
 };
 
 /// A former name of a command. `words` replace `old_words`; both are separated by spaces.
@@ -132,7 +132,7 @@ int show_help(const Program& program, const std::vector<std::string>& words);
 std::string synopsis(const std::string& path, const Verb& verb);
 /// Writes the manual page for man(1).
 void write_man_page(const Program& program, std::ostream& out);
-/// Writes the completion for "bash" or "zsh".
+/// Writes the completion script for "bash" or "zsh".
 void write_completion(const Program& program, const std::string& shell, std::ostream& out);
 /// Writes the table of commands as JSON, schema nonio-commands/1.
 void write_table(const Program& program, std::ostream& out);

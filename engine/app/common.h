@@ -18,7 +18,7 @@ struct Common {
   std::vector<std::string> plugin_paths, template_paths;
   bool json = false, quiet = false;
 
-  /// Returns the folders given on the command line, then those of the environment, then that of the
+  /// Returns the folders of --plugin-path, then those of NONIO_PLUGIN_PATH, then the folder of the
   /// program.
   std::vector<std::filesystem::path> plugin_folders() const;
   std::vector<std::filesystem::path> template_folders() const;
@@ -27,7 +27,6 @@ struct Common {
 
 /// Returns the arguments --plugin-path, --json and --quiet.
 std::vector<Argument> common_arguments(Common& common);
-/// Returns the argument --templates.
 Argument templates_argument(Common& common);
 /// Returns the argument --set NAME=VALUE; `help`: its description.
 Argument settings_argument(std::vector<std::string>& settings, std::string help);

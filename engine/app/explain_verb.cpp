@@ -65,7 +65,8 @@ class Explain {
     }
   }
 
-  /// Warns if the run would not fit the model, because the listed analyses do not include it.
+  /// Warns if a run would not fit the model, because the analyses listed in the manifest or in
+  /// site.toml do not include the model fit.
   void warn_of_run() {
     const reading::Context& context = open_.place->context;
     const auto& own = open_.read.manifest->run.analyses;
@@ -147,7 +148,8 @@ class Explain {
   std::optional<modelling::ModelWords> words_;
   std::vector<modelling::Explained> all_;
   std::vector<modelling::ModelStep> steps_;
-  std::optional<modelling::Compared> known_;  ///< the changed part with its model
+  std::optional<modelling::Compared> known_;  ///< part that was changed last, with its model; none:
+                                              ///< nothing was changed yet
   std::vector<std::string> warnings_;
   std::vector<Error> errors_;
   bool failed_ = false;

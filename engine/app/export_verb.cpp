@@ -111,7 +111,7 @@ Expected<std::size_t> write_out(const fs::path& from, const fs::path& to,
 }
 
 /// Exports one campaign, or prints its files with --list. Returns false, after printing an error,
-/// if a file is damaged or another file is in its place.
+/// if a file is damaged or would replace a different file.
 bool get_one(const GetWish& wish, const std::string& id, const Common& common) {
   fs::path folder;
   const auto files = files_of(wish, id, folder);
@@ -230,7 +230,7 @@ int get(const GetWish& wish, const Common& common) {
   const auto ids = ids_of(wish);
   if (!ids) return complain(ids.error().message);
   std::optional<batch::OutputLock> lock;
-  // Results in folders take precedence over the pack from then on.
+  // The output folder is locked, because exported results in OUT/ID replace those in the pack.
   if (!wish.list && wish.to.empty()) {
     auto taken = batch::OutputLock::take(wish.out);
     if (!taken) return complain(taken.error().message);

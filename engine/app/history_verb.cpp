@@ -25,7 +25,7 @@ namespace nonio::app {
 
 namespace {
 
-/// Words of site.toml and terminal.toml, and the number of columns, for printing a history.
+/// Texts in the language of the site, and the number of columns of the terminal.
 struct HistoryWords {
   const reports::Wording& words;
   std::size_t width;
@@ -36,7 +36,7 @@ using reports::HistoryPoint;
 using reports::HistorySeries;
 
 constexpr std::size_t least_bar = 15, most_bar = 41;
-constexpr double twice = 2.0;  // U is twice the standard uncertainty
+constexpr double twice = 2.0;  // coverage factor k of U
 
 /// Formats the numbers of one series.
 class Numbers {
@@ -330,10 +330,11 @@ std::string machines_table(const reports::SiteHistory& site, const HistoryWords&
   return out;
 }
 
-/// Returns the name of a machine, the day of its next calibration if known, and the charts of its
-/// series that have points. Each campaign has one line with a bar of value ± U; changes and events
-/// are between them; slope, detection limit and forecast are below. The scatter of the readings is
-/// followed as a logarithm and printed as a scatter, its changes as factors.
+/// Returns the name of a machine, the day of its next calibration unless this is empty, and the
+/// charts of its series that have points. Each campaign has one line with a bar of value ± U;
+/// changes and events are between them; slope, detection limit and forecast are below. The scatter
+/// of the readings is evaluated as a logarithm; it is printed as a standard deviation, and its
+/// changes as factors.
 std::string machine_chart(const reports::MachineHistory& machine, const HistoryWords& with) {
   std::string name = printable(machine.id);
   for (const std::string* more :

@@ -9,8 +9,8 @@
 /// Functions shared by `table insert` and `table session`.
 namespace nonio::app {
 
-/// Returns the given axis, or the only one that was measured; an error if none or several were
-/// measured.
+/// Returns `axis`, or if it is empty the only axis that was measured; an error if none or several
+/// were measured.
 Expected<std::string> merged_axis(const std::string& axis, const Campaign& campaign);
 
 /// Returns an error if the day of loading is before that of the measurement, or if the day of the

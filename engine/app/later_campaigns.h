@@ -9,7 +9,7 @@
 
 namespace nonio::app {
 
-/// A campaign of the site with an axis of the same machine.
+/// A campaign that measured the same axis of the same machine later.
 struct LaterCampaign {
   std::filesystem::path folder;
   std::string id, date, purpose;

@@ -120,8 +120,8 @@ int tell_merged(const tables::MergedTables& merged, const Loaded& present, const
   return exit_done;
 }
 
-/// Parses a backlash value in mm or deg of at most 10 in size, with a point or a decimal comma, or
-/// "none" (0).
+/// Parses a backlash value in mm or deg with an absolute value of at most 10, with a point or a
+/// decimal comma, or "none" (0).
 Expected<double> backlash_of(std::string text) {
   if (text == "none") return 0.0;
   std::replace(text.begin(), text.end(), ',', '.');

@@ -97,7 +97,7 @@ Verb change_verb(const std::shared_ptr<ModelOptions>& options, Common& common, b
       .run = [options, &common, add] { return change(*options, common, add); }};
 }
 
-/// Parses line numbers such as "57,103"; empty if the text is something else.
+/// Parses a list of line numbers from 1 on, such as "57,103"; empty if the text is not such a list.
 std::vector<std::uint32_t> lines_in(const std::string& text) {
   std::vector<std::uint32_t> out;
   for (std::size_t begin = 0; begin <= text.size();) {

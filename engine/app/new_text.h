@@ -20,9 +20,9 @@ struct NewAxis {
 struct NewCampaign {
   std::string id, customer, operator_name, date, maker, machine, serial, asset, control, instrument;
   std::vector<NewAxis> axes;
-  std::string reader{};                ///< reader of all files, determined by `columns`; empty: by
-                                       ///< their content
-  std::vector<std::string> columns{};  ///< entries of option `columns` as stated by a person
+  std::string reader{};                ///< reader of all files, determined by `columns`; empty: the
+                                       ///< reader is chosen by the content of each file
+  std::vector<std::string> columns{};  ///< entries of option `columns`, as given with --column
   bool example() const;
 };
 

@@ -58,7 +58,7 @@ std::optional<fs::path> site_above(const fs::path& folder) {
 /// has no site.toml.
 fs::path holder_of(const std::string& id, const fs::path& site) {
   std::error_code error;
-  // Without site.toml it may be a home folder, which is not searched.
+  // Without site.toml, the folder may be a home folder, which is not searched.
   if (!fs::exists(site / config::site_name, error)) return {};
   fs::recursive_directory_iterator it(site, fs::directory_options::skip_permission_denied, error);
   for (; !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
@@ -127,7 +127,7 @@ Expected<void> take_file(const std::string& text, std::vector<NewAxis>& axes) {
   return {};
 }
 
-/// A key of a new file whose value is asked for or given with --set.
+/// A key of a new file whose value is requested from the person or given with --set.
 struct Setting {
   const char *key, *question;
 };
@@ -159,7 +159,8 @@ Expected<void> ask_for(const Setting& one, const std::string& otherwise, Values&
   return one_line(one.key, values[one.key]);
 }
 
-/// Sets these keys in the text that offers them.
+/// Sets these keys in the text of a new file, except those with an empty value. An error if the
+/// text does not offer a key.
 Expected<void> set_all(const Values& values, std::string& text) {
   for (const auto& [key, value] : values)
     if (!value.empty() && !set_offered(text, key, value))
@@ -416,8 +417,8 @@ Expected<NewFiles> campaign_files(const NewWish& wish, const fs::path& folder,
   return out;
 }
 
-/// Asks who approves certificates and which key signs them. With a key, campaigns get a
-/// certificate.
+/// Asks who approves certificates and which key signs them. If a key is stated, the outputs of the
+/// site include the certificate.
 Expected<void> settle_certificates(const fs::path& folder, Values& values, Questions& ask) {
   if (auto done = ask_for(for_certificates, "", values, ask); !done) return done;
   if (values[for_certificates.key].empty()) return {};

@@ -52,8 +52,8 @@ Expected<fs::path> document_of(const fs::path& results) {
   return results / evaluation::results_name;
 }
 
-/// Returns the document of the first campaign that requires action, otherwise of the first that has
-/// failed; if there is none, the summary. Lists all these campaigns on stderr, unless `quiet`.
+/// Returns the document of the first campaign with status `attention`, otherwise of the first that
+/// has failed; if there is none, the summary. Lists all these campaigns on stderr, unless `quiet`.
 Expected<fs::path> document_of_night(const fs::path& out, const Common& common) {
   NONIO_TRY(const auto summary, json_file(out / "summary.json"));
   std::string first;

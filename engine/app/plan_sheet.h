@@ -12,7 +12,7 @@
 
 namespace nonio::app {
 
-/// Options --pdf FILE and --language LANGUAGE, for printing a plan.
+/// Values of the options --pdf, --language and --stops, for printing a plan.
 struct SheetWish {
   std::string file, language = "en";
   std::int64_t stops = 1;

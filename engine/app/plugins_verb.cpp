@@ -90,8 +90,8 @@ void print_options(const Listed& p, std::size_t width) {
               << wrapped(c.help, 8, width);
 }
 
-/// Prints the files that were loaded, or without `all` only the rejected ones and the number of the
-/// others.
+/// Prints the plugin files, or without `all` only the rejected ones, and how many files were
+/// loaded.
 void print_files(const std::vector<loader::PluginFile>& files, bool all) {
   std::size_t loaded = 0;
   for (const loader::PluginFile& f : files) {

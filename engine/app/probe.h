@@ -19,7 +19,7 @@ struct ProbeWish {
 
 /// Returns the readings without the effect of the active tables. An error if it is unknown whether
 /// tables were active, because the probe's prediction for an axis without a table would be wrong.
-/// `axis`: the only axis that has to be known; empty: all.
+/// `axis`: the only axis for which this is checked; empty: all axes.
 Expected<std::vector<Observations>> raw_readings(const OpenCampaign& open, const std::string& axis);
 
 /// Returns the sign probe of one measurement, within the travel of its axis.

@@ -107,8 +107,8 @@ void print_rows(const std::vector<std::vector<std::string>>& rows, const std::st
   }
 }
 
-/// Returns value and U as printed everywhere: U with two digits, the value rounded to the same
-/// place. Without U, returns the value and an empty text.
+/// Returns value and U as printed: U with two digits, the value rounded to the same place. Without
+/// U, returns the value and an empty text.
 std::pair<std::string, std::string> shown_result(const Point& p) {
   const double value = std::strtod(p.value.c_str(), nullptr);
   const double U = std::strtod(p.expanded.c_str(), nullptr);

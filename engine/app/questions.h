@@ -10,8 +10,8 @@
 
 namespace nonio::app {
 
-/// Asks on stderr, with the default in brackets, for values that are still empty. An empty line
-/// takes the default, and so does an object that does not ask. An error if the input has ended
+/// Asks on stderr, with the default in brackets, for values that are still empty. A value is set to
+/// the default if the line is empty or the object does not ask. An error if the input has ended
 /// (^D).
 class Questions {
  public:

@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Returns the value that a worklist line decides about, for example " 4.8 ± 1.0 um"; empty for
-/// lines without a decision.
+/// Returns the value of a worklist line about a conformity decision (out of tolerance or
+/// indeterminate), for example " 4.8 ± 1.0 um"; empty for all other lines.
 std::string judged_value(const Json& line, const std::string& language) {
   const std::string kind = line.value("kind", ""), unit = line.value("unit", "");
   if ((kind != "out" && kind != "undecided") || !line.contains("value")) return {};

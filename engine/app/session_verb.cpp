@@ -92,7 +92,7 @@ class Session {
   void done(const char* step, std::string text) {
     steps_.push_back({step, "done", std::move(text)});
   }
-  /// Adds a step that is missing, with the text that tells the person what to do and the command to
+  /// Adds a step that is missing, with a description of the required action and the command to
   /// continue with. Returns false, because the session ends at this step.
   bool missing(const char* step, std::string text, std::string todo, const std::string& argument) {
     steps_.push_back({step, "missing", std::move(text)});
@@ -108,7 +108,7 @@ class Session {
     return false;
   }
 
-  /// Returns the command of this session, without arguments that the record states by now.
+  /// Returns the command of this session, without arguments that the machine record already states.
   std::string command() const {
     std::string out = "nonio table session " + shell_word(w_.folder);
     if (!w_.backup.empty()) out += " --backup " + shell_word(w_.backup);
@@ -167,7 +167,7 @@ class Session {
     tell_findings(*open_, merged_.findings);
     if (merged_.files.empty()) return refused("table", Error{say("session.table.refused")});
     // Sets the compensation that was active during the measurement in the campaign `open_`, because
-    // the next steps of the session, the sign probe and the verdict, need it too.
+    // the sign probe and the verdict need it too.
     Settings settled = options();
     std::vector<Finding> repeated;
     if (auto stated = tables::state_by_backup(open_->read, *present_.control, present_.files,

@@ -325,8 +325,8 @@ class Page {
     }
   }
 
-  /// Prints each finding once. Without --all, the text is printed only for findings with severity
-  /// warning, and the title for others.
+  /// Prints each finding once. Without --all, findings with severity info are printed with their
+  /// title only.
   void findings() {
     if (findings_.empty()) return;
     heading(say_("findings"));

@@ -13,7 +13,7 @@
 
 namespace nonio::app {
 
-/// The text of results.json, and the words for showing it.
+/// The text of results.json, and the templates and the language for showing it.
 struct Shown {
   std::string text;
   Templates templates;
@@ -24,14 +24,13 @@ struct Shown {
 
 enum class Documents { written, left_out };
 
-/// Evaluates a campaign as a run would, without drawing a number for a certificate. Nothing is
-/// written.
+/// Evaluates a campaign as a run would, without assigning a certificate number. Nothing is written.
 Expected<Shown> evaluated_now(const std::filesystem::path& folder, const Common& common,
                               Documents documents = Documents::written);
 /// Reads the results that a run has stored in a folder.
 Expected<Shown> of_run(const std::filesystem::path& folder, const Common& common);
 
-/// Converts a finding of results.json.
+/// Converts a finding of results.json; the values of its evidence are converted to SI.
 Finding finding_of(const nlohmann::ordered_json& json);
 
 }  // namespace nonio::app

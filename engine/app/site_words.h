@@ -9,11 +9,12 @@
 
 namespace nonio::app {
 
-/// Words for output on the terminal: English until the site is known, then in its language. It
-/// contains copies of the words, since the templates end with the run. Not copyable.
+/// Texts for output on the terminal: English until the site is read, then in the language of the
+/// site. The object contains copies, because the templates of a run exist only until its end. Not
+/// copyable.
 class SiteWords {
  public:
-  /// English is used if the language has no words, or is empty.
+  /// English is used if there are no texts in `language`, or if it is empty.
   explicit SiteWords(const Common& common, const std::string& language = "en");
   SiteWords(const SiteWords&) = delete;
   SiteWords& operator=(const SiteWords&) = delete;

@@ -14,9 +14,10 @@ struct NewState {
   std::string since, source;         ///< day and source of the state, as in [[axes.X.state]] of the
                                      ///< record
   std::vector<Artifact> files;       ///< files of the table; empty: there is no table
-  std::optional<double> backlash{};  ///< backlash value, m or rad
+  std::optional<double> backlash{};  ///< backlash value, m or rad; none: not entered
   std::vector<LoadedTable> tables{};
-  std::optional<double> reference{};  ///< position at which the table is zero, mm or deg
+  std::optional<double> reference{};  ///< position at which the table is zero, mm or deg; none: not
+                                      ///< entered
 };
 
 /// Adds the states of an axis to machines/<asset>.toml of the campaign's site, and copies their

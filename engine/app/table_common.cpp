@@ -11,8 +11,6 @@
 
 namespace nonio::app {
 
-/// Adds a number in its printed unit, with the unit appended to the name: "largest_um". A number
-/// that is not finite is left out.
 void put(TableJson& json, const std::string& name, double si, Quantity q) {
   if (std::isfinite(si)) json[name + std::string(unit_of(q).suffix)] = printed(si, q);
 }

@@ -44,8 +44,8 @@ Expected<Loaded> understood(
     const Campaign& campaign, const Texts& settings,
     const std::function<config::Checked<Settings>(const Info&)>& options_of);
 
-/// Returns the options of a control for a campaign: site, record of the machine, manifest, then
-/// `settings`.
+/// Returns the options of a control for a campaign. `settings` take precedence over the statements
+/// of the site, the machine record and the manifest.
 config::Checked<Settings> campaign_options(const OpenCampaign& open, const Info& info,
                                            const Texts& settings);
 

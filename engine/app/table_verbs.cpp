@@ -230,8 +230,8 @@ Expected<std::vector<BacklashWas>> backlash_was(const std::vector<std::string>& 
   return all;
 }
 
-/// Sets the backlash value of tables whose files do not contain it; without a statement it is an
-/// error, because 0 would be a guess.
+/// Sets the backlash value of tables whose files do not contain it. An error if the value is not
+/// stated elsewhere, because 0 would be a guess.
 Expected<void> settle_backlash(const TableWish& w, const Loaded& present, Settings& options) {
   const auto said = backlash_was(w.backlash_was);
   if (!said) return fail(said.error().message);

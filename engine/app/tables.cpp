@@ -30,7 +30,7 @@ namespace {
 
 constexpr std::size_t bar_width = 40;
 
-/// Returns `part` of `whole` as a bar of at most `width` columns, with "|" at `mark`.
+/// Returns `part` of `whole` as a bar in a text of `width` columns, with "|" at `mark`.
 std::string bar(double part, double whole, std::size_t width, std::optional<double> mark = {}) {
   const auto cells = [&](double value) {
     const double share = whole > 0.0 ? std::clamp(value / whole, 0.0, 1.0) : 0.0;

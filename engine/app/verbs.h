@@ -55,8 +55,8 @@ Verb completion_verb(const Program& program);
 /// Prints the history of a machine, or of all (`machine` empty), on stdout. Returns the exit
 /// status.
 int show_machine(const std::string& out, const std::string& machine, const Common& common);
-/// Opens the report of a campaign, or of the first one that requires action, on the desktop.
-/// Returns the exit status.
+/// Opens the report of a campaign, or of the first one of a run with status `attention`, on the
+/// desktop. Returns the exit status.
 int open_document(const std::string& folder, const std::string& out, const Common& common);
 /// Checks the templates of a site, or the installed ones. Returns the exit status.
 int check_templates(const std::string& site, const Common& common);

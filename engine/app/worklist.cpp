@@ -20,7 +20,7 @@ namespace nonio::app {
 
 namespace {
 
-/// Removes lines that were known before the requested day, and lines of other customers' machines.
+/// Removes lines that are older than the requested day, and lines of other customers' machines.
 void keep_lines(const WorklistWish& wish, reports::SiteHistory& site) {
   std::erase_if(site.lines, [&](const reports::WorkItem& l) {
     return (!wish.customer.empty() && l.customer != wish.customer) ||

@@ -100,7 +100,7 @@ Expected<void> note_certificates(RunResult& run, const RunOptions& options,
 
 bool is_campaign(const Vanished& v) { return config::is_campaign_id(v.id); }
 
-/// Removes campaigns that forgotten.toml names from the list of vanished ones.
+/// Removes the campaigns that forgotten.toml names from the list of vanished campaigns.
 void leave_out_forgotten(RunResult& run, const Expected<store::SiteRecords>& records) {
   if (!records) return;
   std::erase_if(run.vanished, [&](const Vanished& v) {
@@ -110,8 +110,8 @@ void leave_out_forgotten(RunResult& run, const Expected<store::SiteRecords>& rec
   });
 }
 
-/// Makes the worklist and its pages. If this fails, the run does not fail: unless it is being
-/// stopped, the error is noted, and the next run makes them from the results.
+/// Makes the worklist and its pages. A failure does not end the run: unless a stop is requested, it
+/// is noted in the summary, and the next run makes the worklist from the results.
 WorklistPages worklist_of(RunResult& run, const RunOptions& options, const RunEvents& events,
                           const reading::Context& context) {
   auto made = make_worklist(options, context, last_run_of(run, options.out, context.templates));
@@ -127,8 +127,8 @@ WorklistPages worklist_of(RunResult& run, const RunOptions& options, const RunEv
   return {};
 }
 
-/// Sends the mail of the run, unless its text is empty or a stop is requested. If the mail cannot
-/// be sent, the error is noted in the summary.
+/// Sends the mail of the run, unless the mail has no text or a stop is requested. If the mail
+/// cannot be sent, the error is noted in the summary.
 void write_mail(RunResult& run, const RunOptions& options, const RunEvents& events,
                 const reading::Context& context, const WorklistPages& worklist) {
   if (worklist.mail.empty() || process::is_stop_requested()) return;
@@ -220,7 +220,7 @@ void tell_vanished(const RunResult& run, const RunEvents& events) {
                 " more have vanished: see the summary");
 }
 
-/// Fills `run` with the campaigns of the site and what is to be done with each.
+/// Fills `run` with the campaigns of the site, each with its action and the reason.
 Expected<void> survey_site(const RunOptions& options, const reading::Context& context,
                            const RunState& state, const std::optional<Known>& known,
                            RunResult& run) {
@@ -273,8 +273,10 @@ struct Plan {
   Expected<store::SiteRecords> records;
   std::string only;                              ///< id of the campaign of a reopened run; empty
                                                  ///< otherwise
-  std::optional<std::uint64_t> history_known{};  ///< the run up to which the store was complete
-                                                 ///< when this run was planned
+  std::optional<std::uint64_t> history_known{};  ///< number of the run up to which the store was
+                                                 ///< complete according to the plan of a run in
+                                                 ///< shards; empty if there is no such plan or it
+                                                 ///< states no run
 };
 
 /// Surveys the site and reports the result. An error ends the run; its message is empty if a stop
@@ -342,7 +344,8 @@ Expected<void> do_planned(const RunOptions& options, const RunEvents& events, Se
       if (!state.issued_before) state.issued_before = issued_so_far(numbers);
       return check_numbers(options.out, run.campaigns, numbers);
     };
-  RunOptions numbered = options;  // campaigns get their numbers in the order of their ids
+  RunOptions numbered = options;  // merge with one job, so that certificates are numbered in the
+                                  // order of the campaign ids
   if (options.step == RunOptions::Step::merge && context.site.numbering.automatic)
     numbered.jobs = 1;
   bool well = do_campaigns(numbered, events, context, state, desk, run.campaigns);
@@ -365,8 +368,8 @@ Expected<void> do_planned(const RunOptions& options, const RunEvents& events, Se
   return fail("");
 }
 
-/// Prepares the output folder before results are looked up in it: checks the layout of its folders
-/// and the catalogue of packs, and accepts the packs of a plan that is replaced by a new one.
+/// Prepares the output folder before results are looked up in it: checks the layout of the results
+/// folders and the catalogue of packs, and accepts the packs of a plan that is replaced.
 Expected<void> make_ready(const RunOptions& options, const reading::Context& context) {
   auto ready = settle_folders(options.out, context.site.hashed_folders, options.dry_run);
   if (ready) ready = storage::check_catalogue(options.out);

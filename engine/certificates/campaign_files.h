@@ -34,8 +34,8 @@ class CampaignFiles {
   std::map<std::string, Known> known_;
 };
 
-/// Returns the name of the campaign's file that an input denotes; empty if the input is not one of
-/// them, but a file of another campaign or the record of the machine.
+/// Returns the name of the campaign's file that an input denotes; empty if the input is a file of
+/// another campaign or the record of the machine.
 std::string file_of_input(const std::string& input);
 
 }  // namespace nonio::certificates

@@ -38,7 +38,7 @@ Expected<evaluation::IssuedFile> signed_by(const SignWith& how, Artifact& a,
   return evaluation::IssuedFile{output, a.name, a.bytes, std::move(done->no_time_stamp)};
 }
 
-/// Signs the files other than PDFs that outputs want signed, and adds them to the attachments.
+/// Signs the files other than PDFs that are to be signed, and adds them to the attachments.
 Expected<void> sign_documents(evaluation::Evaluated& evaluated, const SignWith& how,
                               std::vector<evaluation::IssuedFile>& done, Attachments& attachments) {
   for (Results::Written& w : evaluated.results.outputs)

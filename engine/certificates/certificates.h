@@ -21,14 +21,14 @@ inline constexpr const char* templates_name = "templates.json";
 inline constexpr const char* no_key =
     "an output is to be signed, and site.toml does not contain a key; expected [signing]";
 
-/// Signs the artifacts that outputs want signed: XML documents first, then PDFs, which get as
+/// Signs the artifacts that are to be signed: XML documents first, then PDFs, which get as
 /// attachments the manifest, the readings, the machine record, the parts of site.toml that affect
-/// them, the templates, results.json and the signed XML documents. Files to be issued under a
-/// number are then in `Evaluated::certificate`; they are finally taken from the register, so files
-/// that are issued already are not signed again. Of a draft, only the pages are kept, unsigned;
-/// other files that would be signed are left out until the draft is approved. If the campaign
-/// failed, nothing is signed and these artifacts are removed. `signer` is null if site.toml has no
-/// [signing].
+/// the results, the templates, results.json and the signed XML documents. Files to be issued under
+/// a number are then in `Evaluated::certificate`; they are finally taken from the register, so
+/// files that are issued already are not signed again. Of a draft, only the pages are kept,
+/// unsigned; other files that would be signed are left out until the draft is approved. If the
+/// campaign failed, nothing is signed and these artifacts are removed. `signer` is null if
+/// site.toml has no [signing].
 Expected<void> sign_artifacts(evaluation::Evaluated& evaluated, CampaignFiles& files,
                               const reading::Context& context, const Signer* signer,
                               sign::Time now);

@@ -66,7 +66,7 @@ struct Stated {
   std::vector<std::pair<std::string, std::string>> shared;
 };
 
-/// Reads from the findings which files another campaign had too, since only the run could know
+/// Reads from the findings which files another campaign had too, since only the run could determine
 /// this.
 void put_shared(const storage::Json& analyses, Stated& stated) {
   const auto text = [](const storage::Json& of, const char* key) {
@@ -215,8 +215,8 @@ class Again {
     return number;
   }
 
-  /// Checks that the attachments are exactly the manifest, the readings that it names, what the
-  /// host adds, and documents that results.json lists.
+  /// Checks that the attachments are exactly the manifest, the readings that it names, the files
+  /// that Nonio adds, and documents that results.json lists.
   Expected<std::string> check_names(const evaluation::Evaluated& again) const {
     std::vector<std::string> wanted = {evaluation::results_name};
     const std::string prefix = reading::input_name("");
@@ -311,8 +311,8 @@ class Again {
   Stated stated_;
   std::optional<std::vector<std::string>> strange_;  ///< attached templates that differ from the
                                                      ///< installed ones; none: not compared
-  std::string missing_;                              ///< a font that is missing, so that nothing
-                                                     ///< can be drawn; empty: none
+  std::string missing_;                              ///< name of a font that is missing or differs,
+                                                     ///< so that nothing can be drawn; empty: none
 };
 
 constexpr std::array check_ids = {"content.values", "content.attachments", "content.templates",

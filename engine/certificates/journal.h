@@ -33,7 +33,7 @@ class Journal {
   Entry add(const char* what, const std::string& number, storage::Json says);
   std::vector<Entry> all();
   std::optional<Entry> last();
-  /// Returns the last entry of this kind for this number.
+  /// Returns the last entry of this kind for this number; none if there is no such entry.
   std::optional<Entry> last_of(const char* what, const std::string& number);
   /// Returns the digest that an entry must have if it follows an entry with the digest `before`.
   static std::string digest(const Entry& entry, const std::string& before);

@@ -38,8 +38,8 @@ reading::Inputs data_of(const evaluation::Evaluated& evaluated, const reading::C
   return data;
 }
 
-/// Returns how long a worker waits for the register, in s. If it is locked longer, the campaign is
-/// evaluated again when it is free.
+/// Returns how long a worker waits for the register, in s. If the register is locked longer, the
+/// campaign is evaluated again later.
 double short_wait(const config::Numbering& numbering) {
   constexpr double seconds = 5.0;
   return std::min(seconds, numbering.patience);
@@ -92,7 +92,6 @@ std::vector<FileChange> changes_of(const Files& then, const Files& now) {
     const std::string* before = find_file(then, name);
     if (before != nullptr && *before == bytes) continue;
     FileChange change = change_of(name, before, &bytes);
-    // Only comments, or only the reason for the amendment, have changed.
     if (before != nullptr && name.ends_with(".toml") && change.changes.empty()) continue;
     all.push_back(std::move(change));
   }

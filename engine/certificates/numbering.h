@@ -41,8 +41,8 @@ class Numbers {
   /// `as_draft`: never assign a number.
   evaluation::AssignedNumber assign(const evaluation::Evaluated& evaluated, CampaignFiles& files,
                                     std::vector<std::string> missing, bool as_draft) const;
-  /// Whether a finding that no rule accepts appeared after the rules had allowed a number to be
-  /// drawn.
+  /// Returns whether a finding that no rule accepts appeared after the rules had allowed a number
+  /// to be assigned.
   bool held_up(const evaluation::Evaluated& evaluated) const;
   /// Has to be called after signing. Enters the certificate into the register and replaces the
   /// campaign's files by those of the register; does nothing without a certificate or if the

@@ -110,7 +110,7 @@ Expected<std::map<std::string, std::string>> Register::issued_digests() {
       if (!says.is_object() || !says.contains("files")) continue;
       for (const storage::Json& file : says["files"]) numbers[file.value("sha256", "")] = row[0];
     }
-  } else {  // tables of an older version
+  } else {  // a register of version 1 has no journal
     for (const storage::Database::Row& row :
          database_->rows("SELECT c.number, f.bytes FROM files f JOIN certificates c ON c.id = "
                          "f.certificate"))
@@ -242,7 +242,7 @@ Expected<std::vector<evaluation::IssuedFile>> Register::files_of(std::int64_t id
                        "ORDER BY place",
                        {id}))
     files.push_back({std::move(row[0]), std::move(row[1]), std::move(row[2]), std::move(row[3])});
-  if (!is_of_this_version(*database_)) return files;  // tables of an older version
+  if (!is_of_this_version(*database_)) return files;  // a register of version 1 has no journal
   const std::string number = database_->first("SELECT number FROM certificates WHERE id = ?", {id});
   if (files.empty() && number.empty()) return files;
   const auto says = issued_as_noted(*database_, number);

@@ -17,7 +17,7 @@ namespace nonio::certificates {
 
 struct RegisterPlace;
 
-/// One number in a register.
+/// A certificate number in a register.
 struct RegisterEntry {
   std::string number, campaign;
   std::string state;  ///< state of the number: drawn, issued, amended, withdrawn
@@ -31,7 +31,8 @@ struct RegisterEntry {
   /// an issued certificate is empty, the rules of the site approved it; if `withdrawn_by` of a
   /// withdrawn one is empty, no name was stated.
   std::string released_by{}, withdrawn_by{};
-  /// Accounts of these persons in the operating system, "user@host"; empty before version 2026-12.
+  /// Accounts in the operating system of the persons who approved and withdrew the certificate,
+  /// "user@host"; empty before version 2026-12.
   std::string released_account{}, withdrawn_account{};
   /// Account of users.toml whose password was given for the approval; empty: the name of the person
   /// is unverified.
@@ -57,9 +58,11 @@ struct Approval {
 struct WaitingDraft {
   std::string campaign, folder;  ///< id of the campaign, and its folder relative to the site
   std::string out;               ///< output folder of the run
-  std::string file, sha256;      ///< the PDF in OUT/campaign, and its digest
-  std::string replaces;          ///< number that the certificate would replace; may be empty
-  reading::Inputs made_from;     ///< digests of its data, plugins, templates and version
+  std::string file, sha256;      ///< name of the PDF in the campaign's folder of the output folder,
+                                 ///< and its SHA-256
+  std::string replaces;          ///< number that the certificate would replace; empty: none
+  reading::Inputs made_from;     ///< digests of the data, plugins, templates and version that the
+                                 ///< draft was made from
   std::vector<evaluation::KnownFinding> findings;
   std::optional<Approval> author{};  ///< approval by the author, if two persons are required
 };
@@ -79,8 +82,8 @@ struct Audit {
   std::string id;             ///< id of the register
   std::uint64_t entries = 0;  ///< number of entries in the journal
   std::uint64_t certificates = 0, files = 0;
-  std::string last_at, last_sha256;  ///< time and digest of the last entry; they should be kept in
-                                     ///< another place too
+  std::string last_at, last_sha256;  ///< time and digest of the last entry, to be kept in another
+                                     ///< place too
   std::vector<std::string> wrong;    ///< errors that the check found; empty: none
 };
 
@@ -121,7 +124,8 @@ class Register {
   std::string id();
   /// Returns the number of each issued file, by the file's SHA-256.
   Expected<std::map<std::string, std::string>> issued_digests();
-  /// Returns the last number that was issued for a campaign, in force or not.
+  /// Returns the last number that was issued for a campaign, in force or not; none if none was
+  /// issued.
   Expected<std::optional<RegisterEntry>> last_number(const std::string& campaign);
   /// Returns the last certificate of a campaign, if it is in force and was made from these data.
   Expected<std::optional<evaluation::Certificate>> find(const std::string& campaign,
@@ -158,7 +162,7 @@ class Register {
   /// kept. Returns a message that names the first person.
   Expected<std::string> note_second(const std::string& number, const std::string& campaign,
                                     const Approval& second);
-  /// Returns the approval of an issued number; none if it was issued by the rules.
+  /// Returns the approval of an issued number; none if it was issued by the rules, or not issued.
   Expected<std::optional<Approval>> approval_of(const std::string& number);
 
   Expected<Audit> audit();

@@ -112,8 +112,8 @@ Expected<void> check_state(Database& database, const RegisterPlace& place, const
 }
 
 /// Checks that the register belongs to this site, so that two sites, or a site and a copy of it,
-/// never draw numbers from one register. If the site knows no register yet, an empty one, or any
-/// that is a file, becomes its own; this is noted if `may_write`.
+/// never draw numbers from one register. If the site has no identity file yet, an empty register,
+/// or any register that is a file, is accepted; with `may_write`, the identity file is written.
 Expected<void> check_identity(Database& database, const RegisterPlace& place, bool may_write) {
   const std::string id = database.first("SELECT id FROM site");
   const bool is_new = database.first("SELECT count(*) FROM certificates") == "0";

@@ -48,7 +48,8 @@ CREATE TABLE files(
   PRIMARY KEY(certificate, place)
 );
 )";
-constexpr std::int64_t application = 0x4e6f6e69;  // identifies the file as a register
+constexpr std::int64_t application = 0x4e6f6e69;  // SQLite application_id that identifies a
+                                                  // register
 
 /// Tables that version 2 of the format adds.
 constexpr const char* additions = R"(

@@ -14,7 +14,7 @@ namespace nonio::certificates {
 /// Arguments of `nonio certificate extend`; empty ones are taken from the site.
 struct RestampOptions {
   VerifyOptions whom;
-  std::string time_stamp;  ///< address of the time-stamp server
+  std::string time_stamp;  ///< address of the time-stamp server; empty: that of the site
   bool with_time_stamp = true;
   std::vector<std::filesystem::path> answers;  ///< files with OCSP answers, DER
   bool fetch = true;
@@ -25,7 +25,7 @@ config::Checked<sign::Prolonging> prolonging_of(const RestampOptions& options);
 
 struct Restamped {
   std::filesystem::path written;
-  std::vector<std::string> added;  ///< what was added, in words
+  std::vector<std::string> added;  ///< descriptions of what was added
 };
 
 /// Writes the file with its revocation data and, if `how` contains a server for it, a time stamp

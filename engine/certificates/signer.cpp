@@ -50,7 +50,7 @@ Expected<sign::Key> open_key(const config::Signing& s, const fs::path& site) {
       sign::Key::open({in_site(site, s.pkcs12), s.pkcs11, s.module, in_site(site, s.certificates)},
                       password, std::time(nullptr));
   std::string& secret = password;
-  explicit_bzero(secret.data(), secret.size());  // unlike a plain fill, this is not optimised away
+  explicit_bzero(secret.data(), secret.size());  // unlike a plain fill, this is not optimized away
   return key;
 }
 
@@ -95,8 +95,8 @@ void answer(int stream, const Expected<sign::Key>& key,
   done ? reply("", *done) : reply(done.error().message, {});
 }
 
-/// Sends bytes to the signer and returns them signed. `go_on` is called repeatedly until the answer
-/// begins; if it returns false, the request is given up. It may be empty.
+/// Sends bytes to the signer and returns them signed. `go_on`, which may be empty, is called
+/// repeatedly until the answer begins; if it returns false, the request is given up.
 Expected<sign::Signed> ask(int channel, std::string_view bytes,
                            const std::function<bool()>& go_on = {}) {
   NONIO_TRY(auto ends, process::channel_pair(SOCK_STREAM, signing_process));

@@ -23,11 +23,11 @@ class Signer {
   Signer(const Signer&) = delete;
   Signer& operator=(const Signer&) = delete;
 
-  /// Starts the process. Returns the identity of its key, or why it has none.
+  /// Starts the process. Returns the identity of its key, or an error if it has none.
   Expected<sign::Identity> start();
   /// Starts the process again if it has died; requests made in the meantime are not lost.
   void revive();
-  /// Must be called first in a worker, so that it cannot receive the requests of others.
+  /// Must be called first in a worker, so that it cannot receive the requests of other workers.
   void leave_to_worker();
   Expected<sign::Signed> sign(const std::string& bytes) const;
 
@@ -38,7 +38,8 @@ class Signer {
   const config::Signing& signing_;
   const std::filesystem::path site_;
   const double disk_seconds_;
-  std::string given_up_{};  ///< why the process is not started again
+  std::string given_up_{};  ///< why the key is not opened again after a restart; empty: it may be
+                            ///< opened
   int deaths_ = 0;
   process::Handle to_, from_;  ///< both ends of the channel for requests
   process::Child child_{};

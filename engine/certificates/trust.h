@@ -14,7 +14,7 @@ namespace nonio::certificates {
 struct VerifyOptions {
   std::filesystem::path site;  ///< site whose [signing] states trusted roots and expected signers
   std::filesystem::path signer_roots, time_stamp_roots;
-  std::filesystem::path trust;  ///< one root for signers and time servers
+  std::filesystem::path trust;  ///< file with one root for signers and time servers
   std::filesystem::path revocation;
   std::vector<std::string> signers;
 };

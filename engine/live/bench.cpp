@@ -118,7 +118,7 @@ void send_first(int pipe, const std::string& text) {
   write_all(pipe, bytes + text);
 }
 
-/// Removes the first part from `received` and returns it; none until it is complete.
+/// Removes the first part of the answer from `received` and returns it; none until it is complete.
 std::optional<std::string> take_first(std::string& received) {
   std::uint64_t size = 0;
   if (received.size() < before_first || received.front() != begins) return std::nullopt;

@@ -10,7 +10,8 @@
 namespace nonio::live {
 
 /// Messages from the bench process to the server, packed: number of the job, state, text. Job 0 is
-/// the campaign itself: "opened" with `described`, perhaps "catalogue" later, or "failed".
+/// the campaign itself: "opened" with `described`, then "catalogue" if `described` does not contain
+/// the catalogue, or "failed".
 namespace job_state {
 inline constexpr const char* opened = "opened";
 inline constexpr const char* catalogue = "catalogue";

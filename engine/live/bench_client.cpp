@@ -124,7 +124,6 @@ void BenchClient::listen() {
       hear();
       const std::lock_guard lock(mutex_);
       channel_ = process::Handle();
-      // A process that died soon after its start is restarted only by the next request.
       if (Clock::now() - begun > soon) again_ = true;
       if (over_) return;
       is_begun_again = again_;

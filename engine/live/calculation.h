@@ -32,7 +32,7 @@ struct Bench {
   reading::ReadCampaign read;
   std::vector<modelling::PartModel> parts;  ///< all parts; each request sets their model
   bool has_catalogue = false;  ///< whether the catalogue exists; false for very many readings, for
-                               ///< which each process that needs it makes it
+                               ///< which each child process that needs the catalogue makes its own
   /// Prepared matrices of large parts, which are the same for every tried model.
   std::map<std::string, model::Groundwork> groundwork{};
 
@@ -54,9 +54,9 @@ storage::Json described(const Bench& bench);
 storage::Json fill_catalogue(Bench& bench);
 
 /// Returns the next part, of 5,000 to 200,000 readings, whose prepared matrices (groundwork) are
-/// still missing; null if there is none. Parts with set-up effects are left out, because without
-/// these the groundwork runs no plugin and so may be computed in the process that all requests are
-/// forked from.
+/// still missing; null if there is none. Parts with set-up effects are left out, because their
+/// groundwork runs a plugin, and therefore must not be computed in the process that all requests
+/// are forked from.
 const modelling::PartModel* without_groundwork(const Bench& bench);
 void do_groundwork(Bench& bench, const modelling::PartModel& part);
 

@@ -317,7 +317,7 @@ bool CampaignIndex::look_at_all() {
 
 void CampaignIndex::run() {
   using Clock = std::chrono::steady_clock;
-  constexpr double share = 20.0;  // the pause is this many times the duration of a look
+  constexpr double share = 20.0;  // the pause is at least this many times the duration of a check
   std::chrono::duration<double> pause = pause_;
   while (true) {
     {

@@ -25,14 +25,15 @@ struct ListedCampaign {
                                         ///< empty: none
   std::string state;                    ///< state of the campaign: new, ok, attention, failed
   std::string verdict;                  ///< worst decision on a tolerance; empty: none
-  std::string certificate;              ///< number of the certificate
-  std::string message;                  ///< message of the first error
+  std::string certificate;              ///< number of the certificate; empty: none
+  std::string message;                  ///< message of the first error; empty: no error
   bool draft = false;                   ///< whether a draft of a certificate waits for approval
   bool changed = false;                 ///< whether campaign.toml has changed since the results
                                         ///< were made
   std::vector<std::string> files{};     ///< names of the output files
-  std::vector<std::string> findings{};  ///< findings with severity warning, in words
-  std::vector<std::string> columns{};   ///< columns that a person stated for its files
+  std::vector<std::string> findings{};  ///< findings with severity warning, as text
+  std::vector<std::string> columns{};   ///< entries of the reader's option `columns` in
+                                        ///< campaign.toml
   /// Values that a form can take over, by keys of campaign.toml, with units in the keys.
   std::map<std::string, std::string> values{};
   std::string words{};  ///< all searchable text in lower case
@@ -63,13 +64,13 @@ struct CampaignPage {
 };
 
 /// Reads the campaigns of a site in a thread of its own, and reads changed ones again. Size and
-/// time of files only show when to read; their content decides. The first reading of 10,000
-/// campaigns takes seconds, an answer from memory milliseconds.
+/// time of a file only determine when it is read again, not the state of the campaign. The first
+/// reading of 10,000 campaigns takes seconds, an answer from memory milliseconds.
 class CampaignIndex {
  public:
   /// `changed` is called when campaigns or results have changed. `is_watched` returns whether a
   /// page is open; while none is, files are read only on request. `pause`: shortest time between
-  /// two looks.
+  /// two checks of the files.
   CampaignIndex(std::filesystem::path site, std::filesystem::path out,
                 std::function<void()> changed, std::function<bool()> is_watched,
                 std::chrono::duration<double> pause = std::chrono::seconds(5));
@@ -88,9 +89,9 @@ class CampaignIndex {
   std::size_t size() const;
   /// Reads this campaign at once.
   void look_at(const std::string& folder);
-  /// Requests that all campaigns are looked at soon, because something has changed.
+  /// Requests a check of all campaigns soon, because something has changed.
   void look_soon();
-  /// Requests that campaigns are looked at soon if the last look is too long ago.
+  /// Requests a check of all campaigns soon if the last one ended longer ago than `pause`.
   void look_if_old();
 
  private:
@@ -105,7 +106,7 @@ class CampaignIndex {
   Seen read(const std::string& folder) const;
   void run();
   /// Reads all campaigns whose files have changed, and removes those that no longer exist. Returns
-  /// whether anything has changed; true for the first complete look, and false if the index ends.
+  /// whether anything has changed; true for the first complete check, and false if the index ends.
   bool look_at_all();
   bool is_over() const;
 

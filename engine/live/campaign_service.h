@@ -24,7 +24,7 @@ std::vector<std::string> campaigns_in(const std::filesystem::path& site);
 struct Shells {
   std::string campaign, site;
   Sentences sentences;
-  double seconds = 0.0;  ///< time limit of a command, from site.toml, [limits]
+  double seconds = 0.0;  ///< time limit of a command in s, from site.toml, [limits]
 };
 
 /// Makes the service of a site: its worklist, and the workbench of each of its campaigns.

@@ -99,7 +99,7 @@ Answer Desk::answer(const std::string& what, const std::string& part, const Requ
   return asked(last, part, request);
 }
 
-// ---- answers
+// Answers to GET requests.
 
 Json Desk::part_state(const PartState& state) const {
   Json json = {{"fit", state.fit.state}, {"explain", state.explain.state}};

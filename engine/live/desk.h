@@ -35,8 +35,8 @@ class Remembered {
  public:
   struct Text {
     std::string head, rest;
-    storage::Json figures = storage::Json::object();  ///< for a fit: RMS and similar values, with
-                                                      ///< units
+    storage::Json figures = storage::Json::object();  ///< for a fit: RMS, cross-validation RMS and
+                                                      ///< noise floor, by names with units
     std::size_t size() const { return head.size() + rest.size(); }
   };
   void put(const std::string& key, Text text);
@@ -84,7 +84,7 @@ class Desk {
     std::string text;
   };
 
-  // answers to GET
+  // Answers to GET requests.
   Answer state(bool may_write);
   Answer fit(const std::string& part, const Request& request, bool picture);
   Answer explain(const std::string& part, bool fingerprints);
@@ -93,7 +93,7 @@ class Desk {
   Answer difference();
   Answer events(const Request& request);
 
-  // answers to POST
+  // Answers to POST requests.
   Answer post(const std::string& what, const Json& body, const Request& request);
   Answer exclude(const Json& body);
   Answer search(const std::string& kind);
@@ -105,7 +105,7 @@ class Desk {
   Done change_model(const Json& body);
   Done known(const std::vector<std::string>& effects) const;
 
-  // messages of the bench
+  // Messages of the bench process.
   void tell(std::uint64_t job, const std::string& state, std::string text);
   void take_campaign(const std::string& state, const std::string& text);
   void take_work(const std::string& part, PartState::Work& work, bool is_fit,
@@ -116,7 +116,7 @@ class Desk {
                         bool is_done);
   bool take_waiting(std::uint64_t job, const std::string& state, std::string& text);
 
-  // requests to the bench, and the search
+  // Requests to the bench process, and the search.
   Json request_for(const std::string& kind, const std::string& part) const;
   void refresh();
   void forget_parts();

@@ -209,7 +209,7 @@ Answer Desk::save(const Request& request) {
                            {"command", shown_command}});
 }
 
-// ---- search that adds effects one after the other
+// Search that adds effects one after the other.
 
 Answer Desk::search(const std::string& kind) {
   const std::lock_guard lock(mutex_);
@@ -224,7 +224,7 @@ Answer Desk::search(const std::string& kind) {
   const std::uint64_t job = searching_->job;
   search_on();
   answer["version"] = session_.version();
-  // Everything was known, so the search has ended already.
+  // All explanations were known, so that the search has ended already.
   if (!searching_) return json_answer(200, answer);
   answer["job"] = job;
   return json_answer(202, answer);

@@ -62,7 +62,7 @@ const Remembered::Text* Remembered::find(const std::string& key) const {
 
 void Remembered::clear() { *this = Remembered(); }
 
-// ---- requests to the bench
+// Requests to the bench process.
 
 Json Desk::request_for(const std::string& kind, const std::string& part) const {
   const Trial& trial = session_.trial();
@@ -76,7 +76,8 @@ Json Desk::request_for(const std::string& kind, const std::string& part) const {
   return request;
 }
 
-/// Cancels requests of other trials, and requests what is not known yet for the present one.
+/// Cancels the requests of other trials, and requests the answers for the present trial that are
+/// not known yet.
 void Desk::refresh() {
   for (const std::string& part : order_) {
     PartState& state = parts_[part];
@@ -113,7 +114,7 @@ void Desk::ask_explanation(const std::string& part, PartState& state) {
     state.explain.head = known->head;
     state.explain.rest = known->rest;
     publish("explain", part, {{"part", part}});
-    if (!known->rest.empty()) return;  // otherwise the request for its fingerprints was cancelled
+    if (!known->rest.empty()) return;  // otherwise the request for the fingerprints was cancelled
   }
   if (bench_state_ == "open") state.explain.job = bench_->ask(request_for("explain", part));
 }
@@ -124,7 +125,7 @@ void Desk::publish(const char* type, const std::string& about, Json data) {
   events_.publish({session_.version(), type, about, storage::dump_line(all)});
 }
 
-// ---- messages of the bench
+// Messages of the bench process.
 
 void Desk::tell(std::uint64_t job, const std::string& state, std::string text) {
   const std::lock_guard lock(mutex_);

@@ -19,8 +19,7 @@ namespace nonio::live {
 
 struct Event {
   std::uint64_t version = 0;  ///< version of the state, sent as `id:`
-  std::string type;           ///< type of the event: "state", "fit", "explain", "progress",
-                              ///< "changed", "failed"
+  std::string type;           ///< type of the event, for example "state", "fit" or "progress"
   std::string about;          ///< subject, for example a part: a newer event of this type with the
                               ///< same subject replaces it
   std::string data;           ///< content of the event: JSON on one line
@@ -32,7 +31,7 @@ std::string event_text(const Event& event);
 /// The connection of one open page.
 class Listener {
  public:
-  /// Waits for events and returns those since the last call, oldest first; empty if none came
+  /// Waits for events and returns the events since the last call, oldest first; empty if none came
   /// within `patience`.
   std::vector<Event> wait(std::chrono::milliseconds patience);
   bool closed() const;

@@ -89,7 +89,8 @@ std::string address_of(const Post& post);
 /// Returns the headers that are sent with every answer.
 std::vector<std::pair<std::string, std::string>> security_headers();
 
-/// Whether two texts are equal; the time depends only on their lengths.
+/// Returns whether two texts are equal; the duration of the comparison depends only on their
+/// lengths.
 bool same_secret(std::string_view one, std::string_view other);
 
 /// Returns the names and values after "?", percent-decoded. None if the query is malformed.

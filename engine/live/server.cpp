@@ -167,8 +167,8 @@ Expected<std::string> read_token(const std::string& file, int fd) {
   return token;
 }
 
-/// Returns the token in a file that only its owner can read; without the file, writes a new token
-/// to it. The address of the page then remains the same after a restart.
+/// Returns the token in a file that only its owner can read; if the file does not exist, creates it
+/// with a new token. The address of the page then remains the same after a restart.
 Expected<std::string> token_in(const std::string& file) {
   const process::Handle old(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
   if (old) return read_token(file, old.get());
@@ -294,7 +294,7 @@ class Handlers : public net::HTTPRequestHandlerFactory {
  public:
   explicit Handlers(House& house) : house_(house) {}
   net::HTTPRequestHandler* createRequestHandler(const net::HTTPServerRequest&) override {
-    return new Handler(house_);  // Poco deletes it
+    return new Handler(house_);  // Poco deletes the handler
   }
 
  private:
@@ -397,7 +397,7 @@ class Pool {
     const int fd = socket.get();
     ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) & ~O_NONBLOCK);
     if (refused != 0) return refuse(fd, refused, house_.service.sentences());
-    // Poco closes its descriptor while bytes are unread, so it gets a copy.
+    // Poco closes its descriptor while bytes are unread, so Poco gets a copy.
     const int copy = ::fcntl(fd, F_DUPFD_CLOEXEC, 0);
     if (copy < 0) return;
     try {
@@ -438,7 +438,8 @@ sigset_t block_signals() {
 
 Expected<void> serve_here(const LiveWish& wish) {
   NONIO_TRY(auto front, Front::open(wish.port));
-  auto service = service_of(wish);  // starts processes, so before the first thread
+  auto service = service_of(wish);  // starts processes, and therefore must be called before the
+                                    // first thread is created
   if (!service) return fail(service.error());
   std::string token;  // secret token; empty if people sign in
   if (!(*service)->signs_in()) {

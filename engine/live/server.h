@@ -21,8 +21,8 @@ struct LiveWish {
   std::filesystem::path out;       ///< for a site: output folder of its runs; empty: none
   std::string token_file;          ///< file with the token; empty: a new token at each start
   std::vector<std::string> hosts;  ///< names of this server under which a proxy calls it (--host)
-  std::string user_header;         ///< header in which the proxy states the user; empty: no proxy
-                                   ///< does
+  std::string user_header;         ///< header in which the proxy states the user; empty: there is
+                                   ///< no such proxy
   std::uint16_t port = 0;
   bool edit = false, quiet = false;
   bool sign_in = false;  ///< whether users sign in at this server: a site with users.toml and

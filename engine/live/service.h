@@ -24,7 +24,8 @@ struct Request {
   std::string body;
   bool may_write = true;  ///< whether the user's role allows changes
 
-  /// Returns a value of the query; none if it is missing.
+  /// Returns the first value with this name in the query; none if it is missing or the query is
+  /// malformed.
   std::optional<std::string> query(std::string_view name) const;
 };
 
@@ -32,11 +33,11 @@ struct Answer {
   int status = 200;
   std::string type = "application/json", body;
   std::vector<std::pair<std::string, std::string>> headers{};
-  Said said{};                         ///< why it is refused; `body` then contains additional
-                                       ///< members, or nothing
+  Said said{};                         ///< why the request is refused; `body` then contains
+                                       ///< additional members, or nothing
   std::shared_ptr<Listener> stream{};  ///< events until one side closes the connection, instead of
                                        ///< a body
-  Events* events = nullptr;            ///< source of the events
+  Events* events = nullptr;            ///< source of the events in `stream`; null without a stream
   std::function<bool()> may_go_on{};   ///< called once per second: false ends the stream, because
                                        ///< the user's session has ended
 };

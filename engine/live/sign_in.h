@@ -45,8 +45,8 @@ class SignIn {
 
   /// Starts a session and returns the value of Set-Cookie. `secure`: send the cookie over TLS only.
   Expected<std::string> begin(const certificates::User& user, bool secure);
-  /// Returns the user of the request's session; none if there is no session or it has ended: after
-  /// 12 h, with a change of the password, or with the removal of the user.
+  /// Returns the user of the request's session; none if there is no session or it has ended (see
+  /// `lasting`).
   std::optional<certificates::User> user_of(const Head& head,
                                             const std::vector<certificates::User>& users);
   /// Ends the session and returns the value of Set-Cookie that removes the cookie.

@@ -12,7 +12,7 @@ using storage::Json;
 
 namespace {
 
-/// Adds the members `names` of the body as options, as far as the body has them.
+/// Adds the members `names` of the body as options; missing members are skipped.
 void add_options(std::vector<std::string>& arguments, const Json& body,
                  std::initializer_list<const char*> names) {
   for (const char* name : names)
@@ -54,7 +54,7 @@ bool is_by_proxy(const Head& head) {
   return !host.starts_with("127.0.0.1") && !host.starts_with("localhost");
 }
 
-/// Whether two names count as one person according to `likeness_of`.
+/// Returns whether two names denote one person according to `likeness_of`.
 bool is_same_name(const std::string& one, const std::string& other) {
   return certificates::likeness_of(one) == certificates::likeness_of(other);
 }
@@ -175,7 +175,6 @@ Answer SiteService::run(const Json& body) {
       return refused(404, "no_campaign", {{"campaign", body["campaign"].get<std::string>()}});
     id = id_of(*folder);
     of_one = *folder;
-    // The first run of a site has to include all campaigns.
     if (news_->run().last != 0) arguments.push_back(verb_option("only", *folder));
   }
   arguments.push_back(wish_.folder.string());

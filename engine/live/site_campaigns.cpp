@@ -146,7 +146,8 @@ struct Taken {
   std::string path() const { return (folder.path() / dropped.name).string(); }
 };
 
-/// Puts the request's file into `taken`; returns an answer if it is refused.
+/// Stores the request's file in `taken`; returns the answer if the request is refused, otherwise
+/// none.
 std::optional<Answer> take(const Request& request, decltype(file_options)& options_of,
                            Taken& taken) {
   auto file = dropped_file(request.body);
@@ -192,7 +193,7 @@ tl::expected<std::string, Answer> SiteCampaigns::take_folder(const std::string& 
   return tl::unexpected(refused(409, "folder_taken", {{"campaign", id}}));
 }
 
-/// Runs `nonio new campaign`. If it refuses the campaign, nothing remains of it.
+/// Runs `nonio new campaign`. If the command fails, the new folder is removed.
 Answer SiteCampaigns::create(const Request& request) {
   Taken taken;
   if (auto refusal = take(request, campaign_options, taken)) return *std::move(refusal);

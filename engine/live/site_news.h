@@ -25,8 +25,8 @@ struct RunNow {
 /// Returns a text that changes when the results or entries of the worklist change.
 std::string worklist_stamp(const std::filesystem::path& site, const std::filesystem::path& out);
 
-/// Checks once per second whether the worklist of a site has changed by a run, by entries of people
-/// (here or on a terminal), or by an approval.
+/// Checks once per second whether the worklist of a site has changed by a run, by an entry made on
+/// a page or on a terminal, or by an approval.
 class SiteNews {
  public:
   /// `what`: run (a run began or ended), worklist (results or entries changed), drafts.
@@ -37,7 +37,7 @@ class SiteNews {
   ~SiteNews();
 
   RunNow run() const;
-  /// Checks at once.
+  /// Requests an immediate check.
   void look_now();
 
  private:

@@ -184,7 +184,7 @@ bool is_plain_file_in(const fs::path& folder, const std::string& name) {
 
 }  // namespace
 
-/// Returns a page of the site with its present content; only pages that the run has written.
+/// Returns a page of the site with its present content. Status 404 if no run has written this page.
 Answer SiteService::page(const std::string& name) {
   const bool below = name.starts_with("machines/");
   const fs::path folder = below ? wish_.out / "machines" : wish_.out;

@@ -21,7 +21,7 @@ using storage::Json;
 namespace {
 
 constexpr const char* of_json = "application/json";
-/// Open campaigns that are kept in memory; more only if they have unsaved changes.
+/// Largest number of open campaigns in memory, and largest number if they have unsaved changes.
 constexpr std::size_t most_desks = 4, most_unsaved = 32;
 
 /// Returns the role that a request requires.
@@ -100,7 +100,8 @@ std::optional<std::string> SiteService::folder_of(const std::string& campaign) c
   return std::nullopt;
 }
 
-/// Whether the folder is below the site, without "..", and not behind a link, and has a manifest.
+/// Returns whether the folder is below the site, also after links are resolved, contains no "..",
+/// and has a manifest.
 bool SiteService::is_campaign(const std::string& folder) const {
   if (folder.empty() || folder.ends_with('/') || !is_utf8(folder)) return false;
   if (campaigns_->index().has(folder)) return true;
@@ -184,7 +185,7 @@ Answer SiteService::answer(const Request& request) {
 }
 
 /// Records in the audit log a request that may change something or that the user's role forbids,
-/// and carries it out if `may`. Without a record, it is refused.
+/// and carries it out if `may`. If it cannot be recorded, the request is refused.
 Answer SiteService::recorded(const Request& request, const User& user, bool may) {
   const std::string& path = request.route.path;
   Json entry = {{"account", user.account},
@@ -201,7 +202,7 @@ Answer SiteService::recorded(const Request& request, const User& user, bool may)
   };
   add(body, {"machine", "finding", "why", "text", "reasons", "file", "to"});
   if (path != "/api/ack" && path != "/api/event") add(body, {"campaign"});
-  // Recorded before it is carried out; if that fails, the request is refused.
+  // The request is recorded before it is carried out.
   entry["state"] = may ? "begins" : "refused";
   if (!audit_.write(entry)) return refused(503, "audit");
   if (!may) return refused(403, "role", {{"role", certificates::to_text(user.role)}});

@@ -24,7 +24,8 @@
 
 namespace nonio::live {
 
-/// Returns "--by=B. Sample". With "=", a value that begins with "-" remains a value.
+/// Returns an option with its value, for example "--by=B. Sample". With "=", a value that begins
+/// with "-" remains a value.
 inline std::string verb_option(const std::string& name, const std::string& value) {
   return "--" + name + "=" + value;
 }

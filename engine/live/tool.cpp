@@ -58,7 +58,7 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
   process::Child::Program own{{program}, process::present_environment(), -1, out[1], errors[1]};
   int in[2] = {-1, -1};
   if (const std::string line = input + "\n"; !input.empty()) {
-    // The write cannot block: a pipe holds 4096 bytes.
+    // The write cannot block, because a pipe holds at least 4096 bytes.
     if (line.size() > most_input || ::pipe2(in, O_CLOEXEC) != 0 ||
         ::write(in[1], line.data(), line.size()) != static_cast<ssize_t>(line.size()))
       ::_exit(1);
@@ -77,7 +77,7 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
   std::array<pollfd, 3> all{
       {{out[0], POLLIN, 0}, {errors[0], POLLIN, 0}, {channel.get(), POLLIN, 0}}};
   using Clock = std::chrono::steady_clock;
-  // The program is first asked to end by SIGTERM, so that finished work is kept.
+  // SIGTERM is sent first, so that finished work is kept.
   constexpr std::chrono::seconds patience(10);
   auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                      std::chrono::duration<double>(seconds));

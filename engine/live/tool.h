@@ -13,14 +13,15 @@ namespace nonio::live {
 
 /// Result of a command.
 struct ToolEnd {
-  int status = -1;          ///< exit status; -1: it did not end by itself
+  int status = -1;          ///< exit status; -1: the command did not end by itself
   std::string out, errors;  ///< standard output, and the end of the error output
 };
 
 /// Runs the program with these arguments in a process with one thread. Sends each line of its error
-/// output (and each event of a run) over the channel, and its exit at the end. It terminates the
-/// program (SIGTERM) on request, and if the other side has ended. `input`: a line for its standard
-/// input; empty: none. After `seconds` it terminates the program, and the exit status is -1.
+/// output (and each event of a run) over the channel, and its exit at the end. The program is
+/// terminated by SIGTERM on request and after `seconds`, and killed 10 s later than `seconds`, or
+/// when the other side has ended. After `seconds` the exit status is -1. `input`: a line for its
+/// standard input; empty: none.
 [[noreturn]] void run_tool(const std::string& program, const std::vector<std::string>& arguments,
                            const std::string& input, double seconds, process::Handle channel);
 

@@ -11,8 +11,8 @@
 
 namespace nonio::live {
 
-/// Checks once per second whether files still have the content that was read. Size and time only
-/// show when to read; the content decides.
+/// Checks once per second whether files still have the content that was read. Size and time of a
+/// file only determine when it is read again; its SHA-256 determines whether it has changed.
 class Watch {
  public:
   using Tell = std::function<void(bool changed)>;

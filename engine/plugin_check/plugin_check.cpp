@@ -76,7 +76,7 @@ double processor_seconds(int who = RUSAGE_SELF) {
   return of(usage.ru_utime) + of(usage.ru_stime);
 }
 
-/// Shared memory into which the child of the check `pure` writes the forbidden call it made.
+/// Shared memory into which the child of the check `pure` writes the forbidden call that it made.
 process::SharedStatus* impure_answer = nullptr;
 
 [[noreturn]] void tell_impurity(const char* call) {
@@ -198,7 +198,7 @@ class Checker {
     Made& made = place->second;
     if (anew) {
       made.sources = kit::made_sources(number);
-      // a reader under test may not recognise the samples that are made for the program's own
+      // a reader under test may not recognize the samples that are made for the program's own
       // readers
       for (const kit::Source& s : made.sources)
         if (auto sample = kit::open_source(s, own_.readers(), own_.methods()))
@@ -218,8 +218,8 @@ class Checker {
     for (kit::Sample& s : made.samples) s.results = kit::results_of(s, own);
   }
 
-  /// Runs all checks of one plugin, a line of `load` such as "reader csv". `at` contains, for each
-  /// kind, the number of plugins checked so far.
+  /// Runs all checks of one plugin, which is stated as kind and name, "reader csv". `at` contains,
+  /// for each kind, the number of plugins checked so far.
   void check_plugin(const std::string& plugin, std::size_t (&at)[6]) {
     hung_ = 0;
     const std::string kind = plugin.substr(0, plugin.find(' '));
@@ -350,7 +350,8 @@ class Checker {
     const process::ChildEnd end = child ? child->wait(10.0 * request_.seconds)
                                         : process::ChildEnd{false, child.error().message};
     const std::string words = answer.get();
-    // a check that waits until the time limit costs most time, so no further check is tried
+    // a check that waits until the time limit costs most time, so no further check of the plugin is
+    // run
     if (end.overdue) hung_ = most_hanging;
     if (!end.well && processor_seconds(RUSAGE_CHILDREN) - before > 0.9 * request_.seconds) ++hung_;
     if (!end.well || words.empty()) {
@@ -405,7 +406,7 @@ class Checker {
     bench_.sources = std::move(made_.at(bench_.seed).sources);
     bench_.samples = std::move(made_.at(bench_.seed).samples);
     if (!brought_.analyses.empty() || !brought_.effects.empty())
-      // the file's own plugins may give other results
+      // the file's own plugins may lead to other results
       for (kit::Sample& s : bench_.samples) s.results.reset();
     for (const kit::Source& s : cases_)
       if (auto sample = kit::open_source(s, bench_.readers, bench_.methods))

@@ -33,7 +33,7 @@ struct PluginCheckRequest {
   std::string plugin;       ///< the one plugin to check, by name; empty: all
   std::uint64_t seed = 1;   ///< first seed of the samples
   std::uint64_t seeds = 3;  ///< number of seeds: seed, seed + 1, ...
-  double seconds = 20.0;    ///< limit of processor time per check, s; its duration: ten times this
+  double seconds = 20.0;    ///< processor time limit of a check, s; time limit: 10 times this value
   double memory_MB = 2000.0;
   /// the program's plugins, which read and evaluate the samples
   std::filesystem::path own_plugins;
@@ -44,8 +44,8 @@ struct PluginCheckRequest {
 /// Returns the name of every check with the law that it tests.
 std::vector<std::pair<std::string, std::string>> plugin_check_names();
 
-/// Runs the requested checks and calls `tell` after each one. An error if the request is wrong: no
-/// such plugin or no such check.
+/// Runs the requested checks and calls `tell` after each one. An error if the requested plugin or
+/// check does not exist.
 Expected<void> check_plugins(const PluginCheckRequest& request,
                              const std::function<void(const PluginCheck&)>& tell);
 

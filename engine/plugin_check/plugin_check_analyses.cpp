@@ -25,7 +25,7 @@ struct Said {
   std::vector<One> values, evidence;
   std::string texts;    ///< ids and texts of findings and notes; error messages
   std::string error;    ///< first error message
-  std::string unsound;  ///< what the host would refuse in a result
+  std::string unsound;  ///< why the host would refuse a result; otherwise empty
   std::size_t evaluations = 0;
   bool failed() const { return !error.empty(); }
 };
@@ -322,8 +322,8 @@ std::vector<double> sizes(const Said& said) {
 
 bool of_one_axis(const Sample& s) { return only_kinds(s, {"axis", "straightness", "angle"}); }
 
-/// Check: if the axis is counted in the opposite direction, the sizes of all results stay the same;
-/// signs and positions may differ.
+/// Check: if the positive direction of the axis is reversed, the sizes of all results stay the
+/// same; signs and positions may differ.
 Verdict analysis_mirror(const Analysis& a, const Bench& bench) {
   if (a.analyse_campaign) return skipped("it is of the campaign as a whole");
   return each_sample(
@@ -429,7 +429,7 @@ Verdict analysis_hostile(const Analysis& a, const Bench& bench) {
   return passed();
 }
 
-/// Check: the analysis gives a result for at least one sample to which it applies.
+/// Check: the analysis returns a result for at least one sample to which it applies.
 Verdict analysis_says(const Analysis& a, const Bench& bench) {
   if (!a.analyse_campaign && (!a.applies || !a.analyse))
     return failed("applies or analyse is missing");

@@ -111,7 +111,7 @@ config::MachineRecord record_for(const Sample& sample) {
 }
 
 /// Adds the encoder counts of each axis to options of controllers whose table entries are in
-/// counts, because only the machine builder knows them. The values make 1/16 count equal to 1 nm.
+/// counts, because only the machine builder knows them. On a linear axis, 1/16 count is then 1 nm.
 void add_encoders(Settings& settings, const Info& info, const Machine& machine) {
   for (const Option& o : info.options) {
     if (o.name != "axes" || o.help.find("counts_per_mm") == o.help.npos) continue;

@@ -18,7 +18,7 @@ namespace {
 /// A planted error of one axis, in SI units.
 struct KnownError {
   bool rotary = false;
-  /// Targets, and actual - nominal there (mean of both directions).
+  /// Targets, and actual minus nominal position at each target (mean of both directions).
   std::vector<double> targets, error;
   double reversal = 0.0;
 
@@ -83,7 +83,7 @@ Sample sample_of(const KnownError& k) {
   return s;
 }
 
-/// Files of a controller, and the tables that the control contains once they are loaded.
+/// Files of a controller, and the tables that the control contains once these files are loaded.
 struct Written {
   std::vector<Artifact> files;
   std::vector<LoadedTable> tables;
@@ -107,8 +107,8 @@ Written written_table(const Controller& o, const Sample& s, const Settings& opti
   return {r->artifacts, std::move(*tables), {}};
 }
 
-/// Returns the option settings to try: each choice of `sign`, which the user states where the
-/// control's sign is undocumented, and one table per direction where that is possible.
+/// Returns the option settings to try: each choice of `sign`, which the user states if the
+/// control's sign is undocumented, and one table per direction if the control supports this.
 std::vector<Settings> set_ups(const Controller& o, const Sample& s) {
   const Settings defaults = settings_for(o, s);
   std::vector<Settings> all{defaults};
@@ -188,8 +188,8 @@ std::string in_um(double si) { return short_text(si * 1e6, 4) + " um or urad"; }
 
 double step_of(const Controller& o, bool rotary) { return o.table.value_step.of(rotary); }
 
-/// Returns what is wrong with a table written for this error; empty if nothing. `refused` receives
-/// the reason if no table is written, which may be correct.
+/// Returns what is wrong with a table written for this error; empty if it is correct. `refused`
+/// receives the reason if no table is written, which may be correct.
 std::string wrong_table(const Controller& o, const KnownError& k, const Settings& options,
                         const Bench& bench, std::string& refused) {
   const Written w = written_table(o, sample_of(k), options, bench);

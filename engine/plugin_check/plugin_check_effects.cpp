@@ -240,8 +240,8 @@ double alike(const Observations& o, const Columns& columns, const Columns& other
   return whole > 0.0 ? 1.0 - left / whole : 1.0;
 }
 
-/// Check: each value of the grid resembles one of its neighbours; otherwise the search misses an
-/// effect between two values.
+/// Check: each value of the grid has similar columns to one of its neighbors; otherwise the search
+/// misses an effect between two values.
 Verdict effect_neighbours(const Effect& e, const Bench& bench) {
   const bool any = std::any_of(e.shapes.begin(), e.shapes.end(),
                                [](const Effect::Shape& s) { return s.continuous; });
@@ -309,7 +309,7 @@ std::optional<Planted> plant(const Effect& e, const Shown& s, storage::Random& r
   if (!columns) return std::nullopt;
   double least = 0.0;
   basis_of(s.table(), *columns, least);
-  if (!(least > 1e-3)) return std::nullopt;  // these readings do not determine it
+  if (!(least > 1e-3)) return std::nullopt;  // these readings do not determine the parameters
   for (const auto& c : *columns) {
     const double size = norm(without_zeros(s.table(), c));
     const double factor = random.uniform(0.5, 1.0) * (random.uniform() < 0.5 ? -1.0 : 1.0) *
@@ -322,8 +322,8 @@ std::optional<Planted> plant(const Effect& e, const Shown& s, storage::Random& r
   return p;
 }
 
-/// Compares the effect that a fit found with the planted one; returns the difference, empty if it
-/// is within its uncertainty.
+/// Compares the fitted effect with the planted one. Returns the difference in words; empty if it is
+/// within the uncertainty.
 std::string missed(const Effect& e, const Planted& p, const model::Fit& fit) {
   const auto n = static_cast<double>(p.truth.size());
   const auto planted = without_zeros(p.part.table, p.truth);
@@ -391,8 +391,8 @@ bool describes(const model::Explanation& x, const std::string& name) {
                      [&](const model::Description& d) { return d.term.name() == name; });
 }
 
-/// Check: `explain` names the effect that is planted in the first sample of an axis, or of space,
-/// that determines it, or uses it to describe the deviations.
+/// Check: `explain` names a planted effect, or uses it to describe the deviations, in the first
+/// sample that determines the parameters of the effect.
 Verdict effect_explained(const Effect& e, const Bench& bench) {
   if (e.is_nuisance) return skipped("it is in every model and never a candidate");
   if (e.of_channels)
@@ -421,7 +421,7 @@ Verdict effect_explained(const Effect& e, const Bench& bench) {
 }
 
 /// Calls the effect with readings `o`, for `axis` or for each instance of an effect in space.
-/// Returns what is wrong with its columns; empty if nothing.
+/// Returns what is wrong with its columns; empty if they are correct.
 std::string survives(const Effect& e, const Observations& o, const Axis& axis) {
   std::vector<std::string> names{axis.name};
   if (e.instances) names = e.instances(o);

@@ -80,7 +80,7 @@ bool nearly_equal(double a, double b) {
   return std::fabs(a - b) <= 1e-9 * std::max({std::fabs(a), std::fabs(b), 1e-6});
 }
 
-/// Returns the name and value of each number of observation `i`; NaN for a missing channel.
+/// Returns the name and value of each number of observation `i`; NaN for a missing column.
 std::vector<std::pair<const char*, double>> values_of_row(const Observations& o, std::size_t i) {
   std::vector<std::pair<const char*, double>> row{
       {"deviation", o.deviation[i]}, {"run", o.run_of(i)}, {"line", o.line_of(i)}};
@@ -123,8 +123,8 @@ std::string round_trip_of(const Method& m, const Measured& one, const Observatio
   return difference_of(truth, *found);
 }
 
-/// Check: readings that are simulated from observations give the same observations again, with the
-/// deviations of the sample and with random ones.
+/// Check: readings that are simulated from observations lead to the same observations again, with
+/// the deviations of the sample and with random ones.
 Verdict method_round_trip(const Method& m, const Bench& bench) {
   storage::Random random = bench.random(11);
   return each_measured(m, bench, [&](const Measured& one) -> std::string {
@@ -202,7 +202,7 @@ Verdict fingerprint(const Method& m, const Bench& bench) {
     const auto o = readings ? observe(m, {one.sample.campaign, one.measurement, *readings})
                             : Expected<Observations>(fail(readings.error()));
     text += one.where() + (o ? std::string("\n") : ": " + o.error().message + "\n");
-    if (readings)  // the readings too: a term that both functions use cancels in observations
+    if (readings)  // readings too, because a wrong term in both functions cancels in observations
       for (const auto& [name, column] : readings->columns)
         for (const double value : column) text += exact_text(value) + " ";
     for (std::size_t i = 0; o && i < o->size(); ++i)

@@ -36,7 +36,7 @@ void prepare(const Output& o, const Bench& bench) {
 }
 void prepare(const Controller&, const Bench&) {}
 
-/// Returns what the host would refuse of the written files; empty if nothing.
+/// Returns why the host would refuse the written files; empty if it accepts them.
 std::string unsound_output(const OutputResult& r) {
   std::set<std::string> names;
   for (const Artifact& a : r.artifacts) {
@@ -49,8 +49,8 @@ std::string unsound_output(const OutputResult& r) {
   return unsound(r);
 }
 
-/// Writes the files of one sample and returns what the host would refuse; empty if nothing, or if
-/// the plugin returns an error, which is allowed.
+/// Writes the files of one sample and returns why the host would refuse them; empty if it accepts
+/// them, or if the plugin returns an error, which is allowed.
 template <class Plugin>
 std::string complaint(const Plugin& o, const Sample& s, const Results& results,
                       const Settings& options, const Bench& bench) {
@@ -185,7 +185,7 @@ template <class Plugin>
 Verdict output_hostile(const Plugin& o, const Bench& bench) {
   std::size_t at = 0;
   return each_output(o, bench, [&](const Sample& s, const Results&) -> std::string {
-    // each sample takes two of the texts in turn, so that all samples together try all of them
+    // each sample is tried with the next two texts, so that all samples together use all texts
     const auto texts = hostile_texts();
     for (std::size_t k = 0; k < 2; ++k) {
       const auto& [name, text] = texts[(at + k) % texts.size()];

@@ -25,7 +25,7 @@ char any_byte(storage::Random& random) {
 constexpr std::size_t most_tokens = 120, damages = 300;
 constexpr double no_reading = 1e6;  // deviation that no machine can have, m or rad
 
-/// A sample file that the reader recognises, with the campaign and measurement that it belongs to.
+/// A sample file that the reader recognizes, with the campaign and measurement that it belongs to.
 struct ReadFile {
   std::string sample;
   Campaign campaign;
@@ -88,8 +88,8 @@ Verdict each_file(const Reader& r, const Bench& bench,
 using Row = std::vector<double>;
 
 Row row_of(const Observations& o, std::size_t i, bool placed = true) {
-  // the name of the line, because its number changes if the file ends before the first row of
-  // others
+  // the name of the line is used, because its number changes if the file ends before the first row
+  // of another line
   const double line =
       o.lines.empty() ? 0.0
                       : static_cast<double>(std::hash<std::string>()(o.lines[o.line_of(i)].name));
@@ -155,8 +155,8 @@ Verdict reader_empty(const Reader& r, const Bench& bench) {
   });
 }
 
-/// Check: a file that is cut off is refused, or gives only readings of the whole file. The last
-/// reading may be cut too.
+/// Check: a file that is cut off is refused, or results only in readings of the whole file. The
+/// last reading may be cut, too.
 Verdict reader_truncated(const Reader& r, const Bench& bench) {
   return each_file(r, bench, [&](const ReadFile& f, const Observations& whole) -> std::string {
     // the position of a step is not compared: it depends on the number of steps in the file
@@ -208,8 +208,8 @@ struct Token {
   std::size_t at, length;
 };
 
-/// Finds the numbers in a text file; of more than `most_tokens`, a random choice from all parts of
-/// it.
+/// Finds the numbers in a text file. If there are more than `most_tokens`, returns a random choice
+/// from all parts of the file.
 std::vector<Token> numbers_of(std::string_view bytes, storage::Random& random) {
   const auto digit = [&](std::size_t i) {
     return i < bytes.size() && bytes[i] >= '0' && bytes[i] <= '9';
@@ -257,7 +257,7 @@ std::size_t readings_of_line(const Observations& o, const std::string& bytes, st
   return static_cast<std::size_t>(std::count(o.source_line.begin(), o.source_line.end(), line));
 }
 
-/// Check: a code for "not measured" gives a missing reading or an error, and leaves all other
+/// Check: a code for "not measured" results in a missing reading or an error, and leaves all other
 /// readings unchanged.
 Verdict reader_sentinels(const Reader& r, const Bench& bench) {
   storage::Random random = bench.random(7);
@@ -301,7 +301,7 @@ Verdict reader_signs(const Reader& r, const Bench& bench) {
   });
 }
 
-/// Check: if an option of the reader states the unit of the file, `inch` gives 25.4 times the
+/// Check: if an option of the reader states the unit of the file, `inch` results in 25.4 times the
 /// positions of `mm`. Readers without such an option take the unit from the file.
 Verdict reader_inch(const Reader& r, const Bench& bench) {
   const auto has = [](const Option& o, const char* choice) {
@@ -346,8 +346,8 @@ Verdict reader_truth(const Reader& r, const Bench& bench) {
   return v;
 }
 
-/// Check: the reader does not recognise files of other formats. If it reads one all the same, it
-/// returns an error or sound observations.
+/// Check: the reader does not recognize files of other formats. If it reads such a file
+/// nevertheless, it returns an error or sound observations.
 Verdict reader_foreign(const Reader& r, const Bench& bench) {
   storage::Random random = bench.random(9);
   if (!r.recognises || !r.reads || !r.read) return failed("recognises, reads or read is missing");

@@ -16,7 +16,7 @@ using Vector = std::array<double, 3>;
 constexpr double um = 1e-6;
 constexpr double turn = 2.0 * std::numbers::pi;
 
-/// A smooth error: the sum of three sine waves over `over` metres, or over a turn (rad).
+/// A smooth error: the sum of three sine waves over `over` meters, or over a turn (rad).
 struct Waves {
   std::array<double, 3> size{}, phase{};
   double over = 1.0;

@@ -16,7 +16,7 @@
 #include "platform/storage/random.h"
 
 /// Types and functions that the checks of all kinds of plugins share. Checks run in a child
-/// process, so that a plugin may crash or hang there.
+/// process, so that a plugin that crashes or hangs does not end the program.
 namespace nonio::plugin_check::kit {
 
 /// A campaign as its folder contains it: the text of campaign.toml and the bytes of the other
@@ -45,8 +45,9 @@ std::vector<Source> made_sources(std::uint64_t seed);
 /// Returns the method of a measurement; null if `methods` does not contain it.
 const Method* method_of(const Measurement& m, const std::vector<Method>& methods);
 /// Reads a source; each file is read by the reader that its measurement names, otherwise the first
-/// that recognises it, otherwise one for the columns of its method. Axes without a stated
-/// compensation get none, because controllers require it. An error names the sample and the file.
+/// that recognizes it, otherwise one for the columns of its method. Axes without a stated
+/// compensation are treated as uncompensated, because controllers require a statement. An error
+/// names the sample and the file.
 Expected<Sample> open_source(const Source& source, const std::vector<Reader>& readers,
                              const std::vector<Method>& methods);
 
@@ -98,8 +99,8 @@ const std::vector<Check<Controller>>& controller_checks();
 /// Returns the checks of written files, which controllers share with outputs.
 std::vector<Check<Controller>> controller_checks_of_files();
 
-/// Returns what is wrong with the declaration of an option; empty if nothing. If `may_be_absent`,
-/// an empty default means that the key is not written.
+/// Returns what is wrong with the declaration of an option; empty if it is correct. If
+/// `may_be_absent`, an empty default means that the key is not written.
 std::string wrong_option(const Option& option, bool may_be_absent);
 
 /// Returns a passed verdict with a digest of what a plugin computes for all samples, or a skipped
@@ -122,7 +123,7 @@ std::vector<std::uint32_t> shuffled(std::size_t n, storage::Random& random);
 /// Returns variants of `o` with unusual readings, each with its name: none, one, one target, one
 /// direction, positions only, huge positions, missing times and temperatures.
 std::vector<std::pair<std::string, Observations>> odd_tables(const Observations& o);
-/// Returns the plugin's default options, replaced by those that the sample sets.
+/// Returns the plugin's default options, overridden by those that the sample states.
 Settings settings_for(const Info& info, const Sample& sample);
 Settings settings_for(const Output& output, const Sample& sample);
 /// Returns the options of a controller for a sample, including the numbers of the axes in order and

@@ -27,7 +27,7 @@ namespace nonio::python {
 namespace {
 
 /// An error that becomes the Python exception nonio.Error. Unlike a Python exception, it can also
-/// be thrown while Python's lock is released.
+/// be thrown while the global interpreter lock of Python is released.
 struct Failure {
   Error error;
 };
@@ -146,7 +146,7 @@ Effect effect_of(OwnEffect given) {
 }
 
 /// A campaign that was read. The constructor and the methods evaluate, compare and explain release
-/// Python's lock while they work.
+/// the global interpreter lock while they run.
 class OpenedCampaign {
  public:
   OpenedCampaign(const fs::path& folder, std::vector<fs::path> plugins,

@@ -41,11 +41,12 @@ std::vector<double> shifted_targets(const CycleSpec& c, storage::Random random) 
 struct Seen {
   Observations table;
   std::vector<std::pair<std::size_t, std::size_t>> from;  ///< cycle and row of each reading
-  const model::Part* part = nullptr;  ///< null for a measurement of a rotary axis
+  const model::Part* part = nullptr;  ///< null for a measurement of kind ball-centres or rtcp
   double sign = 1.0;                  ///< sign with which the effects are added
 };
 
-/// Returns the axis or place of the effect in these readings; nothing if it does not affect them.
+/// Returns the axis or place of the effect in these readings; none if it does not affect these
+/// readings.
 std::optional<Axis> place_in(const Seen& seen, const EffectSpec& e, const Machine& machine) {
   Effect effect = e.effect;
   if (seen.part != nullptr) {
@@ -64,7 +65,7 @@ std::optional<Axis> place_in(const Seen& seen, const EffectSpec& e, const Machin
 }
 
 /// Returns the tables to which effects are applied: parts as in `explain`, and each measurement of
-/// a rotary axis.
+/// kind ball-centres or rtcp.
 std::vector<Seen> seen_of(const Specification& s, const std::vector<Observations>& rows,
                           const std::vector<model::Part>& parts) {
   std::vector<Seen> all;
@@ -79,8 +80,8 @@ std::vector<Seen> seen_of(const Specification& s, const std::vector<Observations
   for (std::size_t k = 0; k < s.cycles.size(); ++k) {
     const CycleSpec& c = s.cycles[k];
     if (!c.is("ball-centres") && !c.is("rtcp")) continue;
-    // Ball centres: with the axes at P, the reading of a ball is P - e. RTCP: commanded to P, they
-    // are at P + e.
+    // Ball centres: with the axes at P, the reading of a ball is P - e. RTCP: axes commanded to P
+    // are at P + e. e is the error of the axes.
     Seen seen{rows[k], {}, nullptr, c.is("rtcp") ? -1.0 : 1.0};
     for (std::size_t i = 0; i < rows[k].size(); ++i) seen.from.emplace_back(k, i);
     all.push_back(std::move(seen));
@@ -95,9 +96,9 @@ double rms(const std::vector<double>& values) {
 }
 
 /// Returns the deviation of each reading caused by all columns, m or rad. The coefficients of a
-/// curve are random, and are scaled so that the curve has the specified rms: over the readings, or,
-/// in space, where not every reading senses it, by the coefficients alone, because its basis
-/// functions are orthogonal over the places, with rms 1.
+/// curve are random, and are scaled so that the curve has the specified RMS over the readings. For
+/// a curve in space, which not every reading senses, the coefficients alone are scaled, because its
+/// basis functions are orthogonal over the positions and have an RMS of 1.
 std::vector<double> deviation_of_columns(const EffectSpec& e, const Effect::Columns& columns,
                                          storage::Random random) {
   std::vector<double> factor = e.linear, sum(columns.empty() ? 0 : columns[0].size(), 0.0);
@@ -122,7 +123,7 @@ std::vector<double> deviation_of_columns(const EffectSpec& e, const Effect::Colu
 }
 
 /// Returns the shapes as specified; a shape that is not given has the only value that readings and
-/// manifest allow, or else its usual value. Error: a shape has neither.
+/// manifest allow, otherwise its usual value. An error if a shape has neither.
 Expected<std::vector<double>> shape_of(const EffectSpec& e, const Observations& o,
                                        const Axis& place) {
   std::vector<double> shape;
@@ -301,7 +302,7 @@ config::Checked<Simulated> simulate(std::string_view specification, const std::s
     rows.push_back(made ? std::move(*made) : Observations{});
   }
   if (!errors.empty()) return tl::unexpected(std::move(errors));
-  // rows without rotary measurements, which have effects of their own
+  // ball-centres and rtcp are left out, because `seen_of` adds them separately
   std::vector<Observations> linear = rows;
   for (std::size_t k = 0; k < rows.size(); ++k)
     if (s->cycles[k].is("ball-centres") || s->cycles[k].is("rtcp")) linear[k] = {};

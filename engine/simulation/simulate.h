@@ -23,7 +23,7 @@ inline constexpr std::string_view simulated_mark =
 
 /// Simulates a campaign with known effects from a specification (docs/simulate.md): a manifest with
 /// [simulation], a [[cycle]] for each measurement and an [[effect]] for each cause. The same text
-/// gives the same bytes. `file`: name of the specification for errors.
+/// results in the same bytes. `file` is the name of the specification in errors.
 config::Checked<Simulated> simulate(std::string_view specification, const std::string& file,
                                     const std::vector<Effect>& effects,
                                     const std::vector<Method>& methods);

@@ -11,7 +11,7 @@
 namespace nonio::simulation {
 namespace {
 
-/// Reads one [[cycle]].
+/// Reads one [[cycle]] into a CycleSpec in SI units and reports its errors.
 class CycleReader {
  public:
   CycleReader(config::TableReader& reader, const Specification& s)

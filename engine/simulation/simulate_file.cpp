@@ -56,7 +56,7 @@ std::string ball_row(const CycleSpec& c, const Observations& o, std::size_t i,
   return text + "," + micrometres(e[0]) + "," + o.lines[o.line[i]].name;
 }
 
-/// Returns the row of a circle; angles are counted from the first axis of the plane towards the
+/// Returns the row of a circle; angles are measured from the first axis of the plane toward the
 /// second.
 std::string circle_row(const Observations& o, std::size_t i, double e) {
   const auto& n = o.sense_of(i);

@@ -40,7 +40,7 @@ class Rows {
   void line(std::string name, const Vector& sense) { o_.lines.push_back({std::move(name), sense}); }
 
   /// Visits each angle; put(angle) adds the readings of one position with `add`. If there is a
-  /// carrier, each run repeats this at each of its positions.
+  /// carrier, each run repeats this at each position of the carrier.
   template <class Put>
   void sweep(Put put) {
     last_ = c_.targets.front();

@@ -190,9 +190,10 @@ Expected<Observations> on_circle(const CycleSpec& c) {
   return o;
 }
 
-/// Adds the slope measured against the square of the measurement: the set-up on the line of the
-/// first axis; on that of the other the error of the square (negative if it was turned over) minus
-/// the set-up (math/square.h: b1 + b2 = t + g). Nothing is added without a square.
+/// Adds the slope measured against the square of the measurement: on the line of the first axis the
+/// set-up angle, on the line of the other axis the error of the square (negative if it was turned
+/// over) minus the set-up angle (math/square.h: b1 + b2 = t + g). Nothing is added without a
+/// square.
 void put_square(const Specification& s, const CycleSpec& c, Observations& o) {
   for (const SquareSpec& q : s.squares) {
     if (q.name != c.measurement.square) continue;

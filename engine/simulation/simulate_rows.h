@@ -21,9 +21,9 @@ Expected<Observations> rows_of(const Specification&, const CycleSpec&,
 std::array<double, 3> turned(const std::array<double, 3>& ball, const std::array<double, 3>& centre,
                              const std::array<double, 3>& direction, double angle);
 
-/// Returns the rows of a measurement of kind ball-centres or rtcp, with the readings that a machine
-/// with exact linear axes gives as deviations. Error: a rotary axis has no [[simulation.rotary]],
-/// or for rtcp it does not state what the axis carries.
+/// Returns the rows of a measurement of kind ball-centres or rtcp, with the readings of a machine
+/// with exact linear axes as deviations. An error if a rotary axis has no [[simulation.rotary]], or
+/// if, for rtcp, this table does not state what the axis carries.
 Expected<Observations> rotary_rows(const Specification&, const CycleSpec&);
 
 /// Computes the times and temperatures of readings that are taken one after the other.

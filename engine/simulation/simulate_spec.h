@@ -52,7 +52,8 @@ struct CycleSpec {
                                               ///< axis), "probe", or else gauges at rest
   std::array<double, 3> ball_offset{};        ///< true position of the ball minus its position in
                                               ///< the control, m
-  /// Set for a kind whose file only its method can write; simulated as runs along its axis.
+  /// Method of a kind whose file only this method can write, simulated as runs along the axis; null
+  /// for other kinds.
   const Method* method = nullptr;
   bool is(std::string_view kind) const { return measurement.kind == kind; }
   bool along_axis() const { return is("axis") || method != nullptr; }

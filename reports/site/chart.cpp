@@ -16,7 +16,7 @@ namespace {
 
 using Curve = Plot::Curve;
 
-/// The colours of site.css, whose values are those of the dark screen there.
+/// Colors of site.css, which replaces their values in dark mode.
 constexpr Colour hex(unsigned rgb) {
   const auto part = [rgb](unsigned shift) {
     return static_cast<float>((rgb >> shift) & 255U) / 255.0F;
@@ -45,7 +45,7 @@ constexpr double width = 720.0;
 
 Style style() {
   Style out;
-  out.small = 15.5;  // the letters of axes have half a px less
+  out.small = 15.5;  // because axis labels are 0.5 px smaller
   out.plot_height = 260.0;
   out.see_through = 0.6;
   out.rule_width = 0.5;
@@ -53,7 +53,7 @@ Style style() {
   return out;
 }
 
-/// One thing to those who do not see it, but with links in it a group, so that they reach them.
+/// A single image for screen readers; a group if it has links, so that these are accessible.
 Html picture(const Page& page, const std::string& label, const Plot& plot) {
   const Drawing drawn = drawing_of(plot, width, style(), *page.fonts, named);
   return {"<svg class=\"chart\" role=\"" + std::string(drawn.has_links ? "group" : "img") +
@@ -63,7 +63,7 @@ Html picture(const Page& page, const std::string& label, const Plot& plot) {
 
 double days(Day day) { return static_cast<double>(day.time_since_epoch().count()); }
 
-/// A range that grows with what it is shown.
+/// The range of all values passed to `show`.
 struct Range {
   double low = INFINITY, high = -INFINITY;
   void show(double v) {
@@ -77,7 +77,7 @@ struct Range {
   std::pair<double, double> ends() const { return {low, high}; }
 };
 
-/// Years where there are many, else quarters.
+/// Ticks at years, half-years, quarters or months, by the length of the range.
 std::vector<std::pair<double, std::string>> calendar(const Page& page, const Range& range) {
   using namespace std::chrono;
   std::vector<std::pair<double, std::string>> out;
@@ -97,7 +97,7 @@ std::vector<std::pair<double, std::string>> calendar(const Page& page, const Ran
 
 double scaled(double v, Quantity q) { return v * unit_of(q).per_si; }
 
-/// One series in printed units against days.
+/// Plot of one series in printed units over days.
 class HistoryPlot {
  public:
   HistoryPlot(const Page& page, const MachineHistory& machine, const HistorySeries& series)
@@ -130,7 +130,7 @@ class HistoryPlot {
                    plot_);
   }
 
-  /// Without rules and words.
+  /// The line without axes and texts.
   Html spark() const {
     if (x_.empty()) return {};
     const auto y = [this](double v) {
@@ -174,10 +174,10 @@ class HistoryPlot {
     if (x_.empty()) return;
     if (const auto& f = series_.forecast) show(f->date, f->value, f->u);
     const double most = std::max(std::fabs(y_.low), std::fabs(y_.high));
-    // A limit far away would press the readings flat.
+    // A distant limit would flatten the readings.
     if (const auto& limit = series_.limit; limit && (value(*limit) <= 3 * most || most == 0.0)) {
       if (y_.high > 0) y_.show(value(*limit));
-      // What is followed has a sign and a limit on both sides; the largest deviations have not.
+      // Followed quantities are signed and have limits on both sides; largest deviations are not.
       if (y_.low < 0 && !series_.model.empty()) y_.show(-value(*limit));
       for (const double side : {1.0, -1.0})
         if (side > 0 || !series_.model.empty()) limits_.push_back(side * value(*limit));
@@ -188,7 +188,7 @@ class HistoryPlot {
     std::erase_if(limits_, [this](double limit) { return limit < y_.low || limit > y_.high; });
   }
 
-  /// Each with what U leaves of it.
+  /// Each limit with its guard band U.
   void add_limits() {
     const double U = value(2 * series_.points.back().u);
     for (const double limit : limits_) {
@@ -243,7 +243,7 @@ class HistoryPlot {
     return out;
   }
 
-  /// In the order of the days, in which the keyboard reaches them.
+  /// In date order, which is also the tab order.
   void add_points() {
     Curve bars{.kind = Curve::Kind::bars, .x = {}, .y = {}, .colour = ink::accent, .width = 1.2};
     std::vector<Curve> marks;
@@ -278,7 +278,7 @@ std::vector<double> in_units(const std::vector<double>& si, Quantity q) {
   return out;
 }
 
-/// The curves of an axis, and an empty plot for them.
+/// Error curves of an axis, and an empty plot for them.
 struct Curves {
   std::vector<const ErrorCurve*> all;
   Quantity position = Quantity::length, deviation = Quantity::deviation;
@@ -356,7 +356,7 @@ Html comparison_chart(const Page& page, const ModelComparison& comparison) {
   Curve bars{.kind = Curve::Kind::bars, .x = {}, .y = {}, .colour = ink::accent, .width = 1.2};
   Curve inside{.kind = Curve::Kind::points, .x = {}, .y = {}, .colour = ink::accent};
   inside.marker = Marker::dot, inside.marker_size = 5.5;
-  Curve far = inside;  // from the others
+  Curve far = inside;  // points for machines beyond 3 standard deviations
   far.colour = ink::failed;
   for (std::size_t i = 0; i < comparison.machines.size(); ++i) {
     const auto& m = comparison.machines[i];

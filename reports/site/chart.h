@@ -8,19 +8,19 @@
 
 namespace nonio::reports::site {
 
-/// One quantity over the years: points with U, limit and guard band, events, what the model
-/// predicts, forecast. An SVG.
+/// SVG of one quantity over the years: points with U, limit and guard band, events, model
+/// prediction, forecast.
 Html history_chart(const Page&, const MachineHistory&, const HistorySeries&);
 
-/// The same as a line without axes, for a table.
+/// The same data as a line without axes, for a table.
 Html spark_line(const Page&, const HistorySeries&);
 
-/// Error curves of one axis: all campaigns, grey to today.
+/// Error curves of one axis from all campaigns, older ones in gray.
 Html curves_chart(const Page&, const MachineHistory&, const std::string& axis);
-/// The last curve less the one before it, with U.
+/// Last minus previous error curve of an axis, with U.
 Html difference_chart(const Page&, const MachineHistory&, const std::string& axis);
 
-/// Values of machines of one model next to each other.
+/// Values of machines of the same model, side by side.
 Html comparison_chart(const Page&, const ModelComparison&);
 
 }  // namespace nonio::reports::site

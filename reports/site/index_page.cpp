@@ -48,8 +48,8 @@ std::string counts(const Page& page) {
   return out;
 }
 
-constexpr std::size_t most_lines = 200;    // one page, not a download
-constexpr std::size_t most_machines = 60;  // of the strip
+constexpr std::size_t most_lines = 200;    // limit of the page size
+constexpr std::size_t most_machines = 60;  // in the overview by months
 constexpr std::size_t most_months = 36;
 
 std::span<const WorkItem> shown_lines(const Page& page) {
@@ -86,7 +86,7 @@ Html says(const Page& page, const WorkItem& l, const char* part) {
   return {typeset_html(line_text(page, l, part))};
 }
 
-/// What it states, what else of the axis is open, since when.
+/// Text of the line, other open values of the axis, and since when.
 Html all_it_says(const Page& page, const WorkItem& l) {
   std::string more;
   for (const std::string& text : {also_text(page, l), since_text(page, l)})
@@ -148,7 +148,7 @@ const char* style_of(Kind kind) {
   return "fine";
 }
 
-/// A letter in addition to the colour, so that no one needs the colour.
+/// A letter in addition to the color, for color blindness.
 void add_cell(View& row, const Page& page, const std::string& month, const MonthOfMachine* m) {
   View& cell = row.add("cell");
   if (m == nullptr) {
@@ -163,7 +163,7 @@ void add_cell(View& row, const Page& page, const std::string& month, const Month
   cell.set("about", m->machine + ", " + month_text(page, month) + ": " + word);
 }
 
-/// A row for each machine, a cell for each month.
+/// One row per machine, one cell per month.
 void add_strip(View& view, const Page& page) {
   std::set<std::string> months;
   std::map<std::string, std::map<std::string, const MonthOfMachine*>> cells;
@@ -173,7 +173,7 @@ void add_strip(View& view, const Page& page) {
   }
   view.flag("strip", !months.empty());
   while (months.size() > most_months) months.erase(months.begin());
-  std::set<std::string> first;  // those that the lines name come first
+  std::set<std::string> first;  // machines of the lines come first
   for (const WorkItem& l : page.site.lines)
     if (first.size() < most_machines && cells.contains(l.machine)) first.insert(l.machine);
   for (const auto& [machine, of] : cells)
@@ -202,7 +202,7 @@ void add_strip(View& view, const Page& page) {
 
 constexpr std::size_t most_sparks = 10;
 
-/// The first lines that a machine has, one of each axis.
+/// The first line of each machine and axis.
 std::vector<const WorkItem*> drawn_lines(const SiteHistory& site) {
   std::vector<const WorkItem*> out;
   std::set<std::string> seen;
@@ -213,7 +213,7 @@ std::vector<const WorkItem*> drawn_lines(const SiteHistory& site) {
   return out;
 }
 
-/// Largest deviations of machines whose lines come first.
+/// Largest deviations of the machines in the first lines.
 void add_sparks(View& view, const Page& page) {
   bool any = false;
   for (const WorkItem* l : drawn_lines(page.site)) {

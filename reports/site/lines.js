@@ -1,6 +1,6 @@
 "use strict";
-// Filters and keys for the lines of a worklist below `root`; `until`: {signal} that ends them when the lines are removed.
-// The filters are in the address, so that they can be sent: index.html#customer=Rossi&kind=out
+// Filters and keys for worklist lines below `root`. `until`: {signal} that removes the listeners.
+// The URL stores the filters, so that it can be sent: index.html#customer=Rossi&kind=out
 function nonioLines(root, until = {}) {
   const rows = [...root.querySelectorAll("tr[data-kind]")];
   const filters = [...root.querySelectorAll(".filters select")];
@@ -33,13 +33,13 @@ function nonioLines(root, until = {}) {
     addEventListener("hashchange", readAddress, until);
     readAddress();
   }
-  // Charts as files: the numbers are those of the table below the chart.
+  // Export of charts, with the numbers of the table below.
   for (const svg of root.querySelectorAll("svg.chart")) {
     const table = svg.parentNode.querySelector("table"), box = Object.assign(document.createElement("div"), {className: "save"});
     box.append(...nonioSave.buttons(svg, table && (() => [...table.rows].map((row) => [...row.cells].map((cell) => cell.textContent)))));
     svg.after(box);
   }
-  // j and k move from line to line, Enter opens one.
+  // j and k select the next or previous line, Enter opens it.
   addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey || event.target.closest("select, input, textarea, dialog")) return;
     const visible = rows.filter((row) => !row.hidden);

@@ -21,7 +21,7 @@ std::vector<const MachineHistory*> by_due(const SiteHistory& site) {
   return out;
 }
 
-/// Work is planned by months, not by thirty days.
+/// Groups by month, because work is planned by months; past dates are overdue.
 std::string bucket(const Page& page, const std::string& due) {
   const std::string& today = page.site.date;
   if (due < today) return page.words.get("site.overdue");
@@ -82,7 +82,7 @@ std::string due_calendar(const Page& page) {
   for (const MachineHistory* m : by_due(page.site)) {
     if (!day_of(m->due) || !day_of(page.site.date)) continue;
     const std::string what = page.words.get("site.calibrate", {{"machine", m->id}});
-    // The date of the run is used as the time: these files have no clock.
+    // The date of the run is the time stamp, because output must not depend on the clock.
     out += "BEGIN:VEVENT\r\n" + folded("UID:" + calendar_text(m->id) + "-due@nonio") +
            folded("DTSTAMP:" + without_dashes(page.site.date) + "T000000Z") +
            folded("DTSTART;VALUE=DATE:" + without_dashes(m->due)) +

@@ -69,7 +69,7 @@ void add_tables(View& view, const Page& page, const MachineHistory& m) {
   }
 }
 
-/// As found and as left on one day has words of its own.
+/// Text of a change; as found and as left on the same day have a separate text.
 std::string change_text(const Page& page, const FollowedNumbers& numbers, const HistoryChange& c) {
   const std::string size = numbers.difference(c.size, c.u);
   if (c.cause == "table" && c.after == c.before)
@@ -115,7 +115,8 @@ std::string forecast(const Page& page, const HistorySeries& s, const FollowedNum
   return text;
 }
 
-/// U of comparison, rounded as the value with it is; of a scatter the interval.
+/// U (k = 2) for comparison with other campaigns, rounded with the value; an interval for a
+/// scatter.
 std::string comparison_text(const Page& page, const HistoryPoint& p,
                             const FollowedNumbers& numbers) {
   return numbers.is_scatter()
@@ -123,7 +124,7 @@ std::string comparison_text(const Page& page, const HistoryPoint& p,
              : printed_result(p.value, 2.0 * p.u, numbers.quantity(), page.words.language()).U;
 }
 
-/// The numbers of the chart; where it is drawn from.
+/// Adds the numbers shown in the chart.
 void add_numbers(View& view, const Page& page, const HistorySeries& s,
                  const FollowedNumbers& numbers) {
   view.flag("followed", !s.model.empty());
@@ -141,7 +142,7 @@ void add_numbers(View& view, const Page& page, const HistorySeries& s,
   }
 }
 
-/// Of two series of one quantity the one that has ended states that.
+/// Title of a series; an ended series includes its last date.
 std::string title_of(const Page& page, const HistorySeries& s) {
   const std::string title = s.axis + " · " + quantity_text(page, s.quantity);
   if (!s.ended || s.points.empty()) return title;

@@ -10,7 +10,7 @@ namespace nonio::reports::site {
 Expected<std::string> index_page(const Page&);
 Expected<std::string> machine_page(const Page&, const MachineHistory&);
 Expected<std::string> due_page(const Page&);
-/// iCalendar (RFC 5545): a day for each calibration that is due.
+/// iCalendar file (RFC 5545) with the due calibrations.
 std::string due_calendar(const Page&);
 Expected<std::string> instruments_page(const Page&);
 Expected<std::string> compare_page(const Page&);

@@ -14,7 +14,7 @@ using Kind = WorkItem::Kind;
 using State = WorkItem::State;
 using site::Page;
 
-/// "Out", "Known", "Fixed": what is no news states that first.
+/// First word of a line, such as "Out"; "Known" or "Fixed" if it is not new.
 std::string head_of(const Page& page, const WorkItem& l) {
   const std::string kind = page.words.get("site.kind." + std::string(site::name_of(l.kind)));
   if (l.state == State::fixed) return page.words.get("site.kind.fixed");

@@ -38,7 +38,7 @@ std::string label(double value, double step, double largest, std::string_view la
 AxisScale axis_scale(double low, double high, int count, Ticks ticks, std::string_view language) {
   AxisScale scale;
   const double largest = std::max(std::fabs(low), std::fabs(high));
-  const double least = std::max(1e-3, 1e-6 * largest);  // below that the labels would be equal
+  const double least = std::max(1e-3, 1e-6 * largest);  // smaller ranges would have equal labels
   if (high - low < least) {
     const double middle = low + (high - low) / 2;
     low = middle - least / 2;

@@ -7,17 +7,17 @@
 
 namespace nonio::reports {
 
-/// A scale with round ticks.
+/// A scale with ticks at round values.
 struct AxisScale {
   double from = 0, to = 1;
   std::vector<double> ticks;
   std::vector<std::string> labels;
 
-  double at(double value) const { return (value - from) / (to - from); }  ///< 0 to 1
+  double at(double value) const { return (value - from) / (to - from); }  ///< 0: from, 1: to
 };
 
-/// From `low` to `high` with about `count` ticks at 1, 2, 2.5 or 5 times a power of ten, or at
-/// parts of a turn, or at whole numbers.
+/// Covers `low` to `high` with about `count` ticks at multiples of 1, 2, 2.5 or 5 times a power of
+/// ten, at fractions of a turn, or at whole numbers.
 enum class Ticks { decimal, turn, whole };
 AxisScale axis_scale(double low, double high, int count, Ticks ticks, std::string_view language);
 

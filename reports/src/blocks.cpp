@@ -18,7 +18,7 @@ void SetText::draw_all(Canvas& canvas, double x, double y, double width, double 
 }
 
 void note_glyphs(const Context& context, Glyphs& glyphs, bool bold) {
-  if (context.medium == Medium::screen) return;  // nothing is embedded
+  if (context.medium == Medium::screen) return;  // a screen embeds no glyphs
   const std::vector<char>& common = context.fonts.weight(bold).common;
   auto& [common_only, wide, numbers, pictures] = context.used;
   for (Glyph& g : glyphs)
@@ -79,7 +79,7 @@ Expected<void> draw_axis_text(Canvas& canvas, const Context& context, const Axis
     free_from = x + half + 3;
     text.draw(canvas, 0, x - 50, top, 100, 0.5);
   }
-  // Of a title in two languages the first alone, where there is no room for both.
+  // A title in two languages is reduced to the first one if it is too wide.
   constexpr std::string_view between = " · ";
   if (const auto whole = shape(title, context.fonts, false, field, context.medium);
       whole && width_of(*whole) * size > width && title.find(between) != std::string_view::npos)
@@ -113,7 +113,7 @@ void draw_mark(Canvas& canvas, const Style& style, Level level, double x, double
 
 namespace {
 
-/// Lines of a text as pieces: together while they are few, else each for itself.
+/// Adds lines of a text as pieces; more than eight lines can be divided.
 void add_text(std::vector<Piece>& pieces, const SetText& text, double indent, Colour colour,
               bool with_next = false) {
   constexpr std::size_t together = 8;
@@ -236,7 +236,7 @@ Expected<Laid> lay(const Status& status, double width, const Context& context,
   }
   double height = 2 * pad;
   for (const SetText& text : texts) height += text.height();
-  if (height > context.page_room) {  // hardly ever: then without the box, so that it may be divided
+  if (height > context.page_room) {  // rare: without the box it can be divided
     Laid out;
     for (const SetText& text : texts) add_text(out.pieces, text, 0, style.text);
     return out;
@@ -277,8 +277,7 @@ Expected<Laid> lay(const SignatureBox& box, double width, const Context& context
 }
 
 Expected<Laid> lay(const Spacer& spacer, double, const Context&, std::string_view) {
-  return Laid{{{0.0, spacer.height, {}, true}}};  // what precedes it may have to stay with
-                                                  // what follows
+  return Laid{{{0.0, spacer.height, {}, true}}};  // keeps the preceding block with the next one
 }
 
 Expected<Laid> lay(const PageBreak&, double, const Context&, std::string_view) {
@@ -311,7 +310,7 @@ Expected<Laid> lay_all(const std::vector<Block>& blocks, double width, const Con
   return out;
 }
 
-/// Plots that begin parts side by side: their titles and legends take the same height.
+/// Aligns plots that begin side-by-side parts by a common height of title and legend.
 Expected<void> put_in_line(Columns& columns, double room, const Context& context) {
   const auto share_of = [&](std::size_t i) {
     return i < columns.shares.size() ? columns.shares[i]

@@ -88,7 +88,7 @@ void PdfCanvas::rectangle(double x, double y, double w, double h) {
 }
 
 void PdfCanvas::circle(double x, double y, double radius) {
-  const double c = radius * 0.5523;  // 4 (sqrt 2 - 1)/3: a quarter circle as one Bezier curve
+  const double c = radius * 0.5523;  // 4 (sqrt 2 - 1)/3: Bezier approximation of a quarter circle
   move_to(x + radius, y);
   curve_to(x + radius, y + c, x + c, y + radius, x, y + radius);
   curve_to(x - c, y + radius, x - radius, y + c, x - radius, y);
@@ -99,7 +99,7 @@ void PdfCanvas::circle(double x, double y, double radius) {
 void PdfCanvas::dots(std::span<const Point> points, double diameter, Colour c) {
   stroke_colour(c);
   line(diameter);
-  ops += "1 J\n";  // a line of no length with round caps is a dot (ISO 32000-1, 8.5.3.2)
+  ops += "1 J\n";  // a zero-length line with round caps is a dot (ISO 32000-1, 8.5.3.2)
   for (const auto& [x, y] : points) {
     move_to(x, y);
     line_to(x, y);
@@ -142,7 +142,7 @@ void PdfCanvas::font(int which, double size) {
   state_.size = size;
 }
 
-/// Stretches of one font, and accents each by itself.
+/// Shows runs of one font; accents separately.
 void PdfCanvas::show(bool bold, double size, std::span<const Glyph> glyphs) {
   const auto is_accent = [](const Glyph& g) { return g.shift != 0 || g.rise != 0; };
   for (std::size_t i = 0; i < glyphs.size();) {
@@ -175,7 +175,7 @@ void PdfCanvas::show(bool bold, double size, std::span<const Glyph> glyphs) {
 
 void PdfCanvas::shown(std::span<const Glyph> glyphs) {
   ops += '(';
-  std::array<char, 256> part;  // appending byte by byte takes twice as long
+  std::array<char, 256> part;  // buffer, twice as fast as appending bytes
   std::size_t n = 0;
   for (const Glyph& g : glyphs) {
     for (const int byte : {g.id >> 8, g.id & 0xFF}) {

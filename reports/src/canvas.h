@@ -9,8 +9,8 @@
 
 namespace nonio::reports {
 
-/// What a chart is drawn on. Lengths in pt or px, y upwards. A path is begun by move_to, rectangle
-/// or circle and painted by stroke or fill.
+/// Drawing surface of charts. Lengths in pt or px, y upwards. move_to, rectangle or circle begin a
+/// path; stroke or fill paint it.
 class Canvas {
  public:
   struct Point {
@@ -21,9 +21,9 @@ class Canvas {
   virtual void fill_colour(Colour) = 0;
   virtual void stroke_colour(Colour) = 0;
   virtual void line(double width, Dash dash = Dash::solid) = 0;
-  /// Between see_through(true) and (false) areas let others shine.
+  /// While true, filled areas are translucent.
   virtual void see_through(bool on) = 0;
-  virtual void round_joins() = 0;  ///< no spikes where a curve turns
+  virtual void round_joins() = 0;  ///< avoids spikes at corners
 
   virtual void move_to(double x, double y) = 0;
   virtual void line_to(double x, double y) = 0;
@@ -38,23 +38,21 @@ class Canvas {
   void segment(double x1, double y1, double x2, double y2);
   void filled(double x, double y, double w, double h, Colour);
 
-  /// Everything until `leave` is drawn inside the rectangle only.
+  /// Clips drawing to the rectangle until `leave`.
   virtual void clip(double x, double y, double w, double h) = 0;
   virtual void leave() = 0;
 
-  /// Baseline begins at x, y.
+  /// x, y: start of the baseline.
   virtual void text(double x, double y, bool bold, double size, std::span<const Glyph>) = 0;
-  /// The same upwards, for the titles of vertical axes.
+  /// Text in upward direction, for titles of vertical axes.
   virtual void text_upwards(double x, double y, bool bold, double size, std::span<const Glyph>) = 0;
 
-  /// Until `end_item` one thing with a title of its own and a link; either may be empty. On paper
-  /// nothing.
+  /// Groups drawing until `end_item`, with a tooltip and a link (may be empty); no effect in a PDF.
   virtual void begin_item(std::string_view title, std::string_view link);
   virtual void end_item();
 };
 
-/// Writes PDF operators. The graphics state is remembered, so that what has not changed is not
-/// written again.
+/// Writes PDF operators, omitting state changes without effect.
 class PdfCanvas final : public Canvas {
  public:
   std::string ops;
@@ -70,7 +68,7 @@ class PdfCanvas final : public Canvas {
   void curve_to(double x1, double y1, double x2, double y2, double x3, double y3);
   void rectangle(double x, double y, double w, double h) override;
   void circle(double x, double y, double radius) override;
-  void dots(std::span<const Point>, double diameter, Colour) override;  ///< few bytes each
+  void dots(std::span<const Point>, double diameter, Colour) override;  ///< compact
   void close() override { ops += "h\n"; }
   void stroke() override { ops += "S\n"; }
   void fill() override { ops += "f\n"; }
@@ -82,7 +80,7 @@ class PdfCanvas final : public Canvas {
 
   void text(double x, double y, bool bold, double size, std::span<const Glyph>) override;
   void text_upwards(double x, double y, bool bold, double size, std::span<const Glyph>) override;
-  /// The same along a direction of length 1.
+  /// Text along a unit vector.
   void text_along(double x, double y, double cosine, double sine, bool bold, double size,
                   std::span<const Glyph>);
   void picture(long number, double x, double y, double w, double h);
@@ -94,7 +92,7 @@ class PdfCanvas final : public Canvas {
     double width = -1;
     Dash dash = Dash::solid;
     bool see_through = false;
-    int font = 0;  ///< 1 regular, 2 bold, 3 wide
+    int font = 0;  ///< font in use: 1 regular, 2 bold, 3 wide
     double size = -1;
   };
   void number(double value);

@@ -8,7 +8,7 @@
 namespace nonio::reports {
 namespace {
 
-/// The one character that NFC makes of both (of the first alone where `second` is 0), or 0.
+/// The NFC composition of both characters (or of `first` if `second` is 0); 0: none.
 char32_t composed(char32_t first, char32_t second) {
   std::array<utf8proc_int32_t, 32> parts{};
   utf8proc_ssize_t size = 0;
@@ -42,7 +42,7 @@ char32_t next_character(std::string_view text, std::size_t& i) {
 
 char32_t next_composed(std::string_view text, std::size_t& i) {
   const auto is_ascii = [&](std::size_t at) { return static_cast<unsigned char>(text[at]) < 0x80; };
-  if (is_ascii(i) && (i + 1 == text.size() || is_ascii(i + 1)))  // nearly always; no mark follows
+  if (is_ascii(i) && (i + 1 == text.size() || is_ascii(i + 1)))  // fast path: no mark follows
     return static_cast<unsigned char>(text[i++]);
   char32_t c = next_character(text, i);
   if (c == not_utf8) return c;

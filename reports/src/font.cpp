@@ -11,7 +11,7 @@
 namespace nonio::reports {
 namespace {
 
-/// The Unicode cmap of format 4 (basic plane), spread out by character.
+/// Reads the Unicode cmap of format 4 (basic plane) into a table by character.
 bool read_cmap(const FontReader& r, std::size_t cmap, std::vector<std::uint16_t>& glyphs) {
   const std::size_t count = r.u16(cmap + 2);
   for (std::size_t i = 0; i < count; ++i) {
@@ -46,12 +46,11 @@ void append_hex(std::string& out, std::uint32_t value) {
   for (int shift = 12; shift >= 0; shift -= 4) out += digits[value >> shift & 15];
 }
 
-/// By the number that a glyph has in a document: its number in the font, or none.
+/// Glyph of the font by glyph number in the document, or no_glyph.
 using Numbers = std::vector<int>;
 constexpr int no_glyph = -1;
 
-/// Glyphs back to characters. The minus sign is given back as "-", so that numbers copied out of a
-/// report are numbers.
+/// The ToUnicode map. The minus sign maps to "-", so that copied numbers are valid.
 std::string to_unicode(const Font& font, const Numbers& numbers) {
   std::vector<std::uint16_t> character(font.advance.size());
   for (std::size_t c = font.glyphs.size(); c-- > 0;)
@@ -75,7 +74,7 @@ std::string to_unicode(const Font& font, const Numbers& numbers) {
       "/CIDSystemInfo << /Registry (Adobe) /Ordering (UCS) /Supplement 0 >> def\n"
       "/CMapName /Adobe-Identity-UCS def\n/CMapType 2 def\n"
       "1 begincodespacerange\n<0000> <FFFF>\nendcodespacerange\n";
-  constexpr std::size_t most = 100;  // entries of one block, by the CMap specification
+  constexpr std::size_t most = 100;  // entries per block (CMap specification)
   for (std::size_t i = 0; i < lines.size(); i += most) {
     const std::size_t n = std::min(most, lines.size() - i);
     pdf::append_int(out, static_cast<long long>(n));
@@ -86,7 +85,7 @@ std::string to_unicode(const Font& font, const Numbers& numbers) {
   return out + "endcmap\nCMapName currentdict /CMap defineresource pop\nend\nend\n";
 }
 
-/// In stretches: [0 [365 278 ...] 97 [556]].
+/// The W array, by ranges: [0 [365 278 ...] 97 [556]].
 std::string widths_array(const std::vector<std::uint16_t>& advance, const Numbers& numbers) {
   std::string out = "[";
   for (std::size_t n = 0; n < numbers.size(); ++n) {
@@ -101,7 +100,7 @@ std::string widths_array(const std::vector<std::uint16_t>& advance, const Number
   return out + "]";
 }
 
-/// Six letters that distinguish this subset from every other, then the name:
+/// The font name with a prefix of six letters that depends on the subset, such as
 /// "ABCDEF+LiberationSans".
 std::string subset_name(std::string_view bytes, std::string_view path) {
   std::uint64_t hash = 1469598103934665603U;  // FNV-1a, 64 bits
@@ -130,9 +129,9 @@ pdf::EmbeddedFont embedded(const Font& font, const std::string& file, const Numb
           widths_array(font.advance, numbers), pdf::deflated(to_unicode(font, numbers), level)};
 }
 
-/// For a font of which documents embed all, or the common part.
+/// Compresses a font that documents embed completely or as common part.
 void compress(Font& font) {
-  constexpr int level = 12;  // once in a process
+  constexpr int level = 12;  // highest level, because it runs once per process
   Numbers all, common;
   for (std::size_t g = 0; g < font.common.size(); ++g) {
     all.push_back(static_cast<int>(g));
@@ -143,8 +142,7 @@ void compress(Font& font) {
   font.with_common = subset.empty() ? font.with_all : embedded(font, subset, common, level);
 }
 
-/// By size and table directory, which holds a checksum of each table: a whole font of megabytes
-/// would have to be compared for every document.
+/// Compares size and table directory, which has checksums, because comparing all bytes is slow.
 bool same_font(const Font& font, FontFile file) {
   const std::size_t directory = 12 + 16 * std::size_t{FontReader(font.bytes).u16(4)};
   return font.name == file.name && font.bytes.size() == file.bytes.size() &&
@@ -154,7 +152,7 @@ bool same_font(const Font& font, FontFile file) {
 }  // namespace
 
 pdf::EmbeddedFont embedded_part(const Font& font, const std::vector<std::uint16_t>& glyphs) {
-  constexpr int level = 1;  // as pages
+  constexpr int level = 1;  // compression level of pages
   const std::string part = font_part(font.bytes, glyphs);
   return part.empty() ? pdf::EmbeddedFont{}
                       : embedded(font, part, Numbers(glyphs.begin(), glyphs.end()), level);
@@ -208,7 +206,7 @@ Expected<std::shared_ptr<const Fonts>> shared_fonts(FontFile regular, FontFile b
     std::mutex mutex;
     std::shared_ptr<const Fonts> fonts;
   };
-  static Memo memo;  // never changes what is given, only how long it takes
+  static Memo memo;  // cache, which only affects the speed
   const std::lock_guard lock(memo.mutex);
   if (memo.fonts && same_font(memo.fonts->regular, regular) && same_font(memo.fonts->bold, bold) &&
       same_font(memo.fonts->wide, wide))

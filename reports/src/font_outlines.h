@@ -7,7 +7,7 @@
 
 namespace nonio::reports {
 
-/// Where the outlines of a font are. Tables and formats: ISO/IEC 14496-22 (OpenType), 5.2 and 5.3.
+/// Locates glyph outlines. Formats: ISO/IEC 14496-22 (OpenType), 5.2 and 5.3.
 class Outlines {
  public:
   Outlines(const FontReader& r, std::size_t head, std::size_t loca, std::size_t glyf)
@@ -20,7 +20,7 @@ class Outlines {
     const std::size_t from = begin(glyph), to = begin(glyph + 1);
     return to > from ? to - from : 0;
   }
-  /// Positions in the file of the numbers of the glyphs that this one is composed of.
+  /// File offsets of the numbers of component glyphs.
   std::vector<std::size_t> components(std::size_t glyph) const {
     std::vector<std::size_t> out;
     if (size(glyph) < 10 || r_.s16(begin(glyph)) >= 0) return out;

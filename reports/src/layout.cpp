@@ -12,10 +12,10 @@ namespace {
 
 constexpr double head_room = 16, foot_room = 16;
 
-/// Puts strips on pages, from top to bottom.
+/// Distributes strips to pages.
 class Pages {
  public:
-  /// `foot`: is placed at the foot of the first page, where its place is kept free.
+  /// `foot`: bottom of the first page; its space is reserved.
   Pages(const Style& style, bool head, const Laid& foot)
       : style_(style),
         room_(style.page_height - style.top - style.bottom - foot_room),
@@ -80,7 +80,7 @@ class Pages {
   std::optional<pdf::SignaturePlace> signature_;
 };
 
-/// The foot of the first page.
+/// Lays out the bottom of the first page.
 Expected<Laid> lay_first_foot(const Document& document, double width, const Context& context) {
   Laid foot;
   double height = 0.0;
@@ -105,7 +105,7 @@ std::string numbered(std::string text, std::string_view place, std::size_t numbe
   return text;
 }
 
-/// The second pass, when the number of pages is known.
+/// Second pass, because the number of pages is then known.
 Expected<void> add_heads_and_feet(std::vector<PdfCanvas>& pages, const Document& document,
                                   const Context& context) {
   const Style& style = document.style;
@@ -137,14 +137,14 @@ Expected<void> add_heads_and_feet(std::vector<PdfCanvas>& pages, const Document&
   return {};
 }
 
-/// From corner to corner, so that no part of a page can be taken for a finished one.
+/// Draws the mark diagonally, so that no part of a page can be mistaken for a final one.
 Expected<void> add_mark(std::vector<PdfCanvas>& pages, const Document& document,
                         const Context& context) {
   if (document.mark.empty()) return {};
   const Style& style = document.style;
   auto glyphs = shape(document.mark, context.fonts, true, "mark");
   if (!glyphs) return fail(glyphs.error());
-  // Bold ideographs have an outline, which is not seen through.
+  // Bold ideographs have an opaque outline.
   const bool bold =
       std::none_of(glyphs->begin(), glyphs->end(), [](const Glyph& g) { return g.wide; });
   if (!bold) glyphs = shape(document.mark, context.fonts, false, "mark");
@@ -176,7 +176,7 @@ pdf::Font as_embedded(const Font& font, bool common_only, int stem) {
           stem};
 }
 
-/// Without pages and the font for what the other two lack.
+/// File without pages and without the wide font.
 pdf::NewFile new_file(const Document& document, const Fonts& fonts, Used& used) {
   pdf::NewFile file;
   file.title = document.title;
@@ -214,7 +214,7 @@ Expected<std::string> pdf_bytes(const Document& document, const Fonts& fonts) {
        {std::pair(&document.title, "title"), std::pair(&document.author, "author"),
         std::pair(&document.subject, "subject")})
     if (auto glyphs = shape(*text, fonts, false, field); !glyphs) return fail(glyphs.error());
-  Laid waiting;  // headings wait for what follows them
+  Laid waiting;  // headings, kept with the next block
   NONIO_TRY(const auto foot, lay_first_foot(document, width, context));
   Pages pages(style, !document.head.empty(), foot);
   std::optional<Laid> before_last;  // the last block is not alone on a page
@@ -245,7 +245,7 @@ Expected<std::string> pdf_bytes(const Document& document, const Fonts& fonts) {
   std::vector<PdfCanvas> drawn = pages.take();
   if (auto ok = add_heads_and_feet(drawn, document, context); !ok) return fail(ok.error());
   if (auto ok = add_mark(drawn, document, context); !ok) return fail(ok.error());
-  pdf::EmbeddedFont wide;  // outlives the file
+  pdf::EmbeddedFont wide;  // must exist until the file is written
   if (!used.wide.empty()) wide = embedded_part(fonts.wide, used.wide);
   if (!used.wide.empty() && wide.name.empty())
     return fail(

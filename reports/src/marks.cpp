@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// QR codes, drawn as areas from the modules that libqrencode gives, and the frame of a signature.
+// QR codes, drawn as areas from libqrencode modules, and the signature frame.
 #include <qrencode.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ Modules modules_of(const std::string& text) {
           &QRcode_free};
 }
 
-/// Dark modules side by side in one rectangle.
+/// Draws adjacent dark modules as one rectangle.
 void draw_modules(Canvas& canvas, const QRcode& code, double size) {
   const int width = code.width;
   const double module = size / (width + 2 * quiet_zone);

@@ -35,7 +35,7 @@ const View::Value* View::find(std::string_view name) const {
   return nullptr;
 }
 
-/// Writes while it reads; what is within a list is read again for each of its views.
+/// Writes the page while parsing it; list sections are parsed once per view.
 class PageWriter {
  public:
   PageWriter(const PageFiles& files, const Wording& words) : files_(files), words_(words) {}
@@ -80,7 +80,7 @@ class PageWriter {
     return nullptr;
   }
 
-  /// From `at` to the end of section `section`; unless `written`, nothing is put.
+  /// Processes from `at` to the end of a section; no output unless `written`.
   Expected<void> part(std::size_t& at, bool written, std::string_view section) {
     const std::string_view text = open_.back().text;
     const std::size_t begin = at;

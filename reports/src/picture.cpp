@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// libharu could read pictures too, but would decode and compress them again for every document.
+// libharu also reads pictures, but decodes and compresses them again for every document.
 #include "nonio/reports/picture.h"
 
 #include <png.h>
@@ -24,7 +24,7 @@ std::string size_error(unsigned width, unsigned height) {
          std::to_string(most_pixels) + " a side is the most";
 }
 
-/// Red, green, blue, opacity of every pixel.
+/// Compresses RGBA pixels to color and opacity.
 void compress(const std::string& pixels, Picture& picture) {
   std::string colours, opacity;
   picture.grey = true;
@@ -41,7 +41,7 @@ void compress(const std::string& pixels, Picture& picture) {
   if (!opaque) picture.opacity = pdf::deflated(opacity, level);
 }
 
-/// What is wrong with it; empty: nothing.
+/// Returns an error message; empty: none.
 std::string read_png(std::string_view bytes, Picture& picture) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
@@ -64,7 +64,7 @@ std::string read_png(std::string_view bytes, Picture& picture) {
   return error;
 }
 
-/// The frame header (ITU-T T.81, B.2.2); the picture itself is left to the PDF's reader.
+/// Reads the frame header only (ITU-T T.81, B.2.2); the PDF reader decodes the picture.
 std::string read_jpeg(std::string_view bytes, Picture& picture) {
   const FontReader r(bytes);
   for (std::size_t at = 2; r.ok();) {
@@ -117,7 +117,7 @@ Expected<std::shared_ptr<const Picture>> shared_picture(std::string_view bytes,
     std::mutex mutex;
     std::vector<Known> known;
   };
-  static Memo memo;  // never changes what is given, only how long it takes
+  static Memo memo;  // cache, which only affects the speed
   constexpr std::size_t most = 4;
   const std::lock_guard lock(memo.mutex);
   for (const Known& k : memo.known)

@@ -14,46 +14,46 @@
 
 namespace nonio::reports {
 
-/// The frame of a signature, from an origin to its upper left corner; y downwards is negative.
+/// The signature frame relative to an origin; y of its upper left corner, downwards negative.
 struct SignatureFrame {
   double x = 0.0, y = 0.0, width = 0.0, height = 0.0;
 };
 
-/// A strip of the document that no page break divides; its origin is its upper left corner.
+/// A strip without page breaks; origin in its upper left corner.
 struct Piece {
   double height = 0.0;
-  double gap = 0.0;  ///< below it, where something follows on the same page
+  double gap = 0.0;  ///< space to the next strip on the page
   std::string ops{};
-  bool with_next = false;  ///< not the last one on a page
-  bool new_page = false;   ///< first on its page
+  bool with_next = false;  ///< kept with the next piece
+  bool new_page = false;   ///< begins a new page
   std::optional<SignatureFrame> signature{};
 };
 
-/// A block as strips; `repeated` is printed again at the top of each further page that begins after
-/// the piece `rows_from`.
+/// A block as strips. `repeated` is printed on each further page that begins after piece
+/// `rows_from`.
 struct Laid {
   std::vector<Piece> pieces;
   std::vector<Piece> repeated{};
   std::size_t rows_from = 0;
 };
 
-/// What a document embeds.
+/// Data to be embedded in a document.
 struct Used {
-  bool common_only = true;             ///< no glyph was set that is not one of Font::common
+  bool common_only = true;             ///< only glyphs in Font::common were used
   std::vector<std::uint16_t> wide;     ///< glyphs of Fonts::wide by their number in the document
-  std::vector<std::uint16_t> numbers;  ///< the other way round; 0: not used yet
+  std::vector<std::uint16_t> numbers;  ///< document numbers by glyph; 0: not used
   std::vector<std::shared_ptr<const Picture>> pictures;
 };
 
 struct Context {
   const Style& style;
   const Fonts& fonts;
-  double page_room;  ///< height between head and foot
+  double page_room;  ///< height between header and footer
   Used& used;
   Medium medium = Medium::paper;
 };
 
-/// A text that is set at one size, in lines.
+/// Text of one size, divided into lines.
 struct SetText {
   Glyphs glyphs;
   std::vector<TextLine> lines;
@@ -62,27 +62,27 @@ struct SetText {
 
   double leading() const { return size * 1.3; }
   double height() const { return leading() * static_cast<double>(lines.size()); }
-  /// Line `i` with its upper edge at y; align 0 left, 0.5 centre, 1 right within `width`.
+  /// Draws line `i` with its upper edge at y; align 0 left, 0.5 center, 1 right in `width`.
   void draw(Canvas&, std::size_t i, double x, double y, double width = 0.0,
             double align = 0.0) const;
-  /// All lines, the first with its upper edge at y.
+  /// Draws all lines, the first with its upper edge at y.
   void draw_all(Canvas&, double x, double y, double width = 0.0, double align = 0.0) const;
 };
 
-/// For text that is set in another way than by the next two; the document's numbers of glyphs.
+/// Records the used glyphs, and replaces wide glyphs by their document numbers. set_text and
+/// set_line call it.
 void note_glyphs(const Context&, Glyphs&, bool bold);
 Expected<SetText> set_text(const Context&, std::string_view text, bool bold, double size,
                            double width, std::string_view field);
-/// In one line, with an ellipsis if it is too long for it.
+/// One line, shortened with an ellipsis if necessary.
 Expected<SetText> set_line(const Context&, std::string_view text, bool bold, double size,
                            double width, std::string_view field);
 
-/// A filled sign: a disc, a triangle, a square or a ring, distinct without colour.
+/// A filled sign: disc, triangle, square or ring, distinguishable without color.
 void draw_mark(Canvas&, const Style&, Level, double x, double y, double size);
 Colour colour_of(const Style&, Level);
 
-/// The numbers of a horizontal axis from `left` over `width`, those that would touch the one before
-/// left out, and below them its title.
+/// Draws the numbers of a horizontal axis without overlaps, and its title below.
 Expected<void> draw_axis_text(Canvas&, const Context&, const AxisScale&, std::string_view title,
                               double left, double width, double top, double size,
                               std::string_view field);
@@ -94,7 +94,7 @@ Expected<Laid> lay_code(const Code&, double width, const Context&, std::string_v
 Expected<Laid> lay_signature(const SignatureBox&, double width, const Context&,
                              std::string_view field);
 Expected<Laid> lay_plot(const Plot&, double width, const Context&, std::string_view field);
-/// The height that its title and legend take.
+/// Height of title and legend.
 Expected<double> plot_top(const Plot&, double width, const Context&, std::string_view field);
 
 }  // namespace nonio::reports

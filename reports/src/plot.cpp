@@ -12,7 +12,7 @@ namespace nonio::reports {
 namespace {
 
 using Curve = Plot::Curve;
-constexpr double largest_drawn = 1e300;  // so that the differences of two of them stay finite
+constexpr double largest_drawn = 1e300;  // so that differences of two values are finite
 
 bool drawable(double v) { return std::fabs(v) < largest_drawn; }
 
@@ -27,9 +27,9 @@ struct Range {
   bool empty() const { return !(low <= high); }
 };
 
-/// Where the curves are drawn.
+/// The area of the curves, and its scales.
 struct Frame {
-  double x, y, w, h;  ///< lower left corner and size
+  double x, y, w, h;  ///< lower left corner and size, pt
   AxisScale across, up;
   double px(double v) const { return x + w * across.at(v); }
   double py(double v) const { return y + h * up.at(v); }
@@ -77,7 +77,7 @@ void draw_marker(Canvas& canvas, Marker marker, double x, double y, double r, Co
 
 using Point = Canvas::Point;
 
-/// Markers of one kind; dots together, which is a fraction of the bytes of as many circles.
+/// Draws markers of one kind; dots in one operation, which needs much fewer bytes.
 void draw_markers(Canvas& canvas, Marker marker, const std::vector<Point>& points, double r,
                   Colour colour) {
   constexpr double outline = 0.6;
@@ -85,8 +85,8 @@ void draw_markers(Canvas& canvas, Marker marker, const std::vector<Point>& point
   for (const auto& [x, y] : points) draw_marker(canvas, marker, x, y, r, colour);
 }
 
-/// Points of one unbroken stretch; of many in the same place only the first, the extremes and the
-/// last, which look the same.
+/// Thins an unbroken part of a curve: of many points at one x, the first, the extremes and the last
+/// are kept, which look the same.
 void thin_out(std::vector<Point>& points) {
   constexpr double place = 0.4;
   if (points.size() < 400) return;
@@ -106,7 +106,7 @@ void thin_out(std::vector<Point>& points) {
   points = std::move(out);
 }
 
-/// The curve's unbroken stretches in page coordinates; a reading that is missing breaks it.
+/// The unbroken parts of a curve in page coordinates; missing readings break it.
 std::vector<std::vector<Point>> stretches(const Frame& frame, const std::vector<double>& x,
                                           const std::vector<double>& y) {
   std::vector<std::vector<Point>> out(1);
@@ -137,7 +137,7 @@ void draw_line(Canvas& canvas, const Frame& frame, const Curve& curve) {
     canvas.line(curve.width);
   }
   const double spacing = frame.w / static_cast<double>(std::max<std::size_t>(1, curve.x.size()));
-  const double apart = spacing < 1.8 * curve.marker_size ? 14.0 : 0.0;  // of dense points some
+  const double apart = spacing < 1.8 * curve.marker_size ? 14.0 : 0.0;  // marker spacing, pt
   double last = -1e9;
   std::vector<Point> marked;
   for (const auto& part : parts)
@@ -189,8 +189,8 @@ void draw_bars(Canvas& canvas, const Frame& frame, const Curve& curve) {
   if (any) canvas.stroke();
 }
 
-/// Readings as they lie; of many in one place the first, and the extremes of each column of places,
-/// so that a million of them make a light file that looks the same.
+/// Points of a scatter plot. Of many in one cell, the first is drawn, and the extremes of each
+/// column, so that a million readings make a small file that looks the same.
 std::vector<Point> scattered(const Frame& frame, const Curve& curve, double place) {
   const auto cells = [place](double length) {
     return static_cast<std::size_t>(std::max(0.0, length) / place) + 1;
@@ -216,7 +216,7 @@ std::vector<Point> scattered(const Frame& frame, const Curve& curve, double plac
   return out;
 }
 
-/// Each a thing of its own, that can be pointed at.
+/// Draws each point as an item with tooltip and link.
 void draw_items(Canvas& canvas, const Frame& frame, const Curve& curve) {
   const auto text_of = [](const std::vector<std::string>& all, std::size_t i) {
     return i < all.size() ? std::string_view(all[i]) : std::string_view();
@@ -256,12 +256,12 @@ class PlotSetter {
         field_(field),
         size_(std::max(5.0, context.style.small - 0.5)) {}
 
-  /// The height that it takes.
+  /// Draws the plot and returns its height.
   Expected<double> set() {
     const auto own_top = draw_top();
     if (!own_top || plot_.only_legend) return own_top;
     const double top = std::max(*own_top, plot_.top);
-    // Title and legend may take many lines; the drawing stays one.
+    // The drawing keeps a minimum height if title and legend have many lines.
     constexpr double least_drawn = 85, least_of_given = 45;
     const double below = room_below();
     const double height = std::max(plot_.height > 0 ? plot_.height : style_.plot_height,
@@ -414,7 +414,7 @@ class PlotSetter {
     return draw_spans(frame);
   }
 
-  /// One scale both ways, in the middle, and the caption below.
+  /// Draws with one scale for both axes, centered, with the caption below.
   Expected<void> draw_picture(double top, double height, Range across, Range up) {
     NONIO_TRY(auto caption, set_text(context_, plot_.x_title, false, size_, width_, field_));
     const double below = caption.height() + 2, edge = 1.6 * size_;
@@ -450,7 +450,7 @@ class PlotSetter {
     canvas_.line(style_.rule_width);
     for (const double tick : f.up.ticks) canvas_.segment(f.x, f.py(tick), f.x + f.w, f.py(tick));
     for (const double tick : f.across.ticks) {
-      const double at = plot_.lanes.empty() ? tick : tick + 0.5;  // lanes have their names between
+      const double at = plot_.lanes.empty() ? tick : tick + 0.5;  // centers of lanes
       canvas_.segment(f.px(at), f.y, f.px(at), f.y + f.h);
     }
     canvas_.stroke_colour(style_.muted);
@@ -505,20 +505,20 @@ class PlotSetter {
     return scale;
   }
 
-  /// Room for `span`, to both sides alike.
+  /// Widens a range symmetrically to at least `span`.
   static void widen(Range& range, double span) {
     const double more = std::max(0.0, span - (range.high - range.low)) / 2;
     range.low -= more, range.high += more;
   }
 
-  /// For the numbers of the horizontal axis and its title; names of their own need none.
+  /// Height for numbers and title of the horizontal axis; custom ticks without title need less.
   double room_below() const {
     return (plot_.x_title.empty() && !plot_.ticks.empty() ? 1.6 : 2.9) * size_ + 3;
   }
 
   double span_room() const { return 1.3 * size_ + 7; }
 
-  /// Dimension lines as in a drawing, from the level of one extreme to that of the other.
+  /// Draws dimension lines between two values, as in technical drawings.
   Expected<void> draw_spans(const Frame& f) {
     double x = f.x + f.w + 5;
     for (const Plot::Span& span : plot_.spans) {

@@ -19,8 +19,8 @@ struct Mean {
   double value() const { return sum / static_cast<double>(n); }
 };
 
-/// z with Phi(z) = p, by Newton's method on Phi(z) = erfc(-z/sqrt 2)/2 from 0, which Phi's
-/// curvature makes monotone on either side.
+/// z with Phi(z) = p: Newton's method for Phi(z) = erfc(-z/sqrt 2)/2 from 0, which converges
+/// monotonically because of the curvature of Phi.
 double normal_quantile(double p) {
   double z = 0.0;
   for (int i = 0; i < 60; ++i) {
@@ -32,7 +32,7 @@ double normal_quantile(double p) {
   return z;
 }
 
-/// Whether all readings lie within 2 % of the period of each other, so that nothing is to be seen.
+/// Whether all phases are within ±1 % of the period, so that no pattern is visible.
 bool one_phase(const std::vector<double>& phase, double period) {
   double sine = 0, cosine = 0;
   for (const double p : phase) {
@@ -51,7 +51,7 @@ bool any_finite(const std::vector<double>& values) {
 
 bool both_directions(const ModelFit& fit) { return !reversal_of(fit).values.x.empty(); }
 
-/// Unit of the times and how many seconds it has.
+/// Unit of times in figures, and its length in s.
 std::pair<const char*, double> time_unit(const ModelFit& fit) {
   double first = INFINITY, last = -INFINITY;
   for (const double t : fit.time)
@@ -62,7 +62,7 @@ std::pair<const char*, double> time_unit(const ModelFit& fit) {
                       : std::pair("s", 1.0);
 }
 
-/// Why the fifth picture cannot be drawn, or nothing.
+/// Reason why the phase figure cannot be drawn; empty: it can.
 std::string no_phase(const ModelFit& fit, const Wording& words) {
   const double period = period_of(fit);
   const Quantity q = position_of(fit.rotary);
@@ -199,7 +199,7 @@ std::vector<double> phase_of(const ModelFit& fit, double period) {
   out.reserve(fit.size());
   for (const double p : fit.target) {
     double phase = p - period * std::floor(p / period);
-    if (period - phase < 1e-9 * period) phase = 0.0;  // a multiple, but for its last digit
+    if (period - phase < 1e-9 * period) phase = 0.0;  // a multiple, up to rounding
     out.push_back(phase);
   }
   return out;

@@ -10,7 +10,7 @@
 
 namespace nonio::reports {
 
-/// Writes elements of SVG. No style attribute, which the policy of the pages does not allow.
+/// Writes SVG elements without style attributes, which the pages' content security policy forbids.
 class SvgCanvas final : public Canvas {
  public:
   SvgCanvas(std::span<const NamedColour> colours, double opacity)
@@ -35,7 +35,7 @@ class SvgCanvas final : public Canvas {
   void close_fill_and_stroke() override { close(), paint(true, true); }
   void dots(std::span<const Point>, double diameter, Colour) override;
 
-  /// Clips nothing: what is drawn on a screen chooses its ranges so that all of it is inside.
+  /// Not needed, because ranges of web charts contain all data.
   void clip(double, double, double, double) override {}
   void leave() override { round_ = false; }
 

@@ -7,21 +7,21 @@
 namespace nonio::reports {
 namespace {
 
-constexpr double pad = 3;           // left and right of a cell
-constexpr double rounding = 0.001;  // of a width, so that what just fits is not divided
+constexpr double pad = 3;           // pt, left and right of a cell
+constexpr double rounding = 0.001;  // pt, so that rounding does not cause line breaks
 
 struct Cells {
   std::vector<Glyphs> text;
   std::vector<bool> bold;
 };
 
-/// The widths that the columns need: all in one line; no word divided; no number divided.
+/// Column widths for: text on one line, unbroken words, unbroken numbers.
 struct Needs {
   std::vector<double> natural, least, numbers;
 };
 
-/// What each column requests, but none more than one level: the short ones get all, so that one
-/// long column does not divide them.
+/// The natural widths, limited by a common maximum that fits `width`, so that a single long column
+/// does not cause line breaks in short ones.
 std::vector<double> up_to_a_level(const Needs& needs, double width) {
   std::vector<double> out(needs.least.size());
   const auto all_at = [&](double most) {
@@ -41,9 +41,9 @@ std::vector<double> up_to_a_level(const Needs& needs, double width) {
 
 using Widths = std::vector<double>;
 
-/// Widths of the columns: what each needs, if there is room, and what is left over shared out; else
-/// its widest word, and of the rest a share, or the short ones first: two ways. Where even that is
-/// too much, words give way to numbers.
+/// Candidate column widths. With enough space: natural widths plus equal surplus. Otherwise the
+/// widest word plus a share of the rest, or short columns first. If even words do not fit, only
+/// numbers stay unbroken.
 std::vector<Widths> column_widths(const Needs& needs, double width) {
   const auto sum = [](const std::vector<double>& v) {
     return std::accumulate(v.begin(), v.end(), 0.0);
@@ -67,7 +67,8 @@ std::vector<Widths> column_widths(const Needs& needs, double width) {
   return {out};
 }
 
-/// Ideographs divide anywhere; up to four stay together, as most words have no more. 1 = font size.
+/// Minimum width for ideographs, which can be divided anywhere: four characters, the usual word
+/// length, in units of the font size.
 double kept(const Glyphs& text) {
   constexpr double word = 4.0;
   return std::any_of(text.begin(), text.end(), [](const Glyph& g) { return g.wide; }) ? word : 0.0;
@@ -118,7 +119,7 @@ class TableSetter {
     for (std::size_t c = 0; c < n; ++c) {
       NONIO_TRY(auto title, shape(table_.columns[c].title, context_.fonts, true, names[c]));
       NONIO_TRY(auto unit, shape(table_.columns[c].unit, context_.fonts, false, names[c]));
-      constexpr double short_title = 48;  // "U (k = 2)", "Nr. / No.": in one line
+      constexpr double short_title = 48;  // such as "U (k = 2)", "Nr. / No."
       const double wide = width_of(title) * context_.style.small;
       measure(c, title, false);
       if (wide <= short_title) needs.least[c] = std::max(needs.least[c], wide + 2 * pad + rounding);
@@ -140,7 +141,7 @@ class TableSetter {
     return {};
   }
 
-  /// The way that makes the lower table.
+  /// Chooses the widths with the fewest lines.
   void choose(const std::vector<Widths>& ways) {
     std::size_t least = 0;
     for (const Widths& way : ways) {
@@ -212,7 +213,7 @@ class TableSetter {
     return {height + above_rows, 0, std::move(canvas.ops), true};
   }
 
-  /// A row; one of more than `together` lines may be divided between two of them.
+  /// Adds a row; a row of more than 20 lines can be divided between lines.
   void add_row(std::vector<Piece>& pieces, std::size_t r) const {
     constexpr std::size_t together = 20;
     const Style& style = context_.style;
@@ -242,7 +243,8 @@ class TableSetter {
     }
   }
 
-  /// Short tables stay whole; of long ones at least two rows are on each side.
+  /// Keeps short tables on one page; a page break in a long table leaves at least two rows on each
+  /// side.
   void keep_together(Laid& laid) const {
     constexpr std::size_t whole = 14;
     const std::size_t n = laid.pieces.size();

@@ -24,7 +24,7 @@ std::string hex(std::uint32_t value, int digits) {
   return text;
 }
 
-/// `part` of the text is the character `c`.
+/// Error for `part` of the text, which is the character `c`.
 Error unprintable(std::string_view part, char32_t c, std::string_view field) {
   std::string what;
   if (c == not_utf8)
@@ -49,9 +49,9 @@ Box box_of(const Font& font, std::uint16_t glyph) {
   return {side(2), side(6), side(4), side(8)};
 }
 
-/// An accent centred above the letter before it; it takes no room.
+/// Places an accent centered above the preceding letter, without advance.
 Glyph accent_over(const Font& font, std::uint16_t letter, std::uint16_t accent) {
-  constexpr int gap = 50;  // as that of the fonts' own letters with an accent
+  constexpr int gap = 50;  // as in the accented letters of the fonts
   const Box below = box_of(font, letter), above = box_of(font, accent);
   Glyph out{accent, 0, false, false};
   out.shift = static_cast<std::int16_t>((below.left + below.right - above.left - above.right) / 2 -
@@ -60,7 +60,7 @@ Glyph accent_over(const Font& font, std::uint16_t letter, std::uint16_t accent) 
   return out;
 }
 
-/// Of another font, which is not measured; what is no character is shown as such.
+/// A glyph of another font, with estimated width; invalid bytes are shown as U+FFFD.
 Glyph foreign_glyph(char32_t c) {
   constexpr char32_t first_ideograph = 0x2E80;
   Glyph out{0, static_cast<std::uint16_t>(c >= first_ideograph ? 1000 : 600), false, false};
@@ -79,12 +79,12 @@ Glyph glyph_of(char32_t c, const Font& font, const Font& wide) {
   return {id, id == 0 ? std::uint16_t{0} : wide.advance[id], space, space, true};
 }
 
-/// Of "k = 2", "5 %", "3 µm", "20 °C" neither part begins a line.
+/// Characters that stay on one line with a number: "k = 2", "5 %", "3 µm", "20 °C".
 bool stays_with_number(char32_t c) {
   return c == U'=' || c == U'%' || c == U'\u00B5' || c == U'\u00B0';
 }
 
-/// Chinese stops and brackets fill half of their square only: no blank follows them.
+/// Chinese punctuation fills half of its square, so that no space follows it.
 bool has_room_after(char32_t c) {
   constexpr std::u32string_view all = U"\u3002\uFF0C\uFF1B\uFF1A\u3001\uFF09\uFF1F\uFF01";
   return all.find(c) != std::u32string_view::npos;
@@ -105,7 +105,7 @@ Expected<Glyphs> shape(std::string_view text, const Fonts& fonts, bool bold, std
     Glyph glyph = glyph_of(c, font, fonts.wide);
     const bool accent = c == acute_above;
     const bool over_a_letter = accent && bears_accent(last) && !glyph.wide && !out.back().wide &&
-                               glyph.advance == 0;  // what the canvas relies on
+                               glyph.advance == 0;  // the canvas requires accents without advance
     glyph.character = c;
     if (glyph.id == 0 || (accent && !over_a_letter)) {
       if (medium == Medium::paper) return fail(unprintable(text.substr(at, i - at), c, field));
@@ -137,7 +137,7 @@ Expected<void> check_text(std::string_view text, const Fonts& fonts, std::string
 }
 
 std::string visible_text(std::string_view text, const Fonts& fonts) {
-  if (check_text(text, fonts, "")) return std::string(text);  // nearly always
+  if (check_text(text, fonts, "")) return std::string(text);  // usual case: everything is printable
   std::string out;
   for (std::size_t i = 0; i < text.size();) {
     const std::size_t at = i;
@@ -183,7 +183,7 @@ std::vector<TextLine> wrap(const Glyphs& glyphs, double width) {
       ++end;
       if (glyphs[end - 1].break_after) divide = end;
     }
-    if (end == begin) ++end;  // not even one fits: one nevertheless
+    if (end == begin) ++end;  // at least one glyph per line, even if too wide
     if (end < glyphs.size() && divide > begin) end = divide;
     std::size_t last = end;
     while (last > begin && glyphs[last - 1].space) --last;

@@ -79,7 +79,8 @@ bool digit(char c) { return c >= '0' && c <= '9'; }
 
 namespace {
 
-/// Calls `prose` and `code` with the pieces of a sentence in turn; a backquote alone is prose.
+/// Calls `prose` and `code` alternately with the parts of a sentence; an unpaired backquote is
+/// prose.
 template <typename Prose, typename Code>
 void split_at_code(std::string_view s, const Prose& prose, const Code& code) {
   while (true) {

@@ -18,7 +18,7 @@ using namespace reports;
 
 namespace {
 
-/// With eight digits, so that a page with many readings stays small.
+/// Writes eight significant digits, to keep large pages small; null if not finite.
 void put_number(JsonWriter& json, double value) {
   if (!std::isfinite(value)) return json.null();
   char buffer[32];
@@ -32,7 +32,7 @@ void put_number(JsonWriter& json, std::string_view name, double value) {
   put_number(json, value);
 }
 
-/// A column of the readings that are kept; null if the files did not have it.
+/// Writes a column for the kept rows; null if the files do not contain it.
 template <class T>
 void put_column(JsonWriter& json, std::string_view name, const std::vector<T>& values,
                 const std::vector<std::size_t>& rows, double factor = 1.0, double from = 0.0) {
@@ -46,7 +46,7 @@ void put_column(JsonWriter& json, std::string_view name, const std::vector<T>& v
   });
 }
 
-/// A sample by this order falls in step with nothing that a test cycle repeats.
+/// A pseudo-random order, so that a sample is not in phase with test cycles.
 std::uint64_t scrambled(std::size_t row) { return SplitMix64::mixed(row); }
 
 void put_words(JsonWriter& json, const Drawn& source) {
@@ -79,7 +79,7 @@ void put_pictures(JsonWriter& json, const Drawn& source, bool titles) {
   json.list("pictures", source.pictures, put);
 }
 
-/// The model fitted again without one effect: RMS of all readings, residuals of those on the page.
+/// Writes the refitted model without one effect: RMS of all readings, residuals of the page's rows.
 void put_without(JsonWriter& json, const ModelFit& fit, const std::string& effect,
                  const std::vector<std::size_t>& rows, double per_si) {
   json.key("without");
@@ -93,7 +93,7 @@ void put_without(JsonWriter& json, const ModelFit& fit, const std::string& effec
   json.end_object();
 }
 
-/// First and second axis of a circle's plane, and its radius, m; 0: no circle.
+/// Plane of a circle (first and second axis) and radius, m; 0: no circle.
 struct CircleOf {
   std::string axes;
   double radius = 0.0;
@@ -111,7 +111,7 @@ CircleOf circle_of(const Campaign& campaign, const std::string& id) {
   return out;
 }
 
-/// Of each measurement its radius in mm and its plane, 0 and "" where it is no circle.
+/// Writes radius in mm and plane of each measurement; 0 and "" if it is no circle.
 void put_circles(JsonWriter& json, const Drawn& source) {
   if (!has_circles(source.campaign, source.fit)) return;
   const auto& all = source.fit.measurements;
@@ -188,7 +188,7 @@ std::string data_of(const Drawn& source, const Kept& kept, bool titles) {
   json.member("unit", unit_text(up));
   json.member("position_unit", across.unit);
   json.member("time_unit", over_time.time_unit);
-  // Names of the lines that are next to each other; null where all readings have one axis.
+  // Names of lines side by side; null: one axis.
   if (const Lanes lanes = lanes_of(fit); !lanes.names.empty()) {
     json.member("lanes", lanes.names);
   } else {

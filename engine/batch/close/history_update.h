@@ -12,8 +12,9 @@
 
 namespace nonio::batch {
 
-/// Reads events.toml, acknowledged.toml and forgotten.toml, and adds the aliases and intervals of
-/// site.toml and the events in the records of the machines. All mistakes are reported in one error.
+/// Reads events.toml, acknowledged.toml and forgotten.toml, and adds the aliases and calibration
+/// intervals of site.toml and the events in the records of the machines. All mistakes in the three
+/// files are reported in one error.
 Expected<store::SiteRecords> read_records(const RunOptions& options,
                                           const reading::Context& context);
 
@@ -39,17 +40,18 @@ class HistoryUpdate {
   /// Has to be called instead of `end` if no result was stored after `begin`: the store remains
   /// complete up to the same run.
   void nothing_done() const;
-  /// Adds campaigns that were evaluated again between runs. An outdated store is left to the next
-  /// run.
+  /// Adds campaigns that were evaluated again between runs. An outdated store is not changed,
+  /// because the next run rebuilds it.
   Expected<std::vector<std::string>> end(const std::vector<std::string>& campaigns,
                                          const Expected<store::SiteRecords>& records);
-  /// Whether the store was rebuilt from all results.
+  /// Returns whether `end` rebuilt the store from all results.
   bool rebuilt() const { return rebuilt_; }
 
  private:
   const RunOptions& options_;
   const reading::Context& context_;
-  std::optional<std::uint64_t> known_{};  ///< the run up to which the store is complete
+  std::optional<std::uint64_t> known_{};  ///< number of the run up to which the store is complete;
+                                          ///< empty: not known
   bool rebuilt_ = false;
 };
 

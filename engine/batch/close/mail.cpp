@@ -72,7 +72,8 @@ std::string encoded_subject(const std::string& subject) {
   const bool plain = std::all_of(text.begin(), text.end(),
                                  [](char c) { return static_cast<unsigned char>(c) < 0x80; });
   if (plain) return text;
-  constexpr std::size_t piece = 39;  // largest piece in bytes: 52 in base64, below the 75 of a word
+  constexpr std::size_t piece = 39;  // largest piece in bytes: 52 in base64, so that an encoded
+                                     // word has at most 75 characters
   std::string out;
   for (std::size_t at = 0; at < text.size();) {
     std::size_t end = std::min(at + piece, text.size());

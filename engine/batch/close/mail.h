@@ -34,7 +34,8 @@ Expected<void> send_mail(const config::Mail& mail, const std::filesystem::path& 
 Expected<void> send_webhook(const config::Webhook& webhook, const std::filesystem::path& site,
                             const std::string& body, double seconds = 5.0);
 
-/// Posts the body in this process; exported as `nonio_post` by a library that is loaded late.
+/// Posts the body in this process and returns an empty text; exported as `nonio_post` by a library
+/// that is loaded late (late_library.h).
 using PostTo = Expected<std::string> (*)(const config::Webhook& webhook,
                                          const std::filesystem::path& site, const std::string& body,
                                          double seconds);

@@ -16,8 +16,8 @@ namespace {
 
 constexpr const char* histories_name = "histories";
 
-/// Returns the digest of the entries of people (events, aliases, intervals) that histories contain;
-/// anything else in a history changes only together with a campaign.
+/// Returns the SHA-256 of the events, aliases and calibration intervals in histories. All other
+/// contents of a history change only if a campaign changes.
 std::string digest_of_records(const store::SiteRecords& records) {
   storage::Json json = storage::Json::array();
   for (const auto* events : {&records.logs.events, &records.of_records}) {

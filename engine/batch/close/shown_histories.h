@@ -13,9 +13,9 @@
 namespace nonio::batch {
 
 /// Finds the campaigns whose documents show another history of their machine than the store
-/// contains. A run calls this when the store contains its results, and evaluates those campaigns
-/// again. If OUT/.nonio/histories notes that all documents are up to date and no entry changed
-/// since, the store is not read.
+/// contains. A run evaluates them again after it has added its results to the store. The store is
+/// not read if OUT/.nonio/histories notes that all documents are up to date, and the events,
+/// aliases and calibration intervals have not changed since.
 class ShownHistories {
  public:
   ShownHistories(const RunOptions& options, const reading::Context& context)
@@ -24,12 +24,13 @@ class ShownHistories {
   /// Has to be called before the first result of a run is stored. Notes that documents may show
   /// outdated histories until `end` is called.
   Expected<void> begin() const;
-  /// Returns, by campaign, the history that its document should show, for campaigns whose document
-  /// shows another one. `looked`: read the store even if all documents are noted as up to date.
+  /// Returns the history to be shown, by campaign id, for each campaign whose document shows
+  /// another history. With `looked`, the store is read even if all documents are noted as up to
+  /// date.
   Expected<std::map<std::string, assessment::HistoryBasis>> others(
       const std::vector<CampaignState>& campaigns, const store::SiteRecords& records,
       bool looked) const;
-  /// Notes that all documents show the present history.
+  /// Notes in OUT/.nonio/histories that all documents show the present history.
   Expected<void> end(const std::vector<CampaignState>& campaigns,
                      const store::SiteRecords& records) const;
 

@@ -25,8 +25,8 @@ std::string where(const Error& e) {
   return text.empty() ? e.message : text + ": " + e.message;
 }
 
-/// Returns a single reason in the language of `words`. It is a fixed text, or a name followed by
-/// what happened to it.
+/// Returns a single reason in the language of `words`: a fixed text, or a name followed by an event
+/// such as "changed".
 std::string one_reason(const std::string& text, const config::TerminalWords& words) {
   if (std::string whole = words.of("reason", text); whole != text) return whole;
   for (const char* what : {" changed", " is missing from the output", " was changed in the output"})
@@ -77,9 +77,9 @@ storage::Json run_json(const evaluation::RunLabel& run) {
   return {{"night", run.number}, {"date", run.date}};
 }
 
-/// Returns the first line of the summary: number and date of the run, and how many campaigns it and
-/// the previous run saw. It is written first so that no reader takes an old summary for that of
-/// this run.
+/// Returns the first line of the summary: number and date of the run, and the numbers of campaigns
+/// in this run and in the previous one. It is written first so that an old summary is not mistaken
+/// for a new one.
 std::string run_line(const RunResult& run, const config::TerminalWords& words) {
   std::string line =
       run_words(run.run, words) + "; " + words.counted("seen", run.campaigns.size()) + ", ";
@@ -90,8 +90,8 @@ std::string run_line(const RunResult& run, const config::TerminalWords& words) {
          "\n";
 }
 
-/// Number of new findings with one heading, and the first three campaigns and measurements that
-/// have it.
+/// Number of new findings with the same heading, and the first three campaigns and measurements
+/// with such a finding.
 struct Fresh {
   std::size_t count = 0;
   std::string where;
@@ -117,8 +117,9 @@ struct Lists {
         {{"campaign", v.id}, {"folder", v.folder}, {"last_done_night", v.run}, {"message", v.why}});
   }
 
-  /// Adds a campaign to its lists. An error if the campaign has not failed and its record has to be
-  /// read but cannot be.
+  /// Adds a campaign to its lists. Reads the record of a campaign that was evaluated in this run or
+  /// has the status `attention`, and reports an error if this record cannot be read. No error is
+  /// reported for a failed campaign.
   Expected<void> add(const CampaignState& c, const fs::path& out) {
     if (c.status == evaluation::Status::failed) {
       add_failed(c, out);

@@ -83,7 +83,8 @@ Expected<void> write_pages(const fs::path& out, std::vector<Artifact> pages) {
   return write_lists(out, std::move(root));
 }
 
-/// Texts that the child process returns: the members of `WorklistPages`.
+/// Members of `WorklistPages` that the child process returns as texts, in the order text, json,
+/// asking, judged ("1" or empty), mail, actions.
 using Texts = std::vector<std::string>;
 
 void add_curves(reports::SiteHistory& site, const fs::path& out,
@@ -150,7 +151,8 @@ Expected<Texts> small_worklist(const fs::path& out, const reading::Context& cont
   return texts_of(std::move(site), context);
 }
 
-/// Writes the pages of machines whose data have changed; other pages are kept.
+/// Writes the pages of machines whose data have changed, or all pages if the language or the
+/// templates have changed.
 class MachinePages {
  public:
   MachinePages(assessment::Assessment& assessment, const fs::path& out,

@@ -13,8 +13,8 @@ namespace nonio::batch {
 
 namespace {
 
-/// Largest number of campaigns in one batch. A crash loses at most this many, and the answers for
-/// them fit into the channel.
+/// Largest number of campaigns in one batch, so that a crash affects at most 64 campaigns and their
+/// answers fit into the channel.
 constexpr std::size_t largest_batch = 64;
 
 struct StoredMessage {

@@ -14,14 +14,15 @@
 
 namespace nonio::batch {
 
-/// Makes staged results durable in a child process while the workers continue. All campaigns that
-/// were given while the disk was busy are flushed together, so a fast run needs few flushes and a
-/// slow run waits for none.
+/// Makes staged results durable in a child process while the workers continue. Up to 64 campaigns
+/// that were given while the disk was busy are flushed together, so that the number of flushes
+/// remains small without delaying a single campaign.
 class Committer {
  public:
   struct Given {
     std::size_t campaign = 0;
-    std::uint32_t losses = 0;  ///< losses reported by the disk before the results were written
+    std::uint32_t losses = 0;  ///< number of losses that the disk had reported before the results
+                               ///< were written
   };
   struct Done {
     Given given;

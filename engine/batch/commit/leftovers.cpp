@@ -41,7 +41,7 @@ Expected<void> tidy_all(const RunResult& run, const fs::path& out, bool resumed)
     if (process::is_stop_requested()) return fail("interrupted");
     if (c.action != CampaignState::Action::done || !c.is_campaign) continue;
     const fs::path folder = storage::own_folder(out, c.id);
-    if (storage::results_folder(out, c.id) != folder) continue;  // the results are in a pack
+    if (storage::results_folder(out, c.id) != folder) continue;  // a pack contains no leftovers
     if (auto tidied = tidy(folder); !tidied) return tidied;
   }
   return {};

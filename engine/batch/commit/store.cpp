@@ -23,8 +23,8 @@ evaluation::RecordedFile recorded(const Artifact& a) {
   return {a.name, a.bytes.size(), storage::sha256(a.bytes)};
 }
 
-/// Writes the record under a temporary name, completely or not at all. Until it gets its own name,
-/// this file states to a resumed run why the campaign is evaluated.
+/// Writes the record under a temporary name, completely or not at all. Until `commit` renames the
+/// file, a resumed run reads from it why the campaign is evaluated.
 Expected<void> write_record(const fs::path& folder, const evaluation::Record& record) {
   const std::string unfinished = std::string(".") + evaluation::record_name;
   const std::string text = evaluation::to_json(record);
@@ -222,8 +222,7 @@ class Move {
     const auto record = evaluation::read_record(folder_);
     return record && record->run >= run;
   }
-  /// Leaves the results to another process that did the same shard first: it has stored the same
-  /// bytes.
+  /// Gives up, because another process that does the same shard has stored the same bytes.
   void leave_to_other() {
     storage::remove_leftovers(folder_);
     moved_ = true;

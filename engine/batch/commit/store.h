@@ -22,17 +22,18 @@ struct StoreNote {
 Expected<void> stage(const std::filesystem::path& out, const evaluation::Evaluated& evaluated,
                      const reading::Context& context, const StoreNote& note);
 
-/// A campaign whose files are staged.
+/// A campaign whose files were written by `stage`.
 struct Staged {
   std::string id;
-  std::uint32_t losses = 0;  ///< losses reported by the disk before its first file was written
+  std::uint32_t losses = 0;  ///< number of write losses that the disk had reported before the first
+                             ///< file of the campaign was written
 };
 
-/// Makes the staged files of these campaigns their results, durably; one flush of the disk serves
-/// all of them. The files are read back from the disk first. Then the old record is renamed, and
-/// the new record gets its name last, so that a record always lists files that belong together.
-/// Results that are replaced by a temporary failure are kept in the folder `last-good`. Returns one
-/// entry for each campaign.
+/// Makes the staged files the results of their campaigns. Each step is made durable by one flush of
+/// the disk for all campaigns. The files are read back from the disk first. Then the old record is
+/// renamed, and the new record gets its name last, so that a record always lists files that belong
+/// together. Results that are replaced by a temporary failure are kept in the folder `last-good`.
+/// Returns one entry for each campaign.
 std::vector<Expected<void>> commit(const std::filesystem::path& out,
                                    const std::vector<Staged>& campaigns, std::uint64_t run,
                                    const storage::Disk& disk);

@@ -153,8 +153,8 @@ class Releaser {
     return {};
   }
 
-  /// Requires a password from a person who has one, and prevents others from using that person's
-  /// name.
+  /// Returns an error if the name in `--by` belongs to a user of users.toml who has a password,
+  /// because this user has to be identified by `--user`.
   Expected<void> no_user_is_named() const {
     if (!certificates::has_users(options_.site)) return {};
     NONIO_TRY(const auto users, certificates::read_users(options_.site));
@@ -345,8 +345,8 @@ class Releaser {
   std::optional<OutputLock> lock_;
   std::string id_, role_, last_number_;
   certificates::WaitingDraft seen_;  ///< the draft as it was first read from the register
-  reading::Twins twins_;             ///< files of readings that other campaigns contain too, as the
-                                     ///< run of the draft found them
+  reading::Twins twins_;             ///< files of readings shared with other campaigns, as recorded
+                                     ///< by the run that made the draft
   Released out_;
 };
 

@@ -21,7 +21,8 @@ namespace nonio::batch {
 std::optional<ShardRecord> reported_pack(const std::filesystem::path& out, const RunPlan& plan,
                                          std::uint64_t shard);
 
-/// A temporary output folder on this host that contains the last results of these campaigns.
+/// A temporary output folder on this host that contains the last results of the campaigns to be
+/// evaluated by the shard.
 class PackedShard {
  public:
   static Expected<PackedShard> begin(const RunOptions& options,

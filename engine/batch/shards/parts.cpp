@@ -72,8 +72,8 @@ std::vector<CampaignState> states_of(std::vector<Listed> listed, bool whole_site
   return states;
 }
 
-/// Takes over the results of a campaign if they were stored in this run already, by this shard
-/// before it was killed or by a copy of it. Returns whether they were.
+/// Takes over the results of a campaign that this shard, or a copy of it, has already stored in
+/// this run. Returns whether there were any.
 bool take_stored(const fs::path& out, std::uint64_t run, CampaignState& c) {
   const auto record = evaluation::read_record(storage::results_folder(out, c.id));
   if (!record || record->run != run) return false;
@@ -110,8 +110,9 @@ std::string numbers_text(const std::vector<std::uint64_t>& numbers) {
          (numbers.size() > most ? " and " + std::to_string(numbers.size() - most) + " more" : "");
 }
 
-/// Repeats `try_it` until it succeeds, a stop is requested, or `until` has passed, and returns its
-/// last result: on a shared file system the files of another host may appear late.
+/// Repeats `try_it` until it succeeds, a stop is requested, or `until` has passed, because on a
+/// shared file system the files of another host may appear late. Returns the last result of
+/// `try_it`.
 template <class Try>
 auto with_patience(std::chrono::steady_clock::time_point until, const Try& try_it) {
   for (;;) {
@@ -228,7 +229,7 @@ Expected<void> plan_shards(const RunOptions& options, const reading::Context& co
                                [](const CampaignState& c) { return c.action == Action::todo; });
   if (auto removed = remove_plan(options.out); !removed) return removed;
   if (auto swept = storage::sweep_packs(options.out); !swept) return swept;
-  if (state.resumed)  // leftovers of an interrupted run or plan
+  if (state.resumed)  // removes leftovers of an interrupted run or plan
     if (auto tidied = tidy_all(run, options.out, true); !tidied) return tidied;
   for (const CampaignState& c : run.campaigns) {
     if (!state.resumed || c.action != Action::todo || !c.is_campaign) continue;
@@ -341,7 +342,7 @@ Expected<void> gather(const RunOptions& options, const RunPlan& plan, RunResult&
                      std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                          std::chrono::duration<double>(options.patience));
   NONIO_TRY(auto all, read_rest(options.out, plan));
-  for (Listed& one : all) {  // campaigns that an interrupted merge has evaluated
+  for (Listed& one : all) {  // takes over campaigns that an interrupted merge has evaluated
     CampaignState& c = one.campaign;
     if (c.action == Action::todo && c.status != evaluation::Status::failed)
       take_stored(options.out, plan.run.number, c);

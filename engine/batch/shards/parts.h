@@ -11,13 +11,14 @@
 
 namespace nonio::batch {
 
-/// Does one shard of a planned run. `RunResult::campaigns` are those of its list; campaigns that
-/// are still to be evaluated at the end are left to the merge. It needs neither the register nor
-/// the key. Several processes may do the same shard, at once or one after the other; they write the
-/// same bytes.
+/// Does one shard of a planned run. The result contains the campaigns in the list of the shard;
+/// those that are still `todo` at the end are left to the merge. Neither the register nor the key
+/// is needed. Several processes may do the same shard, at once or one after the other, because all
+/// of them write the same bytes.
 RunResult run_shard(const RunOptions& options, const RunEvents& events);
 
-/// Writes the plan with the lists of the shards after the survey. The run remains in progress.
+/// Writes the plan with the lists of the shards after the survey. The first `own_notes` notes of
+/// `run` are not stored in the plan. The run remains in progress.
 Expected<void> plan_shards(const RunOptions& options, const reading::Context& context,
                            const RunState& state, bool register_read, std::size_t own_notes,
                            RunResult& run);

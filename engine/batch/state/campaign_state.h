@@ -11,8 +11,8 @@
 
 namespace nonio::batch {
 
-/// One campaign of the run and its state so far. The findings in its record are read again for the
-/// summary.
+/// One campaign of the run and its state so far. It contains no findings; the summary reads them
+/// from the record of the campaign.
 struct CampaignState {
   std::string id{};
   std::string folder{};   ///< folder of the campaign relative to the site, as stored in the file
@@ -22,8 +22,8 @@ struct CampaignState {
       ///< `shows_history`); empty: the history was not known when the document was
       ///< written
   enum class Action : char { todo, done, unchanged } action = Action::todo;
-  evaluation::Status status = evaluation::Status::none;  ///< status of the results; none until the
-                                                         ///< campaign is evaluated
+  evaluation::Status status = evaluation::Status::none;  ///< status of the results; none: the
+                                                         ///< campaign is still to be evaluated
   bool named_by_folder = false;                          ///< whether the id was made from the
                                                          ///< folder's name, because the manifest
                                                          ///< states none
@@ -36,15 +36,16 @@ struct CampaignState {
   using TwinBefore = std::pair<std::uint64_t, std::string>;
   std::vector<Error> errors{};
   std::vector<Error>
-      warnings{};  ///< keys with former names in the manifest; not stored for the next run
+      warnings{};  ///< warnings about keys with former names in the manifest; not stored for the
+                   ///< next run
   /// Files of readings that another campaign has too: the first 64 bits of the file's SHA-256, and
   /// the position of the other campaign in the list of all campaigns.
   std::vector<Twin> twins{};
   /// Shared files of readings that the campaign's last record states: the first 64 bits of the
   /// file's SHA-256, and the id of the other campaign.
   std::vector<TwinBefore> twins_before{};
-  /// First 64 bits of the SHA-256 of each of the campaign's files of readings. They are moved out
-  /// when the files are compared with those of other campaigns.
+  /// First 64 bits of the SHA-256 of each of the campaign's files of readings. The list is empty
+  /// after the comparison with other campaigns, because the digests are moved out.
   std::vector<std::uint64_t> readings{};
 };
 

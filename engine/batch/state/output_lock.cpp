@@ -59,7 +59,7 @@ std::string text_of(const User& user) {
          "\n";
 }
 
-/// Parses the content of the user file. An unreadable file yields a user without a name, which
+/// Parses the content of the user file. An unreadable file yields a user without a host name, which
 /// blocks the folder nevertheless.
 User user_in(const std::string& text) {
   const Json json = storage::parse_or_discard(text);
@@ -266,7 +266,7 @@ OutputLock::~OutputLock() {
     const auto text = read_user(user_);
     if (text && *text == says_) ::unlink(user_.c_str());
   }
-  // Also releases the lock for a child that was left behind because its disk hangs.
+  // Also releases the lock for a child process that was left behind because its disk hangs.
   ::flock(fd_, LOCK_UN);
   ::close(fd_);
 }

@@ -13,10 +13,10 @@ namespace nonio::batch {
 ///
 /// Two locks are used. flock on OUT/.nonio/lock works among the processes of one host, and on most
 /// network file systems among hosts. The file OUT/.nonio/user, created by link(2), names the
-/// process that has exclusive use, and works among hosts on every file system with hard links. It
-/// is taken over only if its process is known to have ended: it belongs to the present start of
-/// this host, where flock decides, or to an earlier start of this host. Processes of other hosts
-/// cannot be checked; `unlock` releases their lock.
+/// process that has exclusive use, and works among hosts on every file system with hard links. The
+/// file is taken over only if its process is known to have ended: the process belongs to the
+/// present boot of this host, where flock decides, or to an earlier boot of this host. Processes of
+/// other hosts cannot be checked; `unlock` releases their lock.
 class OutputLock {
  public:
   enum class Use {
@@ -40,15 +40,15 @@ class OutputLock {
                                   ///< remove the file
 };
 
-/// Describes the process that has exclusive use, for example "process 17 on host a (job 5)"; empty
-/// if there is none.
+/// Describes the process that has exclusive use of the output folder, for example "process 17 on
+/// host a (job 5)"; empty if there is none.
 std::string user_of(const std::filesystem::path& out);
 
-/// Removes the user file of a process on another host that has ended, and returns a description of
-/// that process; empty if there was none. `alive`: the jobs that a scheduler still runs, one per
-/// line; with it, unlocking is refused if the user belongs to one of these jobs, or to no job
-/// (NONIO_JOB of its environment). Unlocking is also refused while a process of this host uses the
-/// folder.
+/// Removes OUT/.nonio/user of a process that has ended on another host, and returns a description
+/// of that process; empty if the file does not exist. `alive` contains the ids of the jobs that a
+/// scheduler still runs, one per line. With `alive`, unlocking is refused if the process belongs to
+/// one of these jobs, or has no job id (environment variable NONIO_JOB). It is also refused while a
+/// process of this host uses the folder.
 Expected<std::string> unlock(const std::filesystem::path& out,
                              const std::optional<std::string>& alive);
 

@@ -237,8 +237,9 @@ std::string word_of_its_own() {
   return text.data();
 }
 
-/// Whether the campaign needs the key and the register, which only the host of the merge has. Its
-/// last record decides; for a campaign without a record, its shard finds out.
+/// Returns whether the campaign needs the key and the register, which are available only on the
+/// host of the merge. This is derived from its last record. If the campaign has no record, its
+/// shard detects the need.
 bool needs_register(const fs::path& out, const CampaignState& c) {
   const auto last = evaluation::last_record(storage::results_folder(out, c.id));
   return last && *last && ((*last)->record.draft || !(*last)->record.certificate.empty());

@@ -30,7 +30,8 @@ struct RunPlan {
   bool register_read = false;  ///< whether the register was read; false: another process kept it
                                ///< locked
   std::optional<std::uint64_t>
-      history_known{};  ///< the run up to which the history was complete when the plan was made
+      history_known{};  ///< number of the run up to which the history was complete when the plan
+                        ///< was made; empty: not known
   std::uint64_t to_do = 0, seen = 0;
   std::vector<std::string> notes{};
   std::vector<Vanished> vanished{};
@@ -64,7 +65,8 @@ struct Listed {
 };
 Expected<std::vector<Listed>> read_shard_list(const std::filesystem::path& out, const RunPlan& plan,
                                               std::uint64_t shard);
-/// Returns the campaigns of no shard: unchanged, refused, or left to the merge.
+/// Returns the campaigns that belong to no shard because they are unchanged, refused, or left to
+/// the merge.
 Expected<std::vector<Listed>> read_rest(const std::filesystem::path& out, const RunPlan& plan);
 
 /// Outcome of a campaign in its shard.

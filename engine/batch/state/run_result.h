@@ -25,8 +25,8 @@ struct RunOptions {
   std::filesystem::path own_plugins;  ///< plugin folder of the installed program
   std::size_t jobs = 0;               ///< number of worker processes; 0: one for each core
   bool force = false;
-  std::string only{};  ///< folder below the site, or id, of the only campaign to evaluate, between
-                       ///< runs
+  std::string only{};  ///< folder below the site, or id, of the only campaign to be evaluated again
+                       ///< after a complete run; empty: all campaigns
   bool dry_run = false;
   bool verify_results = false;  ///< whether to compare the digests of all output files, even if
                                 ///< their times are unchanged
@@ -38,7 +38,7 @@ struct RunOptions {
                          ///< confinement costs
   /// Part of the run that this process does; `whole`: the run is not divided.
   enum class Step { whole, plan, shard, merge } step = Step::whole;
-  std::uint64_t shard = 0, shards = 0;  ///< index of this shard, and number of shards
+  std::uint64_t shard = 0, shards = 0;  ///< zero-based index of this shard, and number of shards
   bool pack = false;                    ///< whether the shard hands its results over as one file
   std::filesystem::path
       scratch{};          ///< local folder of a packed shard; empty: the system's temporary folder
@@ -50,11 +50,12 @@ struct RunOptions {
 struct Vanished {
   std::string id, folder;  ///< id, and former folder as text; for a lost part of the site, both are
                            ///< its path
-  std::uint64_t run = 0;   ///< number of the run in which the campaign was evaluated last
-  std::string why;         ///< what is found in its place, and what to do
+  std::uint64_t run = 0;   ///< number of the run that evaluated the campaign last, or that wrote
+                           ///< the inventory of the site last
+  std::string why;         ///< what the site contains instead, and the required action
 };
 
-/// Callbacks during a run.
+/// Callbacks during a run; only `stage` and `words` may be empty.
 struct RunEvents {
   std::function<void(const std::string& message)> note;
   std::function<void(std::size_t campaigns, std::size_t to_do)> planned;
@@ -70,7 +71,8 @@ struct RunEvents {
 struct RunResult {
   enum class End { complete, interrupted, refused } end = End::complete;
   evaluation::RunLabel run{};
-  std::optional<std::uint64_t> seen_before{};  ///< number of campaigns in the previous run
+  std::optional<std::uint64_t> seen_before{};  ///< number of campaigns in the previous run; none:
+                                               ///< first run
   std::string error;                           ///< why the run was refused or could not be
                                                ///< completed; empty: neither
   std::vector<CampaignState> campaigns;        ///< campaigns of the run, ordered by id
@@ -88,12 +90,16 @@ struct RunResult {
     return failed() > 0 || lost_parts() > 0 || vanished.size() > may_vanish ||
            !history_error.empty() || !worklist_error.empty();
   }
-  std::size_t may_vanish = 0;  ///< number of campaigns that may vanish, from site.toml
+  std::size_t may_vanish = 0;  ///< largest number of vanished campaigns that is not a failure, from
+                               ///< site.toml
   std::string actions{};       ///< JSON list of lines that require action, in the language of the
                                ///< site
-  std::optional<std::uint64_t> asking{};  ///< number of worklist lines that require action
-  std::string worklist_error{};           ///< why the pages were not made, or the mail not sent
-  std::string history_error{};            ///< why OUT/history.sqlite does not contain this run
+  std::optional<std::uint64_t> asking{};  ///< number of worklist lines that require action; none if
+                                          ///< the worklist was not made
+  std::string worklist_error{};           ///< why the pages were not made or the mail was not sent;
+                                          ///< empty: no error
+  std::string history_error{};            ///< why OUT/history.sqlite does not contain this run, or
+                                          ///< histories in reports are outdated; empty: no error
   /// Number of campaigns in each shard; only for a planned run.
   std::vector<std::uint64_t> planned{};
 };

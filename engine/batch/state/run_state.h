@@ -47,11 +47,12 @@ struct RunState {
 /// campaigns of both would be mixed.
 Expected<RunState> begin_run(const RunOptions& options, const std::string& site,
                              std::optional<std::uint64_t> issued_so_far);
-/// Returns the last run in its state at its beginning, so that one campaign can be evaluated again.
-/// An error if it is not complete. Nothing is written, so an interruption leaves the run complete.
+/// Returns the state that the last run had when it began, so that one campaign can be evaluated
+/// again. An error if the run is not complete. Nothing is written, so an interruption leaves the
+/// run complete.
 Expected<RunState> reopen_run(const RunOptions& options, const std::string& site);
-/// Returns the planned run in its state at its beginning. An error if it is not the run in progress
-/// in the output folder. Nothing is written.
+/// Returns the state that the planned run had when it began. An error if it is not the run in
+/// progress in the output folder. Nothing is written.
 Expected<RunState> planned_run(const RunOptions& options, const std::string& site,
                                std::uint64_t number);
 /// Marks the run as complete. The next run takes over `run.issued_before`.
@@ -62,7 +63,8 @@ Expected<void> end_run(const std::filesystem::path& out, const RunState& run, co
 /// different layout is an error.
 Expected<void> settle_folders(const std::filesystem::path& out, bool hashed, bool dry_run);
 
-/// Returns an error while a planned run is not merged, because the next run would be refused.
+/// Returns an error if a planned run has been neither merged nor cancelled, because no other run
+/// may begin before.
 Expected<void> check_not_planned(const std::filesystem::path& out);
 
 }  // namespace nonio::batch

@@ -11,7 +11,7 @@
 
 namespace nonio::batch {
 
-/// The counts of a complete run.
+/// Number, date and counts of a complete run.
 struct RunEnd {
   evaluation::RunLabel run{};
   std::uint64_t seen = 0;  ///< number of campaigns in the site
@@ -22,8 +22,9 @@ struct RunEnd {
 struct RunStatus {
   enum class State { complete, running, cut_short, planned } state = State::complete;
   evaluation::RunLabel run{};              ///< the last run that began
-  std::optional<RunEnd> last{};            ///< the last run that is complete
-  double age = 0.0;                        ///< seconds since the last summary was written
+  std::optional<RunEnd> last{};            ///< the last complete run; none: no run was completed
+  double age = 0.0;                        ///< time since the last summary was written, s; valid
+                                           ///< only if `last` is set
   std::optional<double> seconds{};         ///< duration of the last complete run, s; none if it was
                                            ///< done in shards
   std::uint64_t shards = 0, reported = 0;  ///< number of shards of a planned run, and number of
@@ -34,7 +35,8 @@ struct RunStatus {
 /// Returns complete, running, planned or cut-short.
 const char* to_text(RunStatus::State state);
 
-/// Reads the state of the last run. An error if no run began there, or its files cannot be read.
+/// Reads the state of the last run. An error if no run began in `out`, or if its files cannot be
+/// read.
 Expected<RunStatus> run_status(const std::filesystem::path& out);
 
 }  // namespace nonio::batch

@@ -20,7 +20,8 @@ struct EarlierResult {
   bool failed = false;
 };
 
-/// Index of the campaigns whose manifests state an id. It stores positions, four bytes each.
+/// Index of the campaigns whose manifests state an id. It stores the positions of the campaigns
+/// (four bytes each) to save memory.
 class ClaimedIds {
  public:
   explicit ClaimedIds(const std::vector<CampaignState>& campaigns);

@@ -16,8 +16,8 @@ struct Known {
   std::vector<certificates::WaitingDraft> drafts;
 };
 
-/// Point of the run at which the register is read. `first`: before anything is issued; a broken
-/// chain of the journal is an error then.
+/// Point of the run at which the register is read. `first`: before anything is issued; the hash
+/// chain of the journal is checked, and a broken chain is an error.
 enum class Look { first, again };
 /// Reads the register; none if another process keeps it locked. An error if it cannot be read, or
 /// is in a place where it could be lost.

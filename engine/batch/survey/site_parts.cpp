@@ -49,8 +49,8 @@ bool is_record(const std::string& path) {
 }
 std::string asset_of(const std::string& path) { return fs::path(path).stem().string(); }
 
-/// Whether the file may replace its copy: a machine record must be valid, because its copy names
-/// the machine of the record; other files always may.
+/// Returns whether the file may replace its copy. A machine record must be valid, because the copy
+/// identifies the machine if the record is lost. Other files may always replace their copies.
 bool is_good(const std::string& path, const std::string& bytes) {
   return !is_record(path) || config::parse_machine(bytes, path, asset_of(path)).has_value();
 }
@@ -157,8 +157,8 @@ void SiteParts::look(const std::string& path) {
   if (is_good(path, *now)) renewed_[path] = std::move(*now);
 }
 
-/// Marks lost files as removed on purpose if forgotten.toml names them at a day not before the last
-/// run that saw them. An older entry refers to an earlier loss.
+/// Marks a lost file as removed on purpose if forgotten.toml contains an entry for it that is not
+/// older than the last run that read the file. An older entry refers to an earlier loss.
 void SiteParts::leave_out_removed(const std::vector<config::Forgotten>& forgotten) {
   for (const auto& one : parts_) {
     const std::string& path = one.first;

@@ -24,22 +24,22 @@ class SiteParts {
   static Expected<SiteParts> compare(const std::filesystem::path& site,
                                      const std::filesystem::path& out);
 
-  /// Returns files that are lost and were not removed on purpose, by path; `id` and `folder` are
-  /// the path below the site. If all files of a folder are missing, at least two of them, the
-  /// folder is returned instead. A damaged inventory is returned as well.
+  /// Returns the files that are lost and were not removed on purpose; `id` and `folder` are the
+  /// path below the site. If all files of a folder are missing, at least two of them, the folder is
+  /// returned instead. A damaged or missing inventory is also returned, with an empty `folder`.
   const std::vector<Vanished>& lost() const { return lost_; }
   /// Names lost files without which no result, table or certificate can be trusted: site.toml and
   /// templates. Empty if none is lost.
   std::string refusal() const;
-  /// Marks lost records as invalid in `records`, so that the campaigns of their machines fail; the
-  /// last copy of a record names its machine.
+  /// Marks lost records as invalid in `records`, so that the campaigns of their machines fail. The
+  /// machine of a lost record is identified by the last copy of the record.
   void complete(config::MachineRecords& records) const;
   /// Writes the files that this run found valid as the new inventory.
   Expected<void> keep(const evaluation::RunLabel& run) const;
 
  private:
   struct Part {
-    std::string sha256;     ///< digest of the copy
+    std::string sha256;     ///< SHA-256 of the copy
     std::string last_seen;  ///< day of the last run that found the file valid, YYYY-MM-DD
     std::string why;        ///< what is wrong with the file now; empty: nothing
   };
@@ -55,7 +55,8 @@ class SiteParts {
                                const std::map<std::string, Part>& parts) const;
 
   std::filesystem::path site_{}, out_{};
-  std::string date_{}, damaged_{};  ///< date of the inventory; why the inventory cannot be read
+  std::string date_{}, damaged_{};  ///< date of the inventory, YYYY-MM-DD, and why the inventory
+                                    ///< cannot be read (empty: it is valid)
   std::uint64_t run_ = 0;
   std::map<std::string, Part> parts_{};           ///< files of the inventory, by path below the
                                                   ///< site

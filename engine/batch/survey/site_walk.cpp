@@ -27,12 +27,12 @@ enum class Seen : std::uint64_t { campaign, unlisted, note, all };
 
 /// Remarks beyond this number are only counted.
 constexpr std::size_t most_remarks = 100;
-/// If this many folders hang, the site as a whole counts as not answering.
+/// If this many folders hang, the site as a whole is reported as not answering.
 constexpr std::size_t most_hung = 64;
 /// After this many folders that hang, each further one gets at most one second.
 constexpr std::size_t patient_for = 8;
 
-// Paths that did not answer, each with the message about it.
+// Paths that did not answer, and the message for each.
 using Passed = std::map<std::string, std::string>;
 
 std::string lower(std::string text) {
@@ -53,7 +53,7 @@ struct FolderNames {
   bool has_manifest = false;
 };
 
-/// Walks through the site in the child process.
+/// Searches the site for campaigns; used in the child process.
 class Walker {
  public:
   Walker(fs::path root, const fs::path& out, const Passed& passed, process::SignsOfLife& signs,
@@ -202,7 +202,7 @@ class Walker {
   std::size_t remarks_ = 0;
 };
 
-/// Adds the pieces received from the child process to `walk`. Returns true when the walk is
+/// Adds the pieces received from the child process to `walk`. Returns true when the search is
 /// complete.
 bool take_over(const std::vector<std::string>& pieces, SiteWalk& walk) {
   for (const std::string& piece : pieces) {
@@ -226,9 +226,9 @@ bool take_over(const std::vector<std::string>& pieces, SiteWalk& walk) {
   return false;
 }
 
-/// Walks through the site once. Returns none if the child process ended or hung, and then adds the
-/// place where this happened to `passed`, so that the next attempt skips it. If `stopped` returns
-/// true, the walk so far is returned.
+/// Searches the site once. Returns none if the child process ended or hung, and then adds the place
+/// where this happened to `passed`, so that the next attempt skips it. If `stopped` returns true,
+/// the incomplete result is returned.
 Expected<std::optional<SiteWalk>> try_walk(const fs::path& site, const fs::path& out,
                                            double seconds, bool (*stopped)(), Passed& passed) {
   auto child =

@@ -29,8 +29,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Largest number of campaigns given to one process: starting it is then cheap, and a crash costs
-/// little.
+/// Largest number of campaigns given to one process, so that starting the process is cheap compared
+/// with its work, and a crash costs little.
 constexpr std::size_t campaigns_in_batch = 2000;
 /// After this many campaigns whose files hang, each further one gets at most one second.
 constexpr std::size_t most_patience = 8;
@@ -200,8 +200,8 @@ void name_by_folder(std::vector<CampaignState>& states, const std::vector<Earlie
   }
 }
 
-/// Fails campaigns that have the same id, since each would write to the same output folder. Every
-/// message names at most four of their folders.
+/// Marks campaigns with the same id as failed, since each would write to the same output folder. A
+/// message names at most four of the folders.
 void fail_collisions(std::vector<CampaignState>& states) {
   constexpr std::size_t most_named = 4;
   for (std::size_t i = 0; i < states.size();) {

@@ -17,8 +17,8 @@ struct SurveyInput {
   const reading::Context& context;
   std::uint64_t run;  ///< number of the present run
   bool force;
-  /// Entries of the site's register, and the campaigns with drafts in it; none while another
-  /// process keeps it locked: then numbers are not checked.
+  /// Entries of the site's register, and the campaigns with drafts in the register. The entries are
+  /// none if another process keeps the register locked; numbers are then not checked.
   std::optional<std::vector<certificates::RegisterEntry>> numbers;
   std::set<std::string> drafts;
   std::vector<std::string>& notes;  ///< notes on skipped names, for the summary
@@ -38,8 +38,8 @@ struct Surveyed {
 /// cannot be listed are failed entries of their own. The site is read in child processes.
 Expected<Surveyed> survey(const SurveyInput& input);
 
-/// Last step of a survey: sorts the campaigns by id and folder, fails equal ids, and compares
-/// shared readings.
+/// Last step of a survey: sorts the campaigns by id and folder, marks campaigns with equal ids as
+/// failed, and compares shared readings.
 void set_in_order(std::vector<CampaignState>& campaigns);
 
 /// Returns an error if the output folder contains a number that the register does not contain,

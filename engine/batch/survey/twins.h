@@ -10,7 +10,7 @@ namespace nonio::batch {
 
 /// Finds files of readings that several campaigns have, and notes for each campaign the smallest id
 /// of another campaign with the file. Campaigns must be in the order of their ids; their `readings`
-/// are moved out. Takes one sort, however many files are shared.
+/// are empty afterwards.
 void find_twins(std::vector<CampaignState>& campaigns);
 
 /// Returns the shortened digest of each file of readings that another campaign contains too, with

@@ -104,7 +104,6 @@ bool Evaluator::hand_out(const fs::path& folder, const std::string& path) const 
   std::error_code error;
   const fs::path root = fs::path(path).is_absolute() ? storage::real_folder(folder, error) : folder;
   const std::string inside = fs::path(path).lexically_relative(root).string();
-  // A manifest may be a link to any place, as in the survey.
   const auto full = inside == config::manifest_name
                         ? Expected<fs::path>(folder / config::manifest_name)
                         : storage::path_inside(folder, inside);

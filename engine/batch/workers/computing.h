@@ -13,9 +13,9 @@
 
 namespace nonio::batch {
 
-/// Runs in the process with the plugins: evaluates the campaigns that the other process names,
-/// until the connection ends. It can open no files; the other process sends descriptors of the
-/// campaign's files.
+/// Runs in the process with the plugins: evaluates the campaigns requested by the `Evaluator` at
+/// the other end of `stream`, until the connection ends. The process cannot open files, and
+/// receives descriptors of the campaign's files from the `Evaluator`.
 void evaluate_for(int stream, const reading::Context& context, process::SharedStatus& stage,
                   Prints& prints);
 
@@ -31,8 +31,8 @@ class Evaluator {
   struct Analysed {
     evaluation::Evaluated evaluated;                  ///< results of the analysis; empty if no
                                                       ///< number is required
-    std::optional<std::vector<std::string>> missing;  ///< what is missing for a number; none: no
-                                                      ///< number is required
+    std::optional<std::vector<std::string>> missing;  ///< data that are missing for a certificate
+                                                      ///< number; none: no number is required
   };
 
   /// Calls `read_campaign` and `analyse` in the other process. If that process has ended, this
@@ -45,7 +45,8 @@ class Evaluator {
   /// one was required.
   Expected<evaluation::Evaluated> write_documents(
       const std::string& id, std::optional<evaluation::AssignedNumber> assigned);
-  /// Whether the memory of the other process has grown noticeably.
+  /// Returns whether the memory of the process with the plugins has grown by more than 64 MiB since
+  /// its start.
   bool grown() const { return grown_; }
 
  private:

@@ -44,8 +44,9 @@ void fail_certificate(evaluation::Evaluated& evaluated, const Error& why) {
   evaluated.retry = true;
 }
 
-/// Draws a number for the campaign. Returns an error in `AssignedNumber` if the register is on
-/// another host, damaged or locked; `locked` is set if it may be available later.
+/// Assigns a certificate number to the campaign. Returns an error in `AssignedNumber` if the
+/// register is on another host, damaged or locked; `locked` is set if the register may be available
+/// later.
 evaluation::AssignedNumber number_of(const SiteWork& site, const RegisterState& state,
                                      const evaluation::Evaluated& evaluated,
                                      const std::vector<std::string>& missing,
@@ -84,8 +85,8 @@ bool wants_signature(const evaluation::Evaluated& evaluated) {
   });
 }
 
-/// Evaluates a campaign in the other process: reads, analyses, numbers and writes it. If
-/// `as_draft`, it gets no number, whatever the rules state.
+/// Evaluates a campaign in the process with the plugins, and assigns a certificate number if one is
+/// required. With `as_draft`, no number is assigned in any case.
 Expected<evaluation::Evaluated> evaluated_apart(const SiteWork& site, const RegisterState& state,
                                                 const CampaignState& c, const fs::path& folder,
                                                 certificates::CampaignFiles& files, bool as_draft,
@@ -101,7 +102,7 @@ Expected<evaluation::Evaluated> evaluated_apart(const SiteWork& site, const Regi
 }
 
 /// Evaluates a campaign and, if required, signs its certificate and enters it into the register.
-/// `locked`: set if this has to wait for the register.
+/// `locked` is set if the campaign has to wait for the register.
 Expected<evaluation::Evaluated> certified(const SiteWork& site, const RegisterState& state,
                                           const CampaignState& c, process::SharedStatus& stage,
                                           bool& locked, Evaluator& evaluator) {
@@ -127,8 +128,7 @@ Expected<evaluation::Evaluated> certified(const SiteWork& site, const RegisterSt
   return evaluation;
 }
 
-/// Does one campaign in the worker, which contains no plugin code: plugins run at the other end of
-/// the stream.
+/// Does the work of `do_campaign` without catching exceptions.
 Answer work(const SiteWork& site, const RegisterState& state, std::size_t index, bool first,
             process::SharedStatus& stage, Evaluator& evaluator, bool& shows_history) {
   if (first && site.signer != nullptr) site.signer->leave_to_worker();

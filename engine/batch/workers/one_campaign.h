@@ -35,16 +35,16 @@ struct SiteWork {
 struct RegisterState {
   bool read = true;         ///< whether the register was read; false: another process keeps it
                             ///< locked
-  std::string unsound{};    ///< why no number can be drawn; empty: numbers can be drawn
+  std::string unsound{};    ///< why no number can be assigned; empty: numbers can be assigned
   bool last_trial = false;  ///< whether this is the last attempt, which does not wait for the lock
                             ///< any longer
 };
 
-/// Does one campaign in the worker, which contains no plugin code: plugins run at the other end of
-/// the evaluator's stream. Evaluates it, numbers and signs it where required, and stages its files.
-/// `first`: the first campaign of this process. Exceptions of plugins are caught where they are
-/// called. With Answer::not_stored, `stage` states why. `shows_history`: set if a document of the
-/// campaign shows the machine's history.
+/// Evaluates one campaign in the worker, which contains no plugin code: plugins run at the other
+/// end of the evaluator's stream. If required, the certificate gets a number and is signed. The
+/// files are staged. `first`: the first campaign of this process. Exceptions of plugins are caught
+/// where they are called. With Answer::not_stored, `stage` states why. `shows_history`: set if a
+/// document of the campaign shows the machine's history.
 Answer do_campaign(const SiteWork& site, const RegisterState& state, std::size_t index, bool first,
                    process::SharedStatus& stage, Evaluator& evaluator, bool& shows_history);
 

@@ -133,8 +133,8 @@ Expected<loader::Catalogue> PluginHost::load_once() {
   const std::string where = progress.get();
   Error error{where.empty() ? std::string(loading_process) + " died: " + why : why};
   error.key = where.empty() ? died : preparing;
-  // A process that died once may have lacked memory, and a process killed by signal 9 was killed
-  // from outside, so both get further attempts. A plugin that hangs gets none.
+  // The first death may be due to a lack of memory, and signal 9 comes from outside, so both get
+  // further attempts. A plugin that hangs gets none.
   const int most_deaths = why.starts_with("signal 9 ") ? 5 : 1;
   if (!where.empty() && (!hung.empty() || ++died_at_[where] > most_deaths)) leave_out(where, why);
   return fail(error);
@@ -157,7 +157,8 @@ Expected<std::string> PluginHost::answer(int stream, process::SharedStatus& prog
       hung = "no answer within " + std::to_string(static_cast<int>(limit)) + " s";
     if (!hung.empty()) return fail(hung);
   }
-  // A complete message is read at once; a plugin may have sent a part of one.
+  // A complete message can be read at once. The time limit is for an incomplete one, which may have
+  // been sent by a plugin.
   constexpr timeval patience{5, 0};
   ::setsockopt(stream, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   std::string text;
@@ -229,7 +230,7 @@ void PluginHost::say(std::string_view text) {
     std::cerr << "\nplugins print more than " << most_prints << " bytes: the rest is dropped\n";
 }
 
-// ---- in the process that loads plugins
+// The following functions run in the process that loads plugins.
 
 std::string PluginHost::check_secrets() const {
   // The lack of confinement is reported already.
@@ -272,7 +273,7 @@ loader::Plugins& PluginHost::load_all(process::SharedStatus& progress,
   for (const Output& output : plugins->outputs()) {
     if (output.prepare == nullptr || unprepared_.contains(output.info.name)) continue;
     progress.set(std::string(preparing) + output.info.name);
-    // Lack of memory may pass, so it is tried twice.
+    // The preparation is tried twice, because a lack of memory may be temporary.
     if (!is_prepared(output, request_.context.templates) &&
         !is_prepared(output, request_.context.templates))
       said.push_back("output " + output.info.name + " could not prepare: it threw an exception");

@@ -31,7 +31,8 @@ class PluginHost {
     std::vector<std::filesystem::path> readable;
     /// Files that plugins must not read: the signing key and its password.
     std::vector<std::filesystem::path> secrets;
-    reading::Context& context;  ///< its `plugins` are set in the loading process
+    reading::Context& context;  ///< settings of the run; `plugins` is set in the loading process
+                                ///< only
     bool (*stopped)();          ///< whether a stop is requested; may be null
     bool confine = true;
   };
@@ -84,7 +85,7 @@ class PluginHost {
   };
   std::vector<LastWords> last_words_;
   std::size_t printed_ = 0;
-  int deaths_ = 0;  ///< deaths since the last process was started
+  int deaths_ = 0;  ///< failed attempts since an evaluating process was started last
 };
 
 }  // namespace nonio::batch

@@ -29,9 +29,9 @@ namespace {
 
 using Action = CampaignState::Action;
 
-/// A worker is replaced after this many campaigns: starting one is then cheap, and what plugins
-/// leave in its memory does not accumulate. If plugins from other folders than the program's own
-/// are loaded, every campaign gets its own process, since they were not tested with this program.
+/// A worker is replaced after this many campaigns, so that memory left by plugins does not
+/// accumulate. With plugins from other folders than the program's own, which were not tested with
+/// this program, every campaign gets its own process.
 constexpr std::size_t campaigns_per_worker = 256;
 
 std::string day_of(std::time_t time) {
@@ -77,7 +77,6 @@ class Runner {
         campaigns_per_worker_(context.plugins->all_from(options.own_plugins) ? campaigns_per_worker
                                                                              : 1) {}
 
-  /// Does all campaigns. Returns false if it was interrupted.
   bool run() {
     process::keep_freed_memory();
     const std::size_t jobs =
@@ -216,9 +215,9 @@ class Runner {
     events_.tick();
   }
 
-  /// Handles the answer of a worker. Returns whether the worker may do another campaign: not after
-  /// a failure, not if a campaign waits for a second attempt in a new worker, and not if the worker
-  /// has done its number of campaigns or its memory has grown.
+  /// Handles the answer of a worker. Returns whether the worker may do another campaign. It may not
+  /// after a failure, if a campaign waits for a second attempt in a new worker, if it has done its
+  /// largest number of campaigns, or if its memory has grown.
   bool take(Worker& worker, Answer answer) {
     switch (answer) {
       case Answer::ok:
@@ -276,7 +275,7 @@ class Runner {
   void store_staged(std::size_t campaign) {
     const Committer::Given given{campaign, losses_[campaign]};
     if (committer_.give(given)) return;
-    // No committer process can be started, so this process stores it.
+    // No committer process can be started, so this process stores the results.
     settle(campaign, commit_here(given));
   }
 
@@ -366,17 +365,19 @@ class Runner {
   const std::vector<fs::path> secrets_;
   const certificates::Numbers numbers_;
   const SiteWork work_;
-  NumbersCheck recheck_;  ///< check of the numbers in the register; null: it is done
+  NumbersCheck recheck_;  ///< check of the numbers in the register; empty: done already or not
+                          ///< required
   RegisterState register_;
   const std::map<std::string, assessment::HistoryBasis>& histories_;
   std::vector<CampaignState>& campaigns_;
   const storage::Disk disk_;           ///< must be constructed before the first process that writes
-  std::vector<std::uint32_t> losses_;  ///< losses reported by the disk when each campaign was begun
+  std::vector<std::uint32_t> losses_;  ///< number of write losses that the disk had reported when
+                                       ///< each campaign was begun, by campaign
   Committer committer_;
   const std::size_t campaigns_per_worker_;
   std::size_t next_ = 0;
   int starts_failed_ = 0;             ///< number of process starts that failed in a row
-  std::vector<std::size_t> again_;    ///< campaigns that wait for their second attempt
+  std::vector<std::size_t> again_;    ///< campaigns that wait for another attempt
   std::vector<std::size_t> waiting_;  ///< campaigns that need the register, which is locked
   std::optional<Worker::Clock::time_point> give_up_;
   bool register_hangs_ = false;

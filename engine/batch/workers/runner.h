@@ -15,8 +15,8 @@
 
 namespace nonio::batch {
 
-/// Called with all numbers of the register as soon as it can be read. After an error no number is
-/// drawn.
+/// Called with all entries of the register as soon as it can be read. After an error no number is
+/// assigned.
 using NumbersCheck = std::function<Expected<void>(const std::vector<certificates::RegisterEntry>&)>;
 
 /// What the workers need to issue certificates.
@@ -36,8 +36,8 @@ struct ReleaseDesk {
   bool elsewhere = false;
 };
 
-/// Evaluates every campaign that is to be evaluated, in worker processes. Returns false if it was
-/// interrupted.
+/// Evaluates every campaign that is to be evaluated, in worker processes. Returns false if a stop
+/// was requested.
 bool do_campaigns(const RunOptions& options, const RunEvents& events,
                   const reading::Context& context, const RunState& run, const ReleaseDesk& desk,
                   std::vector<CampaignState>& campaigns);

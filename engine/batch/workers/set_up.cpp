@@ -71,7 +71,7 @@ std::string changeable_by_others(const RunOptions& options) {
 }
 
 /// Refuses to run as root if other users can change the plugins, because a gap in the confinement
-/// would give them root's rights. The option --root permits it.
+/// would give these users root's rights. The option --root permits the run.
 Expected<void> check_user(const RunOptions& options) {
   if (::geteuid() != 0 || options.as_root) return {};
   if (const std::string path = changeable_by_others(options); !path.empty())
@@ -80,7 +80,7 @@ Expected<void> check_user(const RunOptions& options) {
   return {};
 }
 
-/// Loads the plugins in a separate process.
+/// Starts the process that loads the plugins, and stores their declarations and notes in `place`.
 Expected<void> load_plugins(SetUp& place, const RunOptions& options) {
   PluginHost& host = place.host.emplace(
       PluginHost::Request{options.plugin_folders, library_folders(options.own_plugins),
@@ -119,7 +119,8 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
   context.machines = std::move(*machines);
   const bool signs =
       options.step == RunOptions::Step::whole || options.step == RunOptions::Step::merge;
-  // The key's process is started before any plugin is in the memory.
+  // The process with the key is started before any plugin is loaded, so that it contains no plugin
+  // code.
   if (context.site.signing && !options.dry_run && signs) {
     place->signer.emplace(*context.site.signing, options.site, context.site.limits.disk_seconds);
     note_key(*place, !context.site.signing->time_stamp.empty());

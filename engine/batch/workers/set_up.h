@@ -13,8 +13,8 @@
 
 namespace nonio::batch {
 
-/// Everything that a run or an approval works with: site, key, templates, plugins. Its address must
-/// not change.
+/// Everything that a run or an approval works with: site, key, templates, plugins. The object must
+/// not be moved, because `host` refers to `context`.
 struct SetUp {
   reading::Context context;
   std::optional<certificates::Signer> signer;
@@ -23,8 +23,8 @@ struct SetUp {
   std::optional<PluginHost> host;
   SiteParts parts;
   std::vector<std::string> notes;  ///< notes for the summary of the run
-  std::string unstamped;           ///< note for the summary that nothing is time-stamped; it is the
-                                   ///< same in every run
+  std::string unstamped;           ///< note for the summary that no time-stamp server is
+                                   ///< configured; it is the same in every run
   std::string no_key;              ///< why nothing can be signed; empty: signing works
 };
 

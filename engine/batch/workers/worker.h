@@ -22,7 +22,7 @@ enum class Answer : char {
   failed,
   again,       ///< failed and not written; an earlier campaign of the worker may be the cause
   waits,       ///< needs the register of certificates, which another process keeps locked
-  not_stored,  ///< the results could not be stored; the worker's message states why
+  not_stored,  ///< the results could not be stored; `Worker::stage` states why
   none,        ///< the process ended without an answer
 };
 
@@ -35,13 +35,14 @@ struct Outcome {
         shows_history(history) {}  // NOLINT: an Answer may be used as
                                    // an Outcome
   Answer answer;
-  bool grown;          ///< whether the memory of the evaluating process has grown
+  bool grown;          ///< whether the memory of the worker or of the evaluating process has grown
+                       ///< by more than 64 MiB since its start
   bool shows_history;  ///< whether a document of the campaign shows the machine's history
 };
 
-/// A process that does the campaigns that its parent names, one after the other, together with a
-/// second process that runs the plugins. At the end both are killed, with everything that they left
-/// running. Movable, not copyable.
+/// A process that evaluates the campaigns requested by its parent, one after the other, together
+/// with a second process that runs the plugins. At the end both are killed, with all processes that
+/// they left running. Movable, not copyable.
 class Worker {
  public:
   using Clock = std::chrono::steady_clock;
@@ -62,7 +63,8 @@ class Worker {
   std::string stage() const { return stage_.get(); }
   int channel() const { return channel_.get(); }
 
-  /// Whether the memory of the worker or of the process with the plugins has grown noticeably.
+  /// Returns whether the memory of the worker or of the process with the plugins has grown by more
+  /// than 64 MiB.
   bool grown() const { return grown_; }
   /// Whether a document of the last answered campaign shows the machine's history.
   bool shows_history() const { return shows_history_; }
@@ -86,7 +88,7 @@ class Worker {
 };
 
 /// Returns when a worker may have an answer, when the descriptor `other` (or -1) can be read, or
-/// after a short time.
+/// after 0.1 s.
 void wait_for_answer(const std::vector<Worker>& workers, int other = -1);
 
 }  // namespace nonio::batch

@@ -24,9 +24,10 @@ struct Chosen {
 };
 
 /// Returns the value of a key in the unit of the member and reports a wrong value as an error.
-/// Returns none if the key is absent, its text is empty, or its value cannot be used; a list of
-/// whole numbers then lacks the wrong elements. A text or list that only breaks a rule for its form
-/// may be returned in spite of the reported error.
+/// Returns none if the key is absent, its text is empty, or its value cannot be used. A list of
+/// whole numbers is never none: it lacks the wrong elements, and it is empty without the key. A
+/// text or list that only breaks a rule for its form may be returned in spite of the reported
+/// error.
 template <class T>
 std::optional<T> value_of(TableReader&, const Key&);
 // The specializations are defined with the reader (toml_reader.cpp).

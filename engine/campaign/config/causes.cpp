@@ -113,7 +113,7 @@ std::shared_ptr<const Read> read_in(const Templates& templates) {
   if (last && std::equal(files.begin(), files.end(), last->files.begin(), last->files.end(), same))
     return last;
   Read now{{files.begin(), files.end()}};
-  std::map<std::string, std::string> there;  // place of each cause in messages, by its name
+  std::map<std::string, std::string> there;  // file and line of each cause, by its name
   for (const auto& [name, text] : now.files) read_file(name, text, there, now);
   last = std::make_shared<const Read>(std::move(now));
   return last;

@@ -19,10 +19,10 @@ namespace nonio::config {
 inline constexpr std::string_view site_causes = "causes/site/";
 
 struct Cause {
-  Formula formula;  ///< formula of the deviation; without an axis it applies to all of its kind
+  Formula formula;  ///< formula of the deviation, for all linear or all rotary axes
   bool rotary = false;
-  std::string title, is, size, appearance, similar, remedy;  ///< texts for people in English
-  std::map<std::string, std::string> titles{};  ///< titles by language ("": a text in English)
+  std::string title, is, size, appearance, similar, remedy;  ///< English texts for users
+  std::map<std::string, std::string> titles{};  ///< titles by language code; "": English
   std::string prior;  ///< frequency of the cause: common, rare or very-rare
   /// Columns that readings need to show the cause, such as "time_s".
   std::vector<std::string> columns{};

@@ -8,7 +8,7 @@
 namespace nonio::config {
 namespace {
 
-/// First version that refuses the former names.
+/// First version that rejects the former names.
 constexpr const char* accepted_until = "0.3";
 
 struct FormerFinding {

@@ -17,7 +17,7 @@ namespace {
 
 std::string symbol_of(Quantity q) { return std::string(FormulaUnit{q, {}}.symbol()); }
 
-/// Returns the value in SI units of the unit in which the parameter is printed.
+/// Returns the value 1 of a parameter in its printed unit, converted to SI units.
 double amount(const Formula::Parameter& p) { return 1.0 / unit_of(p.quantity).per_si; }
 
 /// Checks at 64 points, most of them random, that the expression is finite, linear in its linear
@@ -27,7 +27,7 @@ class Trial {
   Trial(const Formula& formula, const Axis& axis, Expression& expression)
       : formula_(formula), axis_(axis), expression_(expression), point_(expression.slots()) {}
 
-  /// Returns what is wrong with the expression; "" if nothing.
+  /// Returns why the expression is not valid; "" if it is valid.
   std::string run() {
     largest_.assign(formula_.parameters.size(), 0.0);
     for (const auto& p : formula_.parameters)
@@ -48,8 +48,8 @@ class Trial {
 
   bool linear(std::size_t k) const { return !formula_.parameters[k].range; }
 
-  /// Sets `point_` to trial point n. Point 0 is the middle of the travel at the start, with the
-  /// lowest value of each shape.
+  /// Sets `point_` to trial point n. Point 0 is the middle of the travel at time 0, with the lowest
+  /// value of each shape.
   void draw(int n) {
     const auto between = [&](double low, double high) {
       return low + (high - low) * numbers_.uniform();
@@ -195,8 +195,8 @@ std::optional<double> mean_of_all(const Observations& o, const std::vector<doubl
   return sum / static_cast<double>(column.size());
 }
 
-/// Quantities other than position, direction, time and run that an expression uses; `met` checks
-/// that the readings or the axis contain them.
+/// Optional quantities that an expression uses. `met` checks that the readings or the axis provide
+/// these quantities.
 struct Wants {
   bool K, pitch, teeth, air, pressure, humidity;
 

@@ -24,9 +24,9 @@ namespace nonio::config {
 /// Returns the effect of a formula. Parameters without a range must enter linearly and become
 /// columns; those with a range become shapes, which are searched. A formula without an axis applies
 /// to every axis of the kind of `axis`. If `tried`, the formula passed the trial on sample readings
-/// (finite, linear, unit of a deviation) before, and the trial is not repeated. At most `most`
-/// values are tried in a range, and fewer if several parameters have ranges. Errors contain the
-/// line of the formula.
+/// (finite, linear, unit of a deviation) before, and the trial is not repeated. In a range, `start`
+/// and at most `most` other values are tried, and fewer if several parameters have ranges. Errors
+/// contain the line of the formula.
 Expected<Effect> formula_effect(const Formula& formula, const Axis& axis, bool tried = false,
                                 int most = 128);
 

@@ -52,7 +52,8 @@ constexpr std::array<Name, 9> units{{{"m", 1.0, distance},
 constexpr std::size_t most_characters = 400;
 
 /// Returns an error for text that no formula needs, even if the parser would accept it: over 400
-/// characters, characters of strings or outside ASCII, assignments, several results; otherwise "".
+/// characters, characters that no formula contains (quotes, #, { or those outside ASCII),
+/// assignments, several results; otherwise "".
 std::string forbidden(const std::string& text) {
   if (text.size() > most_characters)
     return "expected " + std::to_string(most_characters) + " characters at most, found " +
@@ -124,7 +125,7 @@ Dimension dimension_of(Quantity quantity) {
   }
 }
 
-/// The parser stores the addresses of `slots`, so its elements must not move.
+/// The parser stores the addresses of the elements of `slots`, so these must not move.
 struct Expression::Parser {
   mu::Parser parser;
   std::vector<double> slots;

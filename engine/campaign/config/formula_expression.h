@@ -50,10 +50,10 @@ class Expression {
   /// 0.
   std::vector<double> slots() const;
   static std::size_t parameter_slot(std::size_t k);
-  /// Converts slots into units of which number `k` (0 length, 1 time, 2 temperature) is smaller by
-  /// a factor 2^bits.
+  /// Converts slots to units in which the unit of dimension `k` (0: length, 1: time, 2:
+  /// temperature) is smaller by a factor of 2^bits.
   std::vector<double> in_finer_units(std::vector<double> slots, std::size_t k, int bits) const;
-  /// Evaluates the expression; NaN or infinite where it has no value.
+  /// Evaluates the expression; NaN or infinity if it has no finite value.
   double value(const std::vector<double>& slots);
   /// Returns the slots that `value()` without an argument uses, to be changed in place.
   std::vector<double>& in_place();

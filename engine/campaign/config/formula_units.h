@@ -41,7 +41,7 @@ inline constexpr std::array<FormulaUnit, 18> formula_units{
      {Quantity::temperature_difference, "temperature difference"},
      {Quantity::number, "none: a number"}}};
 
-/// Returns the quantity that is printed in this unit; none if no quantity is.
+/// Returns the quantity of `formula_units` with this unit; none if no quantity has it.
 std::optional<Quantity> quantity_of(std::string_view unit);
 /// Returns a list of all units for messages: "um (deviation), mm (position or period), ...".
 std::string known_units();

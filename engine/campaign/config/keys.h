@@ -135,8 +135,8 @@ struct Key {
   constexpr void set(const Attribute& attribute) { attribute(*this); }
 };
 
-/// Return the declaration of a file as one table. Keys that the declaration does not contain are
-/// unknown.
+/// Return the declarations of campaign.toml and of site.toml, each as one table. Any other key is
+/// an error.
 const Key& campaign_file();
 const Key& site_file();
 /// Returns the declaration of SITE/machines/<asset>.toml.
@@ -149,7 +149,7 @@ const Key& acknowledged_file();
 const Key& forgotten_file();
 /// Returns the declaration of causes/*.toml of the templates and of a site.
 const Key& causes_file();
-/// Key that conditions name (`When::key`) for the kind of axis that a cycle moves. Files do not
+/// Key that conditions name (`When::key`) for the kind of a simulated test cycle. Files do not
 /// contain it: the code that reads cycles sets its value with `TableReader::settle`.
 inline constexpr std::string_view cycle_axis = "(axis)";
 
@@ -173,7 +173,7 @@ inline constexpr std::string_view reserved_names[] = {"summary.json",
                                                       "acknowledged.toml",
                                                       "forgotten.toml",
                                                       "templates"};
-/// Rule for an asset: the machine's record is the file of that name in SITE/machines.
+/// Rule for the asset number of a machine, which names the file of its record in SITE/machines.
 inline constexpr TextRule asset_rule{.not_letters = "/\\\n\t", .not_first = ". ", .longest = 100};
 /// Message and rule for the id of a campaign, which names its folder of results.
 inline constexpr const char* campaign_id_wanted =

@@ -33,7 +33,7 @@ std::string key_of(const std::string& axis, const std::string& setting) {
   return "axes." + axis + "." + (travel ? "travel" : setting);
 }
 
-/// Returns all axes for which the campaign may give tables.
+/// Returns the names of all axes for which the campaign may have tables, including slaves.
 std::set<std::string> axes_of(const Campaign& campaign) {
   std::set<std::string> names;
   for (const Axis& a : campaign.machine.axes) {
@@ -94,8 +94,8 @@ class Layers {
     for (const auto& [key, value] : settings) all[key] = value;
   }
 
-  /// Returns an error with the line of a key of the manifest; for axes written as texts it is the
-  /// line of the option.
+  /// Returns an error with the line of a key of the manifest, or with the line of the option if its
+  /// tables are written as texts.
   Error at_axes(const std::string& message, const std::string& axis, const std::string& key) const {
     const auto plugin = manifest_.options.find(output_.name);
     std::uint64_t line =

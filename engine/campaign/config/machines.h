@@ -24,8 +24,8 @@ struct ControlState {
   std::optional<double> backlash{};  ///< backlash value, m or rad; 0: not active; none: not stated
   std::string source = "stated";     ///< origin: stated (by a person), backup or nonio
   std::string sha256{};              ///< SHA-256 of the table files; empty: not stated
-  std::string files{};               ///< name of the table's files in RecordFile::tables
-  std::string key{};                 ///< key of the record that states it: axes.X or axes.X.state
+  std::string files{};               ///< key of the table's files in RecordFile::tables
+  std::string key{};                 ///< key of this state in the record: axes.X or axes.X.state
   std::uint64_t line_of_table = 0, line_of_since = 0;
 
   /// Whether the state applies on a day. A state loaded on a day applies to later days only,
@@ -38,12 +38,12 @@ struct ControlState {
 
 struct RecordedAxis {
   bool rotary = false;
-  std::string name{};  ///< name of the axis in the control, if it differs
+  std::string name{};  ///< name of the axis in the control; empty: its name in the record
   /// Settings under the names of option `axes` of the controllers: number, reference_mm, from_mm,
   /// to_mm, resolution_um, largest_um, slope_um_per_m, and the corresponding ones of rotary axes.
   std::map<std::string, double> settings{};
   std::vector<ControlState> states{};  ///< all states of the control for this axis, sorted by day
-  ControlState present{};  ///< state in the keys of the axis; also in `states` if it has a day
+  ControlState present{};  ///< state in the keys of axes.X; also in `states` if it has a day
 
   /// Returns the state of the control on this day; null if it is not known.
   const ControlState* state_on(const std::string& day) const;
@@ -60,13 +60,13 @@ struct MachineRecord {
 /// Returns the SHA-256 of the files of a table, independent of their names and order.
 std::string table_sha256(const std::vector<Artifact>& files);
 
-/// Parses a record. Returns all errors of the file at once, each with its line. `asset` is the
-/// machine that the name of the file states.
+/// Parses a record. Returns all errors of the file at once, each with its line. `asset` is the name
+/// of the file without .toml.
 Checked<MachineRecord> parse_machine(std::string_view text, const std::string& file,
                                      const std::string& asset);
 
-/// A file of SITE/machines. A record with errors fails the campaigns of its machine. If its machine
-/// is not known, it fails all campaigns that name no asset and have no other record.
+/// A file of SITE/machines. If a record has errors, the campaigns of its machine fail. If its
+/// machine is not known, all campaigns fail that name no asset and have no other record.
 struct RecordFile {
   std::string asset;   ///< asset of the machine; the name of the file without .toml
   std::string bytes;   ///< content of the file; empty if it cannot be read
@@ -78,7 +78,8 @@ struct RecordFile {
 };
 using MachineRecords = std::vector<RecordFile>;
 
-/// Reads the records of a site, sorted by asset; an error if the folder cannot be read.
+/// Reads the records of a site, sorted by asset; none if it has no folder of records, an error if
+/// the folder cannot be read.
 Expected<MachineRecords> read_machines(const std::filesystem::path& site);
 
 /// Returns the name of a campaign's machine in `Inputs`: by its asset, otherwise by maker and
@@ -96,7 +97,8 @@ std::string machine_digest(const MachineRecords& records, std::string_view input
 /// number.
 Expected<const RecordFile*> record_of(const MachineRecords& records, const Machine& machine);
 
-/// Returns contradictions between a manifest and the record of its machine, with both places.
+/// Returns contradictions between a manifest and the record of its machine, with file and line of
+/// both.
 std::vector<Error> contradictions(const Manifest& manifest, const MachineRecord& record);
 
 /// Returns the options with which a controller writes tables. For each axis in option `axes`, the

@@ -85,7 +85,7 @@ void check_members(TableReader& reader, const Measurement& m) {
     reader.error("square_turned", "expected the key square as well");
 }
 
-/// Checks that feed and over-travel are given in one unit only. An empty `state` is stored as an
+/// Checks that feed and over-travel are stated in one unit only. An empty `state` is stored as an
 /// empty text, so that it differs from a missing one.
 void check_common(TableReader& reader, Measurement& m) {
   if (reader.contains("state") && !m.state) m.state.emplace();
@@ -136,8 +136,8 @@ void read_measurement(TableReader& common, const std::vector<Method>* methods, M
   reader.finish();
 }
 
-/// Adds a measured axis to the machine. If the machine names its axes and this is not one of them,
-/// a finding will report it.
+/// Adds to the machine an axis that is measured but not declared. If other axes are declared
+/// (`any_named`), the axis is also listed for a finding.
 void add_axis(const std::string& name, bool any_named, Manifest& manifest) {
   manifest.campaign.machine.axes.push_back(Axis{.name = name, .rotary = rotary_by_name(name)});
   if (any_named) manifest.undeclared_axes.push_back(name);
@@ -162,7 +162,8 @@ void check_reversals(std::vector<TableReader>& list, const std::vector<Measureme
   }
 }
 
-/// Checks that each `square` names a [[square]], and that each line is measured once per position.
+/// Checks that each `square` names a [[square]], and that each line on a square is measured at most
+/// once per state and position of the square.
 void check_squares(std::vector<TableReader>& list, const Campaign& campaign) {
   std::set<std::string> seen;
   for (std::size_t i = 0; i < list.size(); ++i) {

@@ -38,7 +38,7 @@ using RawOptions = std::map<std::string, std::map<std::string, RawOption>>;
 using KeyLines = std::map<std::string, std::uint64_t, std::less<>>;
 
 struct RunChoice {
-  /// Names of the plugins to run; none: all that apply, except those on request.
+  /// Names of the plugins to run; none: all that apply, except those that run only on request.
   std::optional<std::vector<std::string>> analyses, outputs;
 };
 
@@ -53,7 +53,7 @@ struct Manifest {
   Campaign campaign;
   /// Reason for the campaign: periodic, acceptance, after-repair, check; empty: not stated.
   std::string purpose{};
-  /// Axes that are measured but not listed in [machine.axes].
+  /// Axes that are measured but not listed in [machine.axes]; empty if it lists no axis.
   std::vector<std::string> undeclared_axes{};
   std::vector<AcceptedFinding> accepted{};
   RunChoice run;
@@ -65,9 +65,9 @@ struct Manifest {
 struct Limits {
   double seconds = 600.0;
   double memory_MB = 4096.0;
-  /// Time without a response after which the survey reports a path as failed, s.
+  /// Time without a response after which a disk or network share is reported as failed, s.
   double disk_seconds = 60.0;
-  /// Number of campaigns of the previous run that may be missing.
+  /// Number of campaigns of the previous run that may be missing before the run reports a failure.
   std::size_t missing_campaigns = 0;
 };
 
@@ -82,7 +82,7 @@ struct DatabaseChoice {
   std::string url;  ///< address of the database, without a password
   std::string password_file{};
   std::string schema = "nonio";
-  /// Schema of the register of certificate numbers; empty: it is a file.
+  /// Schema of the register of certificate numbers; empty: the register is a file.
   std::string register_schema{};
 };
 
@@ -114,7 +114,8 @@ struct Signing {
   int time_stamp_seconds = 10;
 };
 
-/// `[[certificate.accept]]`: a finding that does not prevent an automatic approval.
+/// `[[certificate.accept]]`: a finding that does not prevent an automatic approval. Findings
+/// plausibility.* always prevent it.
 struct AcceptedRule {
   std::string finding;  ///< id of the finding, or "kind.*" for all ids that begin with "kind."
   std::string reason;
@@ -129,19 +130,19 @@ struct Numbering {
   /// Database of the register in place of the file; its schema is that of the register.
   std::optional<DatabaseChoice> server{};
   double patience = 60.0;  ///< longest time to wait for another process that locks the register, s
-  /// a run may approve a certificate that no finding prevents
+  /// Whether a run approves certificates that no finding prevents.
   bool automatic = false;
   std::vector<AcceptedRule> accepted{};
   bool two_persons = false;  ///< author and approver must be different persons
 };
 
-/// `[mail]` of site.toml: to whom and how a run sends mail, and from which severity on.
+/// `[mail]` of site.toml: to whom and how a run sends mail, and for which lines of the worklist.
 struct Mail {
   enum class On {
     lost,
     out,
     decision
-  };  ///< lost: what is lost or failed; out: also what is out of tolerance; decision: all actions
+  };  ///< lost: lost or failed campaigns; out: also out of tolerance; decision: any required action
   enum class Tls { starttls, tls, none };
   std::vector<std::string> to;
   std::string from;
@@ -161,7 +162,7 @@ struct Mail {
 struct Webhook {
   std::string url;          ///< address: https, or http on this machine
   std::string secret_file;  ///< file with the key of the HMAC that signs the lines
-  std::string trust;        ///< PEM file with roots; empty: those of the system
+  std::string trust;        ///< PEM file with root certificates; empty: those of the system
 };
 
 struct SiteFile {
@@ -179,7 +180,7 @@ struct SiteFile {
   std::optional<DatabaseChoice> database{};
   KeyLines lines;
   std::string language = "en";    ///< language of the terminal and of summary.txt
-  bool hashed_folders = false;    ///< results are stored in OUT/ab/<id> instead of OUT/<id>
+  bool hashed_folders = false;    ///< results are in OUT/ab/<id> (ab from SHA-256), not in OUT/<id>
   std::string settings;           ///< TOML: the part of the file that certificates depend on
   std::string evaluation;         ///< TOML: the part of the file that results depend on
   std::vector<Error> warnings{};  ///< warnings about keys with former names

@@ -13,8 +13,8 @@ namespace nonio::config {
 std::string sequence_of(const std::string& pattern, const std::string& year);
 
 /// Returns the certificate number for the pattern `[certificate] numbering`. An error if the
-/// pattern does not contain the number once, contains other places than {year}, or results in a
-/// text that cannot be part of a file name.
+/// pattern does not contain the number once, contains another placeholder than {year}, or results
+/// in a text that cannot be part of a file name.
 Expected<std::string> number_text(const std::string& pattern, const std::string& year,
                                   std::uint64_t number);
 

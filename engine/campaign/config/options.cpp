@@ -59,8 +59,8 @@ Expected<NumberTables> number_tables_of(const std::vector<std::string>& entries)
 
 namespace {
 
-/// Converts a setting to the declared kind: a whole number becomes a number, an empty list a list
-/// of numbers, "X number=1" a table X. Other differences are an error.
+/// Converts a setting to the declared kind: a whole number to a number, an empty list to an empty
+/// list of numbers, and texts such as "X number=1" to tables. Any other difference is an error.
 Expected<Setting> as_declared(const Setting& found, const Setting& declared) {
   if (found.index() == declared.index()) return found;
   if (const auto* i = std::get_if<std::int64_t>(&found);

@@ -22,7 +22,7 @@ std::vector<std::filesystem::path> secret_files(const SiteFile& file,
 /// password. The message names the file `what`, for example "the signing key".
 Expected<void> check_secret(const std::filesystem::path& path, const std::string& what);
 
-/// The source of a password; exactly one of the three is not empty.
+/// The source of a password. Exactly one of `file`, `env` and `credential` is not empty.
 struct PasswordSource {
   const std::string &file, &env, &credential;
   std::string what;     ///< name of the password in messages: "the key's password"

@@ -53,8 +53,8 @@ Expected<SiteFiles> read_site_files(const fs::path& site,
   reading(site / site_name);
   NONIO_TRY(auto settings, read_settings(site));
   files.settings = std::move(settings);
-  // The records are read again where they are used. They are read here to notice a share that
-  // hangs.
+  // The records are read here to detect a network share that does not respond; the code that uses
+  // them reads them again.
   reading(site / machines_folder);
   if (const auto machines = read_machines(site); !machines) return fail(machines.error());
   reading(site / "templates");

@@ -188,8 +188,9 @@ Check counts(Checked<std::vector<T>> (*parse)(std::string_view, const std::strin
 
 }  // namespace
 
-/// Checks an entry after its keys were read and stores its line. A reason must have words, because
-/// it is shown for years; `until` must not be before `date`. Former ids of findings are renamed.
+/// Checks an entry after its keys were read and stores its line. A reason must contain words,
+/// because it is read years later. `until` must not be before `date`. Former ids of findings are
+/// renamed.
 template <class Entry>
 void check_entry(TableReader& reader, Entry& entry) {
   entry.line = reader.line();

@@ -27,7 +27,7 @@ struct Event {
 
 struct Acknowledgement {
   std::string date, finding, machine, axis, quantity, until;
-  /// Value of the quantity on that day and its U, in the unit of the quantity.
+  /// Value of the quantity on `date` and its U, in the unit of the quantity.
   std::optional<double> value{}, U{};
   std::string by, why;
   std::uint64_t line = 0;
@@ -42,7 +42,7 @@ struct Withdrawal {
 
 struct Forgotten {
   std::string date;
-  std::string campaign;  ///< id of a campaign, or a path that fulfils `is_site_part`
+  std::string campaign;  ///< id of a campaign, or a path that fulfills `is_site_part`
   std::string by, why;
   std::uint64_t line = 0;
 };

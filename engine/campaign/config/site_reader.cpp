@@ -29,7 +29,7 @@ int usual_port(Mail::Tls tls) {
 }  // namespace
 
 /// Checks the keys of [mail] together and sets the usual port if none is stated. A login requires
-/// encryption, so that the password is never readable on the way.
+/// encryption, so that the password is never sent as plain text.
 void check_mail(TableReader& reader, Mail& m) {
   if (m.port == 0) m.port = usual_port(m.tls);
   if (reader.raw().contains("to") && m.to.empty())
@@ -88,7 +88,7 @@ void check_signing(TableReader& reader, Signing& s) {
     reader.error("signer", "excludes [[signing.signers]]");
 }
 
-/// Checks [[alias]]: a name is given only once, and the reason is a text.
+/// Checks [[alias]]: a name occurs only once, and the reason contains words.
 void check_alias(TableReader& reader, Alias& alias, SiteFile& site) {
   alias.line_of_asset = reader.line_of("asset");
   if (!alias.name.empty() && given_before(site.aliases, &Alias::name))

@@ -24,9 +24,9 @@ Expected<std::map<std::string, std::filesystem::path>> template_paths(
     const std::filesystem::path& folder);
 
 /// Reads template folders: a file of a later folder replaces the same file of earlier ones, and
-/// files in `own` replace all. `digest` receives a digest of all files, `json` one text with all of
-/// them (of fonts only the digests), which `templates_from` reads. With `below`, only files are
-/// read whose names begin with one of these.
+/// files in `own` replace all. `digest` receives a digest of all files, `json` one text with all
+/// files (of fonts only the digests), which `templates_from` reads. If `below` is not empty, only
+/// files whose names begin with one of its texts are read.
 Expected<Templates> read_templates(const std::vector<std::filesystem::path>& folders,
                                    std::string& digest, std::string* json = nullptr,
                                    const TemplateFiles& own = {},
@@ -41,9 +41,9 @@ std::vector<std::string> words_in(const std::string& language);
 struct CarriedTemplates {
   Templates templates;
   std::string sha256;                ///< digest, as `read_templates` returns it
-  std::vector<std::string> strange;  ///< names of files, except fonts, that are not as installed
-  /// Name of a font that is not installed, or differs from the one used then; fonts are not
-  /// attached.
+  std::vector<std::string> strange;  ///< files, except fonts, that differ from the installed ones
+  /// Name of a font that is not installed or has changed since the signing, because fonts are not
+  /// attached; empty: none.
   std::string missing{};
 };
 /// Reads attached templates. An error if the text is not in the form that `read_templates` writes,

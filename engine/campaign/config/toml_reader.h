@@ -106,7 +106,7 @@ class TableReader {
   std::vector<const Key*> read_;
 };
 
-/// Parses a whole TOML file; otherwise returns the first error with its line.
+/// Parses a whole TOML file. If it is not valid, returns the first error with its line.
 Expected<toml::table> parse_toml(std::string_view text, const std::string& file);
 
 /// A key with the name of an earlier version. It may also be the header of a table, or the id of a
@@ -130,8 +130,8 @@ void note_lines(const toml::table& table, const std::string& prefix, KeyLines& l
 
 std::string type_name(const toml::node& node);
 
-/// Converts a value, or tables of numbers, into a setting; none for other tables, dates and mixed
-/// arrays.
+/// Converts a value, or tables of numbers, into a setting; none for other tables, dates, times and
+/// arrays that are neither all texts nor all numbers.
 std::optional<Setting> to_setting(const toml::node& node);
 
 }  // namespace nonio::config

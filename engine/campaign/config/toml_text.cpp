@@ -15,10 +15,10 @@ bool is_bare_key_character(char c) {
          c == '_';
 }
 
-/// Finds text for which toml++ 3.3 has undefined behaviour instead of an error: a byte outside
-/// ASCII that is neither in a string nor in a comment, or where a string continues after a
-/// backslash; a table header that does not begin with a key; a quote within a word; and tables
-/// nested too deeply.
+/// Finds text for which toml++ 3.3 has undefined behavior instead of an error: a byte outside ASCII
+/// that is neither in a string nor in a comment, or where a string continues after a backslash; a
+/// table header that does not begin with a key; a quote within a word; and tables nested too
+/// deeply.
 class Precheck {
  public:
   explicit Precheck(std::string_view text) : text_(text) {}
@@ -116,7 +116,7 @@ class Precheck {
     } else if (c == '=') {
       wants_value_ = true;
     } else if (c == '[' || c == '{') {
-      // a bracket where a key is expected begins a table header, which contains keys
+      // A bracket that does not begin a value begins a table header, which contains keys.
       open_ += wants_value_ ? c : '{';
       wants_value_ = open_.back() == '[';
     } else {

@@ -33,11 +33,11 @@ AxisCorrection correction_of(const std::vector<LoadedTable>& tables, const std::
 
 namespace {
 
-/// Scans with more targets than this are not stored, because no table has so many points.
+/// Measurements with more targets are not stored, because no table has so many points.
 constexpr std::size_t most_targets = 500;
 
-/// Returns the standard uncertainty of a mean at a target from the scatter of the readings; 0 with
-/// one run.
+/// Returns the standard uncertainty of a mean at a target from the pooled scatter of the readings;
+/// 0 if there is only one reading per target and direction.
 double u_of_mean(const math::AxisTest& test) {
   double squares = 0.0, n = 0.0, means = 0.0;
   for (std::size_t i = 0; i < test.targets.size(); ++i)
@@ -94,7 +94,8 @@ class OfCampaign {
   }
 
   /// Returns what the written tables add along an axis; none if no table was written for it, or if
-  /// the axis was measured twice, because it is then not known which of the tables is loaded.
+  /// the axis was measured more than once, because it is then not known which of the tables is
+  /// loaded.
   std::optional<AxisCorrection> written(const std::string& axis, const Measurement& m) const {
     const Campaign& campaign = read_.manifest->campaign;
     const auto many = std::count_if(

@@ -15,8 +15,8 @@ namespace nonio::evaluation {
 AxisCorrection correction_of(const std::vector<LoadedTable>& tables, const std::string& axis);
 
 /// Returns the member `control_tables` of results.json: an entry for each measurement of an axis
-/// with 3 to 500 targets, if the controller for the stated control is wanted. The history uses it
-/// to recognize a table that was loaded between two campaigns.
+/// with 3 to 500 targets, if `controllers` contains the controller of the machine's control. The
+/// history uses it to recognize a table that was loaded between two campaigns.
 std::vector<ControlTables> control_tables(const reading::ReadCampaign& read, const Results& results,
                                           const std::vector<WantedController>& controllers);
 void put_control_tables(JsonWriter& json, const std::vector<ControlTables>& all);

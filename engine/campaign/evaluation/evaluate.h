@@ -19,7 +19,7 @@ namespace nonio::evaluation {
 /// A file of an issued certificate, including its signature.
 struct IssuedFile {
   std::string output, name, bytes;  ///< `output` is the name of the plugin that wrote the file
-  std::string no_time_stamp{};      ///< why the file has no time stamp although one was requested
+  std::string no_time_stamp{};      ///< why a requested time stamp is missing; otherwise empty
 };
 
 /// The certificate of a campaign: issued, a draft, or about to be issued.
@@ -32,7 +32,7 @@ struct Certificate {
   /// Files of the certificate; those that `output` wrote come first.
   std::vector<IssuedFile> files{};
   std::string results{};   ///< results.json as it is attached to the certificate
-  std::string released{};  ///< JSON: who approved it, and why findings are accepted
+  std::string released{};  ///< JSON: approver, and reasons for accepted findings
 };
 
 /// The history of the machine that a document shows: the campaigns and the digests of their
@@ -60,7 +60,7 @@ struct ControlTables {
   double u = 0.0;  ///< standard uncertainty of a mean from the scatter, m or rad
   std::optional<AxisCorrection> active{};  ///< correction that was active; none: not known
   std::optional<AxisCorrection> written{};
-  /// Corrections that the record of the machine states, by day.
+  /// Corrections that the record of the machine states, each with its first day.
   std::vector<std::pair<std::string, AxisCorrection>> recorded{};
 };
 
@@ -82,10 +82,10 @@ struct AssignedNumber {
   /// The certificate that was issued for the same data, otherwise the draft, otherwise one with a
   /// new number.
   std::optional<Certificate> certificate{};
-  /// Data and conditions that a certificate number lacks, including those about dates and the
-  /// register.
+  /// Data and conditions that are missing for a certificate number, including those about dates and
+  /// the register.
   std::vector<std::string> missing{};
-  std::optional<Error> error{};  ///< the register could not be read; the next run tries again
+  std::optional<Error> error{};  ///< why the request failed; the next run tries again
 };
 
 /// Evaluates one campaign from its folder to its output files, without a certificate number, and

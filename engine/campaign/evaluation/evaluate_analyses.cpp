@@ -75,8 +75,9 @@ void note_reasons_missing(const Measurement& m, Evaluation& evaluation) {
        .texts = {{"file", m.file}, {"id", m.id}}});
 }
 
-/// Returns the length over which an evaluation was measured, in m: that of its budget, otherwise
-/// the largest range of positions of a linear axis in the measurement; 0 if there is none.
+/// Returns the length over which an evaluation was measured, in m: the length in its uncertainty
+/// budget, otherwise the largest range of positions of a linear axis in the measurement; 0 if there
+/// is none.
 double measured_length(const reading::ReadCampaign& read, const Evaluation& e,
                        const Measurement* measurement) {
   if (e.budget) return e.budget->length;

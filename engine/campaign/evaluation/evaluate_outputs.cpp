@@ -24,7 +24,7 @@ std::string comma_list(const std::vector<std::string>& names) {
   return text;
 }
 
-/// Reports an error if no controller writes tables for the control that the machine states.
+/// Reports an error if no controller plugin writes tables for the control that the manifest states.
 void check_control(const Work& work) {
   const std::string& control = work.campaign().machine.control;
   std::vector<std::string> tables;
@@ -35,9 +35,9 @@ void check_control(const Work& work) {
                                                    "; there are " + comma_list(tables)));
 }
 
-/// Whether a controller is that of the machine's record; also true if there is no record or it
-/// states no control. If not, an error is reported if the manifest has `[run] outputs`; if
-/// site.toml requests the controller for all machines, it is only left out.
+/// Whether the machine's record states this controller or no control; also true without a record.
+/// Otherwise, an error is reported if the manifest has `[run] outputs`. A controller that site.toml
+/// requests for all machines is left out without an error.
 bool is_control_of_record(const Work& work, const std::string& controller) {
   const auto& machine = work.read.machine;
   if (!machine || machine->control.empty() || machine->control == controller) return true;
@@ -48,7 +48,7 @@ bool is_control_of_record(const Work& work, const std::string& controller) {
   return false;
 }
 
-/// Adds a note that shows the present form of option `axes` to a manifest that has it as texts.
+/// Adds a note with the present form of option `axes` if the manifest states it as texts.
 void note_axes_as_texts(const Work& work, const Info& controller, const Settings& settled,
                         std::vector<Remark>& notes) {
   const auto& options = work.read.manifest->options;
@@ -117,7 +117,8 @@ WantedPlugins wanted_plugins(const Work& work, std::vector<Remark>& notes) {
 
 namespace {
 
-/// Sets the place of an error to the line that requests the output, unless it has a better one.
+/// Sets the place of an error to the line that requests the output, unless the error already has a
+/// line.
 void place_at_output(const Work& work, const std::string& name, Error& error) {
   const config::Manifest& manifest = *work.read.manifest;
   const config::SiteFile& site = work.context.site;
@@ -140,8 +141,7 @@ void keep_result(const Info& output, OutputResult result, Results& results) {
   results.outputs.push_back({output.name, output.version, std::move(result)});
 }
 
-/// Stores the result of a plugin; if it is an error or unsound, reports it as an error of the
-/// campaign.
+/// Stores the result of a plugin; if it is an error or not valid, reports an error of the campaign.
 void take_result(const Work& work, const Info& plugin, const std::string& who,
                  Expected<OutputResult> result, Results& results) {
   if (result)
@@ -161,8 +161,8 @@ OutputResult no_table(const char* id, const Info& controller, const char* why,
   return nothing;
 }
 
-/// Readings predicted by the model, from which the tables are made if the manifest requires this;
-/// an error if there is no model.
+/// Readings predicted by the model, from which the tables are made; none if the manifest requires
+/// tables from the measured readings, an error if there is no model.
 using ModelReadings = std::optional<Expected<std::vector<Observations>>>;
 
 /// Writes a table. If compensation was active during the measurement, its tables are first removed
@@ -272,7 +272,7 @@ std::optional<NumberRequest> number_request(const Work& work,
   request.missing = std::move(*missing);
   request.incomplete.findings = reading::traceability_findings(work.campaign());
   // An expired calibration does not prevent a certificate if the person who approves it states a
-  // reason, so that its finding is removed here.
+  // reason. Its finding is therefore removed here.
   std::erase_if(request.incomplete.findings,
                 [](const Finding& f) { return reading::is_expired_calibration(f.id); });
   for (const Finding& f : request.incomplete.findings)

@@ -22,23 +22,23 @@
 /// (computing.h).
 namespace nonio::evaluation {
 
-/// A controller whose tables are to be written. If it was not `asked` for, it is only tried,
-/// because the machine's control is not stated: a table that the control cannot have is then a
-/// finding and does not fail the campaign.
+/// A controller whose tables are to be written. If `asked` is false, neither `[run] outputs` nor
+/// the machine names this controller, and a table that cannot be written is a finding instead of an
+/// error.
 struct WantedController {
   const Controller* controller = nullptr;
   Settings options;
   bool asked = false;
 };
 
-/// An output that is to be written.
+/// An output plugin that writes files for the campaign, with its settled options.
 struct WantedOutput {
   const Output* output = nullptr;
   Settings options;
   bool history = false;  ///< the output shows the history of the machine
 };
 
-/// A request for a certificate number: the output that is issued, and what it lacks.
+/// A request for a certificate number: the output that is issued, and what is missing for it.
 struct NumberRequest {
   std::string output;
   /// Keys that must be filled, and findings that must be corrected.
@@ -95,7 +95,8 @@ struct Work {
 /// Names of plugins in a list of `[run]`; none: all plugins that apply.
 using PluginNames = std::optional<std::vector<std::string>>;
 
-/// Returns the plugins with these names in their order; without names all that run by default.
+/// Returns the plugins with these names in the order of the names; without names all plugins that
+/// run by default.
 template <class Plugin>
 std::vector<const Plugin*> chosen_plugins(const Work& work, const std::vector<Plugin>& all,
                                           const PluginNames& names) {
@@ -116,34 +117,34 @@ bool has_plugin(const std::vector<Plugin>& all, const std::string& name) {
   return std::any_of(all.begin(), all.end(), [&](const Plugin& p) { return p.info.name == name; });
 }
 
-/// Reports each of `names` that no plugin of this kind has, except that of the model fit.
+/// Reports each of `names` that no plugin of this kind has, except the name of the model fit, which
+/// is not a plugin.
 void report_absent(const Work& work, const char* kind, const char* key, const PluginNames& names,
                    const std::function<bool(const std::string&)>& is_there);
 
-/// Run the requested analyses, and the models if `[run] analyses` names the model fit or, without
-/// this list, if [model] has effects. They return the results.
+/// Run the requested analyses and return their results. `fit_models` fits the models if `[run]
+/// analyses` names the model fit or, without this list, if [model] has effects.
 std::vector<Results::Analysed> run_analyses(const Work& work);
 std::vector<Results::Analysed> fit_models(const Work& work, std::vector<ModelFit>& models);
 
 /// Returns the ids of the findings that prevent tables: signs of a mistake in the files that were
-/// not accepted with a reason. Adds the reason to an accepted finding, and reports an error if the
-/// readings do not have an accepted finding.
+/// not accepted with a reason. Adds the reason to an accepted finding, and reports an error if an
+/// accepted finding does not occur.
 std::vector<std::string> open_doubts(const Work& work, std::vector<Results::Analysed>& analyses);
 
 /// Returns a remark for each measurement that no analysis and no model has used, and one if the
 /// manifest has a model that was not fitted.
 std::vector<Remark> unevaluated(const reading::ReadCampaign& read, const Results& results);
 
-/// Compares values with the tolerances of the manifest and returns the decisions. A tolerance
-/// without a value gets the decision `cannot_be_decided`.
+/// Compares values with the tolerances of the manifest and returns the decisions. The decision is
+/// `cannot_be_decided` for a tolerance without a value.
 std::vector<Conformity> held_against_tolerances(const Campaign& campaign,
                                                 const std::vector<Results::Analysed>& analyses);
 
 /// Reports tolerances whose unit differs from that of the result that they name.
 void report_other_units(const Work& work, const std::vector<Results::Analysed>& analyses);
 
-/// The requested controllers and outputs that apply; empty after an error. `notes` receives remarks
-/// about options in their former form.
+/// The requested controllers and outputs that apply; empty after an error.
 struct WantedPlugins {
   std::vector<WantedController> controllers;
   std::vector<WantedOutput> outputs;
@@ -159,7 +160,7 @@ std::optional<NumberRequest> number_request(const Work& work,
                                             const std::vector<WantedOutput>& documents,
                                             const Results& results);
 
-/// Checks the result of a plugin. The files of the results in `taken` already use their names.
+/// Checks the result of a plugin. A file name that a result in `taken` already uses is an error.
 Expected<void> check_output(const OutputResult& result, const std::vector<Results::Written>& taken);
 
 }  // namespace nonio::evaluation

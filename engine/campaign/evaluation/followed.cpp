@@ -13,7 +13,7 @@ namespace nonio::evaluation {
 namespace {
 
 /// Returns a name of the instrument including its calibration, because its error changes with each
-/// calibration; empty if it has no serial number.
+/// calibration; empty if no serial number is stated.
 std::string instrument_source(const Instrument& i) {
   if (i.serial.empty()) return {};
   std::string out = "instrument";
@@ -144,9 +144,9 @@ std::string effects_of(const ModelFit& fit) {
   return out;
 }
 
-/// Whether a parameter of a model is compared between campaigns. Searched parameters are not.
-/// Parameters of curves are not, because their knots differ between campaigns. Scales are not,
-/// because the quantity `scale` contains them with the parts of instrument and temperature.
+/// Whether a parameter of a model is compared between campaigns. Excluded are searched parameters,
+/// parameters of curves, because their knots differ between campaigns, and scales, because the
+/// quantity `scale` contains them with the contributions of instrument and temperature.
 bool is_followed(const ModelFit& fit, const ModelFit::Parameter& p) {
   const auto effect = std::find_if(fit.effects.begin(), fit.effects.end(),
                                    [&](const ModelFit::Effect& e) { return e.name == p.effect; });

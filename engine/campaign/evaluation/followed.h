@@ -32,12 +32,12 @@ struct FollowedQuantity {
   /// Conditions that must be equal for campaigns to be comparable; numbers in printed units.
   std::vector<std::pair<std::string, double>> numbers{};
   std::vector<std::pair<std::string, std::string>> texts{};
-  /// keys that are not stated, so that `u` does not contain their uncertainty
+  /// Keys that are not stated; `u` does not include their contribution.
   std::vector<std::string> not_stated{};
 };
 
-/// Quantities that were estimated together, and the covariance matrix of their `u`, row by row in
-/// SI units.
+/// Quantities that were estimated together, and the covariance matrix of their parts that are new
+/// in each campaign, row by row in SI units.
 struct FollowedGroup {
   std::vector<FollowedQuantity> quantities;
   std::vector<double> covariance;

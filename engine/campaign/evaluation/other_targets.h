@@ -23,7 +23,7 @@ struct ComparedTargets {
     std::vector<double> residuals{};  ///< residual at each target, m or rad
   };
 
-  /// digest of the targets to 1 um or 0.001 deg: equal for equal targets
+  /// Digest of the targets, rounded to 1 um or 0.001 deg.
   std::uint64_t digest = 0;
   double from = 0.0, to = 0.0;
   bool rotary = false;

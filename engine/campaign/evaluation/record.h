@@ -31,7 +31,7 @@ struct RecordedFile {
   std::string sha256;
 };
 
-/// A run, by its number and the date it was given.
+/// Number and date of a run.
 struct RunLabel {
   std::uint64_t number = 0;
   std::string date;  ///< date of the run, YYYY-MM-DD; empty if an older version wrote it
@@ -41,12 +41,12 @@ struct RunLabel {
 /// (laboratory/store/entry.h).
 struct IndexedSince {
   RunLabel run{};
-  std::string version;  ///< program version that first gave these data
+  std::string version;  ///< program version that first wrote these data
   std::string sha256;   ///< SHA-256 of the data that the history contains
 };
 
-/// `run.json`, stored with the results of a campaign: from what, in which run and why they were
-/// made. It contains no time, so that equal runs write equal bytes.
+/// `run.json`, stored with the results of a campaign: their inputs, their run and the reason for
+/// the evaluation. It contains no time of day, so that equal runs write equal bytes.
 struct Record {
   std::string folder;  ///< folder of the campaign, relative to the site
   std::uint64_t run = 0;
@@ -54,7 +54,7 @@ struct Record {
   std::string reason;
   Status status = Status::none;
   bool retry = false;  ///< the campaign failed for a reason that is not part of its content
-  /// First of the successive runs in which the campaign failed.
+  /// First of the successive runs in which the campaign failed; none: the campaign did not fail.
   std::optional<RunLabel> failed_since{};
   reading::Inputs inputs;
   /// Run since which the campaign's data in the history are unchanged; none: the campaign failed
@@ -63,7 +63,7 @@ struct Record {
   std::string certificate;  ///< number of the certificate; empty: none
   bool draft = false;       ///< the certificate is a draft that waits for approval
   std::vector<RecordedFile> files;
-  /// history that a document shows; none: no document shows it
+  /// History that a document shows; none: no document shows one.
   std::optional<ShownHistory> history{};
   std::vector<Error> errors;
   std::string language{};  ///< language of the site, for `nonio show`; empty: English
@@ -90,15 +90,15 @@ struct LastRecord {
   Record record;
   bool whole = true;
 };
-/// Reads the last record; none if there is none that this version can read. An error if the disk
-/// cannot be read.
+/// Reads the last record; none if there is no record that this version can read. An error if the
+/// disk cannot be read.
 Expected<std::optional<LastRecord>> last_record(const std::filesystem::path& campaign_output);
 /// Reads the record of results that still have temporary names.
 Expected<std::optional<Record>> staged_record(const std::filesystem::path& campaign_output);
 
 /// Returns the findings of all analyses and outputs, and a finding for each value that does not
-/// conform or is indeterminate. Each occurs once, with its title in English and, if it is another,
-/// in `language`.
+/// conform or is indeterminate. Each occurs once, with its title in English and, if `language` is
+/// not "en", also in that language.
 std::vector<KnownFinding> known_findings(const Results& results, const Templates& templates,
                                          const std::string& language = "en");
 

@@ -14,7 +14,8 @@ namespace {
 
 constexpr const char* earlier_name = "earlier.json";
 
-/// Adds the files that the record in a folder names, and the record last; nothing if there is none.
+/// Adds the files that the record in a folder names, and the record last; adds nothing if the
+/// folder has no record.
 Expected<void> add_files(const fs::path& folder, const std::string& before,
                          std::vector<RecordedFile>& all) {
   const fs::path path = folder / record_name;

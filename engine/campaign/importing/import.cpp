@@ -26,7 +26,7 @@ std::string iso_date(const std::string& date) {
   return date.substr(0, 4) + "-" + date.substr(4, 2) + "-" + date.substr(6);
 }
 
-/// Replaces each {place} in a text by its value from the name; none if the name lacks one.
+/// Replaces each {place} in a text by its value from the file name; none if a value is missing.
 std::optional<std::string> filled_in(const std::string& text, const Places& places) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -45,8 +45,8 @@ std::optional<std::string> filled_in(const std::string& text, const Places& plac
 }
 
 /// Returns the id of the campaign to which a file belongs. Without `campaign` in the rule it
-/// consists of the date and of all other places except axis and id, as in 2024-03-02-fp12. Capital
-/// letters become small letters, and blanks become "-".
+/// consists of the date and the texts of all placeholders except axis and id, as in
+/// 2024-03-02-fp12. Capital letters become small letters, and blanks become "-".
 std::string campaign_of(const ImportRule& rule, const Places& places) {
   std::string id;
   if (!rule.campaign.empty()) {
@@ -305,8 +305,8 @@ class Importer {
     return text;
   }
 
-  /// Reads every file as a run would, also if names or ids are given twice, and notes what is
-  /// missing or wrong.
+  /// Reads every file as a run would, even if names or ids occur twice, and notes what is missing
+  /// or wrong.
   void check(ImportedCampaign& campaign, const std::vector<Found>& found) {
     if (const auto manifest = manifest_to_read(campaign, found.front().places)) {
       const Machine& machine = manifest->campaign.machine;
@@ -321,7 +321,7 @@ class Importer {
         if (digest.empty()) continue;
         const auto [same, fresh] = first.try_emplace(digest, file.file);
         if (fresh) continue;
-        // the name and id may also equal those of the other file; one sentence is enough
+        // replaces messages about an equal name or id, which have the same cause
         file.same_as = same->second;
         file.lacks = {"the same readings as " + file.same_as +
                       "; exclude one of them, in the rule: exclude = [\"" + file.file + "\"]"};
@@ -395,7 +395,7 @@ class Importer {
         *reader, {bytes, manifest.campaign, m, *options, {}, plugins_.method(m.kind)});
   }
 
-  /// Returns the options in site.toml if the site already exists.
+  /// Returns the options of site.toml; empty if the file does not exist or has errors.
   config::RawOptions site_options() const {
     const auto text = storage::read_file(request_.out / "site.toml");
     if (!text) return {};

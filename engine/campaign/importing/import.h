@@ -22,7 +22,7 @@ struct ImportRule {
   std::vector<std::string> exclude;  ///< a file is skipped if its path contains one of these
   std::string axis;                  ///< axis of every file; empty: the text at {axis} in the name
   /// Texts accepted at {axis}, and the axis of the machine that each of them names; empty: names of
-  /// axes.
+  /// axes are accepted.
   std::map<std::string, std::string, std::less<>> axes;
   std::string manifest;  ///< TOML text that every campaign.toml also contains
 };
@@ -75,7 +75,7 @@ struct ImportRequest {
   ImportRule rule;
   /// Asset, maker and serial number of the machine of all campaigns; empty: not stated.
   std::string asset{}, maker{}, serial{};
-  /// Also write campaigns that lack something; comments name what is missing.
+  /// Whether campaigns with missing data are also written; comments in them state what is missing.
   bool partial = false;
   bool dry_run = false;
 };

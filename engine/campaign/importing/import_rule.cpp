@@ -9,7 +9,7 @@ namespace nonio::importing {
 
 namespace {
 
-/// A part of a pattern: a text, or the name of a place in braces.
+/// A part of a pattern: a text, or the name of a placeholder in braces.
 struct Token {
   std::string text;
   bool place = false;
@@ -56,7 +56,7 @@ bool all_of_digits(std::string_view text) {
 }
 
 /// Whether a text names an axis of a machine: capital letters and digits, or a small letter of ISO
-/// 841 and digits (x, u2), which means the capital one.
+/// 841 and digits (x and u2 name the axes X and U2).
 bool is_axis(std::string_view text) {
   if (text.empty() || text.size() > 8) return false;
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
@@ -67,8 +67,8 @@ bool is_axis(std::string_view text) {
          });
 }
 
-/// Whether a place can contain this text. A date must begin with the year, because all other orders
-/// are ambiguous. {*} may be empty.
+/// Whether a placeholder can contain this text. A date must begin with the year, because all other
+/// orders are ambiguous. {*} may be empty.
 bool fits(const ImportRule& rule, const std::string& place, std::string_view text) {
   if (text.find('/') != text.npos) return false;
   if (place == "*") return true;
@@ -112,7 +112,7 @@ class Matcher {
       const std::string_view part = text_.substr(at, length);
       if (part.ends_with('/')) return;
       if (!fits(rule_, t.text, part)) continue;
-      // A place that is given twice must have the same text both times.
+      // A placeholder that occurs twice must have the same text both times.
       const auto known = now_.find(t.text);
       if (known != now_.end() && known->second != part) continue;
       const bool names = t.text != "*" && known == now_.end();

@@ -187,7 +187,7 @@ std::vector<fs::path> Plugins::files_in(const std::vector<fs::path>& folders) {
     std::vector<fs::path> here;
     std::error_code error;
     const fs::path real = fs::canonical(folder, error);
-    error.clear();  // the caller that lists a missing folder reports it
+    error.clear();  // the loop below detects the same error
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
       if (it->path().extension() == ".so" && it->is_regular_file()) {
         const bool resolved = !real.empty() && !it->is_symlink(error);

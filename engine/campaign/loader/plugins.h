@@ -33,11 +33,11 @@ class Plugins final : public Registry {
   explicit Plugins(Catalogue catalogue);
   Catalogue catalogue() const;
 
-  /// Returns the shared libraries in the folders, in their order. A folder that cannot be read is
-  /// recorded as a conflict.
+  /// Returns the shared libraries in the folders, in the order of the folders and sorted in each. A
+  /// folder that cannot be read is recorded as a conflict.
   std::vector<std::filesystem::path> files_in(const std::vector<std::filesystem::path>& folders);
   /// Loads and registers a file, or only records `refusal` if it is not empty. A plugin may crash
-  /// the process, so call it only in one whose end is detected.
+  /// the process, so this function is only called in a process whose end is detected.
   void load_file(const std::filesystem::path& path, const std::string& refusal);
 
   /// Loads every shared library of the folders, in their order. A library that

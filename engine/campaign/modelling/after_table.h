@@ -12,8 +12,8 @@ namespace nonio::modelling {
 /// compensable effects of the model. `rms` is the RMS of all readings about the zero of their line,
 /// weighted as in the fit; it equals the RMS of the fit if every effect is compensable and the
 /// readings are independent. `tests` contains E, A and R of ISO 230-2 with k = 2 (math/iso230_2.h)
-/// for each measurement of one axis, NaN if the readings do not give them. A real table has points
-/// and steps; `nonio table predict` evaluates one.
+/// for each measurement of one axis, NaN if the readings do not determine them. `nonio table
+/// predict` evaluates a real table, which has points and steps.
 struct AfterTable {
   struct Positioning {
     double E, A, R;  ///< results according to ISO 230-2, m or rad

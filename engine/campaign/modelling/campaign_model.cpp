@@ -378,8 +378,8 @@ void leave_out_weaker_groups(model::Explanation& e) {
   });
 }
 
-/// Whether the named effect may be the image of another cause: its shape was searched, or a
-/// quantity was recorded that no effect of the catalogue depends on.
+/// Whether another cause may have the same appearance as the named effect, because its shape was
+/// searched, or a quantity was recorded that no effect of the catalogue depends on.
 bool may_imitate(const PartModel& part, const model::Candidate& named) {
   const Observations& o = part.part.table;
   return !named.term.effect->shapes.empty() || !o.air.empty() || !o.pressure.empty() ||
@@ -388,7 +388,7 @@ bool may_imitate(const PartModel& part, const model::Candidate& named) {
 
 /// Searches the causes of the library together with the catalogue, if the catalogue leaves an error
 /// unexplained or names an effect that may imitate a cause. The new result replaces `out` only if
-/// the named effect has evidence by itself and if the result contains one cause, or none where the
+/// the named effect has evidence by itself and if the result contains one cause, or none if the
 /// catalogue already named an effect. Any other set only describes an error that none of its
 /// effects causes. Whether there is an error at all was decided before. The rate of false alarms is
 /// that of the second search, whose noise no longer contains what the first search left

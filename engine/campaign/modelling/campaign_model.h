@@ -74,7 +74,7 @@ RowsPlace place_of(const PartModel& part, const Campaign& campaign,
 
 /// Returns what is wrong in a list of effects: wrong form, unknown kind or axis (with the nearest
 /// name), an effect of the set-up, which every model contains, a value that cannot be stated, or an
-/// effect that is given twice.
+/// effect that occurs twice.
 std::vector<std::string> model_mistakes(const std::vector<std::string>& effects,
                                         const reading::ReadCampaign& read);
 
@@ -109,7 +109,8 @@ void set_model(PartModel& part, const std::vector<std::string>& effects,
 std::vector<std::string> unmeasured(const std::vector<std::string>& effects,
                                     const std::vector<PartModel>& parts);
 
-/// Returns the effects of a fit of which every value is smaller in size than 2 u.
+/// Returns the effects of a fit, except those of the set-up, whose linear parameters are all
+/// smaller in magnitude than 2 u.
 std::vector<std::string> below_uncertainty(const model::Fit& fit);
 
 /// Compares a part with its model. `known` and `fitted`: see model/explain.h.

@@ -17,7 +17,8 @@ namespace {
 using model::Holds;
 using storage::Json;
 
-// Largest number of readings of a campaign, because all columns of its effects are kept in memory.
+// Largest number of readings of an axis in a campaign, because all columns of its effects are kept
+// in memory.
 constexpr std::size_t most_readings = 20000;
 
 const char* name_of(Holds holds) {
@@ -70,8 +71,7 @@ std::map<std::string, std::vector<std::pair<const reading::ReadCampaign*, PartMo
   return out;
 }
 
-/// Whether the parameters of an effect in one group are more than a sentence can list; then only
-/// their RMS is printed.
+/// Whether an effect has more than 3 linear parameters in a group; then only its RMS is printed.
 bool is_curve(const std::vector<model::Parameter>& group) {
   return std::count_if(group.begin(), group.end(), [](const auto& p) { return !p.shape; }) > 3;
 }
@@ -165,7 +165,7 @@ std::string sentence_of(const model::JointEffect& e, const Together& t,
 std::string sentence_of(const Together& t, const config::TerminalWords& say) {
   const model::JointExplanation& x = t.explanation;
   const Quantity q = t.deviation();
-  // an effect in many campaigns may be so small that it needs a further digit
+  // a small difference between the two RMS values is printed with more digits
   constexpr int usual = 3, most = 5;
   const auto text_of = [&](double v, int digits) { return short_text(printed(v, q), digits); };
   const int digits = text_of(x.rms, usual) == text_of(x.rms_after, usual) ? most : usual;
@@ -283,7 +283,8 @@ std::vector<model::Member> members_of(const Together& t) {
 }
 
 /// Adds each cause of the library that a campaign alone shows to the catalogue of all campaigns,
-/// because otherwise another effect would be named for it. Returns whether there is such a cause.
+/// because otherwise another effect would be named in its place. Returns whether there is such a
+/// cause.
 bool add_named_causes(Together& t, std::uint64_t seed) {
   std::set<std::string> named;
   for (const PartModel& part : t.parts)

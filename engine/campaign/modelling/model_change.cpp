@@ -120,7 +120,7 @@ Expected<Change> changed(const reading::ReadCampaign& read, const std::vector<st
   return change;
 }
 
-/// Removes the readings in these lines, as the next reading of the file would.
+/// Removes the readings in these lines, as if the file were read again with the exclusion.
 Expected<void> leave_out(reading::ReadCampaign& read, const Exclusion& one) {
   const auto& all = read.manifest->campaign.measurements;
   const auto m = std::find_if(all.begin(), all.end(),

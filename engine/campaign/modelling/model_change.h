@@ -24,7 +24,7 @@ struct Change {
   /// Comparisons of the part before and after the change; none if the model cannot be fitted or no
   /// measurement shows the effect.
   std::optional<Compared> before, after;
-  std::string no_before;  ///< why the model before could not be fitted; empty: no such error
+  std::string no_before;  ///< why the former model could not be fitted; otherwise empty
 };
 
 /// An effect to add to a model, or to remove from it.
@@ -46,11 +46,12 @@ struct CampaignEdit {
 
   bool empty() const { return model.empty() && excluded.empty() && periods.empty(); }
 };
-/// Returns the text of a campaign.toml after an edit.
+/// Returns the text of a campaign.toml with all changes of `edit`. An error if a change is not
+/// possible.
 Expected<std::string> edited_manifest(std::string_view text, const CampaignEdit& edit);
 
-/// Writes all changes, each with its line in the history, or none. Exclusions and periods come
-/// first, so that effects are fitted to the remaining readings. `known` is a comparison of the
+/// Writes all changes, each with a line in the history, or writes nothing. Exclusions and periods
+/// come first, so that effects are fitted to the remaining readings. `known` is a comparison of the
 /// present model, if one already exists; otherwise null.
 Expected<std::vector<Change>> change_campaign(const std::filesystem::path& folder,
                                               reading::ReadCampaign& read, const CampaignEdit& edit,

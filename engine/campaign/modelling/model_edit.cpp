@@ -14,8 +14,8 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-/// Returns the byte offset of a position of toml++, which counts lines and columns from 1, columns
-/// in code points.
+/// Returns the byte offset of a position of toml++, which numbers lines and columns from 1 and
+/// measures columns in code points.
 std::size_t offset_of(std::string_view text, toml::source_position at) {
   std::size_t i = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
   for (toml::source_index line = 1; line < at.line; ++line) {
@@ -63,8 +63,8 @@ std::string newline_of(std::string_view text) {
 
 std::string quoted(const std::string& name) { return "\"" + name + "\""; }
 
-/// An element of a list: [begin, end) includes quotes; `comma` is the position of its comma, if
-/// any.
+/// An element of a list: [begin, end) includes quotes; `comma` is the position of the comma after
+/// it; none: no comma follows.
 struct Item {
   std::size_t begin, end;
   std::optional<std::size_t> comma;

@@ -21,8 +21,8 @@ Expected<std::string> without_effect(std::string_view manifest, const std::strin
 Expected<std::string> with_excluded(std::string_view manifest, const std::string& measurement,
                                     const std::vector<std::uint32_t>& lines,
                                     const std::string& why);
-/// Returns the text of a campaign.toml with `screw_pitch_mm` (mm) set for an axis that it
-/// describes.
+/// Returns the text of a campaign.toml with `screw_pitch_mm` (mm) set for an axis. An error if the
+/// file does not describe the axis.
 Expected<std::string> with_period(std::string_view manifest, const std::string& axis, double mm);
 
 }  // namespace nonio::modelling

@@ -177,8 +177,9 @@ std::vector<char> set_up_of(const std::vector<model::Term>& terms) {
   return in;
 }
 
-/// Returns the effects in the order in which each reduces the remaining RMS most, with the shapes
-/// of the whole model. For tables with more than 20000 readings it is the order of the model.
+/// Returns the indices of the effects in the order in which each reduces the remaining RMS most,
+/// with the shapes of the whole model. For more than 20000 readings, the order is that of the
+/// model.
 std::vector<std::size_t> falling_order(const PartModel& part, const model::Fit& whole) {
   std::vector<std::size_t> order;
   std::vector<char> in = set_up_of(part.terms);
@@ -219,7 +220,7 @@ void put_steps(ModelFit& out, const PartModel& part, const model::Comparison& wh
 void put_candidates(ModelFit& out, const PartModel& part, const model::Explanation& e) {
   for (const model::Candidate& c : e.candidates) {
     if (!is_ranked(c) || !(c.score > 0.0)) continue;
-    // in correlated readings, evidence that the search also finds without a cause is left out
+    // in correlated readings, evidence that also occurs without a cause is left out
     if (part.part.kind == model::Part::Kind::course && !(c.p < e.verdict.false_alarms)) continue;
     const bool certain =
         std::find(e.certain.begin(), e.certain.end(), c.term.name()) != e.certain.end();
@@ -262,7 +263,7 @@ ModelFit value_of(const PartModel& part, const model::Explanation& e) {
   return out;
 }
 
-/// Returns a mark for each row of a measurement: 1 for the first row with its position and
+/// Returns a mark for each row of a measurement: 1 for the first row with its line, position and
 /// direction, otherwise 0.
 std::vector<char> first_of_each(const Observations& o) {
   std::set<std::vector<double>> seen;

@@ -33,7 +33,7 @@ struct ModelStep {
   Quantity quantity = Quantity::deviation;
   /// RMS in m or rad; none if that model could not be fitted.
   std::optional<double> rms_before{}, rms_after{};
-  /// RMS in cross-validation; noise floor; m or rad.
+  /// RMS of the cross-validation before and after the change, and noise floor, m or rad.
   std::optional<double> cv_before{}, cv_after{}, floor{};
   std::string why{};  ///< comment of a person; usually empty
   std::optional<Exclusion> excluded{};
@@ -41,8 +41,8 @@ struct ModelStep {
 };
 
 /// Name of the history next to campaign.toml: one JSON object per line for each change of the
-/// model, oldest first. It contains no time, so that the same changes give the same bytes. It is a
-/// record for people: no program computes from it, and a run does not read it.
+/// model, oldest first. It contains no time, so that the same changes result in the same bytes. It
+/// is a record for people: no program computes from it, and a run does not read it.
 inline constexpr const char* history_name = "model-history.jsonl";
 
 std::string history_line(const ModelStep& step);

@@ -18,8 +18,8 @@ using storage::Json;
 Json parameters_json(const std::vector<model::Parameter>& parameters,
                      const PartModel* part = nullptr, const std::vector<model::Term>& terms = {});
 
-/// Extent of an entry of "parts". With `first`, which the page requests at first, it omits the
-/// prediction of what remains after compensation by a table.
+/// Extent of an entry of "parts". `first`, which the page requests at first, omits the prediction
+/// of what remains after compensation by a table.
 enum class Extent { whole, first };
 
 /// Returns an entry of "parts" in nonio-compare/1 and nonio-explain/1.

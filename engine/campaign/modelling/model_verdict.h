@@ -23,9 +23,9 @@ struct Explained {
 /// nothing.
 std::size_t most_severe(const std::vector<Explained>& all);
 
-/// The verdict of one part. `next_effect` returns the effect that certainly belongs in the model
-/// according to the most severe verdict, "" if there is none: one step of `nonio model explain
-/// --auto`.
+/// The verdict of one part. `next_effect` returns the effect that `nonio model explain --auto` adds
+/// first: the missing effect of the most severe verdict, otherwise its most significant effect; ""
+/// if there is none.
 struct PartVerdict {
   std::string kind, effect;          ///< kind of the verdict, and the effect that it names
   std::vector<std::string> certain;  ///< significant effects, the one with the most evidence first
@@ -48,8 +48,7 @@ std::vector<Correlated> correlated(const model::Fit& fit);
 /// Largest number of candidates that the JSON marks as best, in addition to those of the best set.
 inline constexpr std::size_t most_best = 5;
 
-/// Whether a candidate has a score, so that it can be ranked; these readings cannot show the
-/// others.
+/// Whether a candidate has a score and can be ranked. These readings cannot show other candidates.
 bool is_ranked(const model::Candidate& candidate);
 
 }  // namespace nonio::modelling

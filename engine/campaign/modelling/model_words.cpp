@@ -94,7 +94,7 @@ Finding description_finding(const model::Description& d, const PartModel& part) 
 }
 
 Finding false_alarms_finding(const model::Verdict& v) {
-  // If there was none in n trials, the upper end of Wilson's 95 % interval is stated: z^2/(n +
+  // Without a false alarm in n trials, the upper end of Wilson's 95 % interval is stated: z^2/(n +
   // z^2).
   const double n = static_cast<double>(v.trials), z2 = 1.959964 * 1.959964;
   const bool any = v.false_alarms > 0.0;
@@ -121,7 +121,7 @@ namespace {
 // docs/dev/constants.md, M24.
 constexpr double separable = 4.0;  // power of a plan that separates effects, in standard deviations
 constexpr double most_longer = 10.0;       // largest factor by which a longer test is proposed
-constexpr std::size_t enough_targets = 9;  // with fewer targets, denser ones are proposed
+constexpr std::size_t enough_targets = 9;  // with fewer targets, denser targets are proposed
 
 class Next {
  public:
@@ -509,7 +509,7 @@ std::vector<std::string> ModelWords::noise(const model::Fit& fit, const PartMode
   const model::Noise& noise = fit.noise;
   const Quantity q = part.deviation();
   std::vector<std::string> out;
-  // readings over time always have correlated noise, and u contains it
+  // readings over time always have correlated noise, which u includes
   if (part.part.kind == model::Part::Kind::course) return out;
   if (noise.neighbours > 0.0 && noise.p < significant_below)
     out.push_back(says("noise.neighbours",

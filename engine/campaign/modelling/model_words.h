@@ -31,7 +31,7 @@ class ModelWords {
   /// States why these readings cannot show an effect.
   std::string unseen(const model::Candidate& candidate, const RowsPlace& rows) const;
   std::string temperature_interpolated(const RowsPlace& rows) const;
-  /// States that two effects cancel each other, so that neither is shown.
+  /// States that two effects cancel each other, so that the readings show neither.
   std::string cancelling(const std::string& one, const std::string& other) const;
   std::string plan(const model::Plan& plan) const;
   /// Lists the candidates without evidence in one sentence, with the smallest size that would be
@@ -53,11 +53,11 @@ class ModelWords {
   std::string not_identifiable(const std::string& effect, std::size_t parameters) const;
   std::string description(const model::Description&, const PartModel&) const;
   std::string order_assumed(const std::string& measurement) const;
-  /// States how the noise of a fit differs from independent readings with one scatter; usually
-  /// empty.
+  /// States how the noise of a fit differs from independent noise of constant scatter; empty if it
+  /// does not differ.
   std::vector<std::string> noise(const model::Fit& fit, const PartModel& part) const;
-  /// States the time constants that thermal tests of the campaign give for this part, one sentence
-  /// per axis.
+  /// States the time constants that thermal tests of the campaign determine for this part, one
+  /// sentence per axis.
   std::vector<std::string> time_constants(const PartModel& part, const model::Fit& fit) const;
   std::string order_unknown() const;
   std::string has_unstated_position() const;
@@ -88,7 +88,8 @@ Finding left_finding(const model::Comparison& comparison, Quantity deviation);
 std::vector<Finding> no_sign_findings(const model::Explanation& explanation, const PartModel& part);
 std::vector<Finding> next_findings(const model::Explanation& explanation, const PartModel& part);
 
-/// Returns the curve that the parameters of a term give; none if the term is not a curve.
+/// Returns RMS, range and positions of the extremes of the curve of a term; none if the term is not
+/// a curve.
 std::optional<ModelFit::Curve> curve_of(const PartModel& part, const model::Fit& fit,
                                         std::size_t term);
 
@@ -96,7 +97,7 @@ std::optional<ModelFit::Curve> curve_of(const PartModel& part, const model::Fit&
 std::string on_line(const model::Place& place);
 
 /// Returns the position, run or time at which the deviations of a place are largest, "12.5 mm" or
-/// "run 3"; "" if they do not occur mainly at one.
+/// "run 3"; "" if none of these is known.
 std::string where_largest(const model::Place& place, const std::string& language);
 
 }  // namespace nonio::modelling

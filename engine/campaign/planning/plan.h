@@ -29,9 +29,9 @@ std::string why_nothing(const math::TriplePlans& plans, const TerminalWords& say
 std::string triples_json(const math::TripleRequest& wish, const math::TriplePlans& plans,
                          const TerminalWords& say);
 
-/// Writes part programs with the output plugin of this name ("program-" may be omitted) and its
-/// options as texts: 2.5, true, axes,diagonals. With the output plan-sheet it writes the plan as a
-/// sheet, which needs `templates`.
+/// Writes part programs with the output plugin of this name ("program-" may be omitted). `options`
+/// contains texts such as "2.5", "true" or "axes,diagonals". With the output plan-sheet it writes
+/// the plan as a sheet, which needs `templates`.
 config::Checked<std::vector<Artifact>> write_programs(
     const loader::Plugins& plugins, const std::string& output, const Machine& machine,
     const PointTable& rows, const std::map<std::string, std::string>& options,

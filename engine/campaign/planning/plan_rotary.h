@@ -18,7 +18,7 @@ struct RotaryRow {
 Expected<std::vector<RotaryRow>> rotary_rows(const math::RotaryPlan& own, std::size_t trials,
                                              std::uint64_t seed);
 
-/// Returns the smallest number of balls with which the given U is reached (k = 2; m, rad; 0: not
+/// Returns the smallest number of balls with which these U are reached (k = 2; m, rad; 0: not
 /// required) at the radius of the plan.
 Expected<std::size_t> fewest_balls(const math::RotaryPlan& own, double U_centre,
                                    double U_direction);

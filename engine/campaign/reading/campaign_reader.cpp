@@ -138,7 +138,8 @@ void look_up_active_tables(const CampaignSource& from, ReadCampaign& out) {
                                "\"off\" contradicts active_table of axis " + m.axis));
 }
 
-/// Returns which existing effect a formula repeats on the readings, as a sentence; empty if none.
+/// Returns which existing effect a formula repeats on the readings, as a sentence; empty if it
+/// repeats none.
 std::string copied(const ReadCampaign& out, const std::vector<model::Part>& parts, const Axis& axis,
                    const Effect& effect) {
   for (const model::Part& part : parts) {

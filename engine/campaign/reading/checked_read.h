@@ -7,7 +7,7 @@
 
 namespace nonio::reading {
 
-/// Returns the first 4096 bytes of a file, by which readers recognise it.
+/// Returns the first 4096 bytes of a file, by which readers recognize it.
 inline std::string_view head_of(std::string_view bytes) { return bytes.substr(0, 4096); }
 
 /// Whether a reader reads the columns that this method declares.
@@ -15,15 +15,14 @@ inline bool reads_columns_of(const Reader& reader, const Method* method) {
   return reader.reads_columns && method != nullptr && !method->columns.empty();
 }
 
-/// Whether a reader reads a measurement of this method. The reader is asked for the name of the
-/// method if the method has columns of its own, otherwise for the kind that the measurement is
-/// observed as.
+/// Whether a reader reads a measurement of this method. `Reader::reads` receives the name of the
+/// method if the method declares columns, otherwise the kind as which the measurement is observed.
 inline bool reads(const Reader& reader, const Measurement& m, const Method* method) {
   const bool of_its_own = method != nullptr && !method->columns.empty();
   return reader.reads(of_its_own ? method_name(m) : m.kind);
 }
 
-/// Reads a file and checks that later code may rely on the observations.
+/// Reads a file and checks that the observations are consistent. An error names the reader.
 inline Expected<Observations> checked_read(const Reader& reader, const ReadInput& input) {
   const std::string who = "reader " + reader.info.name;
   auto observations = process::guarded(who, [&] { return reader.read(input); });

@@ -26,7 +26,7 @@ struct Context {
   std::string templates_sha256;
   /// All templates as one text (`read_templates`), attached to signed files.
   std::string templates_json{};
-  /// every cause of the library is an effect; otherwise only if a model names one
+  /// Whether all causes of the library become effects; otherwise only if a model names a cause.
   bool every_cause = false;
 };
 
@@ -40,7 +40,8 @@ std::string input_name(const std::string& file);
 /// is the id of that campaign.
 std::string shared_name(const std::string& file);
 
-/// Returns the inputs that all campaigns share.
+/// Returns the inputs that all campaigns share: the digests of site.toml, plugins and templates,
+/// and the program version.
 Inputs shared_inputs(const Context& context);
 
 /// Called with the name of each step before it begins, to report it if the step does not return.

@@ -40,8 +40,8 @@ std::vector<double> distinct(const std::vector<double>& positions) {
   return out;
 }
 
-/// Groups positions that are closer together than the tolerance, with a count of 0 readings each. A
-/// group extends no further than the tolerance from its first position.
+/// Groups positions that are closer together than `grid_tolerance`, with a count of 0 readings
+/// each. A group extends no further than this tolerance from its first position.
 std::vector<std::map<double, std::size_t>> groups_of(const std::vector<double>& x) {
   std::vector<std::map<double, std::size_t>> groups;
   for (std::size_t i = 0; i < x.size();) {
@@ -83,7 +83,7 @@ std::size_t join(std::vector<double>& positions) {
   return moved;
 }
 
-/// Joins positions of an axis within `grid_tolerance` of each other to the one with the most
+/// Joins positions of an axis within `grid_tolerance` of each other to the position with the most
 /// readings. Otherwise rounded digits in a file would make two targets of one, each with too few
 /// readings. Returns the number of positions that were changed.
 std::size_t join_targets(Observations& o) {
@@ -92,10 +92,10 @@ std::size_t join_targets(Observations& o) {
   return moved;
 }
 
-/// Returns the named reader, otherwise the first that recognises the content, otherwise the one for
-/// the columns that the method declares. None if no plugin reads this kind of measurement: this is
-/// noted, and other measurements are evaluated. An error if no reader of this kind recognises the
-/// content, or if a refused plugin may be the required one.
+/// Returns the named reader, otherwise the first that recognizes the content, otherwise the one for
+/// the columns that the method declares. None, with a note, if no plugin reads this kind of
+/// measurement; other measurements are then evaluated. An error if no reader of this kind
+/// recognizes the content, or if a refused plugin may be the required one.
 Expected<const Reader*> choose_reader(const CampaignSource& from, const Measurement& m,
                                       std::string_view bytes, ReadCampaign& out) {
   const auto& readers = from.context.plugins->readers();
@@ -212,7 +212,7 @@ void note_oddities(const Measurement& m, std::string_view bytes, Observations& o
       doubt.measurement = m.id;
       out.doubts.push_back(std::move(doubt));
     }
-  if (o.missing > 0 && m.kind != "axis")  // for an axis, the analyses report them
+  if (o.missing > 0 && m.kind != "axis")  // analyses of an axis report missing readings
     o.notes.push_back(
         {"readings.not-taken", {{"missing", static_cast<double>(o.missing), Quantity::count}}});
   // On an artefact the positions are those of its features, so they are not joined.

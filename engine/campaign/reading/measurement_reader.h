@@ -19,7 +19,7 @@ struct CampaignSource {
 /// `out`.
 void read_measurements(const CampaignSource& from, ReadCampaign& out);
 
-/// Adds an error; one without a line gets the first line of its file.
+/// Adds an error; an error without a line is assigned the first line of its file.
 void report_in(ReadCampaign& out, Error error);
 /// Returns an error about a key of the manifest, with its line.
 Error key_error(const CampaignSource& from, const ReadCampaign& out, std::string key,

@@ -19,8 +19,8 @@ struct StatedTable {
 /// Name of the option of a reader that describes the columns.
 inline constexpr const char* columns_option = "columns";
 
-/// Returns the first rows of the table in a file; none if no reader finds a table with at least two
-/// columns.
+/// Returns the first rows, at most `most`, of the table in a file; none if no reader finds a table
+/// with at least two columns.
 std::optional<StatedTable> stated_table(const loader::Plugins& plugins, std::string_view bytes,
                                         std::size_t most);
 

@@ -372,7 +372,7 @@ class SchemaWriter {
     json_.key("else");
     json_.begin_object();
     begin_rule_of(key);
-    // No value is allowed; the one that an editor offers states the reason.
+    // The only accepted value is a text, with which an editor shows why the key is not allowed.
     json_.member("enum", Names{"only where " + std::string(key.only.key) + " is " +
                                std::string(key.only.values.front())});
     end_rule();

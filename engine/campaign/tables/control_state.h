@@ -39,9 +39,9 @@ void state_by_answer(reading::ReadCampaign&, const std::string& axis, const Stat
 
 /// Returns the compensation that was active while `axis` was measured. The manifest has precedence,
 /// then the record of the machine, then the backup. A manifest that differs from the backup is a
-/// finding. Returns an error that names the key or file to correct if the record contradicts the
-/// backup, or if nothing is stated and the backup has no table of the axis or one that was made
-/// from this campaign or a later one and so was loaded after the measurement.
+/// finding. An error, which names the key or file to correct, if the record contradicts the backup.
+/// The same applies if nothing is stated and the backup has no table of the axis, or one that was
+/// made from this or a later campaign and was therefore loaded after the measurement.
 Expected<MeasuredWith> measured_with(const reading::ReadCampaign&, const Controller&,
                                      const std::vector<Artifact>& backup, const std::string& axis,
                                      const Settings& options, std::vector<Finding>& findings);

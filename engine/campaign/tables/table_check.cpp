@@ -370,7 +370,8 @@ TableForecast forecast_of_axis(const Campaign& campaign, const Measurement& m,
   };
   const auto will = math::after(math::error_curve(math::AxisTest::arrange(raw)), c);
   const auto U = math::compensated_uncertainty(campaign, m, readings, test, true);
-  // U of the reversal counts where these tables change it by more than their last digit.
+  // U of the reversal is included if these tables change the reversal by more than their last
+  // digit.
   constexpr double last_digit = 1e-7;  // m or rad
   const bool compensates_reversal =
       std::any_of(measured.position.begin(), measured.position.end(),
@@ -398,7 +399,7 @@ Expected<RenewedTables> renew(const reading::ReadCampaign& read, const Controlle
   auto whole = write(campaign, raw);
   if (!whole) return tl::unexpected<Error>(whole.error());
   RenewedTables out{std::move(whole->artifacts), {}, {}, std::move(whole->findings)};
-  // one at a time, because an axis may be measured twice
+  // one measurement at a time, because an axis may be measured twice
   for (std::size_t i = 0; i < raw.size(); ++i) {
     const Measurement& m = campaign.measurements[i];
     if (m.kind != "axis" || raw[i].size() == 0) continue;

@@ -27,7 +27,7 @@ struct TableShape {
   double largest = 0.0;  ///< largest absolute correction, m or rad
   double step = 0.0;     ///< largest step from one point to the next, m or rad
   double slope = 0.0;    ///< largest absolute slope, m/m or rad/rad
-  double step_at = 0.0;  ///< position of this step on the first input axis, m or rad
+  double step_at = 0.0;  ///< position of the largest step on the first input axis, m or rad
   std::optional<double> backlash{};
 };
 
@@ -62,8 +62,8 @@ struct Underlay {
   Settings options;  ///< options of the controller with the backlash values of these tables
   std::vector<Observations> readings;  ///< readings as they would be without these tables
 };
-/// Returns the campaign with only this measurement. Its axis becomes that of the control instead of
-/// a side of a gantry: a caller that treats one axis after another treats both sides.
+/// Returns the campaign with only this measurement. The axis of the control replaces a side of a
+/// gantry, because a caller that processes one axis after another processes both sides.
 Campaign with_one(Campaign campaign, Measurement m);
 
 /// Returns the tables that were active according to manifest and record; none if there was no
@@ -142,9 +142,9 @@ struct MergedTables {
   std::vector<Finding> findings;
   std::vector<Remark> notes;
 };
-/// Replaces the table of one axis in a backup; a control with one file per axis gets new files. An
-/// error if it is not known what was active (`measured_with`), or if a table of another axis would
-/// change.
+/// Replaces the table of one axis in a backup; for a control with one file per axis, the files are
+/// new. An error if it is not known what was active (`measured_with`), or if a table of another
+/// axis would change.
 Expected<MergedTables> merge_tables(const reading::ReadCampaign&, const Controller&,
                                     const Settings& options, const std::vector<Artifact>& backup,
                                     const std::string& axis);
@@ -158,7 +158,7 @@ struct SignProbe {
   /// Positions of the first target and of the two stops, m or rad.
   double start = 0.0, from = 0.0, to = 0.0;
   double difference = 0.0;  ///< difference of the error between the stops without a table, m or rad
-  double as_measured = 0.0;  ///< the same difference with the compensation during the measurement
+  double as_measured = 0.0;  ///< `difference` with the compensation that was active, m or rad
   double scatter = 0.0;      ///< standard deviation of a reading, m or rad; 0 with one run
   bool shows() const { return difference * difference > 36.0 * scatter * scatter; }
 };

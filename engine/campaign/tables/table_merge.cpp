@@ -38,7 +38,7 @@ Expected<OneAxis> one_axis(const reading::ReadCampaign& read, const std::string&
     one.readings.push_back(read.observations[i]);
     one.measured.push_back(read.observations[i]);
   }
-  if (one.readings.size() == 1) return one;  // the campaign has this one measurement
+  if (one.readings.size() == 1) return one;  // exactly one measurement of the axis
   if (!one.readings.empty())
     return fail("axis " + axis + " has " + std::to_string(one.readings.size()) +
                 " measurements; expected one");

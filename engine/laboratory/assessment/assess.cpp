@@ -152,11 +152,10 @@ class Assessment::State {
         logs_.events.push_back(e);
   }
 
-  /// One machine during the assessment.
   struct Assessed {
     store::MachineState state;
     std::string alone{};  ///< id of a campaign without a machine; `state` has no name then
-    /// Key under which it is stored. The line break cannot occur in the name of a machine.
+    /// Key of the stored results. A line break, which no machine name contains, marks a campaign.
     std::string key() const { return alone.empty() ? state.machine.name : '\n' + alone; }
     std::vector<config::Event> events;
     std::vector<std::string> campaigns;  ///< campaigns whose evaluation is not superseded
@@ -227,7 +226,7 @@ class Assessment::State {
   }
 
   /// Collects names of machines that no campaign states, from events, valid acknowledgements and
-  /// calibration intervals. Records of machines are no mistake, because they may precede the
+  /// calibration intervals. Machines with records are left out, because records may precede the
   /// campaigns.
   void note_unknown(const std::vector<store::MachineState>& states, const MachineEvents& events) {
     std::set<std::string> names;
@@ -447,7 +446,7 @@ class Assessment::State {
     return add_sparks();
   }
 
-  /// Adds the small charts of the machines in the first lines, which the first page shows.
+  /// Adds the series of the machines whose small charts the first page shows.
   Expected<void> add_sparks() {
     for (const std::string& name : reports::drawn_first(site)) {
       const auto at = std::lower_bound(

@@ -30,8 +30,8 @@ Expected<reports::SiteHistory> assess(const std::filesystem::path& out, const La
 class Assessment {
  public:
   enum class Kept { ignored, used };
-  /// `entered`: entries of people since the run. Its acknowledgements replace those of the store,
-  /// and its new events are added.
+  /// `entered`: present entries of people, null: those of the store. Its acknowledgements replace
+  /// those of the store, and its new events are added.
   static Expected<Assessment> of(const std::filesystem::path& out, const LastRun& last_run,
                                  const std::function<void()>& alive, Kept kept,
                                  const config::SiteLogs* entered = nullptr);

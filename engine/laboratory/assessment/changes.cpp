@@ -18,12 +18,12 @@ constexpr double excess_step = 0.05;
 constexpr double spread_step = 0.1;  // the logarithm of the spread is rounded to multiples of this
 
 /// A significant step where the instrument changed is attributed to the instrument, unless its p is
-/// below this: then the calibration, whose uncertainty is in the covariance, would be wrong by an
-/// unusual amount.
+/// below this value, because the error of the calibration would then be unusually large for its
+/// uncertainty, which is in the covariance.
 constexpr double no_instrument_below = 1e-4;
 
-/// Step to which large counts are rounded: counts of 10,000 and more keep two digits, so that one
-/// more series or campaign does not change the trends of the others.
+/// Returns the step to which a count is rounded: counts of 10,000 and more keep two digits, so that
+/// one more series or campaign does not change the trends of the others.
 std::uint64_t step_of(std::uint64_t n) {
   constexpr std::uint64_t very_many = 10'000;
   std::uint64_t step = 1;
@@ -39,7 +39,7 @@ void fit_again(FollowedSeries& s, Fits& fits) {
   s.mailed.assign(s.trend.changes.size(), false);
 }
 
-/// Whether the instrument changed in this gap and contributes to the uncertainty of this quantity.
+/// Whether the instrument changed after point `gap` and contributes to the uncertainty.
 bool shows_instrument(const FollowedSeries& s, std::size_t gap) {
   const auto& parts = s.series.points[gap + 1].common;
   return std::any_of(parts.begin(), parts.end(),
@@ -89,8 +89,8 @@ std::set<Place> places_of(const AssessedMachine& m) {
   return out;
 }
 
-/// Returns the gap of a series that contains a place; none if no gap does, or if the series has a
-/// step there.
+/// Returns the index of the point before the gap that contains a place; none without such a gap, or
+/// if the series has a step in this gap.
 std::optional<std::size_t> gap_of(const AssessedMachine& m, const FollowedSeries& s,
                                   const Place& place) {
   for (std::size_t k = 0; k + 1 < s.results.size(); ++k) {
@@ -102,8 +102,8 @@ std::optional<std::size_t> gap_of(const AssessedMachine& m, const FollowedSeries
   return std::nullopt;
 }
 
-/// Tests for a step at a place where another quantity of the axis has one. Only this place is
-/// tested, so p needs no adjustment for the number of places.
+/// Tests for a step at a place where another quantity of the axis changed significantly. Only this
+/// place is tested, so p needs no adjustment for the number of places.
 void ask_there(FollowedSeries& s, std::size_t gap, double level, Fits& fits) {
   FollowedSeries tried = s;
   tried.series.declared.push_back({gap, kernel::Declared::Kind::event});
@@ -207,7 +207,7 @@ std::vector<std::vector<Adjusted>> adjusted_by_run(
   std::vector<std::vector<Adjusted>> out;
   for (const SeriesTests* s : tests) out.emplace_back(s->changes.size());
   std::map<std::uint64_t, std::vector<Asked>> unsaid, said;
-  // by run: number of series with a model whose last point came in it
+  // number of series with a model, by the run of their last point
   std::map<std::uint64_t, std::size_t> still;
   for (std::size_t k = 0; k < tests.size(); ++k) {
     const SeriesTests& s = *tests[k];

@@ -34,9 +34,9 @@ struct Lesson {
   std::vector<double> ratios{};  ///< ratios of `statistics::Scatter`, of the points that have one
   std::optional<nonio::statistics::Slope> slope{};
 };
-/// Returns how many of the first evaluations are used for the statistics of the laboratory: all, or
-/// from 10,000 on, their number rounded down to two digits. So a new campaign rarely changes the
-/// results of other machines.
+/// Returns how many of the first evaluations are used for the statistics of the laboratory: all
+/// below 10,000, otherwise their number rounded down to two digits, so that a new campaign rarely
+/// changes the results of other machines.
 std::uint64_t learned_from(std::uint64_t evaluations);
 /// Estimates scatter and slope of a series from the points that the first `evaluations` contain.
 Lesson lesson_of(const FollowedSeries& series, Fits& fits,
@@ -45,8 +45,8 @@ Lesson lesson_of(const FollowedSeries& series, Fits& fits,
 /// Statistics by quantity and unit, for all machines of a site, rounded in coarse steps.
 struct Learned {
   std::map<std::string, OfQuantity> of;
-  /// level of the test for a drift: `significant_below` divided by the number of series with three
-  /// points or more, rounded up from 10,000 on
+  /// significance level of a drift: `significant_below` divided by the number of series with three
+  /// points or more, which is rounded up to two digits from 10,000 on
   double drift_below = 1.0;
 };
 Learned learn(const std::vector<const Lesson*>& lessons);
@@ -57,7 +57,6 @@ struct Manner {
   bool operator==(const Manner&) const = default;
 };
 Manner manner_of(const std::string& quantity, const Learned& learned);
-/// Fits the trend of a series.
 void fit(FollowedSeries& series, const Manner& manner, Fits& fits);
 
 /// Tests of one series, which belong to the run of its last point.
@@ -74,8 +73,8 @@ SeriesTests tests_of(const FollowedSeries& series);
 
 /// p of a change, adjusted for all tests of its run by two procedures.
 struct Adjusted {
-  double news = 1.0;  ///< Benjamini and Hochberg: limits the share of false ones among the reported
-                      ///< changes
+  double news = 1.0;  ///< Benjamini and Hochberg: limits the share of false positives among the
+                      ///< reported changes
   double any = 1.0;   ///< Holm: limits the probability that the run reports any false change
 };
 

@@ -140,8 +140,8 @@ class Describing {
     const Quantity q = quantity_of_unit(s.unit);
     HistorySeries out{.axis = s.axis, .quantity = s.quantity, .unit = q, .points = {}, .model = ""};
     out.ended = s.ended;
-    // The definitions of A, E and R differ between editions of the standard, so only equal ones are
-    // joined.
+    // The definitions of A, E and R differ between editions of the standard, so only results of the
+    // last result's edition are joined.
     const StoredResult& last = m_.stored.results[s.results.back()];
     for (const std::size_t i : s.results) {
       out.points.push_back(point(i, q));

@@ -35,7 +35,6 @@ class Links {
   bool hashed_;
   bool packed_ = true;  ///< whether reports may be in packs
 };
-/// Returns the link for one campaign.
 std::string link_of(const std::filesystem::path& out, const std::string& campaign);
 
 /// Returns the median gap between campaign days, in days (of two middle gaps the larger); none for
@@ -49,9 +48,9 @@ struct FollowedLimit {
   double limit = 0.0;
   nonio::statistics::Beyond beyond{};
 };
-/// Returns the limit of the quantity of `series`. For B_mean it is that of B, if B has one and was
-/// measured together with B_mean since the last significant change; otherwise it is its own. None
-/// if there is no such limit, or if its series has ended.
+/// Returns the limit of the quantity of `series`; for B_mean the limit of B, if B has one and was
+/// measured together with B_mean since the last significant change. None if there is no limit, or
+/// if the series with the limit has ended.
 std::optional<FollowedLimit> limit_of(const AssessedMachine& machine, const FollowedSeries& series);
 
 /// Returns whether the table was loaded on this axis and the days between which it was loaded

@@ -22,7 +22,7 @@ namespace kernel = nonio::statistics;
 
 namespace {
 
-/// Returns a digest of all inputs of a trend.
+/// Returns the digest of the inputs of a result; `what`: 't' trend, 's' slope.
 std::string key_of(char what, const kernel::Series& s) {
   return storage::sha256(storage::pack(what, s));
 }

@@ -20,9 +20,8 @@ namespace nonio::assessment {
 /// of its new campaigns. The cache changes no result: a damaged entry is computed again.
 class Fits {
  public:
-  /// Starts with an empty cache.
   Fits() = default;
-  /// Returns a cache with the entries that `kept` returned earlier.
+  /// Returns a cache with the entries of an earlier `kept()`; empty if the bytes are damaged.
   static Fits of(std::string_view kept);
 
   nonio::statistics::Trend trend(const nonio::statistics::Series& series);

@@ -91,8 +91,8 @@ Expected<std::vector<HistoryBasis>> history_bases(const fs::path& out,
 
 namespace {
 
-/// Returns the campaigns of the basis and the campaign itself, treated as if they had come in one
-/// run.
+/// Returns the campaigns of the basis and the campaign itself, all with run 0, because the history
+/// does not depend on runs.
 store::StoredMachine campaigns_up_to(const store::StoredMachine& all, const HistoryBasis& basis) {
   std::set<std::string> wanted{basis.campaign};
   for (const auto& [campaign, digest] : basis.campaigns) wanted.insert(campaign);

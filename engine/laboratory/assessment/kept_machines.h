@@ -15,8 +15,8 @@
 
 namespace nonio::assessment {
 
-/// Results of a run for one machine, so that the next run assesses only machines with new data.
-/// Each part states what it was made from.
+/// Results of a run for one machine, so that the next run assesses only machines with new data. The
+/// digests determine which results are still valid.
 struct KeptMachine {
   std::string rows{};  ///< digest of the machine's data in the store and the site
   struct Series {
@@ -64,7 +64,7 @@ class KeptMachines {
     };
     std::vector<Of> machines;
     std::set<std::string> gone;  ///< machines that no longer exist
-    /// All runs, if any of them changed.
+    /// All runs, if any of them changed; otherwise none.
     std::optional<std::map<std::uint64_t, RunResult>> runs{};
   };
   void keep(const Changes& changes);

@@ -27,12 +27,12 @@ struct LastRun {
   std::uint64_t run = 0;
   std::string date;  ///< date of the run, YYYY-MM-DD; used in place of a clock
   std::uint64_t campaigns = 0, done = 0, unchanged = 0;
-  std::vector<Failed> failed{};        ///< failed campaigns, sorted by campaign
-  std::vector<Vanished> vanished{};    ///< vanished campaigns, sorted by campaign; without those
-                                       ///< that were removed on purpose
+  std::vector<Failed> failed{};        ///< sorted by campaign
+  std::vector<Vanished> vanished{};    ///< sorted by campaign, without campaigns that were removed
+                                       ///< on purpose
   std::vector<std::string> issued{};   ///< numbers of issued certificates
   std::vector<std::string> waiting{};  ///< campaigns whose drafts wait for approval
-  std::string language = "en";         ///< language of the site
+  std::string language = "en";
   /// why the store does not contain this run; empty: the store contains it
   std::string history_error{};
 };

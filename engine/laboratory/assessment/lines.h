@@ -30,11 +30,11 @@ struct Known {
 std::vector<reports::WorkItem> lines_of(const Known& known);
 
 /// Returns the kind of a quantity: reversal, scale, curve, turn, cyclic, scatter, squareness,
-/// straightness, centre, circle or parameter. The words for a kind are in `term.what` and
-/// `term.look`.
+/// straightness, centre, circle or parameter. The texts for a kind are in the word lists
+/// `term.what` and `term.look`.
 std::string kind_of(const std::string& quantity);
 
-/// Returns the axis of a series; if it has none, the one in its quantity (backlash:X.b).
+/// Returns `axis`; if it is empty, the axis that the quantity contains (X in backlash:X.b).
 std::string axis_of(const std::string& axis, const std::string& quantity);
 
 }  // namespace nonio::assessment

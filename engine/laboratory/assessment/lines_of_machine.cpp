@@ -76,8 +76,6 @@ class OfMachine {
 
   void add(WorkItem l) { out_.push_back(std::move(l)); }
 
-  // ---- lines about changes
-
   /// Collects the changes of each axis since its last repair or compensation, except those that are
   /// attributed to the instrument or to a table that was loaded wrongly.
   void causes_by_axis() {
@@ -104,8 +102,8 @@ class OfMachine {
     });
   }
 
-  /// Whether an event states that the axis was repaired or compensated after that day. Events after
-  /// the run do not count.
+  /// Whether an event states that the axis was repaired or compensated after the day `after`.
+  /// Events dated after the run are ignored.
   bool is_repaired(const std::string& axis, const std::string& after) const {
     return std::any_of(m_.events.begin(), m_.events.end(), [&](const config::Event& e) {
       return (e.kind == "repair" || e.kind == "compensation") && e.date > after &&
@@ -125,7 +123,8 @@ class OfMachine {
     causes_[axis].push_back({c.after, c.before, {{&s, &c}}});
   }
 
-  /// Puts size, days, kind of the quantity and place to look into the finding.
+  /// Adds size, U, p, days, kind of the quantity and event of a change to the finding, and the
+  /// other quantities that show the change.
   void describe(WorkItem& l, const AxisChange& cause) const {
     const AxisChange::Seen& first = cause.seen.front();
     const Quantity q = first.series->unit;
@@ -202,8 +201,6 @@ class OfMachine {
     describe(l, cause);
     return l;
   }
-
-  // ---- lines about limits
 
   /// Returns the axis of a result; for results without an axis (circle, spindle), the analysis, so
   /// that each analysis has one line.
@@ -341,7 +338,7 @@ class OfMachine {
     std::string first = l.since;
     for (const Judged& j : all)
       first = std::min(first, since(*j.series, m_.stored.results[j.result]));
-    AxisChange* explains = nullptr;  // largest change since the values are beyond the limit
+    AxisChange* explains = nullptr;  // largest change since the first day beyond the limit
     for (AxisChange& cause : causes_[axis]) {
       if (cause.before < first) continue;
       cause.listed = true;
@@ -359,8 +356,6 @@ class OfMachine {
     }
     return l;
   }
-
-  // ---- lines about loaded tables
 
   /// Adds a line for the last table of each axis if it was loaded wrongly, or if neither a campaign
   /// nor an event states that it was loaded. No line is added if the axis was repaired or
@@ -405,7 +400,7 @@ class OfMachine {
     });
   }
 
-  // ---- tables that did less than predicted
+  // ---- lines about tables that achieved less than predicted
 
   void tables() {
     for (const reports::TableKept& t : d_.tables) {

@@ -63,7 +63,7 @@ bool is_measured_later(const StoredMachine& m, const std::map<std::string, std::
 }  // namespace
 
 std::vector<Judged> open_results(const StoredMachine& m, const ShownSeries& s) {
-  // A campaign without a limit has judged nothing, so the previous decisions remain.
+  // A campaign without a limit makes no decision, so the previous decisions remain valid.
   std::map<std::string, std::vector<std::size_t>> groups;
   for (const std::size_t i : s.results)
     if (const StoredResult& r = m.results[i]; !r.decision.empty())

@@ -42,7 +42,7 @@ bool is_calibration(std::string_view finding);
 /// instrument's calibration had expired.
 struct Withheld {
   std::size_t campaign = 0;  ///< index into StoredMachine::campaigns
-  std::string axis;          ///< axis of a table, if known
+  std::string axis;          ///< axis of a table; empty: it is unknown, or no table is withheld
   std::string finding;
   std::vector<std::string> outputs;  ///< names of the plugins that make the outputs
 };

@@ -107,7 +107,7 @@ IntervalProposal staircase(const IntervalFacts& m) {
 }
 
 /// Returns the proposal from the machines of one model; none if they are too few, or if no change
-/// is significant.
+/// of the interval is significant.
 std::optional<IntervalProposal> fleet(const IntervalFacts& m, const Counted& counted) {
   if (static_cast<std::size_t>(counted.machines) < fewest_of_a_fleet) return std::nullopt;
   const kernel::Proposal p =
@@ -122,8 +122,8 @@ std::optional<IntervalProposal> fleet(const IntervalFacts& m, const Counted& cou
   return out;
 }
 
-/// Returns the point before the last significant change. Changes that are not significant are
-/// ignored here; they affect the uncertainty of the level in the forecast.
+/// Returns the point before the last significant change; none without one. Changes that are not
+/// significant affect only the uncertainty of the level in the forecast.
 std::optional<std::size_t> last_significant(const FollowedSeries& s) {
   for (std::size_t i = s.trend.changes.size(); i-- > 0;)
     if (s.significant[i]) return s.trend.changes[i].after;

@@ -22,8 +22,8 @@ struct IntervalFacts {
   std::string maker, model;
   std::uint64_t days = 0;  ///< number of days on which the machine was measured
   double months = 0.0;     ///< calibration interval in months; 0: none
-  double tested = 0.0;     ///< months between the last campaign with a result as found and the one
-                           ///< before
+  double tested = 0.0;     ///< months from the previous day of measurement to the campaign of
+                           ///< `found`; 0: none
   /// Worst decision among the last results as found of all quantities with a limit.
   std::optional<nonio::statistics::Found> found{};
   std::optional<reports::IntervalProposal> chart{};    ///< shortest interval that the machine's own
@@ -38,11 +38,11 @@ struct IntervalFacts {
 /// interval applies.
 IntervalFacts interval_facts(const AssessedMachine& machine, std::optional<int> rule);
 
-/// Proposes when to measure each machine next, in whole months; nothing is changed. The proposal is
-/// based on all machines of a model (A3) if there are enough, otherwise on the last calibration as
-/// found (staircase). After a failure it is not longer than the staircase, and never longer than
-/// the control chart of the quantities with a limit. A machine that was measured well before the
-/// end of its interval has not tested that interval. The proposal is refused, with a reason, for a
+/// Proposes an interval for each machine, in whole months; nothing is changed. The proposal is
+/// based on all machines of a model (NCSL RP-1, A3) if there are enough, otherwise on the last
+/// calibration as found (staircase). After a failure it is not longer than the staircase, and never
+/// longer than the control chart of the quantities with a limit. A calibration before 75 % of the
+/// interval does not test the interval. No interval is proposed, and the reason is stated, for a
 /// value beyond its limit today, for fewer than two days of measurement, without a limit or an
 /// interval, and, except after a failure, for fewer than two campaigns after the last change.
 std::vector<reports::IntervalProposal> proposals_of(

@@ -17,8 +17,8 @@ namespace {
 
 using storage::Json;
 
-constexpr double same_place = 0.01;  // largest difference of positions that count as equal, as a
-                                     // fraction of the span
+constexpr double same_place = 0.01;  // largest difference of positions that are treated as equal,
+                                     // as a fraction of the span
 bool near(double a, double b, double span) { return std::fabs(a - b) <= same_place * span; }
 
 double number_at(const Json& o, const char* key) {
@@ -27,8 +27,9 @@ double number_at(const Json& o, const char* key) {
 }
 
 /// Returns why two results cannot be points of one series; returns an empty text if they can.
-/// Switching a table on or off is a known step and does not separate them. If `common_stretch` is
-/// true, results with different ends can be compared over the stretch that they have in common.
+/// Switching a table on or off is a known step and does not separate the results. If
+/// `common_stretch` is true, results with different ends can be compared over the stretch that they
+/// have in common.
 std::string difference(const Json& a, const Json& b, bool common_stretch) {
   const double span = number_at(a, "to") - number_at(a, "from");
   if (!common_stretch && (a.contains("from") != b.contains("from") ||
@@ -93,8 +94,8 @@ std::vector<std::uint64_t> seeds_of(const StoredMachine& m,
   return out;
 }
 
-/// Replaces each variance by the mean of itself and the median of the series. A campaign's u is
-/// estimated from few runs; one that is small by chance would turn noise into a step.
+/// Replaces each variance by its mean with the median of the series. A campaign's u is estimated
+/// from few runs, and a u that is small by chance would turn noise into a step.
 void pool(std::vector<kernel::Point>& points) {
   std::vector<double> variances;
   for (const kernel::Point& p : points) variances.push_back(p.u * p.u);
@@ -167,8 +168,8 @@ class Happenings {
     return concerns(e, s_) && day(k) <= e.date && e.date <= day(k + 1);
   }
 
-  /// Returns whether the event is on the day of an adjustment in `table`; it is then taken as that
-  /// adjustment.
+  /// Returns whether the event is on the first or last day of a gap in `table`; it is then treated
+  /// as the adjustment in this gap.
   bool on_day_of_table(const config::Event& e, const std::vector<bool>& table) const {
     for (std::size_t k = 0; k < table.size(); ++k)
       if (table[k] && (day(k) == e.date || day(k + 1) == e.date)) return true;

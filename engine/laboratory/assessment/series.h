@@ -30,7 +30,7 @@ struct FollowedSeries {
   /// A result of the same quantity before this series began that cannot be joined to it.
   struct Apart {
     std::size_t result = 0;
-    std::string why;  ///< why it cannot be joined, as id of a word: span, place, across, model,
+    std::string why;  ///< why it cannot be joined, as the id of a text: span, place, across, model,
                       ///< period, radius, feed, other
   };
   std::vector<Apart> apart{};
@@ -67,12 +67,12 @@ std::vector<FollowedSeries> followed_series(const store::StoredMachine& machine,
 /// effect on it.
 nonio::statistics::Series first_points(const FollowedSeries& series, std::size_t count);
 
-/// Returns the points as compared over the common stretch, each with its own u.
+/// Returns the points as compared over the common stretch, with the u of their campaigns instead of
+/// the pooled u.
 std::vector<nonio::statistics::Point> compared_points(const FollowedSeries& series);
 
 std::vector<ShownSeries> shown_series(const store::StoredMachine& machine);
 
-/// A machine with all data of its history.
 struct AssessedMachine {
   store::MachineState state;
   store::StoredMachine stored;

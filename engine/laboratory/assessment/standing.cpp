@@ -19,14 +19,14 @@ using reports::WorkItem;
 
 namespace {
 
-/// Whether the acknowledgement names this line: by the line's id, the finding's id, or the
-/// finding's id up to its dash.
+/// Whether the acknowledgement names this line: by the line's id, by the finding's id, or by the
+/// finding's id up to its first dash.
 bool is_of(const config::Acknowledgement& a, const WorkItem& l) {
   const std::string& id = l.finding.id;
   return a.finding == l.id || a.finding == id || a.finding == id.substr(0, id.find('-', 8));
 }
 
-/// A value as it was known on a day, and its U.
+/// The last value that was measured up to a day, and its U, in the unit of results.json.
 struct Knew {
   double value = 0.0, U = 0.0;
 };
@@ -44,8 +44,8 @@ std::optional<Knew> known_on(const AssessedMachine& m, const WorkItem& l, const 
   return out;
 }
 
-/// Whether the value has moved by more than U since the acknowledgement. Forecasts never count as
-/// moved: they are acknowledged until the stated day.
+/// Whether the value has moved by more than U since the acknowledgement. A forecast is acknowledged
+/// until the stated day, so false is returned for it.
 bool has_moved(const config::Acknowledgement& a, const AssessedMachine& m, const WorkItem& l) {
   if (!l.value || l.kind == WorkItem::Kind::soon) return false;
   const double now = *l.value * unit_of(l.unit).per_si;
@@ -60,7 +60,8 @@ bool is_of_quantity(const config::Acknowledgement& a, const std::string& quantit
   return a.quantity.empty() || a.quantity == quantity;
 }
 
-/// Whether this value was open on the day of the acknowledgement and has not moved since.
+/// Whether this value did not conform or was indeterminate on the day of the acknowledgement, and
+/// has since moved by at most U.
 bool was_known(const config::Acknowledgement& a, const AssessedMachine& m, const WorkItem& l,
                const reports::OpenValue& v) {
   if (a.finding != l.id && !is_of_quantity(a, v.quantity)) return false;
@@ -111,10 +112,9 @@ bool is_later(const config::Acknowledgement& a, const WorkItem& l) {
 }
 
 /// Marks a line as known if a person has acknowledged it until this date or later. It stays new if
-/// its change happened after the acknowledgement, or if its value has moved by more than U since:
-/// from the value that the acknowledgement states, otherwise from the last one before its day.
-/// Other values in the line are known if they were open on that day and have not moved; if some are
-/// not known, they are returned as a new line.
+/// a later campaign showed its change, or if its value has moved by more than U from the value that
+/// the acknowledgement states, otherwise from the last value up to the day of the acknowledgement.
+/// The values in `also` that are not acknowledged (`was_known`) are returned as a new line.
 std::optional<WorkItem> acknowledge(WorkItem& l, const AssessedMachine& m,
                                     const store::StoredLogs& logs, const std::string& date) {
   if (l.state == WorkItem::State::fixed) return std::nullopt;

@@ -19,7 +19,8 @@ using store::StoredTables;
 
 namespace {
 
-/// Number of an axis' last tables that are considered; older ones are not loaded again.
+/// Number of the last tables of an axis that are considered, because older tables are hardly loaded
+/// again.
 constexpr std::size_t most_known = 8;
 
 std::vector<double> numbers(const Json& of, const char* name, bool rotary, bool position) {
@@ -135,8 +136,8 @@ class LoadedOnAxis {
   }
 
  private:
-  /// Puts the table that explains most of the change into `out`, with the remaining rms, if it
-  /// leaves less than half of the change.
+  /// Stores in `out` the table that explains most of the change, with the rms of the change and of
+  /// the unexplained part, if the latter is at most half of the former.
   static void put_nearest(const Taken& before, const Taken& after, const std::vector<Known>& those,
                           reports::TableLoaded& out) {
     constexpr double most_left = 0.5;
@@ -202,8 +203,8 @@ class LoadedOnAxis {
     return out;
   }
 
-  /// Returns the change of the stated tables, if both campaigns state which table was active and
-  /// they differ. Other causes cannot be separated from it by the shape of the change.
+  /// Returns the change of the stated table; none if a campaign does not state its active table, or
+  /// if both are equal. Its rms is NaN, because the shape of the change does not show the table.
   std::optional<reports::TableLoaded> stated(const Taken& before, const Taken& after,
                                              const std::vector<Known>& all_known) const {
     if (!before.active || !after.active || is_same(*before.active, *after.active))

@@ -17,13 +17,13 @@ const char* loading_name(statistics::Loading loading);
 /// Smallest standard uncertainty of a difference between two campaigns, um or arcsec.
 inline constexpr double change_resolution = 0.1;
 
-/// Returns the changes between two neighbouring campaigns of an axis that were caused by loading or
+/// Returns the changes between two successive campaigns of an axis that were caused by loading or
 /// removing a table, for campaigns whose results.json has `control_tables`. Known tables are those
 /// that earlier campaigns wrote or had active, and those in the record of the machine; of more than
 /// eight, the last eight.
 std::vector<reports::TableLoaded> tables_loaded(const AssessedMachine& machine);
-/// Returns pairs of neighbouring campaigns of an axis of which at least one does not state the
-/// active table.
+/// Returns the pairs of successive campaigns of an axis in which at least one campaign does not
+/// state the active table.
 std::vector<reports::TableLoaded> tables_unstated(const AssessedMachine& machine);
 
 }  // namespace nonio::assessment

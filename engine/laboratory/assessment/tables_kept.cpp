@@ -53,8 +53,8 @@ class OfAxis {
     return left.size() == 1;
   }
 
-  /// Returns the campaign of the last table whose effect was predicted before these readings or
-  /// with them; none if it is ambiguous or too old.
+  /// Returns the last campaign up to `left` that predicts the effect of a table; none if it has
+  /// predictions for several measurements, or is older than `longest_until_left` days.
   std::optional<std::size_t> last_promised(std::size_t left) const {
     std::optional<std::size_t> out;
     std::set<std::string> measurements;
@@ -98,7 +98,8 @@ class OfAxis {
     std::optional<reports::TableKept> out;
     double most = 0.0, p = 1.0;
     std::size_t asked = 0;
-    std::set<std::string> seen;  // two controllers predict the same: only the first counts
+    std::set<std::string> seen;  // the predictions of several controllers are equal, so the first
+                                 // one is used
     for (const StoredResult& promised : m_.stored.predicted) {
       if (promised.axis != axis_ || promised.campaign != found_in ||
           !seen.insert(promised.quantity).second)

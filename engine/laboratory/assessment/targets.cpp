@@ -100,7 +100,8 @@ double factor_of(const std::string& kind, const kernel::Stretch& over) {
 using Kind = std::pair<std::size_t, double>;
 Kind kind_of(const StoredFit& f) { return {f.residuals.size(), f.dof}; }
 
-/// Returns the variance of the machine between its targets, pooled over all points; not below 0.
+/// Returns the variance of the machine's errors about the fits, without that of the readings and
+/// pooled over all points; not below 0.
 double beyond_of(const std::vector<PointTargets>& targets) {
   double sum = 0.0, dof = 0.0;
   for (const PointTargets& t : targets) sum += t.fit.dof * t.fit.beyond, dof += t.fit.dof;
@@ -133,8 +134,8 @@ double of_few(double variance, double dof) {
 /// Returns for each point of a history the variance due to the choice of its targets, at most
 /// `beyond`. Each pair of successive points of equal kind gives one estimate (`half_difference`).
 /// The variance of a point is the mean of two values, enlarged by `of_few`: the median over all
-/// pairs, which a single change of the machine hardly affects, and the mean over the two points
-/// nearest to it. A kind with fewer than four points gets `beyond`.
+/// pairs, which a single change of the machine hardly affects, and the mean estimate from its pairs
+/// with the two nearest points. A kind with fewer than four points gets `beyond`.
 std::vector<double> drawn_anew(const std::vector<PointTargets>& targets, double beyond) {
   constexpr std::size_t fewest = 4;
   std::map<Kind, std::vector<std::size_t>> kinds;

@@ -17,8 +17,8 @@ namespace nonio::assessment {
 struct StoredFit {
   double beyond = 0.0, dof = 0.0;          ///< variance about the fit in excess of that of the
                                            ///< readings, and degrees of freedom of the fit
-  nonio::statistics::FittedCurve curve{};  ///< without coefficients: its quantities do not refer to
-                                           ///< the ends of the targets
+  nonio::statistics::FittedCurve curve{};  ///< fitted curve; without coefficients if its quantities
+                                           ///< do not refer to the ends of the targets
   /// Coefficients of cosine and sine of each sinusoid in addition to the curve.
   std::vector<nonio::statistics::CoefficientOver> sinusoids{};
   std::vector<double> residuals{};  ///< residual at each target; empty: not stored
@@ -36,21 +36,21 @@ struct StoredTargets {
 /// Parses the texts of the store; none for each text that cannot be read.
 std::vector<std::optional<StoredTargets>> read_targets(const std::vector<std::string>& texts);
 
-/// Target data of one point of a series.
 struct PointTargets {
   std::string digest;
   nonio::statistics::Stretch span{};
   double other_variance = 0.0;  ///< variance that does not come from the readings
-  double share = 0.0;
+  double share = 0.0;           ///< variance for independent values of variance 1 at the targets
   StoredFit fit{};
 };
 
-/// Selects the data that the quantity needs. `place`: index of the quantity in the measurement.
+/// Selects the data of a quantity: the fit of the reversal for B_mean, otherwise of the means.
+/// `place`: index of the quantity in the measurement.
 PointTargets targets_of(const StoredTargets&, const std::string& quantity, std::size_t place);
 
-/// Points compared over a common stretch of the axis. If all have the same targets, the targets of
-/// a point are unknown, or nothing is common to all, the points are unchanged and there is no
-/// stretch.
+/// Points compared over a common stretch of the axis. If all points have the same targets, if the
+/// targets of a point are unknown, or if the points have no stretch in common, the points are
+/// unchanged and `over` is none.
 struct Compared {
   std::vector<nonio::statistics::Point> points;
   std::optional<nonio::statistics::Stretch> over{};
@@ -65,7 +65,7 @@ struct Compared {
 Compared compared(std::vector<nonio::statistics::Point> points,
                   const std::vector<PointTargets>& targets, const std::string& quantity);
 
-/// Whether the source of a common part is a choice of targets.
+/// Whether the source of a common uncertainty is a choice of targets (`compared`).
 bool is_targets(const std::string& source);
 
 }  // namespace nonio::assessment

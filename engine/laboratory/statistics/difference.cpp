@@ -12,7 +12,7 @@
 namespace nonio::statistics {
 namespace {
 
-/// Returns, by source, the common part in after - before.
+/// Returns, by source, the signed common uncertainty that remains in after - before.
 std::map<std::string, double> left_of_common(const Point& before, const Point& after) {
   std::map<std::string, double> out;
   for (const Common& c : before.common) out[c.source] -= c.u;

@@ -7,9 +7,9 @@
 
 #include "laboratory/statistics/series.h"
 
-/// Difference between two campaigns, and whether a table achieved its prediction. Parts with a
-/// common source cancel. Source: JCGM 100:2008, 5.2; ISO 13528 zeta score (difference over its
-/// standard uncertainty; E_n with k = 2 is half of it).
+/// Difference between two campaigns, and whether a compensation table had its predicted effect.
+/// Uncertainties of a common source cancel. Source: JCGM 100:2008, 5.2; ISO 13528 zeta score
+/// (difference over its standard uncertainty; E_n with k = 2 is half of this score).
 namespace nonio::statistics {
 
 struct Difference {
@@ -19,17 +19,17 @@ struct Difference {
   double zeta() const { return u > 0.0 ? value / u : 0.0; }
 };
 
-/// Returns after - before - expected. An error as of `check` for point 1 (before) or 2 (after), if
-/// `expected` or `u_expected` is not a finite number, or if `u_expected` is below 0.
+/// Returns after - before - expected. Returns an error if `check` rejects a point (1 is before, 2
+/// is after), if `expected` or `u_expected` is not finite, or if `u_expected` is below 0.
 Expected<Difference> difference(const Point& before, const Point& after, double expected = 0.0,
                                 double u_expected = 0.0);
 
 /// Result of comparing the step from as found to as left with the step that was predicted for a
 /// table.
 struct TableCheck {
-  Difference from_predicted;  ///< difference from the predicted step
+  Difference from_predicted;
   /// Fraction of the error as found that the table compensated: 1 all, 0 none, below 0: made worse.
-  /// None if the error as found is within twice its uncertainty.
+  /// None if the error as found is within twice its standard uncertainty.
   std::optional<double> taken{};
   bool as_promised = true;  ///< whether the difference is not significant at 1 %
 };

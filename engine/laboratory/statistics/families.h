@@ -7,12 +7,12 @@
 /// is below the level.
 namespace nonio::statistics {
 
-/// Returns the adjusted p according to Benjamini and Hochberg (1995). They limit the mean fraction
-/// of false ones among the significant tests, for tests that are independent or positively
+/// Returns the adjusted p according to Benjamini and Hochberg (1995), which limit the mean fraction
+/// of false positives among the significant tests, if the tests are independent or positively
 /// correlated.
 std::vector<double> benjamini_hochberg(const std::vector<double>& p);
-/// Returns the adjusted p according to Holm (1979). They limit the probability that any
-/// of the tests is significant by chance.
+/// Returns the adjusted p according to Holm (1979), which limit the probability that any of the
+/// tests is significant by chance.
 std::vector<double> holm(const std::vector<double>& p);
 
 }  // namespace nonio::statistics

@@ -33,7 +33,7 @@ State state_at(const Series& s, const Trend& t, double time) {
   return out;
 }
 
-/// Returns P(|state| + more > limit), with a normal state and `more`.
+/// Returns P(|state| + more > limit) for a normally distributed state and a normal `more`.
 double p_beyond(double value, double u_value, double limit, const Beyond& more) {
   const double u = std::hypot(u_value, more.u), left = limit - more.value;
   if (!(u > 0.0)) return std::fabs(value) > left ? 1.0 : 0.0;

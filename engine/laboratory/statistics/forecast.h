@@ -7,8 +7,8 @@
 
 namespace nonio::statistics {
 
-inline constexpr double keep_below = 0.05;  ///< highest probability of a value beyond the limit
-                                            ///< with the answer keep
+inline constexpr double keep_below = 0.05;  ///< probability of a value beyond the limit below which
+                                            ///< the answer is keep
 
 enum class Answer { keep, watch, act, cannot_say };
 
@@ -25,19 +25,19 @@ struct Forecast {
   Answer answer = Answer::cannot_say;
 };
 
-/// Amount by which the quantity with the limit exceeds the absolute value of the followed one: B =
-/// max |B_i| is never smaller than |B_mean|. u: standard deviation of this amount.
+/// Amount by which the quantity with the limit exceeds the absolute value of the quantity of the
+/// series, for example B = max |B_i| exceeds |B_mean|. u: standard deviation of this amount.
 struct Beyond {
   double value = 0.0, u = 0.0;
 };
 
 /// Forecasts a series at `time` (years). The state is x' b with u^2 = x' C x (plus walk dt).
-/// `limit` applies to the absolute value plus `beyond`. The answer depends on P(out): below 5 %
+/// `limit` applies to the absolute value plus `beyond`. The answer depends on p_out: below 5 %
 /// keep, up to 50 % watch, above 50 % act; without a limit it is keep. It is act in any case if the
-/// last point is out already. Otherwise it is cannot_say for fewer than three points, or later than
-/// half of their span after the last one. `u_new` is the u of the next campaign; none: that of the
-/// last one. Source: ISO 14253-1 and ILAC-G8 for the three answers (general knowledge; the bounds
-/// of P are chosen for Nonio).
+/// last point is beyond the limit. Otherwise it is cannot_say for fewer than three points, or if
+/// `time` is later than the last point by more than half of their span. `u_new` is the u of the
+/// next campaign; none: that of the last point. Source: ISO 14253-1 and ILAC-G8 for the three
+/// answers (general knowledge; the bounds of p_out are chosen for Nonio).
 Forecast forecast(const Series&, const Trend&, double time, std::optional<double> limit,
                   std::optional<double> u_new = std::nullopt, Beyond beyond = {});
 

@@ -14,13 +14,13 @@ using Eigen::VectorXd;
 
 MatrixXd covariance_of(const Series&);
 
-/// Points whitened by the Cholesky factor of their covariance. If the spread of slopes is known,
-/// one more row follows: slope / spread = 0 +- 1.
+/// Values of the points, whitened by the Cholesky factor of their covariance. If `spread` is above
+/// 0, an additional row contains the prior of the slope: slope / spread = 0 +- 1.
 struct Whitened {
   explicit Whitened(const Series&);
-  /// Returns a column of the model, whitened.
+  /// Returns a whitened column of the model, with 0 in the additional row.
   VectorXd column(const VectorXd&) const;
-  /// Returns the whitened column of the slope, with its additional row.
+  /// Returns the whitened column of the slope, with 1 / spread in the additional row.
   VectorXd slope(const VectorXd& times) const;
   double spread = 0.0;
   Eigen::LLT<MatrixXd> factor;
@@ -34,8 +34,8 @@ struct Gls {
   double chi2 = 0.0, dof = 0.0;
 };
 
-/// Fits the columns by generalised least squares. Returns none if the points cannot separate the
-/// columns.
+/// Fits the columns by generalized least squares. Returns none if they are linearly dependent or
+/// more than the rows.
 std::optional<Gls> gls(const Whitened&, const MatrixXd& whitened_columns);
 
 double normal_two_sided(double z);  ///< returns P(|N| > |z|) for a standard normal N

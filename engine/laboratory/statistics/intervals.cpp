@@ -23,7 +23,7 @@ Proposal refused(Method method, std::string why,
 bool is_share(double p) { return p > 0.0 && p < 1.0; }
 bool is_time(double t) { return std::isfinite(t) && t > 0.0; }
 
-/// Returns P(at most `passed` of `machines`) for the probability `target`.
+/// Returns the binomial P(at most `passed` of `machines`) if each passes with probability `target`.
 double cdf(int passed, int machines, double target) {
   if (passed < 0) return 0.0;
   return math::binomial_lower(passed, machines, target);

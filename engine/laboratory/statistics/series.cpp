@@ -13,9 +13,9 @@ namespace {
 constexpr double median_of_chi2 = 0.45493642311957;
 constexpr std::size_t fewest_ratios = 20;
 
-/// Returns the squared distance of a point from the line through its neighbours, divided by its
-/// variance; level, slope and common parts cancel. None if an event other than a change of the
-/// instrument is declared at the point, or if the neighbours are on one day.
+/// Returns the squared distance of a point from the line through its neighbors, divided by the
+/// variance of the distance; see `Scatter`. None if an event other than a change of the instrument
+/// is declared next to the point, or if the neighbors have the same time.
 std::optional<double> off_line(const Series& s, std::size_t i) {
   for (const Declared& d : s.declared)
     if (d.kind != Declared::Kind::instrument && (d.after == i || d.after + 1 == i))

@@ -8,9 +8,9 @@
 
 #include "nonio/sdk/error.h"
 
-/// Statistics of one quantity of one machine over its campaigns, without files, clock or words.
-/// Times are in years from any day; values and uncertainties have one unit; all uncertainties are
-/// standard (k = 1).
+/// Statistics of one quantity of one machine over its campaigns, without access to files, clock or
+/// texts. Times are in years from an arbitrary day; values and uncertainties have one unit; all
+/// uncertainties are standard (k = 1).
 namespace nonio::statistics {
 
 /// Signed standard uncertainty that all points with the same source have in common, for example an
@@ -44,8 +44,8 @@ struct Series {
   /// states (excess_of_ratios).
   double excess = 1.0;
   /// Standard deviation, per year, of the slopes of such series in this laboratory
-  /// (spread_of_slopes): prior of the slope while steps are searched. 0: no prior, and a drift is
-  /// tested.
+  /// (spread_of_slopes), which is the prior of the slope about 0 while steps are searched; 0: no
+  /// prior.
   double spread = 0.0;
   /// Whether a slope is estimated even for a level, so that its uncertainty is part of every
   /// forecast: a drift that was not detected may still exist.
@@ -63,10 +63,10 @@ struct Series {
 /// 1.
 Expected<void> check(const Series&);
 
-/// Scatter at one point: d^2/u(d)^2, where d is the point minus the line through its neighbours.
+/// Scatter at one point: d^2/u(d)^2, where d is the point minus the line through its neighbors.
 /// Levels, slopes and common parts cancel. Left out are the first and the last point, points whose
-/// neighbours have one time, and points next to a declared event, unless the event is a change of
-/// the instrument.
+/// neighbors have the same time, and points next to a declared event other than a change of the
+/// instrument.
 struct Scatter {
   std::size_t point = 0;
   double ratio = 0.0;
@@ -74,7 +74,7 @@ struct Scatter {
 std::vector<Scatter> scatter_of(const Series&);
 /// Returns the factor by which points scatter more than their u, over many series: the root of the
 /// median of the ratios over 0.4549, the median of chi-square with 1 degree of freedom. Steps in
-/// few series hardly affect the median. Not below 1, and 1 for fewer than 20 points.
+/// few series hardly affect the median. Not below 1, and 1 for fewer than 20 ratios.
 double excess_of_ratios(std::vector<double> ratios);
 
 /// Slope per year, fitted together with a step at each declared event and at each place where a

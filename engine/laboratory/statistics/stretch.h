@@ -4,8 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-/// Compares curves of campaigns whose targets cover different stretches of an axis over the stretch
-/// that they have in common. The caller must have checked the sizes; no function returns an error.
+/// Restricts fitted curves to the stretch of an axis that the targets of two campaigns have in
+/// common, so that the curves can be compared. The caller must have checked the sizes; no function
+/// returns an error.
 namespace nonio::statistics {
 
 struct Stretch {
@@ -33,8 +34,8 @@ struct CoefficientOver {
   double value = 0.0, variance = 0.0, share = 0.0;
 };
 
-/// Returns the coefficient of P_degree over the other stretch, which equals that of a fit there
-/// with the lower and higher polynomials. It is exact. `degree`: not above that of the curve.
+/// Returns the coefficient of P_degree of the same curve when it is written as Legendre polynomials
+/// over `other`. The conversion is exact. `degree`: not above that of the curve.
 CoefficientOver coefficient_over(const FittedCurve&, const Stretch& other, std::size_t degree);
 
 }  // namespace nonio::statistics

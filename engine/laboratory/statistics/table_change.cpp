@@ -11,8 +11,8 @@
 namespace nonio::statistics {
 namespace {
 
-constexpr double least_p = 1e-3;  // smallest p at which the unexplained part counts as noise
-// Largest rms of the unexplained part that counts as noise, as a fraction of the change.
+constexpr double least_p = 1e-3;  // smallest p at which the unexplained part is regarded as noise
+// Largest rms of an unexplained part that is regarded as noise, as a fraction of the change.
 constexpr double most_noise = 0.4;
 // If the shape of the table is significant, an unexplained part that is not noise is accepted up to
 // this fraction of the rms of h (table_change.h).
@@ -21,8 +21,8 @@ constexpr double most_left = 0.1;
 constexpr double clear = 25.0;
 constexpr double distinct = 9.0;          // required difference of chi2 from any other candidate
 constexpr double slope_seen = 8.0;        // smallest slope of h in units of u_slope, if h is a line
-constexpr int most_points = 5;            // largest offset of a table that is recognised, in points
-constexpr std::size_t fewest_places = 4;  // smallest number of positions that both campaigns have
+constexpr int most_points = 5;            // largest offset of a table that is recognized, in points
+constexpr std::size_t fewest_places = 4;  // smallest number of differences in both directions
 
 /// Interpolated value of a curve, and the variance of the interpolation.
 struct Between {
@@ -37,7 +37,7 @@ Between between(const std::vector<double>& position, const std::vector<double>& 
   if (i > 0 && x - position[i - 1] <= near) return {value[i - 1], 0.0};
   i = std::clamp<std::size_t>(i, 1, position.size() - 1);
   const double part = (x - position[i - 1]) / (position[i] - position[i - 1]);
-  double bend = 0.0;  // bend of the curve at both ends of the interval
+  double bend = 0.0;  // larger bend of the curve at the two ends of the interval
   for (const std::size_t k : {i - 1, i})
     if (k > 0 && k + 1 < position.size()) {
       const double left = (value[k] - value[k - 1]) / (position[k] - position[k - 1]),
@@ -271,14 +271,14 @@ class Recognizing {
       c.h.push_back(of_t * t[i] + of_s * s[i]);
       r[i] -= c.h[i];
     }
-    // A candidate whose change does not exceed the noise is left out.
+    // A candidate whose change does not exceed twice the noise is left out.
     if (rms_of(d_, c.h, 0.0) < 2.0 * std::sqrt(mean_variance())) return;
     c.chi2 = chi2_of(d_, r, u_slope_);
     all_.push_back(std::move(c));
   }
 
-  /// Whether two candidates need not be distinguished: offsets by neighbouring numbers of points,
-  /// or a table and its offset. The better one is named.
+  /// Whether the candidates `a` and `b`, the best one, need not be distinguished: offsets of one
+  /// table that differ by a point, or the table itself as `b` and any offset of it.
   static bool is_alike(const Candidate& a, const Candidate& b) {
     const auto is_offset = [](const Candidate& c) {
       return c.loading == Loading::offset || c.loading == Loading::loaded;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-/// Recognises whether the change between two campaigns of an axis is a table that was loaded.
+/// Recognizes whether the change between two campaigns of an axis is a table that was loaded.
 /// Positions and deviations may have any units, the same in all arguments.
 namespace nonio::statistics {
 
@@ -22,13 +22,13 @@ struct TableCurve {
   std::vector<double> position{}, plus{}, minus{};
   bool empty() const { return position.empty(); }
   double at(double x, int direction) const;
-  /// Returns the table with its entries moved up by `points` points.
+  /// Returns the table with its entries moved by `points` points towards larger positions.
   TableCurve shifted(int points) const;
 };
 
 enum class Loading { loaded, removed, wrong_sign, twice, in_addition, offset };
 
-/// A change that was recognised as a table.
+/// A change that was recognized as a table.
 struct TableChange {
   Loading loading = Loading::loaded;
   std::size_t table = 0;  ///< index into the known tables; not used if `removed`
@@ -40,7 +40,7 @@ struct TableChange {
                           ///< chance
 };
 
-/// Recognises a change as a table. The model is
+/// Recognizes a change as a table. The model is
 ///
 ///   after - before = h + a constant of each direction + b (x - mean of x),
 ///
@@ -68,9 +68,9 @@ std::optional<TableChange> recognize(const MeasuredCurve& before, const Measured
                                      double resolution);
 
 /// Returns the known table that would leave the smallest part of the change unexplained if it was
-/// loaded, however large that part is, for changes that `recognize` does not recognise. None if no
+/// loaded, however large that part is, for changes that `recognize` does not recognize. None if no
 /// table changes the axis at these positions, or if both campaigns have too few positions in
-/// common. `p` is NaN.
+/// common. `p` of the result is NaN.
 std::optional<TableChange> nearest(const MeasuredCurve& before, const MeasuredCurve& after,
                                    const std::optional<TableCurve>& active,
                                    const std::vector<TableCurve>& known, double resolution);

@@ -93,8 +93,8 @@ class Trending {
     return out;
   }
 
-  /// Adds a step for each declared event. A change of the instrument gets none, because its
-  /// uncertainty is in the covariance; its place only determines the cause of a step.
+  /// Adds a step for each declared event. A change of the instrument gets no step, because the
+  /// uncertainty of the instruments is in the covariance; a step found there gets it as its cause.
   void declare() {
     for (std::size_t d = 0; d < s_.declared.size(); ++d) {
       const Declared& known = s_.declared[d];
@@ -123,7 +123,7 @@ class Trending {
                        [&](const Change& c) { return c.after == after; });
   }
 
-  /// Whitened steps at all places without one, orthogonal to the present model.
+  /// Whitened steps at all places without a step, orthogonal to the present model.
   struct Places {
     std::vector<std::size_t> after;
     MatrixXd direction;  // one column of unit length per place
@@ -179,8 +179,8 @@ class Trending {
     return std::min(bound, (beyond + 1.0) / (draws + 1.0));
   }
 
-  /// Whether the exceedances are more than 5 standard deviations above the significance level, so
-  /// that more draws would not change the decision.
+  /// Whether the exceedances are more than 5 standard deviations above the number expected at the
+  /// significance level, so that more draws would not change the decision.
   static bool is_surely_more(int beyond, int of) {
     const double expected = named_below * of;
     return beyond > expected + 5.0 * std::sqrt(expected);
@@ -225,8 +225,8 @@ class Trending {
     return true;
   }
 
-  /// Returns the cause of a step: the instrument, if it changed there and its uncertainty is common
-  /// to the points; otherwise undeclared.
+  /// Returns the cause of a step after point `after`: the instrument, if it changed after this
+  /// point and the next point has common uncertainties; otherwise undeclared.
   Change::Cause cause_at(std::size_t after) const {
     for (const Declared& d : s_.declared)
       if (d.kind == Declared::Kind::instrument && d.after == after &&
@@ -389,7 +389,7 @@ std::optional<Slope> slope_with_steps(const Series& given) {
 }
 
 double spread_of_slopes(const std::vector<Slope>& slopes) {
-  // Bound, mean and variance of min(z^2, 9).
+  // Bound, mean and variance of min(z^2, 9) for a standard normal z.
   constexpr double most = 9.0, expected = 0.99501, variance = 1.90145;
   if (slopes.size() < 3) return 0.0;
   const auto n = static_cast<double>(slopes.size());

@@ -12,7 +12,7 @@
 ///   b = (X' V^-1 X)^-1 X' V^-1 y,  C = (X' V^-1 X)^-1,  chi2 = r' V^-1 r,
 ///
 /// computed by whitening with the Cholesky factor of V and a QR decomposition. Columns of X: 1; a
-/// step at each declared event (its size is always estimated); undeclared steps; time.
+/// step at each declared event except changes of the instrument; undeclared steps; time.
 ///
 /// An undeclared step: G_k is the decrease of chi2 by a step after point k. The largest G over the
 /// places without a declared step is tested; its p is Bonferroni's bound if that is below 0.001
@@ -24,13 +24,13 @@
 /// penalty of 3 ln n each.
 ///
 /// If the spread of slopes in the laboratory is known (Series::spread), a row slope/spread = 0
-/// holds the slope near 0 while steps are searched and their sizes are estimated. Slopes, segments
+/// keeps the slope near 0 while steps are searched and their sizes are estimated. Slopes, segments
 /// and forecasts come from a fit with a free slope (Series::own_slope: for a level too), because an
 /// interval that depends on the slopes of other machines covers 95 % of all slopes together, but
 /// too few of those of machines that wear.
 ///
-/// Sources: JCGM 100:2008; generalised likelihood ratio (general knowledge; the null distribution
-/// of the largest is simulated here, reference values in tests/unit/history).
+/// Sources: JCGM 100:2008; generalized likelihood ratio (general knowledge; the null distribution
+/// of the largest G is simulated here, reference values in tests/unit/history).
 namespace nonio::statistics {
 
 enum class Model { none, level, drift, step, walk };
@@ -55,15 +55,16 @@ struct Change {
 struct Trend {
   Model model = Model::none;
   std::vector<Segment> segments;
-  std::vector<Change> changes;   ///< changes of the series, sorted by time
+  std::vector<Change> changes;   ///< sorted by time
   double chi2 = 0.0, dof = 0.0;  ///< chi2 and degrees of freedom of the fit with the prior of the
                                  ///< slope
-  /// Size of a step at the last possible place that would be detected with a probability of 80 %.
+  /// Size of a step in the last gap without a step that would be detected with a probability of
+  /// 80 %; none without such a gap.
   std::optional<double> smallest_change{};
   bool line_or_step = false;  ///< whether these points cannot distinguish a drift from a step
 
-  // For extrapolation (forecast.h): the model at a time after the last point is coefficients . (1,
-  // 1 for each change, and, if `drifts`, the time since the first point).
+  // For extrapolation (forecast.h): the model at a time after the last point is the sum of all
+  // coefficients, the last of them multiplied by the time since the first point if `drifts`.
   std::vector<double> coefficients, covariance;  ///< covariance row by row
   bool drifts = false;
   double walk = 0.0;  ///< variance per year of a random walk
@@ -71,8 +72,8 @@ struct Trend {
 
 inline constexpr double named_below = 0.01;
 
-/// Fits the trend. An error as of `check`. One point gives no model, two points only their
-/// difference.
+/// Fits the trend. Returns the errors of `check`. For fewer than three points the model is `none`,
+/// and one point gives no segments either.
 Expected<Trend> trend_of(const Series&);
 
 }  // namespace nonio::statistics

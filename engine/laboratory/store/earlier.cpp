@@ -177,8 +177,8 @@ void add_number(const std::optional<CertificateRow>& more, std::vector<Certifica
   if (!known) numbers.push_back(*more);
 }
 
-/// Returns the results of a record if they are still stored. If newer results were being stored,
-/// earlier.json contains them already.
+/// Returns the results of a record; none if they are no longer stored unchanged. Results that were
+/// being replaced are already in earlier.json.
 std::optional<std::string> still_there(const Kept& kept) {
   auto bytes = storage::read_file(kept.folder / evaluation::results_name);
   if (!bytes) return std::nullopt;
@@ -190,8 +190,8 @@ std::optional<std::string> still_there(const Kept& kept) {
   return std::move(*bytes);
 }
 
-/// Appends the results in `kept` to earlier.json if they differ from those in `carried`, and adds
-/// their certificate number unless it is `number`.
+/// Appends the results in `kept` to `carried.earlier` unless `carried.indexed` or the last entry
+/// has the same results, and adds their certificate unless its number is `number`.
 Expected<void> put_aside(const Kept& kept, const fs::path& folder, const std::string& id,
                          const std::string& number, Carried& carried) {
   const auto before = still_there(kept);
@@ -254,8 +254,8 @@ Expected<Carried> carry_over(const fs::path& folder, const Record& fresh, std::s
   Carried carried{{}, std::move(bytes)};
   NONIO_TRY(const auto kept, kept_in(folder));
   if (may_pass(fresh)) {
-    // Good results are kept in last-good. Those of a permanent failure would be lost, so they are
-    // appended.
+    // Good results are kept in last-good. Results of a permanent failure would be lost, so they are
+    // appended to earlier.json.
     if (kept && kept->record.status == evaluation::Status::failed)
       if (auto put = put_aside(*kept, folder, id, {}, carried); !put) return fail(put.error());
     return carried;

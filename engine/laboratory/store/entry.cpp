@@ -183,8 +183,8 @@ class EntryReader {
   }
 
   /// Reads the parts of the uncertainty budget. The parts of an instrument with a serial number and
-  /// of the expansion of an axis are common to several campaigns; all other parts are new in each
-  /// campaign.
+  /// of the expansion of an axis are common to several campaigns; all other parts are independent
+  /// between campaigns.
   void read_parts(dom::object budget, std::string_view name, ResultRow& row) {
     dom::object results, one, parts;
     if (budget["results"].get(results) != simdjson::SUCCESS ||
@@ -311,7 +311,7 @@ Expected<Entry> entry_of(std::string_view results, const reading::Inputs& inputs
   try {
     dom::parser parser;
     Entry entry = read_entry(parser.parse(results), inputs);
-    // No manifest contains a character 0, and a server cannot store it.
+    // A database server cannot store a character 0, and no manifest contains one.
     if (canonical_of(entry).find('\0') != std::string::npos)
       return fail(std::string(evaluation::results_name) + ": a text with a character 0 in it");
     if (entry.campaign == id) return entry;

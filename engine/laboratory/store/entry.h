@@ -14,7 +14,7 @@
 /// rebuilt from these files.
 namespace nonio::store {
 
-/// State of a result that is only predicted by a table; the source is the controller.
+/// State of a result that a compensation table predicts; its source is the controller plugin.
 inline constexpr const char* predicted_state = "predicted";
 
 /// Standard uncertainty that all results with the same source have in common.
@@ -26,8 +26,8 @@ struct CommonPart {
 /// One result of a campaign, in the unit of results.json.
 struct ResultRow {
   std::string measurement, axis, quantity;
-  /// origin of the result: "followed", the name of the analysis, or for a prediction that of the
-  /// controller
+  /// origin of the result: "followed", the name of the analysis, or for a prediction the name of
+  /// the controller plugin
   std::string source;
   std::string unit;
   std::string state;  ///< state of the machine: as-found, as-left, check, predicted
@@ -46,7 +46,8 @@ struct ResultRow {
 struct CovarianceRow {
   std::uint64_t first = 0, count = 0;
   std::vector<double> upper;
-  /// Member of results.json as JSON: the data to compare with campaigns that have other targets.
+  /// Member `other_targets` of results.json as JSON: the data for the comparison with campaigns
+  /// that have other targets; empty: none.
   std::string other_targets{};
 };
 
@@ -90,8 +91,8 @@ struct Entry {
   std::vector<FindingRow> findings;
   std::vector<LimitRow> without_value;
   std::vector<ControlTableRow> control_tables;
-  std::optional<CertificateRow> certificate;  ///< of an issued certificate, not a draft; not part
-                                              ///< of the digest
+  std::optional<CertificateRow> certificate;  ///< issued certificate; none for a draft; not part of
+                                              ///< the digest
 };
 
 /// Makes the entry from the bytes of results.json and the digests of the inputs. An error if the

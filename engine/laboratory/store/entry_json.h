@@ -7,8 +7,8 @@
 
 namespace nonio::store {
 
-/// Does the work of `entry_of` for results.json inside another document. Throws simdjson_error and
-/// std::runtime_error.
+/// Makes an entry like `entry_of` from results.json inside another document, without its checks.
+/// Throws simdjson_error and std::runtime_error.
 Entry read_entry(simdjson::dom::object results, const reading::Inputs& inputs);
 
 }  // namespace nonio::store

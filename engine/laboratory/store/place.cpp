@@ -136,9 +136,9 @@ Expected<Database> open_store(const fs::path& out) {
 
 namespace {
 
-/// Adds a new random turn to `place`. It is stored here before it is written to the server, so that
-/// after a crash the server's turn is always known here. An error if the server's turn `last` is
-/// not known here, because a copy of this folder has then written to the schema.
+/// Adds a new random turn to `place`. It is stored in the output folder before it is written to the
+/// server, so that the folder contains the server's turn even after a crash. An error if `place`
+/// lacks the server's turn `last`, because a copy of this folder has then written to the schema.
 Expected<void> take_turn(Database& database, const fs::path& out, StorePlace& place,
                          const std::string& last) {
   constexpr std::size_t most = 500;

@@ -20,9 +20,9 @@ struct StorePlace {
                                             ///< too
   std::int64_t evaluations = 0;  ///< number of evaluations in the server's store when it was last
                                  ///< written
-  /// Random ids of the last 500 times that the store was written; the server contains the last one.
-  /// A copy of this folder does not contain the later ones, so two copies that write to one schema
-  /// are detected.
+  /// Random ids of the last 500 updates of the server's store; the server contains the id of the
+  /// last one. A copy of this folder lacks the ids of later updates, so two copies that write to
+  /// one schema are detected.
   std::vector<std::string> turns{};
 };
 
@@ -41,12 +41,12 @@ Expected<void> note_evaluations(const std::filesystem::path& out, std::int64_t c
 std::string name_of(const StorePlace& place, const std::filesystem::path& out);
 std::string store_in(const std::filesystem::path& out);
 
-/// Opens the store for reading. On a server, everything read from it belongs to one run. An error
+/// Opens the store for reading. On a server, all reads see one snapshot (repeatable read). An error
 /// if there is no store, or if its version is not that of this program.
 Expected<storage::Database> open_store(const std::filesystem::path& out);
 
-/// Makes the server's schema if it is missing. An error if it belongs to another output folder, or
-/// if a copy of this folder has written to it.
+/// Makes the server's schema if it is missing, and adds a turn. An error if the schema belongs to
+/// another output folder, or if a copy of this folder has written to it.
 Expected<void> take_schema(storage::Database& database, const std::filesystem::path& out);
 
 }  // namespace nonio::store

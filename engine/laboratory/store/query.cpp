@@ -71,8 +71,8 @@ WHERE (? = '' OR COALESCE(a.machine, c.machine) = ?) AND (? = '' OR r.axis = ?) 
 ORDER BY name, r.axis, r.quantity, r.source, c.day, r.state, c.campaign, e.evaluation, r.item
 )sql";
 
-/// Completes U of a followed quantity: that of the analysis that states it, otherwise from all
-/// parts with k = 2.
+/// Completes a followed quantity: U from all parts unless an analysis states it, and k = 2 for both
+/// (the query has converted U).
 void complete(Point& p) {
   if (p.source != "followed") return;
   if (p.expanded.empty() && !p.u_repeat.empty())

@@ -23,7 +23,7 @@ struct StoredCampaign {
   std::string id, day, customer, purpose, status;
   InstrumentAsStated instrument;
   std::int64_t evaluation = 0;
-  std::uint64_t run = 0;  ///< run of that evaluation
+  std::uint64_t run = 0;  ///< run of `evaluation`
   std::string number{};   ///< number of the campaign's last certificate; empty: none
   std::string place{}, control{};
 };
@@ -33,8 +33,8 @@ struct StoredCampaign {
 struct StoredResult {
   std::size_t campaign = 0;  ///< index into StoredMachine::campaigns
   std::string measurement, axis, quantity;
-  /// origin of the result: "followed", the name of the analysis, or for a prediction that of the
-  /// controller
+  /// origin of the result: "followed", the name of the analysis, or for a prediction the name of
+  /// the controller plugin
   std::string source{};
   std::string unit, state, decision, conditions;
   bool followed = false;
@@ -63,8 +63,8 @@ struct StoredTables {
 
 /// Everything that the store contains about one machine, without failed campaigns.
 struct StoredMachine {
-  std::vector<StoredCampaign> campaigns;  ///< campaigns sorted by day, then by id
-  std::vector<StoredResult> results;      ///< results sorted by campaign
+  std::vector<StoredCampaign> campaigns;  ///< sorted by day, then by id
+  std::vector<StoredResult> results;      ///< sorted by campaign
   std::vector<StoredResult> predicted{};  ///< results predicted by tables, sorted by campaign
   /// Members `other_targets` of results.json, each as JSON.
   std::vector<std::string> other_targets{};
@@ -74,7 +74,7 @@ struct StoredMachine {
   /// invalid calibration, for the last evaluation of each campaign.
   std::vector<std::vector<FindingRow>> asked{};
   std::vector<LimitWithoutValue> without_value{};
-  std::vector<StoredTables> tables{};  ///< tables sorted by campaign
+  std::vector<StoredTables> tables{};  ///< sorted by campaign
   struct Later {
     std::string campaign, day;
   };
@@ -102,7 +102,7 @@ struct CountedCampaign {
   std::string campaign, day, sha256;
 };
 
-/// Entries of people (events, acknowledgements, campaigns removed on purpose), aliases and
+/// Entries made by people (events, acknowledgements, campaigns removed on purpose), aliases and
 /// calibration intervals, as stored.
 struct StoredLogs {
   std::vector<config::Event> events;
@@ -124,8 +124,8 @@ class StoreReader {
   Expected<std::vector<MachineState>> machines();
   /// Reads one machine. `until`: campaigns after this day are listed in `later` only.
   Expected<StoredMachine> machine(const std::string& name, const std::string& until = "9999-12-31");
-  /// Reads a single campaign without a machine. Which of these campaigns belong together is not
-  /// known.
+  /// Reads a single campaign that states no machine. It is unknown which of these campaigns belong
+  /// to one machine.
   Expected<StoredMachine> campaign(const std::string& id, const std::string& until = "9999-12-31");
   Expected<StoredLogs> logs();
   /// Returns the machine of each campaign, with aliases joined.
@@ -134,7 +134,8 @@ class StoreReader {
   Expected<std::vector<StoredEvaluation>> evaluations();
   /// Returns the evaluation in force of each campaign, without failed ones; by machine, day and id.
   Expected<std::vector<CountedCampaign>> counted_campaigns();
-  /// Returns, by campaign, its certificate numbers and what they replace as one text.
+  /// Returns, by campaign, the numbers of its certificates and of the certificates that they
+  /// replace, as one text.
   Expected<std::map<std::string, std::string>> certificates();
   /// Returns, for each run from `run` on, the number of different followed quantities of axes of
   /// all machines that it evaluated.

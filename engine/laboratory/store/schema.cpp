@@ -10,8 +10,8 @@ using storage::Database;
 
 namespace {
 
-/// Tables with types and words that both SQLite and PostgreSQL have. Sequence numbers and doubles
-/// need 8 bytes.
+/// Tables with types and keywords that both SQLite and PostgreSQL have. Sequence numbers and
+/// doubles have 8 bytes.
 constexpr const char* tables = R"sql(
 CREATE TABLE store (name TEXT PRIMARY KEY, value BIGINT NOT NULL);
 CREATE TABLE machine (
@@ -84,7 +84,7 @@ CREATE TABLE covariance (
   PRIMARY KEY (evaluation, first_item));
 )sql";
 
-/// Tables in which rows are only added; the others are copies of the site's present files.
+/// Tables in which rows are only added until the store is rebuilt.
 constexpr const char* append_only[] = {
     "machine",    "campaign", "evaluation",          "result",        "common_part",
     "covariance", "finding",  "limit_without_value", "control_table", "certificate"};
@@ -95,8 +95,8 @@ constexpr const char* all_tables[] = {
     "campaign",      "machine",       "event",       "acknowledgement",
     "forgotten",     "machine_alias", "store",       "due_rule"};
 
-/// Returns the SQL of triggers that refuse changes of the append-only tables on a server. They are
-/// per statement, so that TRUNCATE is refused as well.
+/// Returns the SQL of triggers that reject changes of the append-only tables on a server. They are
+/// per statement, so that TRUNCATE is rejected as well.
 std::string server_triggers() {
   std::string sql =
       "CREATE FUNCTION append_only() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN "

@@ -374,7 +374,7 @@ Expected<Updated> write(const fs::path& out, bool all, const std::vector<std::st
   if (place->server)
     if (auto ours = take_schema(database, out); !ours) return fail(ours.error());
   bool again = all || version != schema_version;
-  // A server that was restored from a backup, or replaced by its standby, has lost the last runs.
+  // A server that was restored from a backup, or replaced by its standby, may lack the last runs.
   if (!again && place->server) again = last_number(database) != place->evaluations;
   Filling filling(out, database, alive, updated);
   if (!again) {

@@ -32,9 +32,9 @@ struct Updated {
 };
 
 /// Adds new evaluations of these campaigns to the store, in one transaction. A store that is
-/// missing, damaged, of an older version, or inconsistent with the results is rebuilt from all of
-/// them. If `behind`, the store is rebuilt too, because it may lack results of an earlier run.
-/// `alive` is called repeatedly.
+/// missing, damaged, of an older version, or inconsistent with the results is rebuilt from all
+/// results. `behind`: whether the store may lack results of an earlier run, so that it is rebuilt
+/// too. `alive` is called repeatedly.
 Expected<Updated> update(const std::filesystem::path& out, bool behind,
                          std::vector<std::string> campaigns, const SiteRecords& records,
                          const std::function<void()>& alive);

@@ -39,7 +39,7 @@ std::vector<double> distinct_targets(const Observations& o) {
 
 }  // namespace
 
-// Arranges by a counting sort: 16 bytes per row and 24 bytes per target.
+// Arranges by a counting sort, which needs 16 bytes per row and 24 bytes per target.
 AxisTest AxisTest::arrange(const Observations& o) {
   AxisTest test;
   test.starts_.assign(1, 0);

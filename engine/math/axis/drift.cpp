@@ -100,8 +100,8 @@ Drift::Part part_of(const Runs& runs, double per_pass, double dof) {
   return part;
 }
 
-// Whether the pass in direction - precedes that in direction +, according to the order of the rows
-// of one run. False if the rows do not contain these passes one after the other.
+// Returns whether the pass in direction - precedes that in direction +, according to the order of
+// the rows of one run. False if the rows do not contain these passes one after the other.
 bool minus_first(const AxisTest& test) {
   std::uint32_t low[2] = {UINT32_MAX, UINT32_MAX}, high[2] = {0, 0};
   const std::uint32_t run = test.readings().empty() ? 0 : test.readings().front().run;
@@ -127,7 +127,7 @@ std::vector<double> lags(const AxisTest& test) {
 double square_of(double x) { return x * x; }
 
 // Fits B_i = constant + fraction b_i, because drift within the passes adds b_i to the reversal.
-// Stores the fraction and its p in `drift`.
+// Stores the fraction and its p-value in `drift`.
 void compare_with_reversal(const AxisTest& test, double variance, double dof, Drift& drift) {
   std::vector<double> B, b;
   double per = 0.0;
@@ -149,8 +149,8 @@ void compare_with_reversal(const AxisTest& test, double variance, double dof, Dr
   drift.p_reversal = t_two_sided(test_ratio(drift.seen_in_reversal, std::sqrt(of_B / bb)), dof);
 }
 
-// Returns the factor that the largest of `values` normal values does not exceed with 95.45 %; at
-// least 2.
+// Returns the factor that the largest of `values` standard normal values exceeds with a probability
+// of 4.55 %, but at least 2.
 double factor_of_largest(std::size_t values) {
   const double tail = 0.0455 / static_cast<double>(values);
   double low = 2.0, high = 10.0;

@@ -37,7 +37,8 @@ std::pair<double, double> extent(std::span<const Pass> passes) {
 struct Design {
   Eigen::MatrixXd X;
   Eigen::VectorXd y;
-  std::vector<int> place;     ///< index for path_noise, ascending; passes are far apart
+  /// index of each reading for path_noise, ascending; passes are 10000 apart
+  std::vector<int> place;
   std::vector<double> phase;  ///< phase within the period, 0..1
 };
 
@@ -164,13 +165,14 @@ namespace {
 
 // tolerance for the rounding of printed targets, as a fraction of a step
 constexpr double same_size = 1e-3;
-// smallest fraction of the commanded step; docs/dev/constants.md, A21
+// smallest fraction of the commanded step that the axis must follow: docs/dev/constants.md, A21
 constexpr double followed_from = 0.5;
 
-/// Computes the scatter of one step about the mean of its place (position, direction, first or
-/// not).
+/// Place of a step: position at its end in 1/1000 of a step, direction, and whether it is the first
+/// step after a reversal.
 using Place = std::tuple<long long, int, bool>;
 
+/// Computes the standard deviation of a step about the mean of the steps at the same place.
 void scatter_of(SmallSteps& out) {
   std::map<Place, std::vector<double>> places;
   const double unit = out.commanded / 1000.0;
@@ -195,7 +197,7 @@ std::map<std::uint32_t, std::map<int, OnePass>> passes_of(
     std::span<const SteppedReading> readings) {
   std::map<std::tuple<std::uint32_t, int, double>, std::pair<double, double>> sums;
   for (const SteppedReading& r : readings) {
-    // sort in the direction of motion
+    // the key sorts the readings in the direction of motion
     auto& [sum, n] = sums[{r.run, r.direction, r.direction * r.position}];
     sum += r.deviation, n += 1.0;
   }

@@ -22,15 +22,15 @@ struct PassModel {
     double offset = 0.0;  ///< m or rad; its mean over the passes of a direction is 0
     double slope = 0.0;   ///< m/m or rad/rad; its mean over the passes of a direction is 0
   };
-  struct Side {               // [0] direction +, [1] direction -
+  struct Side {               // side[0]: direction +; side[1]: direction -
     double squares = 0.0;     ///< sum of squared residuals e^2
-    double dof = 0.0;         ///< degrees of freedom; <= 0 if no scatter is known
+    double dof = 0.0;         ///< degrees of freedom; 0 or less if the readings give no scatter
     std::size_t passes = 0;   ///< number of passes with readings
     std::size_t targets = 0;  ///< number of targets with readings
     std::size_t readings = 0;
     double variance() const { return squares / dof; }
   };
-  std::vector<Pass> passes;           ///< sorted by run, + before -
+  std::vector<Pass> passes;           ///< sorted by run, direction + before -
   std::vector<std::uint32_t> pass;    ///< index of each reading's pass
   std::vector<std::uint32_t> target;  ///< index of each reading's target
   std::vector<double> e;              ///< residual of each reading; NaN for omitted readings
@@ -49,7 +49,7 @@ PassModel fit_passes(const AxisTest& test, bool slopes, std::span<const std::siz
 std::size_t first_reading(const AxisTest& test, std::size_t i, bool minus);
 
 /// Returns the effective degrees of freedom of a + b, the sum of two estimated variances with dof_a
-/// and dof_b degrees of freedom (Welch, Satterthwaite).
+/// and dof_b degrees of freedom (Welch-Satterthwaite); dof_a + dof_b if the sum is 0.
 double joined_dof(double a, double dof_a, double b, double dof_b);
 
 }  // namespace nonio::math

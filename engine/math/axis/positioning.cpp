@@ -15,7 +15,7 @@
 //          directions; B as iso
 //   jis    accuracy      = max x - min x of the first pass in one direction
 //          +- repeatability = half of the largest high - low at the first, middle and last target
-//          lost_motion   = the largest |B_i| there
+//          lost_motion   = the largest |B_i| at these three targets
 //
 // Sources: docs/formulas.md, Rules of positioning; the texts of the standards were not available.
 // The table of rules states the confidence of each.
@@ -167,7 +167,8 @@ std::vector<RuleValue> raw(const AxisStatistics& axis) {
           {"B", B.largest(), share_of_reversal}};
 }
 
-// Returns the index of the target nearest to the middle of the travel; of two the lower one.
+// Returns the index of the target nearest to the middle of the travel; the lower one of two at
+// equal distance.
 std::size_t middle_of(const AxisStatistics& axis) {
   const double middle = (axis.targets.front().target + axis.targets.back().target) / 2.0;
   std::size_t best = 0;

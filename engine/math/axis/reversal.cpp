@@ -8,8 +8,8 @@
 //                   b_j (an error shared by a pass does not average out over targets), pooled with
 //                   the scatter of single readings unless the runs scatter more (when to pool:
 //                   T. A. Bancroft 1964, Biometrics 20, p. 427)
-// With one run there is no scatter; then the spread of B_i over the targets is an upper bound for
-// it.
+// With one run, the runs have no scatter, and the spread of B_i over the targets is used as an
+// upper bound of it.
 #include "nonio/math/reversal.h"
 
 #include <algorithm>
@@ -29,10 +29,10 @@ namespace {
 // one degree of freedom, so a stricter level is required.
 // docs/dev/constants.md, A3.
 constexpr double pooling_level = 0.5, pooling_level_of_pair = 0.05;
+// Largest remainder after compensation by a single value, as a fraction of the largest |B_i|:
 // docs/dev/constants.md, A4.
-// largest remainder after compensation by a single value, as a fraction of the largest |B_i|
 constexpr double tolerated_share = 0.5;
-constexpr double negligible = 1e-12;  // m or rad: rounding errors
+constexpr double negligible = 1e-12;  // m or rad; smaller values are rounding errors
 
 struct Estimate {
   double variance = 0.0, dof = 0.0;
@@ -51,7 +51,7 @@ std::vector<double> means(const AxisTest& test, bool minus) {
 }
 
 // Returns the mean over the targets of s+^2/n_i+ + s-^2/n_i- with its degrees of freedom, which are
-// 0 if a direction has no scatter.
+// 0 if the scatter of a direction cannot be estimated.
 Estimate scatter_of_B_i(const AxisTest& test, const PassModel& model) {
   double per[2] = {0.0, 0.0};
   for (std::size_t i = 0; i < test.targets.size(); ++i) {
@@ -63,9 +63,9 @@ Estimate scatter_of_B_i(const AxisTest& test, const PassModel& model) {
   return {a + b, joined_dof(a, model.side[0].dof, b, model.side[1].dof)};
 }
 
-// Returns the variance of B_mean from the scatter of passes: from runs with both directions if
-// there are two, else from each side. The degrees of freedom are 0 if a side has fewer than two
-// passes.
+// Returns the variance of B_mean from the scatter of passes: from the runs with both directions if
+// there are at least two, otherwise from the passes of each direction. The degrees of freedom are 0
+// if a direction has fewer than two passes.
 Estimate scatter_of_passes(const PassModel& model) {
   std::vector<double> pairs, alone[2];
   for (std::size_t p = 0; p + 1 < model.passes.size(); p += 2) {
@@ -97,7 +97,8 @@ Estimate scatter_of_mean(const AxisTest& test, const PassModel& model) {
 Reversal::Kind decide(const Reversal& r, bool scatter_known) {
   using Kind = Reversal::Kind;
   if (r.largest < negligible) return scatter_known ? Kind::none : Kind::unknown;
-  if (std::isnan(r.p_mean)) return Kind::unknown;  // one target in one run: there is no scatter
+  // with one target in one run, there is no scatter
+  if (std::isnan(r.p_mean)) return Kind::unknown;
   const bool one_value_helps = r.largest_left <= tolerated_share * r.largest;
   const bool exists = significant(r.p_mean, significance) && r.mean != 0.0;
   const bool varies = scatter_known && significant(r.p_varies, significance);
@@ -114,8 +115,8 @@ void fit_turn(const AxisTest& test, const std::vector<double>& plus,
     half_B.push_back((plus[i] - minus[i]) / 2.0);
     middle.push_back((plus[i] + minus[i]) / 2.0);
   }
-  // docs/dev/constants.md, A5.
-  constexpr double most = 0.5;  // a sinusoid must explain at least half
+  // Reason for this limit: docs/dev/constants.md, A5.
+  constexpr double most = 0.5;  // smallest fraction of the variance that a sinusoid must explain
   const Harmonic opposed = fit_harmonic(test.targets, half_B);
   const Harmonic concordant = fit_harmonic(test.targets, middle);
   if (!opposed.known || !concordant.known) return;

@@ -44,7 +44,7 @@ double largest(const std::vector<double>& x) {
   return out;
 }
 
-// Returns max(x + h) - min(x - h).
+// Returns max(x + h) - min(x - h); NaN if a value is NaN, or without values.
 double extent(const std::vector<double>& x, const std::vector<double>& h) {
   std::vector<double> high, low;
   for (std::size_t j = 0; j < x.size(); ++j) {

@@ -130,7 +130,7 @@ class Fit {
     for (Eigen::Index k = 0; k < block.X.cols(); ++k) {
       double largest = 0.0;
       for (const Block& other : blocks_) largest = std::max(largest, other.X.col(k).norm());
-      // A remainder caused by slightly different angles of the two directions does not count as a
+      // A remainder caused by slightly different angles of the two directions is not treated as a
       // column.
       if (block.X.col(k).norm() > 0.1 * largest) here.push_back(k);
     }

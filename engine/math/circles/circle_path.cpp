@@ -16,7 +16,7 @@ namespace {
 using PathReadings = std::span<const CircleReading>;
 using Centre = std::array<double, 2>;
 
-/// Returns the distance from a centre minus R, without the cancellation of hypot(...) - R.
+/// Returns the distance from a center minus R, without the cancellation of hypot(...) - R.
 double radial(const CircleReading& r, double R, const Centre& c) {
   const double s = std::sin(r.angle), k = std::cos(r.angle), rho = R + r.deviation;
   // |P - c|^2 - R^2 = (rho - R)(rho + R) - 2 rho (c . n) + |c|^2
@@ -25,7 +25,7 @@ double radial(const CircleReading& r, double R, const Centre& c) {
   return square / (std::sqrt(R * R + square) + R);
 }
 
-/// Finds the best centre of the zone for a few readings only: nested golden sections of a function
+/// Finds the best center of the zone for a few readings only: nested golden sections of a function
 /// that is convex except for terms of second order.
 class Few {
  public:

@@ -15,7 +15,7 @@ namespace {
 // The zone is widened if the remainder of the spikes after it exceeds `begins` times its u, and
 // then further while it exceeds `goes_on` times its u, because an exponential decays slowly. `wide`
 // is the width of a window, rad. docs/dev/constants.md, A23.
-constexpr double normal_quartile = 0.6745;  // median of |x|, in standard deviations
+constexpr double normal_quartile = 0.6745;  // median of |x| for a standard normal x
 constexpr double begins = 2.24, goes_on = 1.0, wide = 2.0 * full_turn / 360.0;
 
 // Sum and number of residuals by angle since the reversal, rad.
@@ -68,7 +68,7 @@ std::vector<Spike> reversal_spikes(std::span<const CircleReading> readings,
 
 namespace {
 
-/// Returns the mean residual over the angles, m; NaN if there are none.
+/// Returns the mean residual over the angles, m; NaN without angles.
 double mean_of(const Residuals& residuals) {
   double sum = 0.0, n = 0.0;
   for (const auto& [way, of] : residuals) sum += of.first / of.second, n += 1.0;
@@ -95,10 +95,10 @@ double scatter_of_windows(const CauseFit& fit) {
   return *middle / normal_quartile;
 }
 
-/// Returns the larger remainder, of the two axes, of the spikes after the omitted zone. The
-/// remainder of an axis combines both directions and both reversals: the difference of the mean
-/// residual in the next window and in the one two windows later, in u of such differences. 0 if no
-/// difference is known.
+/// Returns the remainder of the spikes after the omitted zone, of the axis for which it is larger.
+/// The remainder of an axis combines both directions and both reversals: the difference between the
+/// mean residual in the next window and that two windows later, in u of such differences. 0 if no
+/// difference can be computed.
 double left_over(std::span<const CircleReading> readings, const CircleModel& model,
                  const CauseFit& fit) {
   const double edge = model.leave_out, scatter = scatter_of_windows(fit);

@@ -132,9 +132,10 @@ Expected<std::int64_t> interpolating_step(const Plan& plan, std::int64_t smalles
   return fail(plan.too_many(std::min(step, plan.allowed(std::max<std::int64_t>(1, mean_gap)))));
 }
 
-// Returns the even step of targets that were rounded, within about a micrometre. The step is
-// rounded up so that there are as many points as targets. 0 if the targets are not evenly spaced,
-// the grid does not begin at the first one, or the rule is for a turn or powers of two.
+// Returns the step of targets that are even to within 10 units of the grid, because they were
+// rounded. The step is rounded up so that there are as many points as targets. 0 if the targets are
+// not evenly spaced, the grid does not begin at the first one, or the rule is for a turn or powers
+// of two.
 std::int64_t even_step(const Plan& plan, const std::vector<std::int64_t>& knots) {
   const auto gaps = static_cast<std::int64_t>(knots.size() - 1);
   const std::int64_t span = knots.back() - knots.front();

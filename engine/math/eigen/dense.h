@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 
 /// Declares that the dense solvers of Eigen are compiled once, in statistics/dense.cpp, because
-/// each source that compiles them itself takes 7 to 17 s longer. Not installed.
+/// each source that compiles them itself takes 7 to 17 s longer. This header is not installed.
 namespace Eigen {
 
 extern template class ColPivHouseholderQR<MatrixXd>;
@@ -36,7 +36,7 @@ Spectrum spectrum(const Eigen::MatrixXd& symmetric);
 /// expressions.
 Eigen::MatrixXd product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 Eigen::VectorXd times(const Eigen::MatrixXd& A, const Eigen::VectorXd& x);
-/// Return A' B; A' x.
+/// Return A' B, or A' x.
 Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 Eigen::VectorXd transposed_times(const Eigen::MatrixXd& A, const Eigen::VectorXd& x);
 /// Returns A B'.
@@ -78,7 +78,6 @@ Eigen::MatrixXd inverse(const Eigen::LDLT<Eigen::MatrixXd>& ldlt);
 Eigen::MatrixXd pseudo_inverse(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr);
 /// Returns the inverse of a square matrix, by elimination.
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& A);
-/// Returns the inverse of an upper triangular matrix.
 Eigen::MatrixXd inverse_of_upper(const Eigen::MatrixXd& R);
 /// Returns R^-1 y for an upper triangular R.
 Eigen::VectorXd solution_of_upper(const Eigen::MatrixXd& R, const Eigen::VectorXd& y);
@@ -96,7 +95,6 @@ Eigen::MatrixXd upper(const Eigen::HouseholderQR<Eigen::MatrixXd>& qr, Eigen::In
 /// Return copies of columns: the first `count`, or `count` from `first` on.
 Eigen::MatrixXd left_columns(const Eigen::MatrixXd& A, Eigen::Index count);
 Eigen::MatrixXd columns(const Eigen::MatrixXd& A, Eigen::Index first, Eigen::Index count);
-/// Returns A with y appended as a column.
 Eigen::MatrixXd with_column(const Eigen::MatrixXd& A, const Eigen::VectorXd& y);
 
 /// Converts a count or index to the type of Eigen.

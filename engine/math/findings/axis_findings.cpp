@@ -12,7 +12,7 @@
 
 namespace nonio::math {
 bool matters(const AxisTest& test, double size) {
-  // docs/dev/constants.md, A2.
+  // Smallest relevant fraction of A or E: docs/dev/constants.md, A2.
   constexpr double share = 0.2;
   const Iso230Result iso = evaluate_iso230_2(test, 2.0);
   const double whole = std::isnan(iso.A) ? iso.E : iso.A;
@@ -20,7 +20,7 @@ bool matters(const AxisTest& test, double size) {
 }
 
 bool is_reversal_known(double mean, double U) {
-  // docs/dev/constants.md, A28.
+  // Largest ratio of U to the reversal: docs/dev/constants.md, A28.
   constexpr double largest_share = 0.5;
   return U < largest_share * std::fabs(mean);
 }

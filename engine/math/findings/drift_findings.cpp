@@ -32,9 +32,9 @@
 namespace nonio::math {
 namespace {
 
-// docs/dev/constants.md, A24.
+// Level of the test against the scatter within the passes: docs/dev/constants.md, A24.
 constexpr double beyond_scatter = 0.002;
-// docs/dev/constants.md, A25.
+// Steps between five runs, to which a drift is extrapolated: docs/dev/constants.md, A25.
 constexpr double steps_of_five_runs = 4.0;
 
 bool steady(const Drift::Part& part, std::size_t runs) {

@@ -43,7 +43,7 @@ double duration_of(const Observations& o) {
 /// finding.
 void hold(std::optional<double>& stated, double found, const char* key, Quantity quantity,
           std::vector<Finding>& findings) {
-  constexpr double slack = 1e-9;  // relative, for rounding in files
+  constexpr double slack = 1e-9;  // relative tolerance for rounding in files
   if (!stated || !(found > *stated * (1.0 + slack) + 1e-15)) return;
   findings.push_back({.id = "uncertainty.limit-exceeded",
                       .attention = true,

@@ -2,7 +2,7 @@
 //
 // Differences between a campaign and the test plan of ISO 230-2:2014 (clauses on tests for linear
 // and rotary axes):
-//   linear to 2 m   5 targets per metre, at least 5; 5 approaches from each direction
+//   linear to 2 m   5 targets per meter, at least 5; 5 approaches from each direction
 //   linear above    the whole travel once, targets every 250 mm; 2 m of it by the full test
 //   rotary          3, 5, 8 targets for travels up to 90, 180, 360 deg; 0, 90, 180, 270 among them
 //   all             targets not evenly spaced, so that errors periodic with the screw are measured
@@ -18,7 +18,7 @@
 namespace nonio::math {
 namespace {
 
-// docs/dev/constants.md, A11.
+// Length above which ISO 230-2 has a separate test plan: docs/dev/constants.md, A11.
 constexpr double long_axis = 2.0;  // m
 constexpr double close = 1e-6;     // m or rad, tolerance for nominal positions
 
@@ -37,7 +37,7 @@ std::size_t wanted_targets(const AxisTest& test) {
   return std::max<std::size_t>(5, whole(5.0 * L));
 }
 
-// Whether a range of 2 m (a full turn) has the targets and approaches of the full test.
+// Returns whether a range of 2 m (a full turn) has the targets and approaches of the full test.
 bool has_full_test(const AxisTest& test) {
   constexpr std::size_t runs = 5;
   const double stretch = test.rotary ? full_turn : long_axis;
@@ -127,7 +127,7 @@ void counts(const AxisTest& test, const Observations& o, std::vector<Finding>& f
                            .done());
 }
 
-// Reports targets outside of the stated travel, which means that either is wrong.
+// Reports targets outside of the stated travel, because either the targets or the travel are wrong.
 void outside_travel(const AxisTest& test, const Axis* axis, std::vector<Finding>& findings) {
   if (axis == nullptr || !axis->travel) return;
   const auto [from, to] = *axis->travel;

@@ -11,7 +11,7 @@
 //   of the model of pass_model.h; R. D. Cook, S. Weisberg 1982, Residuals and Influence in
 //   Regression, section 2.1. 1 % over all readings (Bonferroni). At least three readings at the
 //   target.
-// target.worst: q_i = distance of the mean at i from the line between its neighbours, scaled to the
+// target.worst: q_i = distance of the mean at i from the line between its neighbors, scaled to the
 //   variance of one mean. A single outlying target gives the pattern (-w, 1, -w) in q; its height
 //   is compared with the q_j that it does not affect: t, 1 % over all targets. It must also exceed
 //   four times its u by the scatter of the readings. At least five targets.
@@ -72,7 +72,7 @@ Asymmetry asymmetry_of(const PassModel& m) {
   const double single =
       f_upper(test_ratio(more.single, less.single), more.single_dof, less.single_dof);
   const double pass = f_upper(test_ratio(more.pass, less.pass), more.pass_dof, less.pass_dof);
-  a.p = std::min(1.0, 4.0 * std::min(single, pass));  // two tests, two sides
+  a.p = std::min(1.0, 4.0 * std::min(single, pass));  // factor 4: two tests, each for two sides
   return a;
 }
 
@@ -242,7 +242,8 @@ void worst_target_finding(const AxisTest& test, std::vector<Finding>& findings) 
 bool scatter_is_asymmetric(const AxisTest& test) { return assess_asymmetry(test).clear(); }
 
 void suspect_findings(const AxisTest& test, std::vector<Finding>& findings) {
-  constexpr std::size_t most = 3;  // more are a different distribution, not single outliers
+  // more than three indicate another distribution, not single outliers
+  constexpr std::size_t most = 3;
   const bool slopes = test.targets.size() >= 4;
   std::vector<std::size_t> left_out;
   while (left_out.size() < most && test.most_approaches() >= 3) {

@@ -60,7 +60,7 @@ RunValues run_values(const RunComponents& c, const std::vector<PassExtent>& exte
       of_offset += c.reading[d] / extent[p + d].n;
       if (extent[p + d].spread() > 0.0) of_slope += c.reading[d] / extent[p + d].spread();
     }
-    const double part = both ? 0.5 : 1.0;  // with one direction only the sum exists
+    const double part = both ? 0.5 : 1.0;  // with one direction, the sum is its value
     out.shared_offset.push_back(part * (offset[0] + offset[1]));
     out.shared_slope.push_back(part * (slope[0] + slope[1]));
     out.own_offset.push_back(0.5 * (offset[0] - offset[1]));
@@ -101,7 +101,8 @@ Alike alike(Index m, double r) {
           squared(e.trace()) / e.squaredNorm() / (n - 2.0)};
 }
 
-/// Returns the lag-1 correlation of the residuals if it is significant (one-sided 5 %).
+/// Returns the lag-1 correlation of the residuals if it is significant (one-sided 5 %); otherwise
+/// nothing.
 std::optional<double> lag_of_residuals(const PassModel& m, const Alike& white) {
   std::vector<double> before(m.passes.size(), std::numeric_limits<double>::quiet_NaN());
   double products = 0.0, squares = 0.0, pairs = 0.0, readings = 0.0;
@@ -263,9 +264,9 @@ PooledScatter pooled_scatter(const AxisTest& test, const RunComponents& c) {
     variance += 2.0 * squared(side.squares / all_dof) / (side.dof * c.independent);
     dof += side.dof;
   }
-  // The estimate V of a component over the runs has the variance 2 V^2/(runs - 1). V itself is so
-  // uncertain that its square is too large on average: by this factor, if V is the fraction a of
-  // the mean square (second order in 1/V).
+  // The estimate V of a component over the runs has the variance 2 V^2/(runs - 1). Because V itself
+  // is uncertain, V^2 is too large on average, by a factor that depends on the fraction a of the
+  // mean square that V contributes (second order).
   const double of_runs = c.runs - 1.0;
   const auto put = [&](const RunPart& p, double factor) {
     const double V = factor * p.whole, a = std::min(1.0, V / mean_square);

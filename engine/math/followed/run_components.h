@@ -11,8 +11,8 @@ namespace nonio::math {
 
 /// Variance components of the scatter of a test (followed.h).
 struct RunComponents {
-  /// A variance over the runs: without the contribution of single readings (at least 0), this
-  /// contribution (`noise`), and the estimate that contains it (`whole`).
+  /// A variance over the runs: the estimate from the values of the runs (`whole`), the contribution
+  /// of single readings to it (`noise`), and their difference, at least 0 (`variance`).
   struct Part {
     double variance = 0.0, noise = 0.0, whole = 0.0;
   };

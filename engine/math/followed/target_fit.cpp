@@ -46,8 +46,8 @@ double variance_at(const AxisTest& test, const RunComponents& c, std::size_t i, 
   return reversal ? sum : sum * share(test, i) * share(test, i);
 }
 
-/// Fits the values at the targets; the columns are `polynomial` ones, then sinusoids. For B_i,
-/// targets approached from one direction are omitted.
+/// Fits the values at the targets. The first `polynomial` columns of X are the polynomial, the
+/// others are sinusoids. For B_i, targets approached from one direction are omitted.
 TargetFit fit_columns(const AxisTest& test, const RunComponents& c, const MatrixXd& X,
                       Index polynomial, bool reversal) {
   std::vector<std::size_t> seen;

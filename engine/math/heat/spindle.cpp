@@ -13,7 +13,7 @@ namespace nonio::math {
 namespace {
 
 constexpr std::size_t fewest_in_turn = 16, fewest_turns = 2;
-// docs/dev/constants.md, A17.
+// Largest gap between readings, rad: docs/dev/constants.md, A17.
 constexpr double widest_gap = full_turn / 8.0;
 constexpr double as_read = 1e-4;  // rad: tolerance for angles at even steps
 
@@ -103,7 +103,7 @@ std::optional<Turns> rotating(const Turns& X, const Turns& Y, int sense) {
 }
 
 int sense_of(const ErrorMotion& X, const ErrorMotion& Y) {
-  constexpr double clearly = 3.0;  // docs/dev/constants.md, A27
+  constexpr double clearly = 3.0;  // ratio that decides the sense: docs/dev/constants.md, A27
   const double f = std::hypot(X.a + Y.b, X.b - Y.a) / 2.0;
   const double g = std::hypot(X.a - Y.b, X.b + Y.a) / 2.0;
   const double noise = 4.0 * std::hypot(X.u_ab, Y.u_ab);

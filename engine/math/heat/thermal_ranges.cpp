@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ranges in windows, by two queues of candidates: O(n). Formulas: nonio/math/thermal.h. A decision
-// of the analysis: docs/dev/constants.md, A16.
+// Ranges in windows, by two queues of candidates, which takes O(n). Formulas: nonio/math/thermal.h.
+// Decision of the analysis: docs/dev/constants.md, A16.
 #include <algorithm>
 #include <cmath>
 #include <deque>

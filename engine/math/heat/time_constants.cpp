@@ -21,7 +21,7 @@ using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
 constexpr std::size_t most_means = 120, fewest = 12;
-// docs/dev/constants.md, A15.
+// Reason for these limits: docs/dev/constants.md, A15.
 constexpr double longest_share = 0.5;   // largest time constant, as a fraction of the test
 constexpr double largest_u_tau = 0.25;  // largest relative uncertainty of a time constant
 constexpr double second_level = 0.01;
@@ -47,7 +47,7 @@ Means means_of(const Track& k) {
       out.place.push_back(at);
       t.push_back(0.0), d.push_back(0.0), n.push_back(0.0), squares.push_back(0.0);
     }
-    // Sum relative to the middle of the interval, to preserve digits.
+    // Sum relative to the middle of the interval, to reduce rounding errors.
     const double off = k.time[i] - start - at * out.step;
     t.back() += off, d.back() += k.d[i], n.back() += 1.0, squares.back() += off * off;
   }
@@ -134,8 +134,8 @@ Curve searched(const Means& m, std::size_t parts, const PathNoise& noise) {
 }
 
 /// Improves a curve by Gauss-Newton steps in ln tau, which are halved while they increase the
-/// residuals. Near the minimum the sum of squares is flat; small steps are accepted there, so that
-/// rounding does not decide where the search ends.
+/// residuals. Near the minimum, where the sum of squares is flat, small steps are always accepted,
+/// so that rounding does not decide where the search ends.
 void refine(const Means& m, const PathNoise& noise, Curve& c) {
   constexpr int most = 60;
   constexpr double near = 1e-4, reached = 1e-11;
@@ -191,8 +191,8 @@ double rss_with(const Means& m, const Curve& c, const PathNoise& noise) {
 }
 
 /// Returns whether a second time constant reduces the residuals significantly and differs from the
-/// first by a factor of `apart` or more; both curves are compared under the noise estimated with
-/// two.
+/// first by a factor of `apart` or more. Both curves are compared under the noise estimated with
+/// two time constants.
 bool two_parts(const Means& m, const Fitted& two) {
   Curve one = searched(m, 1, two.noise);
   refine(m, two.noise, one);
@@ -254,7 +254,7 @@ TimeConstants::Time TimeConstants::settled(double limit) const {
   double most = 0.0;
   for (const Part& p : parts) most += std::fabs(p.c);
   if (most <= limit) return {};
-  // After this time it remains below the limit; search backwards from there for the last crossing.
+  // After `high`, abs(rest) remains below the limit, so that the last crossing is before `high`.
   double high = slowest * std::log(most / limit), low = 0.0;
   constexpr int steps = 4000;
   int crossing = -1;

@@ -42,7 +42,6 @@ std::vector<MeasuringMove> to_and_fro(const std::vector<std::vector<double>>& st
   return moves;
 }
 
-/// Returns the path along a straight line of evenly spaced stops.
 MeasuringPath line_path(std::string name, const Rectangle& r, double y0, double step_x,
                         double step_y, int steps, const MeasuringRequest& wish) {
   MeasuringPath path{std::move(name), {r.x, r.y}, {false, false}, {}};

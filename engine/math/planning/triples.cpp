@@ -19,7 +19,7 @@ constexpr std::int64_t fewest_steps = 4;  // five points per axis
 constexpr double longest_travel = 1e3;    // m; keeps every product far below the limit of 64 bits
 constexpr std::int64_t largest_hypotenuse = 1'000'000;
 constexpr std::int64_t most_points = 1'000'000;
-// docs/dev/constants.md, A10.
+// Coverage that an odd plan must exceed an even one by: docs/dev/constants.md, A10.
 constexpr double even_bonus = 0.01;
 const double even_part_gain = std::sqrt(6.0) / 4.0;
 
@@ -118,8 +118,8 @@ bool is_multiple(std::int64_t step, const std::vector<std::int64_t>& pitches) {
 /// Returns the largest multiple of `m` up to `q` with which no step is a multiple of a pitch; 0 if
 /// there is none.
 std::int64_t with_pitch(const Search& s, const Triple& t, std::int64_t q, std::int64_t m) {
-  // A pitch excludes every q, or every m-th with m >= 2, so that one of a few consecutive multiples
-  // is free, if any is.
+  // A pitch excludes every q, or every m-th q with m >= 2. Therefore, if any multiple is allowed,
+  // one of a few consecutive multiples is allowed.
   const std::int64_t tries = 2 * static_cast<std::int64_t>(s.pitch_x.size() + s.pitch_y.size() + 1);
   q -= q % m;
   for (std::int64_t i = 0; q >= 1 && i <= tries * tries; ++i, q -= m)
@@ -180,7 +180,6 @@ bool same_plan(const TriplePlan& p, const TriplePlan& o) {
   return same_triple(p, o) && p.a == o.a && p.q == o.q && p.n == o.n;
 }
 
-/// Keeps the best plan of one kind.
 class Best {
  public:
   using Before = std::function<bool(const TriplePlan&, const TriplePlan&)>;

@@ -21,7 +21,7 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 constexpr double thinnest = 1e-6;    // smallest ratio of second to first singular value of a plane
 constexpr double same_angle = 1e-6;  // smallest difference of two angles of the axis, rad
-// docs/dev/constants.md, A9.
+// Reason for this limit: docs/dev/constants.md, A9.
 constexpr double worst_follow = 0.1;  // largest rms difference between encoder and circle, rad
 
 double wrapped(double angle) { return std::remainder(angle, full_turn); }
@@ -63,7 +63,8 @@ std::optional<Plane> plane_of(std::span<const BallCentre> centres) {
     points.row(i) << c.at[0], c.at[1], c.at[2];
     plane.weight[i] = c.weight;
   }
-  // The first point is subtracted before the mean, so that a large offset does not cost digits.
+  // The first point is subtracted before the mean, so that a large offset causes no loss of
+  // precision.
   const Vector3d first = points.row(0).transpose();
   points.rowwise() -= first.transpose();
   const Vector3d mean = points.transpose() * plane.weight / plane.weight.sum();
@@ -83,8 +84,8 @@ std::optional<Plane> plane_of(std::span<const BallCentre> centres) {
   return plane;
 }
 
-/// Circle in the plane: centre, radius, their covariance for a standard uncertainty of 1 m, and the
-/// shift of the centre per unit of shear.
+/// Circle in the plane: center, radius, their covariance for a standard uncertainty of 1 m, and the
+/// shift of the center per unit of shear.
 struct Circle {
   Vector2d centre = Vector2d::Zero();
   double radius = 0.0;
@@ -211,7 +212,7 @@ Circle with_angles(std::span<const BallCentre> centres, const Plane& p, double s
   c.radius = arm.norm();
   c.cofactor = inverse.topLeftCorner<2, 2>();
   c.cofactor_radius = inverse(2, 2);
-  // Displacement per unit of shear: half of (u, -v) and of (v, u) about the centre.
+  // Displacement per unit of shear: half of (u, -v) and of (v, u) about the center.
   Eigen::Matrix<double, 4, 2> spread = Eigen::Matrix<double, 4, 2>::Zero();
   for (std::size_t i = 0; i < centres.size(); ++i) {
     const TwoRows g = row(i);
@@ -255,7 +256,7 @@ void put_covariance(RotaryFit& fit, const Plane& p, const Circle& c) {
   Points G = p.flat;
   G.col(2).setOnes();
   const Matrix3d cp = (G.transpose() * p.weight.asDiagonal() * G).inverse();
-  // Covariance of (a, b, height at the centre, slope along e1, slope along e2).
+  // Covariance of (a, b, height at the center, slope along e1, slope along e2).
   const Vector3d g(c.centre[0], c.centre[1], 1.0);
   Eigen::Matrix<double, 5, 5> inner = Eigen::Matrix<double, 5, 5>::Zero();
   inner.topLeftCorner<2, 2>() = c.cofactor;

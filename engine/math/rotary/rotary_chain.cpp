@@ -129,7 +129,7 @@ class Descent {
 
   const ChainState& state() const { return state_; }
   double sum() const { return left_.squaredNorm(); }
-  /// Whether the readings determine the direction of an axis.
+  /// Returns whether the readings determine the direction of an axis.
   bool identifies_direction(std::size_t axis) const {
     for (const Index k : {4 * at(axis) + 2, 4 * at(axis) + 3})
       if (std::fabs(V_.row(k).norm() - 1.0) > open_changes_nothing) return false;
@@ -268,8 +268,8 @@ bool other_chain(const Descent& best, const ChainState& other) {
   return false;
 }
 
-/// Moves the points of the lines to the positions nearest to what they carry: the first ball, or
-/// the tip.
+/// Moves the point of each line to the position nearest to the first ball (tables) or to the tip of
+/// the first tool (heads).
 void settle(ChainState& s, const ChainOrder& order) {
   for (std::size_t l = 0; l < s.lines.size(); ++l)
     s.lines[l].point = nearest_on(s.lines[l], l < order.tables ? s.ball.front() : Vector3{});

@@ -73,7 +73,7 @@ long long place_in_turn(double angle) {
 }
 
 std::string other_turning_axis(const Observations& o) {
-  constexpr double least = 1e-6;  // rad, smallest motion that counts
+  constexpr double least = 1e-6;  // smallest motion of an axis, rad
   for (std::size_t k = 1; k < o.axes.size(); ++k) {
     const auto& column = o.axes[k];
     if (!column.rotary || column.position.empty()) continue;
@@ -88,7 +88,7 @@ double expansion_factor(int dof) {
   if (dof == 0) return std::numeric_limits<double>::quiet_NaN();
   // probability outside k = 2 of a normal distribution
   const double outside = std::erfc(2.0 / std::numbers::sqrt2);
-  double low = 2.0, high = 20.0;  // t(1 dof) is 13.97
+  double low = 2.0, high = 20.0;  // the largest factor, t for one degree of freedom, is 13.97
   while (high - low > 1e-12 * high) {
     const double middle = 0.5 * (low + high);
     (t_two_sided(middle, dof) > outside ? low : high) = middle;
@@ -103,7 +103,7 @@ LineRelation relation_of(const RotaryFit& a, double sigma_a, const RotaryFit& b,
   const double sine = cross.norm();
   LineRelation out;
   out.angle = std::atan2(sine, m.dot(n));
-  // Derivatives with respect to (centre, direction) of each line.
+  // Derivatives with respect to (center, direction) of each line.
   Eigen::Matrix<double, 6, 1> da = Eigen::Matrix<double, 6, 1>::Zero(), db = da, ta = da, tb = da;
   if (sine > 1e-6) {
     const Vector3d normal = cross / sine, gap = q - p;
@@ -119,14 +119,14 @@ LineRelation relation_of(const RotaryFit& a, double sigma_a, const RotaryFit& b,
     db.tail<3>() = sign * across.cross(m);
     ta.tail<3>() = (m * m.dot(n) - n) / sine;
     tb.tail<3>() = (n * m.dot(n) - m) / sine;
-  } else {  // parallel: the distance of a point from the other line
+  } else {  // for parallel lines, the distance of a point from the other line
     const Vector3d gap = q - p, across = gap - gap.dot(m) * m;
     out.distance = across.norm();
     const Vector3d unit = out.distance > 0.0 ? Vector3d(across / out.distance) : Vector3d(0, 0, 0);
     da.head<3>() = -unit;
     db.head<3>() = unit;
     da.tail<3>() = -gap.dot(m) * unit;
-    // the angle is about 0, and its magnitude cannot be negative
+    // the angle is about 0; any direction perpendicular to m gives its derivative
     ta.tail<3>() = m.unitOrthogonal();
     tb.tail<3>() = -ta.tail<3>();
   }

@@ -82,7 +82,7 @@ Expected<RotaryPlanU> simulated(const RotaryPlan& plan, std::size_t trials, std:
   if (trials < 10) return fail("expected 10 trials or more, found " + std::to_string(trials));
   const auto exact = places_of(plan);
   NormalNumbers normal(seed);
-  std::array<double, 6> squares{};  // sums of xx, xy, yy: of the centre, then of the tilt
+  std::array<double, 6> squares{};  // sums of xx, xy, yy: of the center, then of the tilt
   double along = 0.0, distance = 0.0, angle = 0.0;
   for (std::size_t t = 0; t < trials; ++t) {
     auto read = exact;

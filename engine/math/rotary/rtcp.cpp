@@ -31,8 +31,8 @@ Matrix3d turn(const Vector3d& n, double angle) {
   return Matrix3d::Identity() + std::sin(angle) * cross + (1.0 - std::cos(angle)) * cross * cross;
 }
 
-/// Fits a circle to the commanded positions of one line. Returns nothing if they do not follow one,
-/// or if its radius is below `least_radius`.
+/// Fits a circle to the commanded positions of one line. Returns nothing if the positions do not
+/// follow a circle, or if its radius is below `least_radius`.
 std::optional<RotaryFit> circle_of(const std::vector<RtcpReading>& all, std::size_t line) {
   std::map<long long, BallCentre> places;
   for (const RtcpReading& r : all) {
@@ -91,7 +91,6 @@ class Readings {
   const Vector3d& direction() const { return n0_; }
   const std::array<std::size_t, 2>& across() const { return across_; }
 
-  /// Returns the readings predicted for the unknowns x.
   VectorXd predicted(const VectorXd& x) const {
     Vector3d c = c0_, n = n0_;
     const auto e1 = static_cast<Eigen::Index>(across_[0]),
@@ -167,7 +166,7 @@ class Readings {
   }
 
   /// Chooses the point to which a and b refer: at the mean height of the balls that are sensed
-  /// across the axis, or of all balls if none is.
+  /// across the axis, or of all balls if none is sensed across it.
   void choose_point() {
     double height[2] = {0.0, 0.0}, n[2] = {0.0, 0.0};
     for (const RtcpReading& r : all_) {
@@ -222,8 +221,8 @@ struct Solved {
 };
 
 Solved solved(const MatrixXd& j) {
-  // Use one scale for all lengths and one for both tilts: a column that is nearly zero must remain
-  // so, because it contains only rounding errors of positions.
+  // Use one scale for all lengths and one for both tilts. A column that is nearly zero must remain
+  // nearly zero, because it contains only rounding errors of positions.
   const VectorXd norm = j.colwise().norm();
   const double tilt = std::max(norm[2], norm[3]);
   double length = 0.0;
@@ -262,8 +261,9 @@ tl::expected<RtcpFit, RtcpRefusal> fit_rtcp(const std::vector<RtcpReading>& all,
   if (const auto refused = readings.prepare()) return tl::unexpected(*refused);
   const VectorXd y = readings.deviations();
   VectorXd x = VectorXd::Zero(readings.unknowns());
-  // Which parameters are identifiable depends on the set-up only: on the Jacobian at the axis of
-  // the control. With errors of 1e-3 rad, each iteration reduces the remainder to 1e-3.
+  // Which parameters are identifiable depends on the set-up only, that is, on the Jacobian at the
+  // axis of the control. With errors of 1e-3 rad, each iteration reduces the remainder by a factor
+  // of about 1000.
   const MatrixXd j = readings.jacobian(x);
   const Solved solution = solved(j);
   for (int round = 0; round < 6; ++round) x += times(solution.inverse, y - readings.predicted(x));

@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-/// A coordinate of the centre whose uncertainty exceeds that of a touched point by more than this
+/// A coordinate of the center whose uncertainty exceeds that of a touched point by more than this
 /// factor is not determined.
 constexpr double largest_growth = 20.0;
 
@@ -40,7 +40,7 @@ std::optional<Sphere> start(const MatrixXd& points) {
   return Sphere{centre, std::sqrt(square)};
 }
 
-/// Computes the residuals and their derivatives; false if a point coincides with the centre.
+/// Computes the residuals and their derivatives; false if a point coincides with the center.
 bool linearise(const MatrixXd& points, const Sphere& s, MatrixXd& J, VectorXd& e) {
   for (Index i = 0; i < points.rows(); ++i) {
     const Vector3d out = points.row(i).transpose() - s.centre;

@@ -7,10 +7,10 @@ namespace nonio::math {
 
 /// One sinusoid per turn, fitted by least squares: y = c + a cos(angle) + b sin(angle).
 struct Harmonic {
-  bool known = false;      ///< false: the angles do not cover the turn, or a value is not finite
+  bool known = false;      ///< false if the angles do not cover the turn or a value is not finite
   double amplitude = 0.0;  ///< sqrt(a^2 + b^2), in the unit of y
-  double share = 0.0;      ///< fraction of the variance of y that it explains, 0..1
-  double p = 1.0;          ///< p of the F test against the residuals
+  double share = 0.0;      ///< fraction of the variance of y explained by the sinusoid, 0..1
+  double p = 1.0;          ///< p-value of the F test against the residuals
 };
 
 /// Fits the sinusoid. The angles (rad) cover the turn if there are 5 different ones and no gap is

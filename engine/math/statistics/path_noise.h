@@ -21,11 +21,12 @@ struct PathNoise {
   double slow() const { return (1.0 - w) + w * (1.0 + rho) / (1.0 - rho); }
 };
 
-/// Whitens the columns for s = 1, in place, and returns ln det of the covariance. place: index of
-/// the bin of each row, ascending.
+/// Whitens the columns for s = 1, in place, and returns ln det of the covariance. place: position
+/// of each row along the path, ascending integers.
 double whiten(Eigen::MatrixXd& columns, const std::vector<int>& place, const PathNoise& noise);
 
-/// Estimates the noise of the residuals of y on X.
+/// Estimates rho and w from the residuals of a fit of y to the columns of X. place: as for
+/// `whiten`.
 PathNoise path_noise(const Eigen::MatrixXd& X, const Eigen::VectorXd& y,
                      const std::vector<int>& place);
 

@@ -24,7 +24,7 @@ std::pair<int, std::array<double, 4>> b_splines(const Knots& knots, double x) {
   const double at = (x - knots.first) / knots.step;
   const double last = knots.intervals - 1;
   const double interval =
-      at >= 0.0 ? std::min(std::floor(at), last) : 0.0;  // NaN: the first interval
+      at >= 0.0 ? std::min(std::floor(at), last) : 0.0;  // the first interval if x is NaN
   const double s = at - interval, r = 1.0 - s;
   return {static_cast<int>(interval),
           {r * r * r / 6.0, ((3.0 * s - 6.0) * s * s + 4.0) / 6.0,
@@ -41,8 +41,8 @@ Eigen::MatrixXd b_spline_matrix(const Knots& knots, const std::vector<double>& x
   return b;
 }
 
-/// Returns the coefficients of the basis: B-splines times N span the functions orthogonal to
-/// constant and slope over the targets; R, from the QR decomposition of these, makes them
+/// Returns the coefficients of the basis. B-splines times N span the functions that are orthogonal
+/// to constant and slope over the targets; R, from the QR decomposition of these, makes them
 /// orthonormal.
 Expected<Eigen::MatrixXd> coefficients(const Eigen::MatrixXd& b,
                                        const std::vector<double>& targets) {

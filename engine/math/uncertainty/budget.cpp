@@ -33,12 +33,12 @@ namespace {
 
 using LineKind = BudgetLine::Kind;
 
-// docs/dev/constants.md, A8.
+// Reason for this limit: docs/dev/constants.md, A8.
 constexpr double as_if_known = 500.0;  // degrees of freedom above which k is 2.00
 
 double k_of(double dof) { return dof < as_if_known ? coverage_factor(dof) : 2.0; }
 
-/// Returns k; excess: kurtosis minus 3 of the whole distribution, at most 0.
+/// Returns the coverage factor. excess: kurtosis of the whole distribution minus 3, at most 0.
 double k_of(double dof, double excess) { return k_of(dof) * shape_factor(excess); }
 
 constexpr double of_rectangle = -1.2;  // excess of a rectangular distribution
@@ -53,7 +53,7 @@ double extent(const BudgetLine& line) {
   return most;
 }
 
-/// Adds the inputs to the model.
+/// Adds the input quantities to the model, with the values that the manifest states.
 class Builder {
  public:
   Builder(const Campaign& c, const Environment& e, ReadingModel& out) : c_(c), e_(e), out_(out) {
@@ -216,7 +216,7 @@ std::vector<double> reading_times(const Observations& o) {
   const bool timed =
       o.time.size() == o.size() &&
       std::all_of(o.time.begin(), o.time.end(), [](double t) { return std::isfinite(t); });
-  // The order of rows is ignored: run by run, up and then down.
+  // Without times, the order is run by run, up and then down, whatever the order of the rows.
   const auto when = [&](std::size_t i) {
     if (timed) return std::tuple(o.time[i], 0, 0.0);
     const bool down =

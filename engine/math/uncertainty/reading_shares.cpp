@@ -21,8 +21,8 @@ class Variance {
   Variance(const ReadingModel& model, const ReadingModel::Input& input, std::span<const double> J)
       : model_(model), input_(input), J_(J) {}
 
-  /// Returns the variance of this input in a result that the repetition already contains: by its
-  /// part in the residuals of the fit, and by its random walk. (`all(in_residuals)` is restricted
+  /// Returns the variance of this input in a result that the repetition already contains: by the
+  /// residuals of the fit, and by the random walk of the input. (`all(in_residuals)` is restricted
   /// to lines whose readings are in the residuals.)
   double seen_elsewhere() const {
     double variance = 0.0;
@@ -40,7 +40,7 @@ class Variance {
 
   Parts all(bool in_residuals = false) const {
     if (!input_.patterns.empty()) return in_residuals ? Parts{} : of_patterns();
-    // sums by group; a single one for inputs common to the device
+    // sums by group; a single one for inputs common to the instrument
     std::map<std::size_t, double> sums;
     Parts out;
     std::size_t first = 0;

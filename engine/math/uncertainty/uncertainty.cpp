@@ -30,8 +30,8 @@
 namespace nonio::math {
 namespace {
 
-// docs/dev/constants.md, A7.
-constexpr double of_range = 0.6;  // 2/(2 sqrt 3), rounded up, see above
+// Reason for this factor: docs/dev/constants.md, A7.
+constexpr double of_range = 0.6;  // 2/(2 sqrt 3), rounded up
 
 double get(const std::optional<double>& given, const std::string& key,
            std::vector<std::string>& missing) {

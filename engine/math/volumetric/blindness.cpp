@@ -69,7 +69,7 @@ Corner error_shape(const OneError& e, const Corner& at, const Corner& low, const
   return out;
 }
 
-/// Returns the largest error in the volume for a coefficient of 1, m; 0 if nothing moves.
+/// Returns the largest error in the volume for a coefficient of 1, m; 0 if the error has no effect.
 double largest_in_volume(const OneError& e, const Corner& low, const Corner& high) {
   double most = 0.0;
   for (std::size_t corner = 0; corner < 27; ++corner) {
@@ -89,7 +89,7 @@ Corner unit_shape(const OneError& e, const Corner& at, const Corner& low, const 
 }
 
 /// Reduced row echelon form, by columns from the left: a column without a pivot is a combination of
-/// earlier pivots.
+/// the pivot columns before it.
 struct Echelon {
   std::vector<std::size_t> pivots;
   Eigen::MatrixXd reduced;

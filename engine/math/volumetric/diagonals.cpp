@@ -22,7 +22,7 @@ using Row = Eigen::RowVectorXd;
 
 /// smallest pivot that counts for the rank, relative to the largest one
 constexpr double rank_threshold = 1e-10;
-// docs/dev/constants.md, A6.
+// Reason for this limit: docs/dev/constants.md, A6.
 constexpr double closure_limit = 4.0;  ///< limit of the closure error, in standard uncertainties
 
 /// The linear equations A theta = y + N e for theta = (f_1..f_{n-1}, g_1..g_{n-1}, k Ly, slopes of
@@ -218,7 +218,7 @@ class System {
   Eigen::Index next_ = 0;
 };
 
-/// Generalised least squares with the rank determined numerically. The value of a functional is
+/// Generalized least squares with the rank determined numerically. The value of a functional is
 /// valid only if the rows determine it (`determined`).
 class Solution {
  public:
@@ -286,8 +286,8 @@ KnownCurve known(const Solution& s, const Functional& h) {
     out.shares.push_back(s.shares(row));
     sum += s.gain(row) * s.gain(row);
   }
-  // The rms is over the inner points, because a curve minus its end-point line is 0 at both ends. A
-  // curve minus its least-squares line is not, so its gain is larger than the rms, but is not used.
+  // The rms is over the inner points, because a curve minus its end-point line is 0 at both ends.
+  // For a curve minus its least-squares line the gain is therefore too large, but it is not used.
   out.gain = std::sqrt(sum / static_cast<double>(h.size() - 2));
   return out;
 }
@@ -312,7 +312,7 @@ Row slope(const Functional& h, double length) {
   return sum / squares;
 }
 
-/// Subtracts the least-squares line.
+/// Returns the functional minus its least-squares line.
 Functional less_line(const Functional& h) {
   const double n = static_cast<double>(h.size() - 1);
   const Row tilt = slope(h, 1.0);
@@ -325,7 +325,7 @@ Functional less_line(const Functional& h) {
 }
 
 /// Computes the closure error S = d1 + d2, of which only the even part can be an error of the
-/// machine. Its limits use the whole budget, if there is one.
+/// machine. The limits use the whole budget, if there is a model of the readings.
 Closure closure_of(const System& system, std::size_t n, const Solution& solution) {
   const Matrix C = system.covariance();
   const auto S = [&](std::size_t i) {
@@ -344,7 +344,7 @@ Closure closure_of(const System& system, std::size_t n, const Solution& solution
   c.S_n_limit = closure_limit * std::sqrt(variance(S(n)));
   double sum = 0.0, expected = 0.0, points = 0.0;
   for (std::size_t i = 1; i < n; ++i) {
-    if (2 * i == n) continue;  // an odd curve is 0 there
+    if (2 * i == n) continue;  // an odd curve is 0 at mid-travel
     const Row odd = (S(i) - S(n - i)) / 2.0;
     const double v = odd * system.y();
     sum += v * v;
@@ -393,7 +393,7 @@ void fill_yaw(const DiagonalReadings& r, const System& system, const Solution& s
     out.ECX.shares.push_back(s.shares_of_readings(J));
   };
   const std::size_t curve = r.n + 1;
-  // standard uncertainty of a difference to the first point
+  // standard uncertainty of a difference from the first point
   const auto noise = [&](const MeanCurve& c, std::size_t i) {
     const double one = system.noise_known() ? c.u : 1.0;
     return i == 0 ? 0.0 : one * (c.zeroed ? 1.0 : std::sqrt(2.0));
@@ -538,7 +538,8 @@ Band straightness_band(const DiagonalResult& r, double Lx, double Ly, double G) 
   const std::size_t n = r.q_odd.value.size() - 1;
   for (std::size_t i = 0; i <= n; ++i) {
     const double q = r.q_odd.value[i];
-    // The odd part is 0 at the ends and at mid-travel, so it has no bound there.
+    // The odd part is 0 at the ends and at mid-travel, so that both bounds are equal at these
+    // points.
     const double half = i == 0 || i == n || 2 * i == n ? 0.0 : c * G / s;
     band.low.push_back(r.EYX_even.value[i] + q / s - half);
     band.high.push_back(r.EYX_even.value[i] + q / s + half);

@@ -17,8 +17,8 @@ struct Estimator {
   Eigen::MatrixXd covariance;
   Eigen::MatrixXd of_readings{};
   const ReadingModel* model = nullptr;
-  /// Returns the degrees of freedom of the repetition for a row of derivatives by the readings;
-  /// empty: those of the budget.
+  /// Returns the degrees of freedom of the repetition for a row of derivatives by the readings. If
+  /// empty, those of the budget apply.
   std::function<double(const Eigen::RowVectorXd&)> dof{};
 
   double value(const Eigen::RowVectorXd& row) const { return row.dot(x); }

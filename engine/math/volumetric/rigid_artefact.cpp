@@ -15,10 +15,10 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
-// a rotation that moves a ball by less, relative to the size of the artefact, counts as no movement
+// a rotation that moves a ball by less, relative to the size of the artefact, is ignored
 constexpr double no_lever = 1e-6;
-// largest width, relative to the length, of balls that count as being on one line; these do not
-// determine the rotation about it
+// largest width, relative to the length, of balls that are treated as being on one line; such balls
+// do not determine the rotation about the line
 constexpr double no_plane = 1e-3;
 constexpr double least_u = 1e-9;  // m, m/m; smallest standard uncertainty used for stated values
 
@@ -92,8 +92,8 @@ class Frame {
 
  private:
   /// Fits a placement by its balls with known coordinates, and derives the coordinates of its other
-  /// balls. Returns false if no ball is known, or if the known ones are on one line and others are
-  /// not known.
+  /// balls. Returns false if no ball is known, or if the known balls are on one line and other
+  /// balls are not known.
   bool link(std::size_t p) {
     const ArtefactPlacement& placement = a_.placements[p];
     std::vector<Vector3d> q, at;

@@ -19,7 +19,7 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-// largest relative change of a result by undetermined combinations that counts as none
+// largest relative change of a result by undetermined combinations that is treated as no change
 constexpr double changes_nothing = 1e-6;
 constexpr double shows_nothing = 1e-9;  // norm of a row of V below which a term affects no reading
 constexpr double same_share = 1e-6;
@@ -47,7 +47,7 @@ void find_combinations(const RigidFit& f, RigidSolution& out) {
 }
 
 /// Returns the terms of the least identifiable direction whose coefficients exceed 0.3 of the
-/// largest, the largest first; the coefficients are relative to it.
+/// largest, in descending order; the coefficients are relative to the largest.
 Combination weakest_of(const RigidFit& f) {
   Combination out;
   if (f.solved.rank == 0) return out;
@@ -91,7 +91,8 @@ class Results {
            orthogonal_part(f_.solved.V, VectorXd(row.transpose())).norm() < changes_nothing * size;
   }
 
-  /// Returns the row of an error at a position of its axis; for positioning relative to the start.
+  /// Returns the row of an error at a position of its axis; for positioning, relative to the start
+  /// of the travel.
   RowVectorXd row_of(const std::string& error, const Corner& place) const {
     RowVectorXd row = RowVectorXd::Zero(at(f_.terms.size()));
     for (std::size_t k = 0; k < f_.terms.size(); ++k) {
@@ -114,7 +115,7 @@ class Results {
   }
 
  private:
-  /// Returns the degrees of freedom by Welch and Satterthwaite over the groups.
+  /// Returns the effective degrees of freedom over the groups (Welch-Satterthwaite).
   double dof_of(const RowVectorXd& J) const {
     std::vector<double> share(f_.scatter.s.size(), 0.0);
     for (Index i = 0; i < J.size(); ++i) {

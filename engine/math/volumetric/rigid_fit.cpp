@@ -123,7 +123,7 @@ double schwarz(const RigidTable& t, const RigidSolved& s, const std::vector<doub
   return sum;
 }
 
-/// Residuals of exact readings below this are rounding errors, not scatter.
+/// Smallest scatter of a group, m or rad; smaller residuals of exact readings are rounding errors.
 constexpr double no_scatter = 1e-12;
 
 }  // namespace

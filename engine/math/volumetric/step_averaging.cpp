@@ -13,7 +13,8 @@ using Index = Eigen::Index;
 /// One move of an axis over its interval i. Its size is the reading after the move minus the
 /// reading before it; the reading before the first move is the zero of the pass.
 struct Increment {
-  std::size_t pass = 0, after = 0;  ///< number of moves of the pass up to and including this one
+  /// after: number of moves of the pass up to and including this one
+  std::size_t pass = 0, after = 0;
 };
 
 /// Returns the move of `axis` over interval i (from position i to i + 1) in a pass.

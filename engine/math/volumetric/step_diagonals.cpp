@@ -15,9 +15,10 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using Index = Eigen::Index;
 
-constexpr double undetermined = 1e-10;  // relative to the largest eigenvalue: not determined
-constexpr double unmoved = 1e-6;        // largest change by an undetermined unit vector to ignore
-constexpr int corrections = 2;          // number of corrections of second order
+// limit of eigenvalues, relative to the largest; directions below this limit are not determined
+constexpr double undetermined = 1e-10;
+constexpr double unmoved = 1e-6;  // largest change by an undetermined unit vector that is ignored
+constexpr int corrections = 2;    // number of corrections of second order
 
 /// Returns two unit vectors perpendicular to u.
 std::array<Vector3d, 2> across(const Vector3d& u) {
@@ -78,8 +79,8 @@ void put_reading(const StepDiagonals& d, const ReadingRow& row, Design& design, 
   design.b[r] = row.moves == 0 ? 0.0 : pass.reading[row.moves - 1];
 }
 
-/// Adds E_aa, interpolated between its positions, to a row of the function values; false outside of
-/// them.
+/// Adds E_aa, interpolated between its positions, to a row of the function values. Returns false if
+/// x is outside of the travel.
 bool put_position(const StepDiagonals& d, std::size_t axis, double x, double weight,
                   Eigen::Ref<Eigen::RowVectorXd> row) {
   const double steps = (x - d.low[axis]) / d.travel[axis] * static_cast<double>(d.n);
@@ -125,7 +126,7 @@ Design design_of(const StepDiagonals& d, const std::vector<AxisSeries>& series,
     const double weight = s.u > 0.0 && u_reading > 0.0 ? u_reading / s.u : 1.0;
     for (std::size_t i = 0; i < s.position.size(); ++i, ++r) {
       Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(design.layout.columns());
-      if (!put_position(d, s.axis, s.position[i], weight, row)) continue;  // leaves a row of zeros
+      if (!put_position(d, s.axis, s.position[i], weight, row)) continue;  // the row remains 0
       row[design.layout.first_series() + static_cast<Index>(k)] = weight;
       design.A.row(r) = row;
       design.b[r] = weight * s.deviation[i];
@@ -266,7 +267,7 @@ double used_u(const StepChoices& choices, const Scatter& s) {
   return choices.u_reading > 0.0 ? choices.u_reading : s.u;
 }
 
-/// Fits a line to values y with covariance C by generalised least squares, and tests the residuals.
+/// Fits a line to values y with covariance C by generalized least squares, and tests the residuals.
 ShapeContrast against_line(const AxisSeries& s, const MatrixXd& C, const VectorXd& y, double dof) {
   ShapeContrast out;
   out.axis = s.axis;

@@ -14,8 +14,8 @@ namespace nonio::model {
 namespace {
 
 /// Estimates the standard deviation of readings from the second differences of residuals, in which
-/// a smooth course nearly vanishes. Robust: uses the median of their absolute values. None for
-/// fewer than 20 residuals.
+/// a smooth course nearly vanishes. The median of their absolute values is used, because outliers
+/// hardly affect it. None for fewer than 20 residuals.
 std::optional<NoiseFloor> floor_of(const std::vector<double>& residual) {
   if (residual.size() < 20) return std::nullopt;
   std::vector<double> d;
@@ -62,7 +62,7 @@ std::optional<Place> place_of(Where where, const std::vector<double>& residual,
   place.p = math::f_upper(F, dof, rest);
   place.share = std::max(0.0, (between - dof * (squares - between) / rest) / squares);
   place.rms = std::sqrt(place.share * squares / static_cast<double>(residual.size()));
-  place.at = static_cast<double>(largest_class);  // index of the class with the largest mean
+  place.at = static_cast<double>(largest_class);  // index of the class with the largest |mean|
   return place;
 }
 
@@ -97,8 +97,8 @@ double fewer_than(const VectorXd& residual) {
 }
 
 /// Returns the places of the residuals: tests whether they differ between classes of time, and of
-/// each channel. It uses the means of the bins of the search, so differences within a bin count as
-/// noise.
+/// each channel. The means of the bins of the search are tested, so differences within a bin are
+/// not found.
 std::vector<Place> places_of(const Part& part, const std::vector<double>& all) {
   constexpr std::size_t classes = 8;
   const CourseData data(part);

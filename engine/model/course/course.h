@@ -22,7 +22,7 @@ Expected<Explanation> explain_course(const Part& part, const std::vector<Term>& 
 /// other blocks and has a zero of its own. The shapes of the terms are those of the fit.
 double left_out_rms(const Part& part, const std::vector<Term>& terms);
 
-/// Returns which channels (sensors) a fit uses, and how much each contributes; nothing if no term
+/// Returns which channels (sensors) a fit uses, and how much each contributes; none if no term
 /// depends on a channel.
 std::optional<Sensors> sensors_of(const Part& part, const Fit& fit);
 

@@ -56,7 +56,6 @@ class CourseData {
 /// Returns the correlation coefficient of successive residuals.
 double successive(const VectorXd& residual);
 
-/// Returns the quantity of each linear coefficient of a term.
 std::vector<Quantity> quantities_of(const Term& term);
 
 }  // namespace nonio::model

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Fits terms by generalised least squares on the means of bins, with noise that is correlated in
+// Fits terms by generalized least squares on the means of bins, with noise that is correlated in
 // time. The shapes are those with the largest evidence, first on their grids and then between grid
 // values.
 #include <algorithm>
@@ -222,7 +222,7 @@ class CourseFit {
     return "these readings cannot separate the effects of the model";
   }
 
-  /// Computes u of the coefficients and of the searched shapes from the linearised problem.
+  /// Computes u of the coefficients and of the searched shapes from the linearized problem.
   void uncertainties(const CourseModel& model, const VectorXd& x, Fit& out) const {
     const MatrixXd& a = model.columns;
     CourseModel linearised = model;

@@ -10,7 +10,8 @@
 namespace nonio::model {
 
 CourseNoise noise_of_fit(const CourseData& data) {
-  constexpr double part_of_test = 24.0;  // half of the longest lag; docs/dev/constants.md, M40
+  // Duration of the test over the correlation time; docs/dev/constants.md, M40.
+  constexpr double part_of_test = 24.0;
   return {data.duration() / part_of_test};
 }
 

@@ -13,13 +13,14 @@ struct CourseNoise {
   double scatter = 0.0;     ///< variance of the independent part / variance of the correlated part
 };
 
-/// Returns the noise with which effects are fitted and searched, with scatter 0.
+/// Returns the noise with which effects are fitted and searched: a correlation time of 1/24 of the
+/// test, and scatter 0.
 CourseNoise noise_of_fit(const CourseData& data);
 
-/// Whitens columns for generalised least squares: the noise of the result is independent from bin
-/// to bin, and the result contains no unknown zero. Unit: that of the column, scaled so that the
-/// correlated part of the noise has variance 1. Source: Kalman 1960; Harvey, Forecasting,
-/// structural time series models and the Kalman filter, 3.4.
+/// Whitens columns for generalized least squares: the noise of the result is independent from bin
+/// to bin, and the result contains no unknown zero. The result has the unit of the column and is
+/// scaled so that the correlated part of the noise has variance 1. Source: Kalman 1960; Harvey,
+/// Forecasting, structural time series models and the Kalman filter, 3.4.
 class CourseWhitening {
  public:
   CourseWhitening(const CourseData& data, const CourseNoise& noise);
@@ -42,7 +43,7 @@ class CourseWhitening {
 
 /// Columns of a model, and the quantity of each coefficient.
 struct CourseModel {
-  MatrixXd columns;  ///< columns of the model: one row per bin
+  MatrixXd columns;  ///< one row per bin
   std::vector<Quantity> of{};
 
   /// Appends the columns of a term; `quantities` are those of its coefficients, and the last one

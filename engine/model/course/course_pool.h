@@ -16,7 +16,7 @@ struct CourseSides;
 
 /// A pool of distinct columns, and their products under noise that is correlated in time. Each
 /// coefficient has a normal prior with the largest plausible standard deviation: half of 50 um/K,
-/// or the value that gives three times the scatter of the displacement.
+/// or for other quantities the value that gives three times the scatter of the displacement.
 class CoursePool {
  public:
   /// Searched values of `CourseNoise::scatter`, the ratio of independent to correlated variance.
@@ -24,7 +24,7 @@ class CoursePool {
 
   CoursePool(const CourseData& data, const CourseNoise& noise);
 
-  /// Adds columns (bins x k) and returns their indices in the pool; a column that it already
+  /// Adds columns (bins x k) and returns their indices in the pool. A column that the pool already
   /// contains is not added again. `of`: quantities of the coefficients; the last one applies to all
   /// further columns.
   std::vector<Index> add(const MatrixXd& columns, const std::vector<Quantity>& of);
@@ -35,7 +35,7 @@ class CoursePool {
   /// Returns -ln of the evidence of these columns for each displacement of `sides`, with the zero,
   /// the coefficients and the variance of the noise integrated out.
   Eigen::RowVectorXd cost(const std::vector<Index>& columns, const CourseSides& sides) const;
-  /// Returns the coefficients of the unscaled columns: columns x sides.
+  /// Returns the coefficients of the unscaled columns: columns x displacements.
   MatrixXd coefficients(const std::vector<Index>& columns, const CourseSides& sides) const;
   /// Returns the variance of the noise when the columns are fitted to the first displacement, m^2.
   double variance(const std::vector<Index>& columns, const CourseSides& sides) const;
@@ -44,8 +44,8 @@ class CoursePool {
   MatrixXd covariance(const std::vector<Index>& columns, double variance) const;
   /// Returns the residuals after these columns are fitted to displacements, bins x displacements.
   MatrixXd remainder(const std::vector<Index>& columns, const MatrixXd& displacements) const;
-  /// Returns the RMS of cross-validation of displacement `side` over blocks, each predicted from
-  /// the other blocks and reduced by its own mean, m.
+  /// Returns the RMS of cross-validation of displacement `side` over blocks of time, m: each block
+  /// is predicted from the other blocks and has a zero of its own.
   double left_out(const std::vector<Index>& columns, const CourseSides& sides, Index side) const;
 
   static constexpr std::size_t most_columns = 6;

@@ -297,7 +297,6 @@ class CourseSearch {
     sides_.emplace(*pool_, data_.displacements());
   }
 
-  /// Returns the columns of the model and of a set.
   CourseModel model_with(const Set& set) const {
     CourseModel out{MatrixXd(data_.size(), 0)};
     for (const Term& term : model_)
@@ -427,7 +426,7 @@ class CourseExplanation {
     const Set others = CourseSearch::without(set_, e);
     add(e, {member.alone, member.loss}, member.p);
     Candidate& c = out_.candidates.back();
-    // An effect that can replace it with nearly equal evidence cannot be separated from it.
+    // An effect that can replace the member with nearly equal evidence cannot be separated from it.
     for (const auto& [term, one] : search_.best_with(others))
       if (term != search_.entry(e).term && !search_.has_term(set_, term) &&
           one.second < all + search_.same())
@@ -458,7 +457,7 @@ class CourseExplanation {
 
   /// Fits the candidate together with the model. If `anew`, the shapes of the model are searched
   /// again, and those of the candidate if it is a member of the best set or nothing was found;
-  /// otherwise all shapes are kept. If the fit fails, the candidate becomes not visible.
+  /// otherwise all shapes are kept. If the fit fails, the candidate is marked as not visible.
   void fit(Candidate& c, bool anew) {
     std::vector<Term> terms = anew ? model_ : out_.comparison.fit.terms;
     terms.push_back(c.term);

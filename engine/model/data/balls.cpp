@@ -21,7 +21,7 @@ struct Ball {
   std::size_t row = 0;  // row of its first coordinate
 };
 
-/// Combines every three rows, which sense x, y and z, into one ball centre.
+/// Combines every three rows, which sense x, y and z, into one ball center.
 std::vector<Ball> gathered(const Observations& o) {
   std::vector<Ball> balls;
   for (std::size_t i = 0; i + 2 < o.size(); i += 3) {
@@ -32,7 +32,7 @@ std::vector<Ball> gathered(const Observations& o) {
   return balls;
 }
 
-/// Returns the mean centre at each angle.
+/// Returns the mean ball center at each angle (rad); its weight is the number of centers.
 std::map<double, math::BallCentre> mean_centres(const Observations& o,
                                                 const std::vector<Ball>& balls) {
   std::map<double, math::BallCentre> places;

@@ -17,7 +17,7 @@ void project(const Observations& o, const Axis& axis, MatrixXd& columns) {
     columns.row(i) *= o.sense_of(static_cast<std::size_t>(i))[k];
 }
 
-/// Copies the columns to a separate block for each group, 0 in the rows of the others; for
+/// Copies the columns to a separate block for each group, with 0 in the rows of other groups. For
 /// differences the first group has no block.
 MatrixXd in_groups(const Observations& o, const Term& term, const MatrixXd& columns) {
   const Index first = term.differences ? 1 : 0, k = columns.cols();

@@ -21,7 +21,7 @@ inline std::size_t lines_of(const Observations& o) { return o.line.empty() ? 1 :
 
 /// Returns the columns of a term, with one row per reading. In tables of several axes the columns
 /// of an axis contain the component along the direction of sensing; a term with groups has a block
-/// of columns for each group, and a term whose parameters are given has no columns. Error: the
+/// of columns for each group, and a term whose parameters are given has no columns. An error if the
 /// plugin fails, or returns another size or values that are not finite.
 Expected<MatrixXd> columns_of(const Observations& o, const Term& term,
                               const std::vector<double>& shape);
@@ -31,7 +31,7 @@ Expected<MatrixXd> columns_of(const Observations& o, const Term& term,
 std::vector<Term> with_term(std::vector<Term> model, Term term);
 
 /// Returns the terms of the catalogue that can be added to a model. An effect that the model has
-/// without groups is offered with groups as differences between them.
+/// without groups can be added only with groups, as differences between the groups.
 std::vector<Term> offered_to(const std::vector<Term>& model, const std::vector<Term>& catalogue);
 
 /// A combination of the columns of a curve is identifiable if at least this part of their size
@@ -58,7 +58,7 @@ Expected<std::vector<MatrixXd>> blocks_of(const Observations& o, const std::vect
 std::vector<std::vector<double>> shapes_of(const Observations& o, const Term& term);
 
 /// Returns the value of shape k of a term that needs no evidence: the value that another
-/// measurement states, else the usual value (`Effect::Shape::usual`); none if it has neither.
+/// measurement states, otherwise the usual value (`Effect::Shape::usual`); none without either.
 std::optional<double> usual_of(const Term& term, std::size_t k);
 /// `is_usual` returns whether shape k has its usual value, `are_usual` whether all shapes that have
 /// a usual value have it.
@@ -69,8 +69,8 @@ bool are_usual(const Term& term, const std::vector<double>& shape);
 /// gets the mean. Empty if none was stated.
 std::vector<double> stated_u(const Observations& o);
 
-/// Returns the square root of the weight of each reading: sqrt(weight) * (mean u)/u. The last
-/// factor is 1 if no u is stated, the first if `weight` is empty.
+/// Returns the square root of the weight of each reading: sqrt(weight) * (mean u)/u. The factor
+/// (mean u)/u is 1 if no u is stated, and sqrt(weight) is 1 if `weight` is empty.
 VectorXd root_weights(const Observations& o, const std::vector<double>& weight);
 
 /// Removes from each column its weighted mean in every line, because the unknown zero of the line
@@ -84,7 +84,7 @@ inline MatrixXd of_unit_length(MatrixXd columns) {
   return columns;
 }
 
-/// Returns the quantity of a parameter on this axis.
+/// Returns the quantity of a parameter, which differs between linear and rotary axes.
 inline Quantity quantity_of(const Effect::Parameter& p, const Axis& axis) {
   return axis.rotary ? p.rotary : p.quantity;
 }

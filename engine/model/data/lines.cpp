@@ -39,7 +39,8 @@ Passes passes_of(const Observations& o) {
   return passes;
 }
 
-/// Whether all readings of one direction precede all of the other, and there are several runs.
+/// Whether all readings of one direction precede all readings of the other direction, and there are
+/// several runs.
 bool grouped(const Passes& passes) {
   std::map<std::int8_t, Rows> side;
   std::map<std::int8_t, int> runs;
@@ -88,12 +89,12 @@ Rows pendulum(const Observations& o, const Passes& passes) {
   return rows;
 }
 
-/// Returns the order of the readings. If every reading has a time, they are sorted by it. Otherwise
-/// `said` decides, which the manifest states: "pendulum", "as-listed" or "unknown" (as listed, and
-/// not known); it may be empty. If it is empty, the order is as listed, unless no machine can have
-/// moved so: several runs with all readings of one direction before all of the other, or a pass
-/// listed against its direction. Then the cycle of ISO 230-2 is assumed (forward and back, run by
-/// run).
+/// Returns the order of the readings. If every reading has a time, they are sorted by time.
+/// Otherwise the order is `said`, which the manifest states: "pendulum", "as-listed" or "unknown"
+/// (as listed, and not known). If `said` is empty, the order is as listed, unless a machine cannot
+/// have moved in this order: several runs with all readings of one direction before all readings of
+/// the other, or a pass listed against its direction. Then the cycle of ISO 230-2 is assumed
+/// (forward and back, run by run).
 Order order_of(const Observations& o, const std::string& said) {
   Order out;
   out.rows.resize(o.size());
@@ -163,8 +164,8 @@ Vector point_of(const Observations& o, std::size_t i) {
   return p;
 }
 
-/// Appends the places of a circle: the arc length from its point at 0 deg, counter-clockwise, and
-/// the direction of travel.
+/// Appends the places of a circle: the arc length from its point at 0 deg, counterclockwise, and
+/// the direction of travel, +1 for counterclockwise.
 void append_angles(Part& part, const Observations& o, const Measurement& m) {
   double radius = 0.0;
   std::size_t u = 0, v = 1;
@@ -189,8 +190,9 @@ void append_angles(Part& part, const Observations& o, const Measurement& m) {
 }
 
 /// Appends the place of each reading along its line, and the direction of motion. If exactly one
-/// linear axis moves, they are its position and approach; for a circle see `append_angles`;
-/// otherwise they are counted along the direction of sensing, from the start of the diagonal.
+/// linear axis moves, these are the position and approach of this axis; for a circle see
+/// `append_angles`; otherwise they are counted along the direction of sensing, from the start of
+/// the diagonal.
 void append_places(Part& part, const Observations& o, const Measurement& m) {
   std::vector<const Observations::AxisColumn*> moved;
   for (const auto& axis : o.axes)

@@ -15,8 +15,8 @@ inline double dot(const Vector& a, const Vector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Returns whether the table has one axis, and all readings sense the motion along it, or its angle
-/// if it is rotary. False if a direction of approach is missing.
+/// Returns whether the table has one axis, and all readings sense the motion along this axis, or
+/// the angle if the axis is rotary. False if a direction of approach is missing.
 bool sensed_along_one_axis(const Observations&);
 /// Returns whether lengths are sensed, each in a known direction, while at least one linear axis
 /// and no other axis moves. If `sensed_along_one_axis` is false, such readings are across the
@@ -31,8 +31,8 @@ std::vector<std::size_t> coordinates_of(const Observations&);
 /// were taken. A single line gets the name of the measurement.
 void append_run(Part& part, const Observations& listed, const Measurement& m);
 
-/// Appends the measurements `members` of a campaign to a part in space. The position of an axis at
-/// rest is the one that the measurement states (`at`, `from`), else NaN.
+/// Appends the measurements `members` of a campaign to a part in space. An axis that is not in the
+/// readings has the position that the measurement states (`at`, `from`), otherwise NaN.
 void append_space(Part& part, const Campaign& campaign, const std::vector<Observations>& read,
                   const std::vector<std::size_t>& members);
 

@@ -100,7 +100,8 @@ class AlikePasses {
   }
 
  private:
-  // a longer pass counts as several of this length, because the effect of their ends is negligible
+  // A longer pass is treated as several passes of this length, because the effect of their ends is
+  // negligible.
   static constexpr Index longest = 60;
   std::map<std::pair<Index, Index>, double> share_;
 };
@@ -147,9 +148,9 @@ class ExpectedRatio {
 };
 
 /// Estimates the correlation of adjacent readings from the ratio of products of adjacent residuals
-/// to squares; with fewer than 8 degrees of freedom it is not known. It is used if it exceeds
-/// `least_seen` standard deviations, and is then reduced towards 0 according to its uncertainty, by
-/// a normal prior with most values below `usual`.
+/// to squares; with fewer than 8 degrees of freedom the correlation is not known. It is used if it
+/// exceeds `least_seen` standard deviations, and is then reduced towards 0 according to its
+/// uncertainty, by a normal prior with standard deviation `usual`.
 void find_neighbours(const Repeats& r, const Saturated& s, const std::vector<double>& weight,
                      Noise& noise) {
   // docs/dev/constants.md, M25.
@@ -165,7 +166,8 @@ void find_neighbours(const Repeats& r, const Saturated& s, const std::vector<dou
   const double z = (ratio - none.lagged / none.trace) / sd;
   if (!std::isfinite(z)) return;
   noise.p = 0.5 * std::erfc(z / std::sqrt(2.0));
-  // not used, so a coarse estimate suffices: near 0 the ratio is linear in the correlation
+  // The correlation is not used then, so a coarse estimate suffices: near 0 the ratio is linear in
+  // the correlation.
   if (z <= least_seen) {
     const Moments little = passes(0.05);
     const double slope = (little.lagged / little.trace - none.lagged / none.trace) / 0.05;
@@ -267,7 +269,8 @@ void find_stretch(const Part& part, const Repeats& repeats, const Saturated& s,
 }
 
 /// Estimates the scatter inside and outside of a known range again, from the residuals `s` of a fit
-/// that is weighted with this range; nothing is changed if one of both has no residuals.
+/// that is weighted with this range. Changes nothing if all residuals inside or all residuals
+/// outside are 0.
 void measure_stretch(const Part& part, const Repeats& repeats, const Saturated& s,
                      const std::vector<double>& weight, Noise& noise) {
   const TargetScatter scatter = scatter_of(part, repeats, s, weight, s.dof);
@@ -321,8 +324,8 @@ Noise noise_of(const Part& part, const Repeats& repeats, const std::vector<doubl
   find_stretch(part, repeats, left, weight, noise);
   if (!noise.stretch) return noise;
   std::vector<double> with = with_scatter(weight, noise);
-  // The pass terms transfer scatter of the range to other readings. With the weights of the range
-  // they do so less, so the estimate is iterated.
+  // The pass terms transfer scatter of the range to other readings. The weights of the range reduce
+  // this effect, so the estimate is iterated.
   for (int round = 0; round < 3; ++round) {
     left = saturate(repeats, part.table.deviation, with);
     measure_stretch(part, repeats, left, weight, noise);

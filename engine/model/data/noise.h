@@ -33,8 +33,9 @@ std::optional<NoiseFloor> noise_floor(const Repeats& repeats, const Saturated& s
 
 /// Returns `noise` with a random zero, or with a stronger correlation of adjacent readings, if this
 /// makes the residuals of these terms (with their shapes) more likely: restricted likelihood
-/// (Patterson and Thompson 1971), maximised over kinds and sizes. Returns it unchanged for fewer
-/// than 10 or more than 1500 readings, or if passes or redundancy are missing.
+/// (Patterson and Thompson 1971), maximized over kinds and sizes. Returns `noise` unchanged for
+/// fewer than 10 or more than 1500 readings, if the passes are not known, or if the redundancy is
+/// below 3.
 Noise with_zero(const Observations& o, const std::vector<Term>& terms,
                 const std::vector<double>& weight, const Noise& noise);
 
@@ -55,7 +56,7 @@ struct Unsteady {
 Unsteady walk_with(const Observations& o, const std::vector<double>& weight, Noise noise,
                    const MatrixXd& model);
 
-/// Returns the criterion with correlated adjacent readings and a constant zero, minimised over the
+/// Returns the criterion with correlated adjacent readings and a constant zero, minimized over the
 /// correlation; ln|V| is relative to independent readings.
 double criterion_of_neighbours(const Observations& o, const std::vector<double>& weight,
                                Noise noise, const MatrixXd& model);

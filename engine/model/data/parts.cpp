@@ -100,7 +100,7 @@ class Parts {
 
   void add_balls(std::size_t m) {
     const Axis* axis = campaign_.machine.axis(measurement(m).axis);
-    // If a second rotary axis turns, the centres are not on a circle.
+    // If a second rotary axis turns, the ball centers are not on a circle.
     if (axis == nullptr || !math::other_turning_axis(read_[m]).empty()) return;
     if (auto part = balls_of(read_[m], *axis, measurement(m).id))
       parts_.push_back(std::move(*part));
@@ -111,7 +111,7 @@ class Parts {
   void add_space(std::size_t m) {
     if (done_.contains(m)) return;
     const std::string state = state_of(measurement(m));
-    // the measurement belongs to every state
+    // A measurement without a state belongs to every state.
     if (state.empty() && oblique_ && states_.size() > 1) return;
     Part part;
     part.kind = Part::Kind::space;
@@ -144,7 +144,8 @@ class Parts {
   std::map<std::size_t, Kind> kind_;
   std::vector<std::size_t> order_;
   std::set<std::string> states_;       // states of measurements sensed across the motion
-  std::set<std::size_t> coordinates_;  // coordinates that these measurements move or sense
+  std::set<std::size_t> coordinates_;  // coordinates that measurements across the motion move or
+                                       // sense
   std::set<std::size_t> done_;
   bool oblique_ = false;
   std::vector<Part> parts_;
@@ -164,8 +165,8 @@ bool concerns(const Part& part, const Axis& axis) {
   return false;
 }
 
-/// Groups the measurements of an axis by a property that the manifest states; null if it is not
-/// stated for all, or is the same for all.
+/// Groups the measurements of an axis by a property that the manifest states; null if the property
+/// is not stated for all measurements, or is the same for all of them.
 std::shared_ptr<const Grouping> grouping_by(
     const std::string& by, const std::vector<const Measurement*>& measurements,
     const std::function<std::string(const Measurement&)>& text) {
@@ -188,7 +189,7 @@ std::vector<std::shared_ptr<const Grouping>> groupings_of(const Part& part,
                                                           const Campaign& campaign) {
   std::vector<std::shared_ptr<const Grouping>> out;
   if (part.kind != Part::Kind::axis || part.measurements.size() < 2) return out;
-  // Groups are of lines: a measurement with several lines has no groups.
+  // Groups are made of lines, so a part with several lines in a measurement has no groups.
   for (std::size_t i = 0; i < part.table.size(); ++i)
     if (line_of(part.table, i) >= part.measurements.size()) return out;
   std::vector<const Measurement*> measurements;

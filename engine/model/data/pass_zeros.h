@@ -27,9 +27,9 @@ class ZerosOfPasses {
   /// that readings scatter independently with standard deviation s; 1 if s is 0, or if no side has
   /// two passes.
   double p_of_differences(double s) const;
-  /// Whether the zeros of passes show no systematic order: a step between two passes, a trend, one
-  /// different run, or any of these in the reversal is a cause, not scatter. False if there are too
-  /// few passes for this test.
+  /// Whether the zeros of passes show no significant trend, step between two passes, or run that
+  /// differs from the others, neither themselves nor in the reversal. Such an order indicates a
+  /// cause other than scatter. False if there are too few passes for this test.
   bool unordered() const;
 
  private:

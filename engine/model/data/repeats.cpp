@@ -196,7 +196,7 @@ namespace {
 
 /// Groups of readings that are compared with each other: those of a target; if each cell of the
 /// target has at least four readings, those of a cell, so that a reversal that differs between
-/// targets does not count as scatter.
+/// targets is not treated as scatter.
 struct Groups {
   std::vector<std::uint32_t> of;
   std::size_t count;
@@ -214,10 +214,9 @@ struct Groups {
   }
 };
 
-/// Returns the residuals that remain after the median of its target or cell (if this has at least
-/// three readings), and then the running median of the adjacent readings of its pass, are
-/// subtracted from each reading, three times. This needs no model, and an outlier does not affect
-/// other readings.
+/// Returns the residuals after two medians are subtracted from each reading, three times: that of
+/// its target or cell (if this has at least three readings), and then the running median of the
+/// adjacent readings of its pass. This needs no model, and an outlier hardly affects others.
 std::vector<double> polished(const Repeats& r, const std::vector<double>& y) {
   const Groups groups(r);
   const Members targets(groups.of, groups.count), passes(r.pass, r.passes);
@@ -305,9 +304,10 @@ std::vector<double> without_set_up(const Observations& o, const std::vector<Term
 }
 
 /// Returns, for each reading, the ratio of the scatter near its target, estimated by a median over
-/// adjacent targets, to the scatter s of all readings; 1 if it is at most 2. A range with more
-/// scatter is not a series of outliers. Also 1 if it cannot be determined: several axes, fewer than
-/// 64 or more than 20000 readings, or adjacent targets that are more than two thirds of all.
+/// adjacent targets, to the scatter s of all readings, because a range with more scatter is not a
+/// series of outliers. A ratio of at most 2 is returned as 1, and so is one that cannot be
+/// determined: several axes, fewer than 64 or more than 20000 readings, or adjacent targets that
+/// are more than two thirds of all.
 std::vector<double> rougher_than(double s, const Observations& o, const std::vector<double>& e) {
   constexpr std::size_t fewest = 16;
   // docs/dev/constants.md, M27.

@@ -38,7 +38,7 @@ inline Index shared_columns(Index readings) {
 
 /// Returns, for each of `rows`, its value minus the median of the other readings of its target, or
 /// of its cell if each cell of the target has at least four readings. With too few such readings,
-/// the result is 0 if other targets are repeated, else the value itself.
+/// the result is 0 if other targets are repeated, otherwise the value itself.
 std::vector<double> apart_from_others(const Repeats&, const std::vector<std::uint32_t>& rows,
                                       const std::vector<double>& e);
 

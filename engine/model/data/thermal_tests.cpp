@@ -18,7 +18,7 @@ namespace nonio::model {
 
 namespace {
 
-/// Result of one test; `given` is false if it determines no time constant.
+/// Time constant from one test; `given` is false if the test determines none.
 struct OfTest {
   std::string measurement;
   double ln_tau = 0.0, u = 0.0;

@@ -9,7 +9,7 @@
 /// Use of thermal tests of an axis in the model of its axis tests.
 namespace nonio::model {
 
-/// Stores in each part, except ball centres, the time constants that thermal tests determine for
+/// Stores in each part, except ball centers, the time constants that thermal tests determine for
 /// its linear axes.
 void put_time_constants(const Campaign& campaign, const std::vector<Observations>& read,
                         std::vector<Part>& parts);

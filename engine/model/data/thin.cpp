@@ -12,6 +12,7 @@ namespace nonio::model {
 
 namespace {
 
+// Largest number of groups of runs, and smallest limit for those of positions.
 // docs/dev/constants.md, M22.
 constexpr std::size_t most_runs = 20, least_positions = 25;
 

@@ -22,7 +22,7 @@ namespace nonio::model {
 
 namespace {
 
-// docs/dev/constants.md, M36.
+// p below which a drift or a reversal is reported; docs/dev/constants.md, M36.
 constexpr double stated_below = 0.001;
 
 /// Weighted sums of a column over groups of readings, such as cells or passes.
@@ -102,9 +102,10 @@ std::optional<Statement> reversal(const Finding& f, double dof) {
   return out.p < stated_below ? std::optional(out) : std::nullopt;
 }
 
-/// Returns statements about an axis that hold whatever error repeats at each target from each side:
-/// a drift of the zero, a reversal at every target. They are tested against the scatter of passes,
-/// because each pass may have a zero of its own. Empty if fewer than 3 passes repeat others.
+/// Returns statements about an axis that are true for any error that repeats at each target from
+/// each side: a drift of the zero, a reversal at every target. They are tested against the scatter
+/// of passes, because each pass may have a zero of its own. Empty if fewer than 3 passes repeat
+/// others.
 std::vector<Statement> statements_of(const Finding& f) {
   std::vector<Statement> out;
   const double dof = static_cast<double>(f.repeats.passes) - static_cast<double>(f.repeats.sides);
@@ -118,7 +119,7 @@ struct Means {
   double plus = 0.0, minus = 0.0, n_plus = 0.0, n_minus = 0.0;
 };
 
-/// Whether the term predicts the same for all readings of a target from one side.
+/// Whether the term predicts the same value for all readings of a target from one side.
 bool of_place(const Observations& o, const Repeats& repeats, const Term& term) {
   const auto columns = columns_of(o, term, term.shape);
   if (!columns) return false;
@@ -138,8 +139,8 @@ bool of_place(const Finding& f, const Term& term) {
   return of_place(f.part.table, f.repeats, term);
 }
 
-/// Computes the values of a description: one value or one reversal per target, or else one value
-/// per reading.
+/// Sets kind, range and mean of a description: over targets if it depends only on place, otherwise
+/// over readings. `says`: prediction for each reading.
 void measure(const Finding& f, const std::vector<double>& says, Description& d) {
   std::vector<double> values = says;
   if (of_place(f, d.term)) {
@@ -261,7 +262,7 @@ double rms_with_certain(const Finding& finding, const Explanation& out) {
 }
 
 /// Returns whether the search is repeated with a free value for each target: only on an axis with
-/// at most 60 targets, because more free values would cost more evidence than they show.
+/// at most 60 targets, because more free values would cost more evidence than they provide.
 bool few_places(const Finding& finding) {
   constexpr std::uint32_t most_targets = 60;
   return finding.part.kind == Part::Kind::axis && finding.repeats.targets <= most_targets;

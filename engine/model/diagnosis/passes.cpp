@@ -48,7 +48,6 @@ std::vector<double> PassZeros::noise() const {
   return out;
 }
 
-/// Returns the noise with zeros of passes as a part of it.
 Noise PassZeros::with_passes() const {
   Noise noise = f_.noise.zero == Noise::Zero::of_pass ? f_.noise : f_.of_best.fit.noise;
   noise.neighbours = noise.in_repeats;

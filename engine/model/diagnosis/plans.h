@@ -8,7 +8,8 @@
 namespace nonio::model {
 
 // docs/dev/constants.md, M13.
-constexpr double enough_power = 4.0;  ///< standard deviations between two separable explanations
+constexpr double enough_power = 4.0;  ///< least distance between two separable explanations, in
+                                      ///< standard deviations
 
 /// A table with one additional planned measurement, whose deviations are 0.
 struct Further {
@@ -21,8 +22,8 @@ struct Further {
 /// known values, because weights and columns need an entry for each reading.
 void fill_measured(Observations& o);
 
-/// Returns tables that contain the readings of an axis and one planned measurement of it: one run
-/// or three.
+/// Returns tables that contain the readings of an axis and one planned measurement of this axis,
+/// with one run or three.
 std::vector<Further> further_runs(const Part& part, const Axis& axis);
 
 /// Returns tables with one additional measurement on a machine with several axes, or of a ball.

@@ -31,9 +31,9 @@ struct Sides {
 };
 
 /// Whether the repeats of a cell are on different sides of the split more often than independent
-/// states of each reading allow, and the sides do not follow the passes. Readings invented for two
-/// runs with a given standard deviation have this property. `low`: share of readings below the
-/// split.
+/// states of each reading allow, and the sides do not follow the passes. Synthetic readings of two
+/// runs that were computed from a given standard deviation have this property. `low`: share of
+/// readings below the split.
 bool are_opposite(const std::vector<Sides>& of_cell, const std::vector<Sides>& of_pass,
                   double low) {
   // docs/dev/constants.md, M44.
@@ -190,7 +190,7 @@ std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
     // A scatter from the median has the precision of one from 0.37 times as many squares.
     double p = math::f_upper(F, 0.37 * k, 0.37 * (n - k)) * runs;
     // Residuals of short passes depend on each other, so that medians alone differ by chance. Half
-    // of the squares are independent; outliers of the other runs count as 3.5 deviations.
+    // of the squares are independent; outliers of the other runs are reduced to 3.5 deviations.
     double of_others = 0.0;
     for (const double x : others) of_others += std::pow(std::min(x, 3.5 * s_others), 2);
     p = std::max(

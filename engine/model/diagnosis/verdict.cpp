@@ -29,9 +29,9 @@ constexpr double certain_share = 0.06;
 // the level of chance, because the residuals are not independent noise.
 // docs/dev/constants.md, M8.
 constexpr double certain_evidence = 50.0;
+// Largest share of an effect's evidence that one target, or one pass, may contribute.
 // docs/dev/constants.md, M9.
 constexpr double most_of_one_target = 0.3;
-// docs/dev/constants.md, M9.
 constexpr double most_of_one_pass = 0.5;
 // Effects with less evidence are not compared with a random zero: otherwise effects of the printed
 // smallest detectable size would be rejected.
@@ -42,8 +42,8 @@ constexpr double least_against_zero = 30.0;
 // docs/dev/constants.md, M10.
 constexpr double cancels_beyond = 0.95;
 
-/// Whether two places share a factor; run counts as time, and screw phase and angle count as
-/// position.
+/// Whether two places share a factor; run is treated as time, and screw phase and angle are treated
+/// as position.
 bool same_factor(const Where& a, const Where& b) {
   const auto kin = [](Factor f) {
     if (f == Factor::run) return Factor::time;
@@ -71,8 +71,8 @@ class Judge {
     // the model.
     const bool searched = f_.noise.zero == Noise::Zero::of_pass;
     std::vector<Place> left = Judge::serious(f_.of_best.places, least);
-    // A place that vanishes if zeros of passes scatter does not decide the verdict, but raises
-    // doubt.
+    // A place that is not significant if zeros of passes scatter does not decide the verdict, but
+    // can still make an effect doubtful.
     std::vector<Place> serious =
         passes_.scatter()
             ? Judge::serious(passes_.places(f_.of_best.fit.residual, f_.of_best.floor, least),
@@ -128,9 +128,9 @@ class Judge {
 
  private:
   /// Returns whether cells differ from the best explanation significantly, and by more than
-  /// `least_serious`, compared with the scatter of their repeats. What the passes of a side share
-  /// is not included, because places test that part. False if the floor has fewer than 8 degrees of
-  /// freedom.
+  /// `least_serious`, compared with the scatter of their repeats. Offset, slope and curvature that
+  /// the passes of a side share are not included, because they are tested as places. False if the
+  /// floor has fewer than 8 degrees of freedom.
   bool lacks_fit() const {
     if (!f_.of_best.floor || !(f_.of_best.floor->dof >= 8.0)) return false;
     const std::vector<double> weight = with_scatter(f_.weight, f_.noise);
@@ -193,7 +193,7 @@ class Judge {
   }
 
   /// Returns the kind of random zero if the model with it, or with it in place of the first effect,
-  /// is a better explanation than the best set of effects; else `steady`. Also `steady` if no
+  /// is a better explanation than the best set of effects; otherwise `steady`. Also `steady` if no
   /// effect was found, if zeros of passes are already noise, or if the effects have less evidence
   /// than `least_against_zero`.
   Noise::Zero unsteady_zero() const {
@@ -240,13 +240,14 @@ class Judge {
     return without - f_.walk_with(terms).least() - price > certain_evidence;
   }
 
-  /// Returns whether one of the places `serious` shares a factor with this effect, and has more
-  /// than `share` of the mean square of its contribution: the effect may then be only the most
-  /// similar one in the catalogue.
+  /// Returns whether one of the places `serious` shares a factor with this effect, and has a mean
+  /// square of more than `share` times that of the effect's own contribution: the effect may then
+  /// be only the most similar one in the catalogue.
   bool in_doubt(const std::string& name, const std::vector<Place>& serious, double share) const {
     for (std::size_t t = 0; t < f_.of_best.fit.terms.size(); ++t) {
       if (f_.of_best.fit.terms[t].name() != name) continue;
-      // Use its own contribution, because effects that cancel each other may both be large.
+      // The contribution of the effect alone is used, because effects that cancel each other may
+      // both be large.
       const double rms2 =
           (f_.bench->without(f_.best, f_.index_of(name)).squares - f_.best.squares) /
           f_.bench->readings();
@@ -278,8 +279,8 @@ class Judge {
     return size > 0.0 ? both.col(0).dot(both.col(1)) / size : 0.0;
   }
 
-  /// Whether an effect varies between the readings of a target. One that does not vary is visible
-  /// in every run, so it is not a member of a cancelling pair.
+  /// Whether an effect varies between the readings of a target. An effect that does not vary is
+  /// visible in every run, so it is not a member of a canceling pair.
   bool in_time(const std::string& name) const {
     const std::size_t e = f_.index_of(name);
     return std::none_of(f_.best.blocks.begin(), f_.best.blocks.end(), [&](std::size_t b) {
@@ -329,7 +330,7 @@ class Judge {
     if (drift < growth) std::iter_swap(drift, growth);
   }
 
-  /// Whether the joint prediction of a pair of cancelling effects varies with a factor with which
+  /// Whether the joint prediction of a pair of canceling effects varies with a factor with which
   /// this effect varies, and is not negligible compared with this effect.
   bool with_cancelling(const std::string& name) const {
     const auto* own = part_of(name);
@@ -386,9 +387,9 @@ class Judge {
     return share_of_one(name, f_.repeats.target, f_.repeats.targets) > most_of_one_target;
   }
 
-  /// Whether an effect of the library explains no more than a free value of one target, a free
-  /// reversal there or a free slope of one run would: then it is a property of that target or run,
-  /// and not a cause. Zeros and reversals of single runs are themselves in the library.
+  /// Whether an effect of the library explains no more than a free value or reversal of one target,
+  /// or a free slope of one run. The effect is then a property of that target or run, and not a
+  /// cause. Zeros and reversals of single runs are themselves in the library.
   bool is_single(const std::string& name) const {
     const std::size_t e = f_.index_of(name);
     if (!f_.terms[e].library) return false;

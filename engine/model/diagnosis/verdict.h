@@ -25,9 +25,9 @@ inline bool too_many(std::size_t suspects, std::size_t readings) {
          static_cast<double>(suspects) > most_suspects * static_cast<double>(readings);
 }
 
-/// Sets the verdict with its rate of false alarms, the significant and the cancelling effects, the
-/// places where the model fails, and the plans that separate the verdict's aliases. Moves the
-/// verdict's effect to the front of `out.candidates`.
+/// Sets the verdict with its rate of false alarms, the significant and the canceling effects, the
+/// places where the model fails, and the plans that separate the verdict's effect from its aliases.
+/// Moves the verdict's effect to the front of `out.candidates`.
 void judge(const Finding& finding, Explanation& out);
 
 }  // namespace nonio::model

@@ -56,7 +56,7 @@ std::vector<double> cross_validated(const Observations& o, const std::vector<Ter
   a *= scale.cwiseInverse().asDiagonal();
   const Eigen::Map<const VectorXd> y(o.deviation.data(), n);
   const VectorXd root = root_weights(o, weight);
-  // Share of each run in the normal equations; subtracting it omits the run.
+  // Computes the contribution of a run to the normal equations; subtracting it omits the run.
   const auto share_of = [&](const std::vector<Index>& rows, MatrixXd& normal, VectorXd& right) {
     const MatrixXd here = root(rows).asDiagonal() * a(rows, Eigen::all);
     normal = math::transposed_product(here, here);
@@ -132,7 +132,6 @@ MatrixXd basis_of(const Observations& o, const std::vector<Term>& terms, const W
   return math::orthonormal(qr, a.cols());
 }
 
-/// Returns the whitened residuals of a fit.
 VectorXd white_residual(const Fit& fit, const Whitening& white) {
   return white(
       Eigen::Map<const VectorXd>(fit.residual.data(), static_cast<Index>(fit.residual.size())));

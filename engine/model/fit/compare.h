@@ -27,7 +27,7 @@ struct Groundwork::Found {
   std::optional<Ground> of_thin{};
 };
 
-/// Refers to `known` if it is given, else creates and owns a Groundwork.
+/// Refers to `known` if it is not null; otherwise creates and owns a Groundwork.
 class GroundworkOf {
  public:
   GroundworkOf(const Part& part, const std::vector<Term>& model, const Groundwork* known) {
@@ -49,12 +49,12 @@ Comparison comparison_of(const Part& part, const Repeats& repeats, Fit fit,
 /// Returns, for each term, whether its shapes are searched.
 std::vector<char> searched_in(const std::vector<Term>& terms);
 
-/// Returns the fit, repeated with the noise that its residuals show if the zero is random or the
-/// correlation of adjacent readings differs.
+/// Returns the fit. If its residuals show a random zero, or another correlation of adjacent
+/// readings than its noise, the fit is first repeated with the noise that they show.
 Expected<Fit> with_its_zero(const Observations& o, Fit fitted, const std::vector<char>& searched);
 
-/// Returns the comparison with these suspect readings. For a long table, shapes are searched on its
-/// means `thin`, and places are not tested.
+/// Fits the model with the weights and noise of `ground` and compares it with the readings. For a
+/// long table, shapes are searched on its means `thin`, and places are not tested.
 Expected<Comparison> compare_on(const Part& part, const std::vector<Term>& model,
                                 const Ground& ground, const Observations* thin = nullptr);
 
@@ -81,7 +81,7 @@ std::vector<Place> seats_in(const Part& part, const Repeats& repeats, const Comp
 /// or that is the only run of its line; empty if no line has two runs.
 std::vector<double> cross_validated(const Observations& o, const std::vector<Term>& terms,
                                     const std::vector<double>& weight);
-/// Returns the root of the weighted mean square of the finite residuals; nothing if no residual of
+/// Returns the root of the weighted mean square of the finite residuals; none if no residual of
 /// weight above 0 is finite.
 std::optional<double> rms_of(const std::vector<double>& residual,
                              const std::vector<double>& weight);

@@ -56,8 +56,8 @@ Expected<Design> design_of(const Observations& o, const std::vector<Term>& terms
   return d;
 }
 
-/// Returns the names of the columns that a rank-deficient design does not separate: those in its
-/// first null direction.
+/// Returns the names of the columns that a rank-deficient design does not separate: those with at
+/// least 5 % of the largest component in a null direction.
 std::string inseparable(const MatrixXd& scaled, const std::vector<std::string>& names) {
   const Eigen::JacobiSVD<MatrixXd> svd(math::transposed_product(scaled, scaled),
                                        Eigen::ComputeThinV);
@@ -77,8 +77,8 @@ struct Solution {
   double squares = 0.0;  // weighted sum of squared residuals
 };
 
-/// Solves the least-squares problem; `weighted`: readings, whitened like the design. Error: names
-/// of columns that are not separable.
+/// Solves the least-squares problem; `weighted`: readings, whitened like the design. The error
+/// names the columns that are not separable.
 Expected<Solution> solve(const Design& d, const VectorXd& weighted) {
   const Index unknowns = d.a.cols();
   VectorXd scale = d.a.colwise().norm().transpose();
@@ -188,7 +188,7 @@ void refine_shapes(const Observations& o, std::vector<Term>& terms,
   for (std::size_t t = 0; t < terms.size(); ++t)
     for (const Effect::Shape& shape : terms[t].effect->shapes)
       continuous += searched[t] && shape.continuous;
-  // Optimize one after the other; correlated shapes of a large effect need more rounds.
+  // Shapes are optimized one after the other; correlated shapes of a large effect need more rounds.
   constexpr std::size_t fewest = 2, most = 8;
   constexpr double still_better = 1e-3;
   double before = std::numeric_limits<double>::infinity();
@@ -203,8 +203,8 @@ void refine_shapes(const Observations& o, std::vector<Term>& terms,
   }
 }
 
-/// Whether shape k is an unknown of the fit. It is not if it takes only discrete values, if it has
-/// its usual value, or if it has a usual value and its grid contains only one value.
+/// Whether shape k is an unknown of the fit. False if the shape takes only discrete values, if it
+/// has its usual value, or if it has a usual value and its grid contains only one value.
 bool estimated(const Observations& o, const Term& term, std::size_t k) {
   const Effect::Shape& shape = term.effect->shapes[k];
   if (!shape.continuous || is_usual(term, term.shape, k)) return false;
@@ -380,8 +380,8 @@ VectorXd by_stated(const Term& term, const VectorXd& linear, const Observations&
   return math::product(plain, math::transposed_product(a, white(wrong)));
 }
 
-/// A stated shape, its index among the parameters, and the change of the unknowns for one standard
-/// uncertainty of it.
+/// A stated shape: its index among the parameters, its u, and the change of the unknowns for this
+/// u.
 struct StatedShape {
   std::size_t parameter;
   double u;
@@ -402,7 +402,7 @@ void put_stated(Fit& out, const std::vector<StatedShape>& stated, const std::vec
   }
 }
 
-/// Computes the covariance of the linear parameters and of the searched shapes from the linearised
+/// Computes the covariance of the linear parameters and of the searched shapes from the linearized
 /// problem: columns of the design together with the derivatives by the shapes.
 void fill_covariance(Fit& out, const Observations& o, Design design, const Solution& s,
                      const std::vector<char>& searched, const Whitening& white) {
@@ -431,7 +431,7 @@ void fill_covariance(Fit& out, const Observations& o, Design design, const Solut
     const VectorXd none = VectorXd::Zero(design.a.rows());
     if (auto joint = solve(design, none))
       cofactor = std::move(joint->cofactor);
-    else  // a shape without an optimum between grid values: known only to the step of its grid
+    else  // a shape has no optimum between grid values, so it is known only to the step of its grid
       for (Index& p : place)
         if (p >= plain) p = -1;
     out.redundancy -= std::min(out.redundancy, static_cast<std::size_t>(extra));

@@ -11,7 +11,8 @@ namespace nonio::model {
 
 namespace {
 
-// If there are more gaps, several share a column, with alternating signs.
+// Largest number of columns. If there are more gaps, several share a column, with alternating
+// signs.
 constexpr std::size_t most_columns = 50;
 
 /// Rows of one line, ordered by time, with and without a temperature.
@@ -48,7 +49,7 @@ class Wrong {
  public:
   Wrong(const TemperatureCourse& course, const AxisReadings& r) : known_(course.known), r_(r) {}
 
-  /// Returns the error in the middle of a gap, K; NaN if not known.
+  /// Returns the error in the middle of a gap, K; NaN if it is unknown.
   double inside(double span) const {
     double sum = 0.0, count = 0.0;
     for_stretches(span, 2, [&](std::size_t a, std::size_t b, double scale) {
@@ -63,7 +64,7 @@ class Wrong {
   }
 
   /// Returns the error at a time `span` (s) after the last known temperature, or before the first,
-  /// K; NaN if not known.
+  /// K; NaN if it is unknown.
   double beyond(double span) const {
     double sum = 0.0, count = 0.0;
     for_stretches(span, 1, [&](std::size_t a, std::size_t b, double scale) {

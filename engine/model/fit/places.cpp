@@ -13,8 +13,8 @@
 namespace nonio::model {
 
 /// Columns that vary only with one factor, or with the product of two. `repeated`: they are
-/// determined by differences between repeats of a cell (time, run, temperature), else by the cells
-/// themselves (position, direction, phase).
+/// determined by differences between repeats of a cell (time, run, temperature), otherwise by the
+/// cells themselves (position, direction, phase).
 struct FactorColumns {
   Where of;
   MatrixXd columns;
@@ -211,8 +211,8 @@ class Factors {
     add(std::move(f));
   }
 
-  /// Adds the positions of each line as a factor of its own, because a position on one diagonal is
-  /// another place than that on the other.
+  /// Adds the positions of each line as a factor of its own, because equal positions on two
+  /// diagonals are different places in the machine.
   void add_lines(const Part& part, const VectorXd& d) {
     const Quantity quantity = position_of(part.kind == Part::Kind::balls);
     for (std::uint32_t line = 0; line < lines_of(part.table); ++line) {
@@ -334,8 +334,8 @@ class Cells {
   Eigen::LLT<MatrixXd> products_{};
 };
 
-/// Whether the prediction of a factor differs between repeats of a cell. A structure that returns
-/// in every run belongs to the cells, even if a wave in time describes it with fewer columns.
+/// Whether the prediction of a factor differs between repeats of a cell. A structure that recurs in
+/// every run belongs to the cells, even if a wave in time describes it with fewer columns.
 bool separates_repeats(const Cells& cells, const MatrixXd& basis, const VectorXd& residual) {
   // docs/dev/constants.md, M19.
   constexpr double least = 0.1;  // least share of the sum of squares; that of a linear trend over
@@ -373,7 +373,7 @@ std::vector<MatrixXd> bases_of(const Factors& factors, const Repeats& repeats,
   return out;
 }
 
-/// Returns the whitened columns of a factor with at least three levels; for others none.
+/// Returns the whitened columns of a factor with at least three levels; no columns for others.
 MatrixXd levels_of(const FactorColumns& f, const Whitening& white) {
   return f.levels.size() < 3 ? MatrixXd(f.columns.rows(), 0) : white(f.columns);
 }

@@ -8,7 +8,8 @@
 namespace nonio::model {
 
 namespace {
-// Smallest remaining squared length of a column of unit length after the others are removed.
+// Smallest squared length that must remain of a column of unit length after projection on the
+// others is subtracted.
 constexpr double independent = 1e-7;
 // In space, columns are nearly parallel (a step diagonal's mirror and its three axes). This does
 // not apply to curves, for which a smaller value would admit rounding noise.
@@ -257,7 +258,8 @@ double fall_of(const MatrixXd& s, const VectorXd& t, double least) {
   return math::whitened(llt, t).squaredNorm();
 }
 
-/// Returns t^T S^-1 t over the independent directions of the block only, and their number.
+/// Returns t^T s^-1 t over the independent directions of the block only, and sets `rank` to their
+/// number; NaN if there is none.
 double fall_of_some(const MatrixXd& s, const VectorXd& t, double least, Index& rank) {
   const auto [values, vectors] = math::spectrum(s);
   const VectorXd along = math::transposed_times(vectors, t);
@@ -365,8 +367,8 @@ double Workbench::least_of(const Block& block) const {
   return instances_[block.effect].term.effect->description ? independent : shown_of_curve;
 }
 
-/// Returns the smallest diagonal element of the Cholesky factor with which every column counts as
-/// fully independent.
+/// Returns the smallest diagonal element of the Cholesky factor with which every column is regarded
+/// as fully independent.
 double Workbench::wholly_independent() const {
   return several_axes_ && reducible_ ? 3.0 * weakest_of_curve : std::sqrt(independent);
 }
@@ -471,8 +473,8 @@ Workbench::State Workbench::with(const State& state, const Gains& gains, std::si
   return more;
 }
 
-/// Does the same as `with` for a curve, which counts only as many parameters as it has directions
-/// independent of the state.
+/// Does the same as `with` for a curve, which adds only as many parameters as it has directions
+/// that are independent of the state.
 Workbench::State Workbench::with_curve(const State& state, const Gains& gains,
                                        std::size_t effect) const {
   State best = state;

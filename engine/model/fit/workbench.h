@@ -23,7 +23,8 @@ class Workbench {
     Index first, count;
     bool of_position;  ///< constant over all readings of a target
     MatrixXd own{};    ///< scalar products of its columns, plus the prior of a curve
-    /// For each column of a curve in space 1/(usual size)^2, in the units of its parameter.
+    /// For each column of a curve in space 1/(usual size)^2, in the units of its parameter; empty
+    /// for other effects.
     VectorXd prior{};
     Index searched = 0;  ///< number of its shapes that were searched
     /// 2 ln of the number of independent values from which its shapes were chosen
@@ -56,9 +57,9 @@ class Workbench {
   using Made = std::map<std::pair<std::size_t, std::vector<double>>, Expected<MatrixXd>>;
 
   /// `target`: target of each reading; sets whose position columns approach one free value per
-  /// target are rejected (empty: none are). The first `stated` terms belong to the model, and their
-  /// curves may follow the targets more closely. `scatter`: standard deviation of a reading; if it
-  /// is given, curves in space have a prior of their usual size (ridge).
+  /// target are rejected (empty: no set is rejected). The first `stated` terms belong to the model,
+  /// and their curves may follow the targets more closely. `scatter`: standard deviation of a
+  /// reading; if it is not 0, curves in space have a prior of their usual size (ridge).
   Workbench(const Observations& o, const std::vector<Term>& terms,
             const std::vector<double>& weight, const std::vector<std::uint32_t>& target = {},
             std::size_t stated = 0, Made* made = nullptr, const Noise& noise = {},
@@ -91,21 +92,20 @@ class Workbench {
   /// Returns the state with the best block of this effect added; the unchanged blocks if none can
   /// be added.
   State with(const State& state, const Gains& gains, std::size_t effect) const;
-  /// Does the same as `with`, but on a single axis also tries to reduce the knots of a curve in
-  /// `state`: the curve adapts to the new effect, which otherwise could not use the targets that
-  /// the curve follows.
+  /// Does the same as `with`, but on a single axis also tries fewer knots for each curve in
+  /// `state`, because the curve may have the number of position columns up to which a set is not
+  /// rejected.
   State joined(const State& state, const Gains& gains, std::size_t effect) const;
   /// Searches each effect's shapes again with the others fixed, until nothing improves, at most
   /// four times. Returns the improved state.
   State settled(State state) const;
   bool holds(const State& state, std::size_t effect) const;
   std::size_t effect_of(std::size_t block) const { return blocks_[block].effect; }
-  /// Returns the state without one effect.
   State without(const State& state, std::size_t effect) const;
 
   /// Returns the best shapes of all effects together, searched one after the other until nothing
-  /// improves, at most four times. Error: the readings do not show an effect, or do not separate
-  /// the effects.
+  /// improves, at most four times. An error if the readings do not show an effect, or do not
+  /// separate the effects.
   Expected<std::vector<std::vector<double>>> best_shapes() const;
 
   /// Returns an n x q orthonormal basis of a state's columns (without the zeros).
@@ -124,7 +124,6 @@ class Workbench {
   /// Returns the cost of an effect with these shapes and this number of linear columns.
   double price(const Block& block, Index columns) const;
   double price(const Block& block) const { return price(block, block.count); }
-  /// Returns the number of linear columns and searched shapes.
   static Index unknowns_of(const Block& block) { return block.count + block.searched; }
 
  private:

@@ -21,7 +21,8 @@ constexpr std::size_t most_effects = 8;
 // docs/dev/constants.md, M46.
 constexpr double least_joint_rms = 0.1;  ///< smallest RMS of a named effect, as a fraction of the
                                          ///< noise
-// docs/dev/constants.md, M47.
+// Campaigns differ if p is below the first value, unless more than the second share of flipped
+// copies differs as much; docs/dev/constants.md, M47.
 constexpr double differs_below = 0.001, as_much_as_noise = 0.01;
 constexpr Index shuffles = 200;  // number of flipped copies: half by stretches, half by whole
                                  // passes
@@ -145,8 +146,8 @@ class JointSearch {
     }
   }
 
-  /// Finds the best shape of one effect; then whether its value differs between campaigns, and
-  /// since when. Returns whether something changed.
+  /// Finds the best shape of one effect, and whether and since when its value differs between
+  /// campaigns. Returns whether something changed.
   bool settle(std::size_t i) {
     const Choice before = choices_[i];
     const std::string effect = r_.blocks[before.block].effect;
@@ -243,9 +244,9 @@ class JointSearch {
     return out;
   }
 
-  /// Returns the number of independent tests that the search is equivalent to. It is the largest
-  /// one that explains the median or the 5 % quantile of the smallest p of a flipped copy, with
-  /// flipped stretches or with flipped passes.
+  /// Returns the number of independent tests that the search is equivalent to: the largest of the
+  /// numbers that give the observed median and 5 % quantile of the smallest p of a copy, with
+  /// flipped stretches and with flipped passes.
   double trials_of(const JointSystem::Gains& gains) const {
     std::vector<double> least[2];
     for (Index k = 0; k < shuffles; ++k) {
@@ -289,7 +290,7 @@ class JointSearch {
     }
   }
 
-  /// Assigns one shared value to each effect whose differences between campaigns are as large in
+  /// Assigns one shared value to each effect whose differences between campaigns are reached in
   /// more than 1 % of the copies with flipped signs.
   void settle_differences() {
     for (std::size_t i = 0; i < choices_.size(); ++i) {
@@ -318,7 +319,7 @@ class JointSearch {
         [](const JointEffect& a, const JointEffect& b) { return a.evidence > b.evidence; });
   }
 
-  /// Returns the RMS of normalised residuals, converted to m or rad.
+  /// Returns the RMS of normalized residuals, converted to m or rad.
   double rms_of(const std::vector<VectorXd>& left) const {
     double squares = 0.0;
     for (std::size_t m = 0; m < left.size(); ++m)
@@ -436,15 +437,16 @@ class JointSearch {
       out.verdict = Verdict::Kind::unknown;
   }
 
-  /// Returns the term of an effect in the catalogue of a campaign; nullptr if it is not in it.
+  /// Returns the term of an effect in the catalogue of a campaign; null if the catalogue does not
+  /// contain the effect.
   static const Term* term_of(const Member& member, const std::string& effect) {
     for (const Term& term : member.catalogue)
       if (term.name() == effect) return &term;
     return nullptr;
   }
 
-  /// Returns a named effect as a candidate of campaign m, with the values that hold there; nothing
-  /// if the campaign does not determine it.
+  /// Returns a named effect as a candidate of campaign m, with the values for this campaign; none
+  /// if the campaign does not determine the effect.
   std::optional<Candidate> candidate_of(const JointEffect& effect, std::size_t m) const {
     const Term* const term = term_of(of_[m], effect.effect);
     const std::size_t g = effect.holds == Holds::shared    ? 0
@@ -464,7 +466,7 @@ class JointSearch {
   }
 
   void put_plans(JointExplanation& out) const {
-    // Campaigns of one machine have similar plans, so that a part of them is enough.
+    // Campaigns of one machine have similar plans, so plans for at most this number are compared.
     constexpr std::size_t most_campaigns = 8;
     const std::size_t step = (of_.size() + most_campaigns - 1) / most_campaigns;
     for (const JointEffect& effect : out.effects) {

@@ -14,8 +14,8 @@ namespace {
 
 const char* const mark = "unseen ";
 
-/// Returns one table with the readings of both, so that the knots of curves and the origins of
-/// levers are the same for both. Lines and bodies of `unseen` get new names.
+/// Returns one table with the readings of both tables, so that the knots of curves and the origins
+/// of levers are the same for both. Lines and bodies of `unseen` get new names.
 Expected<Observations> joined(const Observations& seen, const Observations& unseen) {
   Observations out = seen;
   if (seen.angular != unseen.angular) return fail("one is in um, the other in arcsec");
@@ -99,7 +99,7 @@ Expected<Prediction> predict_places(const Part& seen, const std::vector<Term>& m
   const auto n = static_cast<Index>(seen.table.size()), m = static_cast<Index>(unseen.table.size());
   const VectorXd y = Eigen::Map<const VectorXd>(both.deviation.data(), n + m);
 
-  // Fit the seen readings.
+  // Fit the readings `seen`.
   VectorXd root(n);
   for (Index i = 0; i < n; ++i)
     root(i) = std::sqrt(
@@ -121,7 +121,7 @@ Expected<Prediction> predict_places(const Part& seen, const std::vector<Term>& m
                                             MatrixXd::Identity(a.cols(), a.cols()));
   const MatrixXd covariance = s2 * cofactor.topLeftCorner(k, k);
 
-  // Predict the unseen readings; their zeros and set-up are new unknowns.
+  // Predict the readings `unseen`, whose zeros and set-up are new unknowns.
   const MatrixXd free = with(of_unseen.bottomRows(m), zeros_of(both, n, m));
   const Eigen::ColPivHouseholderQR<MatrixXd> decomposed(free);
   const MatrixXd q = math::orthonormal(decomposed, decomposed.rank());

@@ -17,8 +17,9 @@ namespace {
 /// removed.
 constexpr double shown = 1e-4;
 
-/// The range that all members together have measured, appended as two additional readings, so that
-/// the knots of a curve and the grid of a period are the same in each member.
+/// The range that all members together have measured. `with_ends` appends its ends as two
+/// additional readings, so that the knots of a curve and the grid of a period are the same in each
+/// member.
 struct Stretch {
   double low = 0.0, high = 0.0;
 };
@@ -56,7 +57,7 @@ bool is_of_place(const MatrixXd& columns, const std::vector<std::uint32_t>& cell
 }
 
 /// Whether a shape of the term is known from this member's readings or manifest and differs from
-/// that in `shape`, such as the pitch of another screw.
+/// the value in `shape`, for example because the member has a screw of another pitch.
 bool is_of_another(const Observations& o, const Term& term, const std::vector<double>& shape) {
   for (std::size_t k = 0; k < shape.size(); ++k) {
     const std::vector<double> grid = term.effect->shapes[k].grid(o, term.axis);
@@ -160,8 +161,8 @@ class Reader {
 
   /// Sums, over successive passes of one side with at least three repeated readings each, half the
   /// squared difference of their means in units of s^2, minus the share of the noise of single
-  /// readings, so that each has the variance of an offset as its expectation. The mean of its cell
-  /// is first subtracted from each reading. A slow drift contributes little.
+  /// readings, so that the expectation of each summand is the variance of an offset. The mean of
+  /// its cell is first subtracted from each reading. A slow drift contributes little.
   void sum_offsets(const Ground& ground, const std::vector<double>& y, double s) {
     const Repeats& r = ground.repeats;
     std::vector<double> cell(r.cells, 0.0), in_cell(r.cells, 0.0), mean(r.passes, 0.0),
@@ -191,7 +192,7 @@ class Reader {
   }
 
   /// Subtracts from the rows of each pass the fraction of their mean that makes them independent:
-  /// generalised least squares with a random offset of each pass.
+  /// generalized least squares with a random offset of each pass.
   static void take_out_offsets(const MemberReadings& m, double variance, MatrixXd& columns) {
     if (!(variance > 0.0)) return;
     std::map<std::uint32_t, std::vector<Index>> passes;
@@ -297,7 +298,7 @@ class Reader {
     }
   }
 
-  // docs/dev/constants.md, M5.
+  // smallest degrees of freedom of a noise floor that is used
   static constexpr double least_dof = 8.0;
   const std::vector<Member>& members_;
   Stretch stretch_;

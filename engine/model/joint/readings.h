@@ -27,8 +27,8 @@ struct JointBlock {
 struct MemberReadings {
   MatrixXd x;
   VectorXd y;
-  /// first column of each block; -1: not identifiable from these readings, or from those of fewer
-  /// than two members
+  /// first column of each block; -1: the block is not identifiable from these readings, or is
+  /// identifiable from those of fewer than two members
   std::vector<Index> first;
   std::vector<MatrixXd> own;        ///< scalar products of each block's columns
   std::vector<std::uint32_t> pass;  ///< index of the pass (run in one direction on a line) of each

@@ -64,7 +64,7 @@ class JointSystem {
   Index shared_columns(const std::vector<Choice>& choices) const;
   struct Split {
     MatrixXd own, shared;   // columns of one member: with own and with shared coefficients
-    std::vector<Index> at;  // indices of its shared columns among all
+    std::vector<Index> at;  // indices of these shared columns among those of all members
   };
   Split split(const std::vector<Choice>& choices, std::size_t member) const;
 

@@ -40,8 +40,8 @@ class Sizes {
       shown_.push_back({std::max((1.0 - hidden) * seen, 1e-12), wanted(block, dof),
                         static_cast<double>(Workbench::unknowns_of(block))});
     }
-    // A tenth of the shapes is not counted: those that these readings show least, such as a step
-    // before the last reading.
+    // The tenth of the shapes that these readings show least is omitted, such as a step before the
+    // last reading.
     std::sort(shown_.begin(), shown_.end(),
               [](const Shown& a, const Shown& b) { return a.visible > b.visible; });
     shown_.resize(shown_.size() - shown_.size() / 10);
@@ -192,8 +192,9 @@ class CandidateOf {
     return names;
   }
 
-  /// Whether a cause with fewer parameters explains nearly all of what the best explanation does: a
-  /// curve can follow any shape, while the shape of a cause is only approximately known.
+  /// Whether a cause of the library with fewer parameters explains nearly as much as the best
+  /// explanation: a curve can follow any shape, while the shape of a cause is only approximately
+  /// known.
   bool is_form_of(std::size_t cause) const {
     if (!f_.terms[cause].library) return false;
     const State alone = f_.bench->joined(f_.start, f_.bench->gains(f_.start, cause), cause);

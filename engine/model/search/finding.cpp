@@ -103,9 +103,9 @@ class Finder {
   }
 
   /// Whether zeros of passes scatter at random: with such zeros, the model or the best explanation
-  /// is better than everything found without them, and at least as good as with a random walk. Then
-  /// they are treated as noise, with the size that the best explanation leaves, and the search is
-  /// repeated until this size is stable.
+  /// is better than everything found without them, and about as good as with a random walk or zeros
+  /// of runs. Then the zeros are treated as noise, with the size that the best explanation leaves,
+  /// and the search is repeated until this size is stable.
   bool passes_scatter() {
     constexpr double same_size = 1.2;  // docs/dev/constants.md, M48
     if (of_pass_ == 0.0 && !(zeros_left(f_.start).unordered() &&
@@ -337,8 +337,8 @@ class Finder {
     for (std::uint32_t i = 0; i < n; ++i)
       if (std::fabs(e[i]) >= least * s) high.push_back(i);
     const std::vector<double> apart = apart_from_others(f_.repeats, high, e);
-    // Require this also of the original deviations: an error of the explanation in one run does not
-    // make a reading suspect.
+    // The original deviations must contradict the repeats too, because an error of the explanation
+    // in one run does not make a reading suspect.
     const std::vector<double> as_read =
         apart_from_others(f_.repeats, high, f_.part.table.deviation);
     std::vector<Suspect> now;
@@ -414,8 +414,8 @@ class Finder {
   }
 
   Finding f_;
-  bool alone_ = false;  ///< readings are treated as independent
-  /// size of the zeros of passes relative to s, if these are treated as noise; else 0
+  bool alone_ = false;  ///< whether readings are treated as independent
+  /// size of the zeros of passes relative to s, if these are treated as noise; otherwise 0
   double of_pass_ = 0.0;
   const std::vector<Term>& model_;
   Workbench::Made made_;

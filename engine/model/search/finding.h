@@ -52,13 +52,13 @@ struct Finding {
   /// passes are noise, an effect that is nearly constant within a pass has only as much evidence as
   /// the number of passes allows.
   double p_of(std::size_t effect) const;
-  /// Returns the standard deviation of the residuals of the best explanation.
+  /// Returns the standard deviation of a reading from the residuals of the best explanation, m or
+  /// rad.
   double left() const;
-  /// Returns the columns of these terms together.
   Expected<MatrixXd> columns_of(const std::vector<Term>& some) const;
-  /// Returns the criterion of these terms together with a random zero.
+  /// Returns the criterion of these terms together with a random zero, by kind of zero.
   Unsteady walk_with(const std::vector<Term>& some) const;
-  /// Returns the cost of a random zero: one parameter, one name.
+  /// Returns the cost of a random zero, as of an effect with one parameter.
   double price_of_zero() const;
   /// Returns the whitened residuals of a state.
   VectorXd residual(const Workbench::State& state) const;

@@ -15,7 +15,7 @@ namespace {
 
 using State = Workbench::State;
 
-// docs/dev/constants.md, M16.
+// Number of sets of effects that are grown in parallel; docs/dev/constants.md, M16.
 constexpr std::size_t side_by_side = 4;
 // docs/dev/constants.md, M17.
 constexpr int most_effects_added = 7, most_in_space = 24;

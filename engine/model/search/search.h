@@ -42,16 +42,15 @@ SignFlips shuffled(const Workbench& bench, const Workbench::State& complete,
 Chance measure_chance(const Workbench& bench, const Workbench::State& complete,
                       const SignFlips& shuffles);
 
-/// Returns, for each copy, whether an effect would be named in it.
+/// Returns, for each copy, whether some effect would be named (`named_below`) in this copy.
 std::vector<char> named_in(const Workbench& bench, const Workbench::State& complete,
                            const SignFlips& shuffles, const Chance& chance);
 
 /// Returns p of the F-test of one effect of a state; not corrected for the search.
 double p_of(const Workbench& bench, const Workbench::State& state, std::size_t effect);
 
-/// An effect is named if the probability of such evidence by noise anywhere in this search is below
-/// this.
-/// docs/dev/constants.md, M2.
+/// An effect is named, that is, reported as significant, if the probability of such evidence by
+/// noise anywhere in this search is below this value; docs/dev/constants.md, M2.
 inline constexpr double named_below = 0.005;
 
 }  // namespace nonio::model

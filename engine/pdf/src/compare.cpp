@@ -60,8 +60,8 @@ class Comparison {
                       [&](const Value& x, const Value& y) { return same(x, y); });
   }
 
-  /// Whether both are dictionaries with the same keys in the same order, and with the same values
-  /// except for the keys in `but`.
+  /// Returns whether both are dictionaries with the same keys in the same order, and with the same
+  /// values except for the keys in `but`.
   bool same_dictionary(const Value& a, const Value& b,
                        std::initializer_list<std::string_view> but) const {
     if (!a.is(Value::Kind::dictionary) || !b.is(Value::Kind::dictionary) || a.keys != b.keys)

@@ -5,7 +5,6 @@ namespace nonio::pdf {
 
 namespace {
 
-/// Reads the uncompressed content of each page, in the order of the pages.
 class Pages {
  public:
   explicit Pages(const File& file) : file_(file) {}

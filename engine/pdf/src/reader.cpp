@@ -76,7 +76,7 @@ class FileReader {
     if (!b.starts_with("%PDF-1.") || b.size() < 64 || b[7] < '3' || b[7] > '7' || b[8] != '\n')
       return fail("is not a PDF of version 1.3 to 1.7");
     std::size_t at = 9;
-    if (b[at] == '%') {  // comment of four bytes above 127: the file is not text
+    if (b[at] == '%') {  // a comment of four bytes above 127 marks a binary file
       if (b[at + 5] != '\n') return refuse(at, "expected a comment of four bytes");
       for (std::size_t i = at + 1; i < at + 5; ++i)
         if (static_cast<unsigned char>(b[i]) < 0x80) return refuse(i, "expected a byte above 127");
@@ -241,7 +241,7 @@ Expected<bool> is_packed(const File& file, const Object& object) {
 }
 
 /// Largest accepted ratio of uncompressed to compressed size. Deflate cannot exceed 1032, so that a
-/// larger stated size is false.
+/// stated size beyond this ratio is false.
 constexpr std::size_t best_ratio = 1040;
 
 }  // namespace

@@ -31,9 +31,9 @@ std::string formatted(const char* format, Numbers... numbers) {
   return {text.data(), static_cast<std::size_t>(n)};
 }
 
-/// Writes the file again with space for a signature. Its objects are unchanged, except that the
-/// page and the catalog get further entries; they are followed by the objects of the attachments
-/// and of the signature.
+/// Writes the file again with space for a signature. Its objects are unchanged, except for further
+/// entries in the page and in the catalog; the objects of the attachments and of the signature
+/// follow.
 class Reservation {
  public:
   Reservation(const File& file, Time time, std::size_t room)
@@ -57,7 +57,7 @@ class Reservation {
                    (frame.empty() ? "[0 0 0 0]" : frame) + "\n" +
                    (frame.empty() ? "" : "/AP << /N " + reference(look) + " >>\n") + "/P " +
                    reference(page) + "\n/V " + reference(signature) + "\n>>");
-    if (!frame.empty())  // empty appearance: the page itself draws the frame
+    if (!frame.empty())  // the appearance is empty, because the page itself draws the frame
       put(look, "<<\n/Type /XObject\n/Subtype /Form\n/BBox " + frame +
                     "\n/Length 0\n>>\nstream\n\nendstream");
     put_table();
@@ -66,8 +66,8 @@ class Reservation {
   }
 
  private:
-  /// Returns the frame that a page declares for the signature, "[left low right high]"; empty if
-  /// there is none or its numbers are not integers.
+  /// Returns the frame that a page declares for the signature, "[left low right high]"; empty if it
+  /// declares none, or if the numbers are not integers.
   std::string frame_of(std::size_t page) const {
     const Value* frame = file_.objects[page].value.find(signature_key);
     if (frame == nullptr || !frame->is(Value::Kind::array) || frame->items.size() != 4) return {};
@@ -79,8 +79,8 @@ class Reservation {
     return text + "]";
   }
 
-  /// Returns the object number of the first page that declares a frame for the signature; if there
-  /// is none, of the first page.
+  /// Returns the object number of the first page that declares a frame for the signature; if no
+  /// page declares one, of the first page.
   std::size_t page_of_signature() const {
     for (const std::size_t number : file_.order) {
       const Value* type = file_.objects[number].value.find("Type");

@@ -102,7 +102,7 @@ Expected<PdfSignature> signature_of(const File& file, const Value& dictionary) {
   signature.after = file.bytes.substr(contents->end);
   signature.gap = contents->begin;
   signature.contents = file.bytes.substr(contents->begin + 1, contents->end - contents->begin - 2);
-  // Digits in upper case are rejected: they would be the same signature in other bytes.
+  // Digits in upper case are rejected, because they state the same signature in different bytes.
   if (!is_lower_hexadecimal(signature.contents))
     return fail("/Contents: expected digits and small letters a to f");
   const Value* time = dictionary.find("M");

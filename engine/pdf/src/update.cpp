@@ -26,7 +26,7 @@ std::optional<std::size_t> number_in(std::string_view text) {
 }
 
 /// Returns the position of the previous cross-reference table, as stated (/Prev) by the table of
-/// the part that ends at `end`; none if there is no such statement.
+/// the part that ends at `end`; none if the table states no such position.
 std::optional<std::size_t> table_before(std::string_view bytes, std::size_t end) {
   constexpr std::size_t longest = 30000;  // bytes of the table and trailer of an update
   constexpr std::string_view word = "\nstartxref\n", previous = "\n/Prev ";
@@ -253,7 +253,7 @@ Expected<Update> Updater::write(const Store& more, bool has_stamp) {
 
 namespace {
 
-/// Returns how many references under this key name objects with the number `first` or above.
+/// Returns how many references under this key refer to objects with a number of at least `first`.
 std::size_t new_ones(const Value& store, const char* key, std::size_t first) {
   const Value* list = store.find(key);
   if (list == nullptr || !list->is(Value::Kind::array)) return 0;
@@ -265,8 +265,8 @@ std::size_t new_ones(const Value& store, const char* key, std::size_t first) {
 
 }  // namespace
 
-/// Reads the new streams of an update, and then the object that lists them; `at` is moved behind
-/// them. The result is empty if the update has no streams.
+/// Reads the new streams of an update, and then the object that lists them; `at` is moved after
+/// this object. The result is empty if the update has no streams.
 Expected<Store> Updater::read_store(std::string_view bytes, std::size_t& at) const {
   std::vector<std::string> streams;
   std::size_t number = size_;

@@ -178,7 +178,8 @@ HPDF_Dict add_descriptor(HaruDocument& pdf, const Font& font) {
   if (file == nullptr || descriptor == nullptr) return nullptr;
   HPDF_Dict_AddNumber(file, "Length1", static_cast<HPDF_INT32>(embedded.size));
   HPDF_Dict_AddName(descriptor, "FontName", embedded.name.c_str());
-  HPDF_Dict_AddNumber(descriptor, "Flags", 4);  // symbolic: glyphs are chosen by number
+  // flag of a symbolic font, because glyphs are chosen by number
+  HPDF_Dict_AddNumber(descriptor, "Flags", 4);
   HPDF_Array box = HPDF_Array_New(doc->mmgr);
   HPDF_Dict_Add(descriptor, "FontBBox", box);
   for (const int side : font.box) HPDF_Array_AddNumber(box, side);
@@ -345,7 +346,7 @@ void add_kept(HaruDocument& pdf, const Kept& kept) {
   HPDF_Dict profile = new_stream(pdf, kept.profile), metadata = new_stream(pdf, kept.xmp, false);
   HPDF_Dict intent = new_object(doc, "OutputIntent");
   if (profile == nullptr || metadata == nullptr || intent == nullptr) return;
-  HPDF_Dict_AddNumber(profile, "N", 3);  // number of colour components
+  HPDF_Dict_AddNumber(profile, "N", 3);  // number of color components
   HPDF_Dict_AddName(metadata, "Type", "Metadata");
   HPDF_Dict_AddName(metadata, "Subtype", "XML");
   HPDF_Dict_Add(doc->catalog, "Metadata", metadata);
@@ -392,7 +393,7 @@ Expected<std::string> write(NewFile file) {
     *text = label(std::move(*text));
   if (!date_of(file.date)) file.date.clear();
   std::vector<std::string> contents;
-  const Deflater fast(1);  // level 6: three times as long, only a few per cent smaller
+  const Deflater fast(1);  // level 6 takes three times as long, and saves only a few percent
   for (const std::string& content : file.pages) contents.push_back(fast(content));
   Kept kept;  // declared before `pdf`, because it must outlive the document
   HaruDocument pdf;

@@ -17,9 +17,10 @@ void flush_output();
 /// Whether this process is the child of `step_aside`, or a descendant of that child.
 bool is_apart();
 
-/// Whether a plugin must first be loaded in a trial process: it is not in the program's own folder,
-/// whose plugins were tested with it; or this process cannot be restarted; or a process has ended
-/// before while it loaded an untried plugin.
+/// Returns whether a plugin must first be loaded in a trial process. This is the case unless it is
+/// in the program's own folder, whose plugins were tested with the program. It is also the case if
+/// this process cannot be restarted, or if a process has ended before while it loaded an untried
+/// plugin.
 bool must_be_tried(const std::filesystem::path& plugin);
 
 /// States that this process loads plugins that were not tried, during the lifetime of the object.
@@ -37,7 +38,8 @@ class LoadingUntried {
 /// are loaded.
 void hide_from_plugins(std::vector<std::filesystem::path> secrets);
 
-/// Redirects standard output to standard error during its lifetime, if plugins are kept apart.
+/// Redirects standard output to standard error during its lifetime, if this process is the confined
+/// child for plugins.
 class Muted {
  public:
   Muted();

@@ -175,7 +175,7 @@ void init_child() {
   ::signal(SIGTERM, SIG_DFL);
   struct sigaction hang_up {};
   ::sigaction(SIGHUP, nullptr, &hang_up);
-  if (hang_up.sa_handler != SIG_IGN) ::signal(SIGHUP, SIG_DFL);  // under nohup it stays ignored
+  if (hang_up.sa_handler != SIG_IGN) ::signal(SIGHUP, SIG_DFL);  // SIGHUP stays ignored under nohup
   const rlimit none{0, 0};
   ::setrlimit(RLIMIT_CORE, &none);
   ::dup2(STDERR_FILENO, STDOUT_FILENO);

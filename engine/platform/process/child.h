@@ -15,7 +15,8 @@ namespace nonio::process {
 /// How a child process ended.
 struct ChildEnd {
   bool well = false;  ///< whether the process exited with status 0
-  std::string words;  ///< why it did not, for example "signal 11 (Segmentation fault)"
+  std::string words;  ///< reason if the process ended otherwise, for example "signal 11
+                      ///< (Segmentation fault)"; empty if `well`
   bool overdue = false;
 };
 
@@ -26,9 +27,10 @@ ChildEnd child_end(int wait_status);
 class Child {
  public:
   struct Settings {
-    double memory_MB = 0.0;  ///< limit of private memory after the start; 0: no limit
-    /// Whether the child prints nothing. A reader of the parent's output waits until every process
-    /// has closed it, also a child that outlives the parent.
+    double memory_MB = 0.0;  ///< limit of the private memory, set after the start; 0: no limit
+    /// Whether standard input, output and error of the child are /dev/null. Otherwise, a child that
+    /// outlives the parent keeps the parent's output open, and a reader of this output waits for
+    /// the child.
     bool silent = false;
   };
   /// A program to start in the child, and the descriptors of its standard streams; -1: /dev/null.
@@ -79,8 +81,8 @@ void end_children(const std::vector<pid_t>& kept);
 /// Prepares a child that `Child::start` did not create: own process group, default signals, no core
 /// file, output to standard error. Call it first in that child.
 void init_child();
-/// Limits the private memory of this process. No effect under a sanitizer, whose shadow memory is
-/// larger than any limit.
+/// Limits the private memory of this process; a megabyte is 10^6 bytes. No effect under a
+/// sanitizer, whose shadow memory is larger than any limit.
 void limit_memory(double megabytes);
 
 /// Sets malloc to keep freed memory, because a worker needs it again for the next campaign.

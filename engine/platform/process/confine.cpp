@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// ---- files: Landlock (Documentation/userspace-api/landlock.rst)
+// Restrictions of file access by Landlock (Documentation/userspace-api/landlock.rst).
 
 /// The structure of Landlock ABI 6. An older kernel accepts a structure longer than its own if the
 /// additional bytes are 0.
@@ -103,7 +103,7 @@ void allow_all_but(int ruleset, const fs::path& folder, const std::set<fs::path>
   }
 }
 
-// ---- system calls: seccomp (filters.h)
+// Restrictions of system calls by seccomp (filters.h).
 
 bool computing_confined = false;
 

@@ -33,8 +33,8 @@ std::string confine_computing();
 std::string confine_visit();
 
 /// Call before a plugin function that should need only its arguments: forbids files, sockets,
-/// processes, signals, and changing the folder or the umask. A forbidden system call calls `told`
-/// with its name, which must not return. Returns why the kernel refused, or an empty text.
+/// processes, signals, and changing the folder or the umask. `told` is called with the name of a
+/// forbidden system call, and must not return. Returns why the kernel refused, or an empty text.
 std::string confine_pure(void (*told)(const char* call));
 
 /// Makes these files unreadable, and also everything that is created later in the folders above

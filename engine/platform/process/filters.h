@@ -9,7 +9,7 @@
 
 namespace nonio::process {
 
-// Lists of permitted system calls as seccomp programs. make_filters generates them when Nonio is
+// Restrictions of system calls as seccomp programs. make_filters generates them when Nonio is
 // built, so that their generation cannot fail during a run.
 
 /// Filters for the process that loads plugins, for the work of one command, and for a process that

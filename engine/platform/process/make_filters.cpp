@@ -86,8 +86,8 @@ const char* const hostile[] = {"execve",
                                "syslog",
                                "acct"};
 
-/// System calls that are also forbidden where plugins are loaded or compute. A command needs them,
-/// because it creates processes and files.
+/// System calls that a command needs, because it creates processes and files. They are forbidden in
+/// the processes that load plugins or evaluate.
 const char* const of_verbs[] = {"fork",
                                 "vfork",
                                 "socketpair",
@@ -255,7 +255,7 @@ void forbid_hostile(Filter& filter) {
   for (const char* call : hostile) filter.add(SCMP_ACT_KILL_PROCESS, call);
   for (const std::uint32_t spared : {parent_process, 1U})
     filter.add(SCMP_ACT_KILL_PROCESS, "tgkill", is_int(0, spared));
-  // signals by a descriptor, and input that is inserted into a terminal
+  // These commands request signals from a descriptor, or insert input into a terminal.
   for (const std::uint32_t command : {F_SETOWN, F_SETSIG, 15 /* F_SETOWN_EX */})
     filter.add(SCMP_ACT_KILL_PROCESS, "fcntl", is_int(1, command));
   for (const std::uint32_t command : {0x5412 /* TIOCSTI */, 0x541C /* TIOCLINUX */})
@@ -269,7 +269,7 @@ void print_loading() {
   Filter filter(SCMP_ACT_ALLOW);
   forbid_hostile(filter);
   for (const char* call : of_verbs) filter.add(SCMP_ACT_KILL_PROCESS, call);
-  filter.add(SCMP_ACT_ERRNO(ENOSYS), "clone3");  // a filter cannot inspect its arguments
+  filter.add(SCMP_ACT_ERRNO(ENOSYS), "clone3");  // a filter cannot inspect the arguments of clone3
   filter.add(SCMP_ACT_KILL_PROCESS, "clone", masked(0, CLONE_THREAD | CLONE_PARENT, 0));
   filter.add(SCMP_ACT_ERRNO(EAGAIN), "clone", masked(0, CLONE_THREAD, CLONE_THREAD));
   filter.add(SCMP_ACT_ERRNO(EPERM), "prlimit64", is_not(0, 0));

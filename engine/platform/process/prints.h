@@ -9,7 +9,7 @@
 namespace nonio::batch {
 
 /// Collects what plugins print in this process until it is known which plugin printed it. At most
-/// 64 kB are kept between two calls of `pass_on`.
+/// 64 KiB are kept between two calls of `pass_on`.
 class Prints {
  public:
   /// Replaces standard output and error of the process. `pass_on` writes to the descriptor `to`.

@@ -54,13 +54,12 @@ class Watched {
   bool ended() const { return ended_; }
   /// Whether there was no sign of life for more than `seconds`.
   bool is_silent(double seconds);
-  /// Ends the process and returns how it ended. A process that hangs is killed; it is left behind
-  /// if the kernel does not release it within two seconds.
+  /// Ends the process and returns how it ended, like `Child::end`.
   ChildEnd end() { return child_.end(); }
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// Unmaps the memory that parent and child share.
+  /// Deleter that unmaps the memory shared by parent and child.
   struct Shared {
     void operator()(SignsOfLife* signs) const;
   };

@@ -51,7 +51,7 @@ bool is_passing(const fs::path& path, const std::set<fs::path>& databases) {
   return false;
 }
 
-/// Inode, size, time of change and mode: they differ if a file was changed.
+/// Inode, size, modification time (s, ns) and mode of a file; compared to detect a change.
 using FileState = std::array<std::int64_t, 5>;
 
 class Backup {
@@ -60,8 +60,6 @@ class Backup {
 
   Expected<BackupSummary> write() {
     if (auto done = list(); !done) return fail(done.error());
-    // A file that names the last entry of a register is copied before the register, so that it
-    // never names an entry that the copy of the register lacks.
     for (const fs::path& path : identities_) {
       const auto state = [&] {
         States one;

@@ -18,15 +18,16 @@ struct BackupSummary {
   std::vector<std::string> left_out;
 };
 
-/// Name of the last file in an archive: the digests of all others in the format of `sha256sum -c`.
+/// Name of the last file in an archive: the digests of all other files in the format of `sha256sum
+/// -c`.
 inline constexpr const char* backup_digests = ".nonio-backup.sha256";
 
-/// Writes a folder into the archive `file`, which appears completely or not at all and is read back
-/// before. Other processes may write into the folder meanwhile: each database is copied as of one
-/// moment, and later the files of each folder as of one moment. The files that name the last entry
-/// of a register are copied before the register, so that they never name an entry that its copy
-/// lacks. Locks and temporary files are left out. Errors: `file` exists or is in the folder; a
-/// folder changes all the time; a database is damaged.
+/// Writes a folder into the archive `file`, which is read back before it gets its name. Other
+/// processes may write into the folder meanwhile: first each database, then the files of each
+/// folder are copied as of one moment. Files that name the last entry of a register are copied
+/// before the register, so that they never name an entry that the copied register lacks. Locks and
+/// temporary files are left out. Errors: `file` exists or is in the folder; a folder changes all
+/// the time; a database is damaged.
 Expected<BackupSummary> write_backup(const std::filesystem::path& folder,
                                      const std::filesystem::path& file);
 

@@ -21,7 +21,7 @@ class Connection;
 struct Server {
   std::string url;  ///< address postgresql://... without a password, in libpq's format
   std::string schema;
-  /// File with the password; empty: libpq finds it (service, ~/.pgpass, ...).
+  /// File with the password; empty: libpq looks up the password (service file, ~/.pgpass, ...).
   std::filesystem::path password_file;
 };
 
@@ -45,7 +45,7 @@ class Database {
   static constexpr double usual_patience = 60.0;
   /// Opens an SQLite file; Use::create creates a missing one. Use::read writes nothing, takes no
   /// lock and ignores journals: for a file that no process changes. Waits up to `patience` seconds
-  /// for a locked database; then the error fulfils `is_locked`.
+  /// for a locked database; then the error satisfies `is_locked`.
   static Expected<Database> open(const std::filesystem::path& path, Use use,
                                  double patience = usual_patience);
   /// Connects to a server. Tables belong to the schema of `server`, which need not exist yet.
@@ -57,8 +57,8 @@ class Database {
   enum class Kind { sqlite, postgresql };
   Kind kind() const { return kind_; }
 
-  /// Runs a statement with these values for its `?` and returns the rows. NULL becomes "", a double
-  /// the fewest digits that reproduce it. Statements are prepared once and kept.
+  /// Runs a statement with these values for its `?` and returns the rows. NULL is returned as "",
+  /// and a double with the fewest digits that reproduce it. Prepared statements are reused.
   std::vector<Row> rows(const char* sql, std::initializer_list<Value> values = {});
   /// Calls `take` for each row of a statement. The row is valid during the call only, and `take`
   /// must not use the database.
@@ -66,7 +66,7 @@ class Database {
   void each(const char* sql, std::initializer_list<Value> values, const Take& take);
   /// Returns the first column of the first row; "" if there is no row.
   std::string first(const char* sql, std::initializer_list<Value> values = {});
-  /// Runs a statement without rows. A server receives many of them together, so that an error may
+  /// Runs a statement without rows. Statements are sent to a server in groups, so that an error may
   /// be noticed only in a later call: at the latest in `rows` or at the end of the transaction.
   void put(const char* sql, std::initializer_list<Value> values = {});
   /// Runs several statements in sequence, without values and rows.

@@ -36,7 +36,7 @@ std::string hmac_sha256(std::string_view key, std::string_view bytes);
 Expected<std::string> sha256_of_file(const std::filesystem::path& path,
                                      const std::function<void()>& after_each_part = {});
 
-/// Returns the first 64 bits of a hexadecimal SHA-256, to save memory where there are very many.
+/// Returns the first 64 bits of a hexadecimal SHA-256, to save memory in long lists.
 std::uint64_t short_digest(std::string_view sha256);
 
 }  // namespace nonio::storage

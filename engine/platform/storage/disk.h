@@ -30,7 +30,6 @@ class Disk {
   std::filesystem::path folder_;
   int fd_ = -1;
   int trouble_ = 0;  ///< errno if a descriptor or counter cannot be created
-  /// Number of failed flushes, shared by all processes.
   std::atomic<std::uint32_t>* losses_ = nullptr;
 };
 

@@ -222,7 +222,8 @@ Expected<std::string> read_file(const fs::path& path) {
   if (auto packed = read_from_pack(path)) return std::move(*packed);
   NONIO_TRY(const auto file, open_regular(path));
   std::string bytes;
-  // One byte more than the size is read: if it stays empty, the file ends there.
+  // One more byte than the size is requested. If it is not received, the end of the file is
+  // reached.
   for (std::size_t size = 0, room = std::min(file.size, most_at_once) + 1;; room *= 2) {
     bytes.resize(room);
     NONIO_TRY(const auto read,
@@ -297,8 +298,8 @@ std::string path_text(std::string_view path) {
 
 namespace {
 
-/// Whether `name` is a regular file directly in the folder, not a link, so that nothing needs
-/// resolving.
+/// Returns whether `name` is a regular file directly in the folder and not a link, so that no link
+/// has to be resolved.
 bool is_plain_file_in(const fs::path& folder, const std::string& name) {
   struct stat info {};
   return name.find('/') == std::string::npos && name != "." && name != ".." &&
@@ -327,7 +328,7 @@ bool is_artifact_name(std::string_view name) {
   if (name.empty() || name.size() > 200 || name.front() == '.') return false;
   for (const char* own : {"results.json", "run.json", "earlier.json", "last-good"})
     if (name == own) return false;
-  if (name.ends_with(leftover_suffix)) return false;  // a later run would remove it
+  if (name.ends_with(leftover_suffix)) return false;  // a later run would remove the file
   for (const char c : name)
     if (c == '/' || c == '\\' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f) return false;
   return true;
@@ -432,7 +433,8 @@ Expected<void> publish(const fs::path& folder, const std::vector<Artifact>& file
   const auto is_new = make_folder(folder);
   if (!is_new) return fail(is_new.error());
   auto done = fill_and_flush(folder, files);
-  // after the files: a journal that was committed for them already contains the new folder
+  // The parent folder is flushed after the files, because a journaling file system commits the new
+  // folder together with the files.
   if (done && *is_new) done = flush_folder(fs::absolute(folder).parent_path());
   const std::vector<std::string> names = names_of(files);
   const auto is_ours = [&](const std::string& name) {
@@ -477,7 +479,8 @@ Expected<bool> disk_gives_back(const fs::path& path, std::uint64_t size, std::st
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (!file) return system_error("cannot read", path);
   ::posix_fadvise(file.get(), 0, 0, POSIX_FADV_DONTNEED);
-  // One byte more than expected is read: if it stays empty, the file ends there.
+  // One more byte than expected is requested. If it is not received, the end of the file is
+  // reached.
   std::string buffer(std::min<std::uint64_t>(size + 1, 1 << 20), '\0');
   RunningDigest digest;
   std::uint64_t seen = 0;

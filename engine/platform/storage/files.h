@@ -55,7 +55,7 @@ class ReadFile {
       : data_(data), size_(size), mapped_(mapped) {}
   char* data_;
   std::size_t size_;
-  std::size_t mapped_;        ///< bytes of the mapping; 0: none
+  std::size_t mapped_;        ///< size of the mapping in bytes; 0: no mapping
   std::size_t released_ = 0;  ///< bytes at the front whose pages were released
 };
 
@@ -73,15 +73,16 @@ Expected<std::string> read_small_file(const std::filesystem::path& path);
 /// out.
 Expected<bool> is_there(const std::filesystem::path& path);
 
-/// Returns a path as UTF-8 text; other bytes (a name in Latin-1) become \\xe9.
+/// Returns a path as UTF-8 text; other bytes, such as those of a name in Latin-1, are written as
+/// \\xe9.
 std::string path_text(std::string_view path);
 
 /// Resolves `relative` and all its links below `base`; an error if it leads outside `base`.
 Expected<std::filesystem::path> path_inside(const std::filesystem::path& base,
                                             const std::string& relative);
 
-/// Whether an output file may have this name: a plain, visible file name that the host does not
-/// use.
+/// Returns whether an output file may have this name: a plain, visible file name that Nonio does
+/// not use for its own files.
 bool is_artifact_name(std::string_view name);
 
 /// Writes files that appear completely or not at all, by temporary name, fsync, rename and fsync of
@@ -100,7 +101,7 @@ bool has_own_names();
 Expected<void> write_temporaries(const std::filesystem::path& folder,
                                  const std::vector<Artifact>& files);
 /// Returns the final names of the files that have temporary names of this process in a folder,
-/// sorted; none if the folder does not exist.
+/// sorted; an empty list if the folder does not exist.
 Expected<std::vector<std::string>> temporaries(const std::filesystem::path& folder);
 /// Drops the cached pages of a file, so that it is next read from the disk.
 void drop_cached(const std::filesystem::path& path);

@@ -6,8 +6,8 @@
 namespace nonio::storage {
 
 /// Returns a symbol of one of Nonio's libraries, which is loaded at its first use and never
-/// unloaded: clients of servers bring thirty third-party libraries, half of the start-up time of
-/// every command. Not for processes that can no longer open files.
+/// unloaded. The clients of servers need thirty third-party libraries, whose loading would take
+/// half of the start-up time of every command. Not for processes that can no longer open files.
 Expected<const void*> exported(const char* library, const char* symbol);
 
 template <class T>

@@ -46,11 +46,11 @@ class PackWriter {
 };
 
 /// Reads a file of a pack; none if the pack has no such file. An error if the pack is missing, or
-/// damaged in this place.
+/// if the pack or this file in it is damaged.
 Expected<std::optional<std::string>> read_packed(const PackAddress& at);
 /// Returns the size of a file in a pack without reading it; none if there is no such file.
 Expected<std::optional<std::uint64_t>> size_packed(const PackAddress& at);
-/// Returns the names in a pack that begin with `folder` and '/', without this part, sorted.
+/// Returns the names in a pack that begin with `folder` and '/', without this prefix, sorted.
 Expected<std::vector<std::string>> names_packed(const PackAddress& folder);
 /// Reads all files of a pack and compares their digests. An error names campaign and file.
 Expected<void> check_pack(const std::filesystem::path& pack);

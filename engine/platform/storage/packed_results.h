@@ -15,15 +15,15 @@
 /// Finds the results of a campaign: in a folder of their own, or in a pack (pack.h).
 namespace nonio::storage {
 
-/// Returns the folder of a campaign's results, to which links lead: OUT/<id>; in a hashed output
-/// folder OUT/ab/<id> with the first two digits of the SHA-256 of the id.
+/// Returns the campaign's own folder of results, to which links in pages refer: OUT/<id>; in a
+/// hashed output folder OUT/ab/<id> with the first two digits of the SHA-256 of the id.
 std::filesystem::path own_folder(const std::filesystem::path& out, const std::string& id);
 /// File whose presence marks a hashed output folder.
 inline constexpr const char* hashed_mark = ".nonio/hashed";
-/// Returns the place from which results are read: the campaign's own folder if it contains a
-/// record, otherwise the address in the pack that the catalogue names
-/// (OUT/.nonio/packs/NAME.sqlar/<id>), otherwise the own folder. A missing or damaged pack is an
-/// error when it is read; the campaign is not treated as one without results.
+/// Returns the place from which results are read: the address in the pack that the catalogue names
+/// (OUT/.nonio/packs/NAME.sqlar/<id>); the campaign's own folder if it contains a record, or if no
+/// pack is named. A missing or damaged pack is an error when it is read; the campaign is not
+/// treated as one without results.
 std::filesystem::path results_folder(const std::filesystem::path& out, const std::string& id);
 /// Calls `take` with every folder and every address in a pack that may contain results of a
 /// campaign, in no particular order. The last part of the path is the id of the campaign. If the
@@ -55,8 +55,8 @@ class Catalogue {
   const PackFile* find(std::string_view id) const;
   void each(const std::function<void(std::string_view id, const PackFile& pack)>& take) const;
 
-  /// An entry that `publish_with` adds to the catalogue when it writes it. The entries, sorted by
-  /// id, replace those of the same campaigns.
+  /// An entry that `publish_with` adds to the catalogue. The entries must be sorted by id; they
+  /// replace entries of the same campaigns.
   struct Entry {
     std::string id;
     const PackFile* pack;
@@ -79,14 +79,15 @@ Expected<void> check_catalogue(const std::filesystem::path& out);
 /// Removes packs to which the catalogue assigns no campaign, and incomplete copies.
 Expected<void> sweep_packs(const std::filesystem::path& out);
 
-/// Size of a results file, and when the file, or the pack that contains it, was written.
+/// Size of a results file in bytes, and modification time (s and ns since 1970) of the file or of
+/// the pack that contains it.
 struct Written {
   std::uint64_t size = 0;
   std::int64_t seconds = 0, nanoseconds = 0;
 };
 Expected<std::optional<Written>> written_at(const std::filesystem::path& file);
 /// Returns when the record of a campaign was written; for a campaign in a pack, when the catalogue
-/// was. None if it is missing.
+/// was written. None if that file does not exist.
 Expected<std::optional<Written>> record_written_at(const std::filesystem::path& folder);
 
 }  // namespace nonio::storage

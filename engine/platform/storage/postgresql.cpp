@@ -219,8 +219,8 @@ class Postgresql final : public Connection {
     if (state == "55P03" || state == "40P01" || state == "40001")
       return name_ + ": " + locked_words;
     const char* message = ::PQresultErrorField(result, PG_DIAG_MESSAGE_PRIMARY);
-    // The server is shut down, has crashed or is starting. The connection is lost with class 08,
-    // and with errors of libpq, which have no code.
+    // The server is shut down, has crashed or is starting. The connection is lost with SQLSTATE
+    // class 08, and with errors of libpq, which have no code.
     if ((was_there_ && state.empty()) || state.starts_with("08") || state == "57P01" ||
         state == "57P02" || state == "57P03")
       return lost_words(message);

@@ -9,14 +9,15 @@ namespace nonio::storage {
 /// A temporary folder that only this user can read; it is removed at the end of the lifetime.
 class ScratchFolder {
  public:
-  /// Creates "nonio-<purpose>-..." below this folder, or in the system's folder for temporary files
-  /// (TMPDIR).
+  /// Creates "nonio-<purpose>-..." in the folder `below`; if this is empty, in the system's folder
+  /// for temporary files (TMPDIR).
   explicit ScratchFolder(const std::string& purpose, const std::filesystem::path& below = {});
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
   ~ScratchFolder();
 
-  /// Path of the folder; empty if it could not be created: then nothing may be written.
+  /// Path of the folder. It is empty if the folder could not be created; nothing may be written
+  /// then.
   const std::filesystem::path& path() const { return path_; }
 
  private:

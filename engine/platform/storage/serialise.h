@@ -181,8 +181,8 @@ class ValueReader {
   bool well_ = true;
 };
 
-/// Lists all members of a type in its order; the compiler reports a missing one. Use it in
-/// namespace nonio::storage, where ValueWriter and ValueReader find it.
+/// Lists all members of a type in the order of their declaration; the compiler reports a missing
+/// one. Use it in namespace nonio::storage, where ValueWriter and ValueReader find it.
 #define NONIO_MEMBERS(Type, ...)                                          \
   template <class Archive, class T>                                       \
   requires std::same_as<std::remove_const_t<T>, Type>                     \

@@ -31,7 +31,7 @@ class Spool {
 
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
   bool empty_ = true;
-  int error_ = 0;  ///< errno of the first error
+  int error_ = 0;  ///< errno of the first error; 0: none
 };
 
 }  // namespace nonio::storage

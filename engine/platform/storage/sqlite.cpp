@@ -120,7 +120,8 @@ class Sqlite final : public Connection {
   std::string path_;
 };
 
-/// Returns a path as an URI for SQLite, with special characters escaped and marked immutable.
+/// Returns a path as a URI for SQLite, with special characters escaped and the parameter
+/// immutable=1.
 std::string address_of(const std::filesystem::path& path) {
   constexpr std::string_view digits = "0123456789ABCDEF";
   std::string address = "file:";

@@ -48,7 +48,7 @@ class TarWriter {
 };
 
 /// Functions that `read_tar` calls: `begin` for each entry, then `take` with the parts of its
-/// bytes. `read_tar` gives an error if the file is not such an archive, is incomplete, or contains
+/// bytes. `read_tar` returns an error if the file is not a tar archive, is incomplete, or contains
 /// anything other than files, folders and links.
 struct TarReads {
   std::function<Expected<void>(const TarEntry& entry)> begin;

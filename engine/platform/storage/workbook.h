@@ -28,7 +28,8 @@ struct Chart {
     std::string name, sheet;
     std::size_t position_column = 0, value_column = 0, first_row = 0, last_row = 0;
     bool line = true;              ///< true: the points are connected by a line
-    std::optional<double> U = {};  ///< expanded uncertainty, drawn as error bars; none: no bars
+    std::optional<double> U = {};  ///< expanded uncertainty in the unit of the values, drawn as
+                                   ///< error bars; none: no bars
   };
   std::string title, position_name, value_name;
   std::vector<Curve> curves;
@@ -57,7 +58,8 @@ inline constexpr std::size_t most_sheet_rows = 1'048'576, most_sheet_columns = 1
 std::string sheet_name(const Workbook& book, const std::string& name);
 
 /// Returns the XLSX file. Charts refer to sheets by their names in `book`. Errors: more rows or
-/// columns than the format has; a text longer than a cell takes; no space for temporary files.
+/// columns than the format allows; a text longer than a cell can contain; no space for temporary
+/// files.
 Expected<std::string> xlsx_bytes(const Workbook& book);
 
 }  // namespace nonio::storage

@@ -22,8 +22,8 @@ constexpr std::array<lxw_color_t, 6> colours{0x1B6CA8, 0xC8553D, 0x4D8B31,
 constexpr std::size_t chart_rows = 22;  ///< height of a chart in rows of the usual height
 constexpr std::uint16_t chart_width = 900, chart_height = 420;
 
-/// Parses a date; none unless it is a day from 1900-03-01 on, because spreadsheets count a day
-/// before it that did not exist.
+/// Parses a date; none unless it is a day from 1900-03-01 on, because spreadsheets count the day
+/// 1900-02-29, which did not exist.
 std::optional<std::chrono::year_month_day> day_of(const std::string& text) {
   int year = 0;
   unsigned month = 0, day = 0;
@@ -95,7 +95,7 @@ void write_cell(lxw_worksheet* sheet, lxw_row_t row, lxw_col_t column, const Cel
 }
 
 /// Sets the width of each column to its longest text, but at least 9 and at most 60 characters;
-/// cells that are not text count as 13 characters.
+/// numbers and dates count as 13 characters.
 void set_widths(lxw_worksheet* sheet, const Sheet& rows, First& first) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows.rows)
@@ -172,8 +172,8 @@ void add_sheet(lxw_workbook* book, const Sheet& sheet, const Formats& formats, F
       write_cell(added, static_cast<lxw_row_t>(r), static_cast<lxw_col_t>(k), sheet.rows[r][k],
                  bold[r] != 0, formats, first);
   worksheet_set_landscape(added);
-  worksheet_set_paper(added, 9);        // A4
-  worksheet_fit_to_pages(added, 1, 0);  // one page wide
+  worksheet_set_paper(added, 9);        // paper format A4
+  worksheet_fit_to_pages(added, 1, 0);  // scaled to the width of one page
   if (sheet.frozen > 0) worksheet_freeze_panes(added, static_cast<lxw_row_t>(sheet.frozen), 0);
   for (std::size_t k = 0; k < sheet.charts.size(); ++k)
     add_chart(book, added, sheet.charts[k], sheet.rows.size() + 1 + k * chart_rows, first);

@@ -16,9 +16,9 @@ bool complete(const std::vector<double>& column, const std::vector<char>& rows) 
   return true;
 }
 
-/// Fills the temperatures of the rows `blank` of one line from the rows `known`. False if a gap is
-/// longer than a quarter of the line, if an end is more than an eighth away, or if there are fewer
-/// than three known ones.
+/// Fills the temperatures of the rows `blank` of one line from the rows `known`. Returns false if a
+/// gap is longer than a quarter of the line, if a row outside of all known rows is more than an
+/// eighth of the line from the nearest, or if fewer than three rows are known.
 bool fill_blanks(const std::vector<std::uint32_t>& known, const std::vector<std::uint32_t>& blank,
                  AxisReadings& r) {
   if (blank.empty()) return true;

@@ -8,14 +8,15 @@
 
 #include "nonio/sdk/powers_of_10.h"
 
-// Three methods of rounding, each exact for every finite value; the first two are faster but not
-// always applicable: by one product if no tie is near, to 12 digits by the same product, and by the
-// decimal digits of std::to_chars.
+// Three methods of rounding, all of which are exact. Two are faster but not always applicable: one
+// product if no tie is near (`quickly_rounded`), and the same product to 12 digits
+// (`quick_decimal`). The third uses the decimal digits of std::to_chars.
 namespace nonio {
 namespace {
 
-// Returns size * 10^places, rounded, if one product decides it safely: below 10^12, and not so near
-// to a tie that the last digits of the double (worth less than 0.01 there) could decide.
+// Returns size * 10^places rounded to an integer. Nothing for places outside of 0..22, for a
+// product of 10^12 or more, or within 0.01 of a tie, which rounding errors of the product could
+// decide.
 std::optional<std::int64_t> quickly_rounded(double size, int places) {
   if (places < 0 || places >= static_cast<int>(exact_powers_of_10.size())) return std::nullopt;
   const double product = size * exact_powers_of_10[static_cast<std::size_t>(places)];
@@ -46,7 +47,7 @@ double Decimal::value() const {
 
 std::string fixed_text_by_digits(double value, int decimals) {
   constexpr int held = 15;
-  std::array<char, 32> buffer{};  // d.dddddddddddddde+xx
+  std::array<char, 32> buffer{};  // format: d.dddddddddddddde+xx
   const char* const end = std::to_chars(buffer.data(), buffer.data() + buffer.size(),
                                         std::fabs(value), std::chars_format::scientific, held - 1)
                               .ptr;

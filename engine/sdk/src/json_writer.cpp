@@ -71,7 +71,7 @@ void JsonWriter::value(std::string_view text) {
 }
 
 /// Writes the shortest number that parses to the same double, with ".0" if it is an integer below
-/// 1e15.
+/// 1e15; null if it is not finite.
 void JsonWriter::value(double number) {
   if (!std::isfinite(number)) return null();
   const double size = std::fabs(number);

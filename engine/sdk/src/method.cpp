@@ -119,8 +119,8 @@ Observations::AxisColumn axis_of(const Measurement& m, const Column& position) {
   return {m.axis, position.quantity == Quantity::angle, {}, {}};
 }
 
-/// Returns the direction in which the deviation of a length is sensed: 0 if the manifest does not
-/// state it.
+/// Returns the direction in which the deviation of a length is sensed, a unit vector; all 0 if the
+/// name of the axis does not start with X, Y or Z.
 std::array<double, 3> sense_of(const Measurement& m) {
   std::array<double, 3> sense{};
   const std::size_t k = coordinate_of(m.lateral.empty() ? m.axis : m.lateral);

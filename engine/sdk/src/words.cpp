@@ -115,7 +115,7 @@ std::string filled(std::string_view text, const Finding& finding, std::string_vi
 Texts said(const Templates& templates, std::string_view language, Texts texts) {
   for (auto& [key, text] : texts) {
     std::string out;
-    for (std::size_t at = 0; at <= text.size();) {  // for each entry of a list
+    for (std::size_t at = 0; at <= text.size();) {  // for each part of the list
       const std::size_t end = std::min(text.find(", ", at), text.size());
       const std::string one = text.substr(at, end - at);
       const std::string term = words(templates, language, "term." + key + "." + one);

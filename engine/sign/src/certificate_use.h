@@ -5,9 +5,9 @@
 
 namespace nonio::sign {
 
-/// Returns an error unless the certificate allows its key to sign documents: key usage
-/// digitalSignature or nonRepudiation, and if there is an extended key usage, one for documents,
-/// for mail or for any use.
+/// Returns an error unless the certificate allows its key to sign documents. A key usage, if
+/// present, must contain digitalSignature or nonRepudiation, and an extended key usage
+/// documentSigning, emailProtection or anyExtendedKeyUsage.
 Expected<void> check_signer_use(X509* certificate);
 
 }  // namespace nonio::sign

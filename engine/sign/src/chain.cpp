@@ -77,7 +77,7 @@ Expected<std::vector<CertificatePtr>> chain_of(X509* certificate,
     return fail("cannot be checked: " + reason());
   X509_VERIFY_PARAM* wanted = X509_STORE_CTX_get0_param(context.get());
   X509_VERIFY_PARAM_set_time(wanted, static_cast<std::time_t>(at));
-  X509_VERIFY_PARAM_set_auth_level(wanted, 2);  // at least RSA of 2048 bits, SHA-256
+  X509_VERIFY_PARAM_set_auth_level(wanted, 2);  // 112 bits of security, for example RSA-2048
   if (X509_verify_cert(context.get()) != 1) {
     const int code = X509_STORE_CTX_get_error(context.get());
     const X509* where = X509_STORE_CTX_get_current_cert(context.get());

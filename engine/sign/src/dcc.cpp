@@ -64,7 +64,7 @@ class Reader {
     for (const xmlNode* r = results == nullptr ? nullptr : results->children; r != nullptr;
          r = r->next) {
       if (r->type != XML_ELEMENT_NODE || name_of(r) != "measurementResult") continue;
-      // The name is for people, the description is the key.
+      // The name is text for readers; the description, if present, identifies the analysis.
       const xmlNode* description = child(r, "description");
       analysis_ = description == nullptr ? title_of(r) : content_of(child(description, "content"));
       if (auto done = read_data(child(child(child(r, "results"), "result"), "data")); !done)

@@ -50,12 +50,12 @@ bool Der::sound(std::string_view text, int depth) {
 namespace {
 
 constexpr std::string_view null_parameters = "\x05\x00"sv;
-/// Prefix of the OIDs 2.16.840.1.101.3.4.2.1 to .3 (NIST): SHA-256, SHA-384, SHA-512.
+/// DER without the last byte of the OIDs 2.16.840.1.101.3.4.2.1 to .3: SHA-256, SHA-384, SHA-512.
 constexpr std::string_view sha2 = "\x06\x09\x60\x86\x48\x01\x65\x03\x04\x02"sv;
-/// Prefix of the OIDs 1.2.840.113549.1.1 (PKCS #1): .1 is rsaEncryption; .11 to .13 include SHA-256
-/// to SHA-512.
+/// DER without the last byte of OIDs below 1.2.840.113549.1.1 (PKCS #1): .1 is rsaEncryption; .11
+/// to .13 are RSA with SHA-256 to SHA-512.
 constexpr std::string_view pkcs1 = "\x06\x09\x2a\x86\x48\x86\xf7\x0d\x01\x01"sv;
-/// Prefix of the OIDs 1.2.840.10045.4.3.2 to .4 (X9.62): ECDSA with SHA-256 to SHA-512.
+/// DER without the last byte of the OIDs 1.2.840.10045.4.3.2 to .4: ECDSA with SHA-256 to SHA-512.
 constexpr std::string_view ecdsa = "\x06\x08\x2a\x86\x48\xce\x3d\x04\x03"sv;
 
 /// Returns 0 for SHA-256, 1 for SHA-384, 2 for SHA-512.

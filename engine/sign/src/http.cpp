@@ -31,8 +31,8 @@ struct AddressesFreed {
   void operator()(addrinfo* all) const { ::freeaddrinfo(all); }
 };
 
-/// Returns a connected socket. Unlike OpenSSL, which retries until the time limit, it reports a
-/// refused port at once.
+/// Returns a connected socket. Reports a refused connection at once, unlike OpenSSL, which retries
+/// until the time limit.
 Expected<int> connect_to(const char* host, const char* port, int seconds) {
   addrinfo wanted{};
   wanted.ai_socktype = SOCK_STREAM;
@@ -60,7 +60,7 @@ Expected<int> connect_to(const char* host, const char* port, int seconds) {
   return fail(why);
 }
 
-/// Returns a connection; null if OpenSSL has to connect itself through a proxy of the environment.
+/// Returns a connection; null if the environment states a proxy, through which OpenSSL connects.
 Expected<BioPtr> connection_to(const OpensslText& host, const OpensslText& port, int seconds) {
   if (OSSL_HTTP_adapt_proxy(nullptr, nullptr, host.text, 0) != nullptr) return BioPtr();
   NONIO_TRY(const auto connected, connect_to(host.text, port.text, seconds));

@@ -17,8 +17,8 @@ struct Question {
   int seconds = 10;
 };
 
-/// Sends the request and returns the answer, which must be one ASN.1 element. `url`:
-/// http://host[:port]/path
+/// Sends the request and returns the body of the answer, which must be one ASN.1 element. `url` has
+/// the form http://host[:port]/path.
 Expected<std::string> ask_server(const std::string& url, const Question& question);
 
 }  // namespace nonio::sign

@@ -53,8 +53,8 @@ Expected<Key::Impl> open_pkcs12(const std::string& path, const std::string& pass
   return impl;
 }
 
-/// Removes root certificates from the chain: whoever verifies needs an own copy of the root anyway,
-/// and files become smaller.
+/// Removes self-signed certificates from the chain. A verifier needs its own copy of the root
+/// anyway, and the files become smaller.
 void leave_roots_out(std::vector<CertificatePtr>& chain) {
   std::erase_if(chain, [](const CertificatePtr& c) {
     return (X509_get_extension_flags(c.get()) & EXFLAG_SS) != 0;

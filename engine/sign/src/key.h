@@ -18,7 +18,8 @@ struct Key::Impl {
 
 Expected<Key::Impl> open_token(const KeyPlace& place, const std::string& password);
 
-/// Returns the CMS object over the two parts of a file, in DER.
+/// Returns the CMS signature over `before` followed by `after`, in DER. `no_time_stamp`: why an
+/// optional time stamp is missing.
 Expected<std::string> make_cms(const Key::Impl& key, std::string_view before,
                                std::string_view after, Time now, const TimeStamping& stamping,
                                std::string& no_time_stamp);

@@ -14,7 +14,7 @@
 
 #include "nonio/sign/sign.h"
 
-/// Owners for OpenSSL objects, and conversions of its bytes and times.
+/// Owning pointers for OpenSSL objects, and conversions of their bytes and times.
 namespace nonio::sign {
 
 template <auto Free>
@@ -36,13 +36,13 @@ using Borrowed = std::unique_ptr<STACK_OF(X509), Freed<free_stack>>;  ///< stack
                                                                       ///< its certificates
 using Owned = std::unique_ptr<STACK_OF(X509), Freed<free_owned_stack>>;
 
-/// Returns OpenSSL's message about the last error and clears it.
+/// Returns OpenSSL's message about the last error, and clears the error queue.
 std::string reason();
 
 inline const unsigned char* data_of(std::string_view bytes) {
   return reinterpret_cast<const unsigned char*>(bytes.data());
 }
-/// Returns the DER of an object; `encode` is the i2d function of its type.
+/// Returns the DER of an object, empty on failure. `encode` is the i2d function of its type.
 template <class T, class Encode>
 std::string der_of(T* object, Encode encode) {
   unsigned char* data = nullptr;
@@ -64,7 +64,8 @@ std::string subject_of(const X509* certificate);
 /// Returns the time in seconds since 1970-01-01 UTC; 0 if it is invalid.
 Time time_of(const ASN1_TIME* time);
 /// Returns the name of a key's algorithm, such as "RSA-3072" or "P-256"; an error for keys that are
-/// too weak or cannot be used in a CMS. `old`: accept RSA-2048 for existing signatures.
+/// too weak or cannot be used in a CMS. `old`: whether RSA needs 2048 bits, as for existing
+/// signatures, instead of 3072.
 Expected<std::string> algorithm_of(EVP_PKEY* key, bool old);
 
 /// Returns all certificates of a PEM text. An error if there is none, or if one of them cannot be

@@ -121,8 +121,8 @@ class Prolongation {
     return {};
   }
 
-  /// Collects the chains of the signature, of its time stamp, and of each document time stamp. The
-  /// newest one is not covered by another yet.
+  /// Collects the chains of the signature, of its time stamp, and of each document time stamp. No
+  /// other time stamp covers the newest one yet.
   Expected<void> read_chains(Added& added) {
     const Time now = how_.verifier.now;
     NONIO_TRY(auto stamps, check_document_stamps(added, known_, now));

@@ -63,8 +63,8 @@ Expected<void> check_list(const X509_CRL* list, X509* issuer, Time now) {
   return {};
 }
 
-/// Returns the time from which the certificate counts as revoked: the date of its revocation, or
-/// its invalidity date if that is earlier.
+/// Returns the time from which the certificate is regarded as revoked: the date of its revocation,
+/// or its invalidity date if that is earlier.
 Time revoked_from(const X509_REVOKED* entry) {
   const Time when = time_of(X509_REVOKED_get0_revocationDate(entry));
   const std::unique_ptr<ASN1_GENERALIZEDTIME, Freed<ASN1_GENERALIZEDTIME_free>> invalid(
@@ -111,9 +111,9 @@ Said said_by(X509_CRL* list, X509* one) {
   return said;
 }
 
-/// Returns an error unless the answer is signed by the issuer or a responder that it has authorised
-/// (RFC 6960, 4.2.2.2). A responder whose own certificate would need a revocation check is not
-/// accepted, nor an answer with certificates other than the responder's.
+/// Returns an error unless the answer is signed by the issuer or by a responder with a certificate
+/// of the issuer for this purpose (RFC 6960, 4.2.2.2). A responder whose own certificate would need
+/// a revocation check is not accepted, nor an answer with certificates other than the responder's.
 Expected<void> check_responder(OCSP_BASICRESP* answer, X509* issuer) {
   const Borrowed candidates(sk_X509_new_null());
   sk_X509_push(candidates.get(), issuer);
@@ -144,8 +144,8 @@ Expected<void> check_responder(OCSP_BASICRESP* answer, X509* issuer) {
   return {};
 }
 
-/// Returns the answer's entry for the certificate; none if it is about others, or if the status is
-/// unknown.
+/// Returns the answer's entry for the certificate; none if the answer is only about other
+/// certificates, or if the status is unknown.
 std::optional<Said> said_by(OCSP_BASICRESP* answer, X509* one, X509* issuer) {
   for (int i = 0; i < OCSP_resp_count(answer); ++i) {
     OCSP_SINGLERESP* single = OCSP_resp_get0(answer, i);
@@ -171,7 +171,7 @@ std::optional<Said> said_by(OCSP_BASICRESP* answer, X509* one, X509* issuer) {
 }
 
 /// Returns the entry of a statement for the certificate; none if the statement is from another
-/// issuer or about another certificate. An error if it is damaged.
+/// issuer or about another certificate, or if the status is unknown. An error if it is damaged.
 Expected<std::optional<Said>> heard(const Statement& s, X509* one, X509* issuer) {
   if (s.answer) {
     const auto said = said_by(s.answer.get(), one, issuer);
@@ -243,7 +243,7 @@ Expected<bool> vouches(const Statement& s, X509* one, X509* issuer, const Revoca
 
 namespace {
 
-/// Checks one certificate of a chain together with its issuer.
+/// Checks the revocation of one certificate of a chain, with the next certificate as its issuer.
 class Line {
  public:
   Line(X509* one, X509* issuer, const Trusted& known, const Revocation& revocation)
@@ -260,8 +260,8 @@ class Line {
 
  private:
   /// Checks the lists given by the verifier. While the certificate is valid, only the newest list
-  /// counts and must be current; after its expiry, every list of the issuer is checked, and one
-  /// that was made during its validity proves its status.
+  /// of the issuer is used, and it must be current. After the expiry, every list of the issuer is
+  /// checked, and one that was made before the expiry proves the status.
   Expected<void> check_given() {
     const bool has_run_out = time_of(X509_get0_notAfter(one_)) < revocation_.now;
     X509_CRL* newest = newest_list(known_, issuer_);

@@ -38,19 +38,19 @@ struct Revocation {
 /// Largest accepted difference between two clocks, s.
 inline constexpr Time clock_tolerance = 60;
 
-/// Checks the revocation of each certificate of a chain. An error if one was revoked before `at`,
-/// or if the newest list of an issuer cannot be used: past its nextUpdate, from the future, or
-/// partial. For a time server (RFC 3161, 4), a later revocation counts too, unless its reason
-/// leaves the key unharmed. For an expired certificate, only statements made before its expiry
-/// count. Returns in words what was checked and what was not; `looked`: whether the status of the
-/// first certificate is known.
+/// Checks the revocation of each certificate of a chain except the root. An error if one was
+/// revoked at or before `at`, or if the newest list of an issuer cannot be used because it is past
+/// its nextUpdate, from the future, or partial. For a time server (RFC 3161, 4), a revocation up to
+/// `until` is an error too, unless its reason leaves earlier stamps valid. Only statements made
+/// before the expiry of a certificate prove that it was good. Returns a text on what was checked
+/// and what was not. Sets `looked` to whether the status of the first certificate is known.
 Expected<std::string> check_revocation(const std::vector<CertificatePtr>& chain,
                                        const Trusted& trusted, const Revocation& revocation,
                                        bool& looked);
-/// Whether the statement comes from `issuer`, is about that certificate, and proves that it was
-/// good at `at`. The statement must have been current when it was seen, or made after the
-/// certificate was used; in any case made before the certificate expired, and seen before that of
-/// the issuer expired. An error if it states that the certificate was revoked.
+/// Whether the statement comes from `issuer`, is about `certificate`, and proves that the
+/// certificate was good at `at`. It must have been current when it was seen, or made after `at`. It
+/// must also have been made before the certificate expired, and seen before the issuer's expired.
+/// An error if it is damaged or states a revocation that is an error for `check_revocation`.
 Expected<bool> vouches(const Statement& statement, X509* certificate, X509* issuer,
                        const Revocation& revocation);
 

@@ -118,7 +118,7 @@ Expected<void> SignedData::read_certificates(std::string_view text) {
   return {};
 }
 
-/// Checks the SignerInfo (RFC 5652, 5.3).
+/// Reads the SignerInfo (RFC 5652, 5.3) and checks its algorithms.
 Expected<void> SignedData::read_signer(std::string_view text, Content content) {
   const auto version = Der::take(text, Der::integer);
   const auto identifier = Der::take(text, Der::sequence);
@@ -153,8 +153,8 @@ Expected<void> SignedData::read_unsigned(std::string_view text, Content content)
   return {};
 }
 
-/// Finds the signer's certificate by issuer and serial number, compared byte by byte: OpenSSL's
-/// comparison ignores capitals and blanks.
+/// Finds the signer's certificate by issuer and serial number. They are compared byte by byte,
+/// because OpenSSL's comparison ignores case and spaces.
 Expected<void> SignedData::find_certificate(std::string_view identifier) {
   for (std::size_t i = 0; i < certificates_.size(); ++i) {
     X509* c = certificates_[i].get();

@@ -29,7 +29,7 @@ class SignedData {
   /// Checks that the signed attributes of a detached signature are exactly those that Nonio writes,
   /// once each.
   Expected<void> check_attributes() const;
-  /// Checks the digest of the content and the signature over it.
+  /// Checks the signed digest of `before` followed by `after`, and the signature over it.
   Expected<void> check_signature(std::string_view before, std::string_view after) const;
   /// Checks that the signed attributes name the signer's certificate (ESS signing-certificate, RFC
   /// 5035).
@@ -40,7 +40,7 @@ class SignedData {
   X509* certificate() const { return signer_certificate_; }
   std::string_view certificate_der() const { return signer_der_; }
   std::string_view signature() const { return signature_; }
-  /// Returns the content of a time stamp: TSTInfo.
+  /// Returns the content of a time stamp (TSTInfo, RFC 3161); empty for a detached signature.
   std::string_view content() const { return content_; }
   /// Returns the time-stamp token of a signature; empty if there is none.
   std::string_view time_stamp() const { return token_; }
@@ -68,7 +68,8 @@ class SignedData {
 Expected<std::vector<CertificatePtr>> chain_of(X509* certificate,
                                                const std::vector<CertificatePtr>& others,
                                                const std::vector<CertificatePtr>& roots, Time at);
-/// Returns an error if a certificate is damaged or unrelated to the others.
+/// Returns an error unless each certificate was issued and validly signed by one of `certificates`
+/// or `roots`.
 Expected<void> check_issued(const std::vector<CertificatePtr>& certificates,
                             const std::vector<CertificatePtr>& roots);
 
@@ -76,7 +77,8 @@ Expected<void> check_issued(const std::vector<CertificatePtr>& certificates,
 /// covers the list of certificates.
 Expected<void> check_only(const std::vector<CertificatePtr>& certificates,
                           const std::vector<CertificatePtr>& chain);
-/// Returns those of `others` that lead from the certificate towards the root, in their order.
+/// Returns those of `others` that lead from the certificate towards the root, each followed by its
+/// issuer.
 std::vector<CertificatePtr> way_up(X509* certificate, std::vector<CertificatePtr> others);
 
 }  // namespace nonio::sign

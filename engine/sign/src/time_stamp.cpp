@@ -30,7 +30,7 @@ struct Request {
 Expected<Request> request_for(std::string_view imprint_wanted) {
   std::array<unsigned char, 8> random{};
   if (RAND_bytes(random.data(), random.size()) != 1) return fail("no random number: " + reason());
-  // Makes the number positive with full length.
+  // The nonce must be a positive integer whose DER has all 8 bytes.
   random[0] = static_cast<unsigned char>((random[0] & 0x3F) | 0x40);
   const IntegerPtr nonce(ASN1_INTEGER_new());
   ASN1_STRING_set(nonce.get(), random.data(), random.size());

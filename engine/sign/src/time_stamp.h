@@ -6,8 +6,9 @@
 
 namespace nonio::sign {
 
-/// Requests a time-stamp token (RFC 3161) for this SHA-256 from the configured server, and checks
-/// it as `verify` will. A server that did not answer is not asked again if `stamping.away` is set.
+/// Requests a time-stamp token (RFC 3161) for the SHA-256 `imprint`, and checks it with
+/// `check_time_stamp` and against the request. The server is not contacted if `stamping.away`
+/// states that it did not answer.
 Expected<std::string> ask_for_time_stamp(const TimeStamping& stamping, std::string_view imprint,
                                          Time now);
 
@@ -17,9 +18,9 @@ struct Stamp {
   std::string nonce;  ///< nonce of the token; empty if it has none
   std::vector<CertificatePtr> chain{};
 };
-/// Checks a time stamp: it covers this SHA-256, comes from a trusted authority whose certificate
-/// was not revoked, and is not later than `now` plus a minute. `until`: when the stamp is proved to
-/// have existed; a later revocation has no effect.
+/// Checks that a time stamp covers the SHA-256 `imprint`, comes from a trusted authority whose
+/// certificate was not revoked, and is not later than `now` plus a minute. `until`: time at which
+/// the stamp is proved to have existed; a later revocation has no effect.
 Expected<Stamp> check_time_stamp(std::string_view token, std::string_view imprint,
                                  const Trusted& trusted, Time now,
                                  Time until = std::numeric_limits<Time>::max());

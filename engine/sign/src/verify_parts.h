@@ -17,7 +17,6 @@ Expected<void> to_void(const Expected<T>& result) {
   return fail(result.error());
 }
 
-/// Collects the checks of a verification.
 class Report {
  public:
   explicit Report(Verified& out) : out_(out) {}

@@ -13,14 +13,15 @@ struct Added {
   };
   std::vector<DocumentStamp> stamps;
   std::vector<Statement> statements;
-  /// For each statement, the index of the first stamp that covers it; `stamps.size()`: none does.
+  /// For each statement, the index of the first stamp that covers it; `stamps.size()` if no stamp
+  /// does.
   std::vector<std::size_t> covered;
-  std::vector<std::string> certificates;  ///< certificates in DER
+  std::vector<std::string> certificates;  ///< in DER
 };
 
-/// Reads the updates of a file. An error if anything else was appended. `ends` is the result of
-/// `pdf::ends_of_parts`. `updater` must be that of the signed file; afterwards it can write another
-/// update.
+/// Reads the updates of a file. Returns an error if data of any other kind were appended. `ends` is
+/// the result of `pdf::ends_of_parts`. `updater` must be that of the signed file; afterwards it can
+/// write another update.
 Expected<Added> read_updates(std::string_view bytes, const std::vector<std::size_t>& ends,
                              pdf::Updater& updater);
 

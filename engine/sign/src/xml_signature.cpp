@@ -29,7 +29,7 @@ namespace {
 using ContextPtr = std::unique_ptr<xmlSecDSigCtx, Freed<xmlSecDSigCtxDestroy>>;
 using XmlKeyPtr = std::unique_ptr<xmlSecKey, Freed<xmlSecKeyDestroy>>;
 
-/// Initialises xmlsec once per process, as it requires. Returns whether this succeeded.
+/// Initializes xmlsec on the first call. Returns whether the initialization succeeded.
 bool started() {
   static const bool well = [] {
     xmlInitParser();
@@ -145,7 +145,7 @@ Expected<void> add_time_stamp(XmlSignature& signature, Time now, const TimeStamp
 
 }  // namespace
 
-/// Signs an XML document. Written without xmlsec, which cannot sign with a key in a token.
+/// Signs an XML document without xmlsec, because xmlsec cannot sign with a key in a token.
 Expected<Signed> sign_xml(const Key::Impl& key, std::string_view bytes, Time now,
                           const TimeStamping& stamping) {
   NONIO_TRY(auto content, canonical_form(bytes));
@@ -187,7 +187,8 @@ struct Parts {
           "with its root and a new line");
     bytes.remove_prefix(xml_head.size());
     bytes.remove_suffix(1);
-    // The signature is searched only where it must be, because the rest is not authenticated yet.
+    // The signature is searched only at the end of the document, because the content is not
+    // authenticated yet.
     const std::size_t root_end = bytes.rfind('<');
     const std::size_t from = bytes.size() - std::min(bytes.size(), longest_xml_signature);
     const std::size_t begin = bytes.find(signature_begin, from);
@@ -246,7 +247,6 @@ Expected<void> check_digests(const Parts& parts) {
   return {};
 }
 
-/// Converts a public key to a key of xmlsec.
 Expected<XmlKeyPtr> key_of(EVP_PKEY* pkey) {
   EVP_PKEY_up_ref(pkey);
   xmlSecKeyDataPtr value = xmlSecOpenSSLEvpKeyAdopt(pkey);
@@ -270,8 +270,8 @@ Expected<void> ask_xmlsec(xmlDoc* document, X509* certificate) {
   return {};
 }
 
-/// Checks that the document, parsed as XML, is byte by byte what was signed, has one signature
-/// only, and is accepted by xmlsec too.
+/// Checks that the document is its own canonical form byte by byte, has only one signature, and is
+/// accepted by xmlsec too.
 Expected<void> check_form(std::string_view bytes, const Parts& parts, X509* certificate) {
   if (parts.before.find(signature_namespace) != std::string_view::npos)
     return fail("has more than one signature");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sources: XML-Signature (W3C, 2nd edition), Exclusive XML Canonicalization 1.0 (W3C), ETSI EN 319
-// 132-1 (XAdES; its required properties are named from memory, confidence medium).
+// 132-1 (XAdES; the list of its required properties was not compared with the standard).
 #include "xml_text.h"
 
 #include <algorithm>
@@ -32,8 +32,8 @@ std::string base64(std::string_view bytes) {
   return out;
 }
 
-/// Decodes Base64; empty if the text is invalid. Non-canonical text is detected later, because the
-/// signature is written again and compared.
+/// Decodes Base64; empty if the text is invalid. Non-canonical Base64 is detected later, because
+/// `read_xml_signature` writes the signature again and compares the texts.
 std::string from_base64(std::string_view text) {
   std::string out(text.size() / 4 * 3 + 3, '\0');
   const int size = EVP_DecodeBlock(reinterpret_cast<unsigned char*>(out.data()), data_of(text),
@@ -74,8 +74,8 @@ std::string without_line_end(std::string text) {
   return text;
 }
 
-/// Returns SignedInfo. If `alone`, it is a separate document with the namespaces that its parents
-/// declare.
+/// Returns the element SignedInfo. `alone`: whether it declares the namespaces that it would
+/// otherwise inherit from its parents.
 std::string info(const XmlSignature& s, bool alone) {
   const std::string content = element(
       "Reference", attribute("Id", "content") + " " + attribute("URI", ""),

@@ -13,7 +13,7 @@ namespace nonio::sign {
 inline constexpr std::string_view xml_head = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
 
 /// The content of an enveloped XML signature of Nonio (XML-DSig; XAdES B-B, with `token` B-T). It
-/// has exactly one serialisation, so that a reader can write it again and compare.
+/// has exactly one serialization, so that a reader can write it again and compare.
 struct XmlSignature {
   bool rsa = false;        ///< whether the signature is RSA; otherwise it is ECDSA
   std::string content;     ///< SHA-256 of the document's canonical form without signature
@@ -34,7 +34,7 @@ struct XmlSignature {
 };
 
 /// Parses an element that begins with `signature_begin`. An error if it differs from the only
-/// accepted serialisation.
+/// accepted serialization.
 Expected<XmlSignature> read_xml_signature(std::string_view element);
 inline constexpr std::string_view signature_begin =
     "<Signature xmlns=\"http://www.w3.org/2000/09/xmldsig#\"";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// One line before and after an adjustment: did the table do what it should?
+// One line measured before and after an adjustment: whether the compensation table had its effect.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,7 +26,8 @@ bool same_line(const Measurement& a, const Measurement& b) {
          a.at == b.at && a.from == b.from && a.to == b.to;
 }
 
-/// The measurement of the same line before; nothing if there is none, or several.
+/// Index of the measurement of the same line before the adjustment; nullopt if none or several
+/// exist.
 std::optional<std::size_t> before_of(const Campaign& campaign, const Measurement& after) {
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < campaign.measurements.size(); ++i) {
@@ -44,7 +45,7 @@ bool applies(const Campaign& campaign, const Measurement& m) {
          before_of(campaign, m).has_value();
 }
 
-/// Stops of an axis by its positions, of a diagonal by the way from its first corner.
+/// Stops by the axis position; those of a diagonal by the distance from its start corner.
 math::MeasuredLine line_by_way(const Observations& o, const Measurement& m) {
   return math::measured_line(m.kind == "diagonal" ? math::along_diagonal(o, m) : o, 0);
 }
@@ -99,13 +100,14 @@ const char* name_of(BeforeAfter::Answer answer) {
   return "before-after.cannot-tell";
 }
 
-/// The reversal of an axis is corrected by a value of its own, so it is judged apart from the mean.
+/// The reversal has its own compensation value, so it is judged apart from the mean curve.
 struct ReversalJudged {
   bool as_predicted = true;
   std::optional<Finding> finding{};
 };
 
-/// Standard uncertainty of B_mean: environment, repetition, and drift that was not excluded.
+/// Standard uncertainty of B_mean from environment, repetition, and drift that was not excluded, in
+/// m or rad.
 double u_of_reversal(const AnalysisInput& in, const Environment& environment,
                      const math::AxisTest& test) {
   const math::Budget budget =
@@ -124,8 +126,9 @@ ReversalJudged judge_reversal(const AnalysisInput& in, const Observations& o,
   if (was.kind == Kind::unknown || is.kind == Kind::unknown) return {};
   const double u_before = u_of_reversal(in, environment, before),
                u_after = u_of_reversal(in, environment, after);
-  // A value that was not made from these readings has no part of their error: it is multiplied by `share`. A new one is
-  // rounded to the step of the control.
+  // u of (after - share * before). A new value contains the error of the earlier readings, so their
+  // factor is at least 1. Rounding to the step of the control is added unless the value is
+  // unchanged (share 1).
   const double step =
       in.control == nullptr ? 0.0 : in.control->value_step.of(in.observations.angular);
   const auto u_of = [&](double share) {
@@ -137,8 +140,8 @@ ReversalJudged judge_reversal(const AnalysisInput& in, const Observations& o,
     const double rest = is.mean - share * was.mean;
     return !math::significant(math::t_two_sided(math::test_ratio(rest, u_of(share)), 1e6), level);
   };
-  // Where one value helps and is known, the table compensates B_mean; else it leaves the value
-  // unchanged, unless a suitable value was entered by hand.
+  // A significant B_mean that one value can compensate is expected to be 0 afterwards. Otherwise it
+  // is expected unchanged, unless a suitable value was entered by hand.
   const bool helps = was.kind != Kind::not_constant && was.largest_left < was.largest;
   const bool taken = helps && (math::is_reversal_known(was.mean, 2.0 * u_before) || fits(0.0));
   const double wanted = taken ? 0.0 : 1.0;
@@ -164,7 +167,7 @@ ReversalJudged judge_reversal(const AnalysisInput& in, const Observations& o,
                                              {"change", -(is.mean - wanted * was.mean), q}}}};
 }
 
-/// "Worked" is stated about a table only if the pitch and the reversal are both what it predicts.
+/// The table "worked" only if both the pitch and the reversal are as predicted.
 const char* name_of(BeforeAfter::Answer answer, const ReversalJudged& reversal) {
   if (answer == BeforeAfter::Answer::worked && !reversal.as_predicted)
     return "before-after.mean-as-predicted";

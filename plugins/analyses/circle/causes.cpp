@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// From columns of the fit to values with names.
+// Converts the columns of the circle fit to named values.
 #include "causes.h"
 
 #include <algorithm>
@@ -17,15 +17,16 @@ using math::Cause;
 using math::CauseFit;
 using math::CircleModel;
 
-constexpr double level = 0.01;  // of a cyclic error
-// docs/dev/constants.md, A14.
-constexpr double most_inflation = 1e4;  // of the variance: beyond it the columns are one
+constexpr double level = 0.01;  // significance level for a cyclic error
+// Source: docs/dev/constants.md, A14.
+constexpr double most_inflation = 1e4;  // of the variance; above it, columns are inseparable
 
 const CauseFit::Value& of(const CauseFit& fit, Cause c) {
   return fit.of[static_cast<std::size_t>(c)];
 }
 
-/// Circular deviation of what is left of a cause without its centre, one direction.
+/// Circular deviation of one direction (+1) caused by the given causes after removal of their
+/// center.
 double alone_of(const CircleModel& model, std::initializer_list<std::pair<Cause, double>> causes) {
   constexpr int points = 720;
   std::vector<double> r(points);
@@ -108,7 +109,7 @@ class Values {
           Quantity::deviation_per_length);
   }
 
-  /// From one direction they are one column.
+  /// In readings of one direction, squareness and servo mismatch have the same column.
   void squareness_and_servo() {
     const auto [name, sign] = squareness_of(circle_);
     if (!circle_.both()) {
@@ -127,14 +128,14 @@ class Values {
           Quantity::time);
   }
 
-  /// A part of a cyclic error by the machine's own zero: given whether it is significant or not, so
-  /// that it can be followed; the amplitude shows what it is worth.
+  /// One component (cosine or sine) of a cyclic error by the machine's zero. It is also given if
+  /// not significant, so that it can be followed over time.
   void waves(Cause c, std::string name) {
     const auto& v = of(fit_, c);
     out_.push_back({std::move(name), "", "", v.value, Quantity::deviation, v.u, v.by_bin, 0.0});
   }
 
-  /// An amplitude is given where there is one: noise has an amplitude too.
+  /// An amplitude is given only if significant, because noise also has an amplitude.
   void cyclic(std::size_t k) {
     const Cause sine = k == 0 ? Cause::cyclic_u_sin : Cause::cyclic_v_sin,
                 cosine = k == 0 ? Cause::cyclic_u_cos : Cause::cyclic_v_cos;
@@ -186,7 +187,7 @@ std::pair<std::string, double> squareness_of(const Circle& circle) {
   const std::string plane = circle.axis[0].substr(0, 1) + circle.axis[1].substr(0, 1);
   if (plane == "XY") return {"C0Y", 1.0};
   if (plane == "YZ") return {"A0Z", 1.0};
-  return {"B0Z", -1.0};  // ZX: +Z towards +X makes the angle smaller
+  return {"B0Z", -1.0};  // ZX: a turn of +Z towards +X reduces the angle
 }
 
 std::vector<CauseValue> cause_values(const Circle& circle, const CircleModel& model,

@@ -9,29 +9,29 @@
 
 namespace nonio::circle {
 
-/// One value of the decomposition, as it is named and printed.
+/// One named value of the decomposition of the path deviations.
 struct CauseValue {
   std::string name;     ///< C0Y, B_X, lateral_X, ...
-  std::string finding;  ///< of a significant one: "circle.squareness"; empty: it is no cause alone
-  std::string axis;     ///< whose it is; empty: of both
+  std::string finding;  ///< finding id if significant ("circle.squareness"); may be empty
+  std::string axis;     ///< axis that it belongs to; empty: both
   double value = 0.0;   ///< SI
   Quantity quantity = Quantity::deviation;
-  double u = 0.0;              ///< of the repetition
-  std::vector<double> by_bin;  ///< derivative by the means of the fit
-  double alone = 0.0;          ///< circular deviation that it makes alone, m
+  double u = 0.0;              ///< standard uncertainty by repetition
+  std::vector<double> by_bin;  ///< derivative with respect to the means of the fit
+  double alone = 0.0;          ///< circular deviation that this cause makes alone, m
 };
 
-/// What an analysis is requested.
+/// Inputs of the decomposition that the readings do not contain.
 struct Wish {
   bool calibrated_length = false;
-  std::optional<double> feed{};  ///< m/s
+  std::optional<double> feed{};  ///< m/s; nullopt: not stated
 };
 
-/// Values that the readings give, in the order of the report; findings for what they cannot.
+/// Values that the readings determine, in report order. `refused`: a finding for each other value.
 std::vector<CauseValue> cause_values(const Circle&, const math::CircleModel&, const math::CauseFit&,
                                      const Wish&, std::vector<Finding>& refused);
 
-/// "C0Y", "A0Z", "B0Z" of a plane, and the sign of the squareness in it.
+/// Name of the squareness in the plane ("C0Y", "A0Z", "B0Z"), and its sign in the model of the fit.
 std::pair<std::string, double> squareness_of(const Circle&);
 
 }  // namespace nonio::circle

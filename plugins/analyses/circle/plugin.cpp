@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Circular tests (ISO 230-4): deviations of the path, and its causes.
+// Circular tests (ISO 230-4): deviations of the path and their causes.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -44,15 +44,16 @@ Followed conditions_of(const Measurement& m) {
     if (const auto end = m.to.find(axis); end != m.to.end() && end->second != centre)
       out.numbers.emplace_back("radius", printed(end->second - centre, Quantity::length));
   }
-  if (m.feed) out.numbers.emplace_back("feed", *m.feed * 60e3);  // mm/min, as the manifest has it
+  if (m.feed) out.numbers.emplace_back("feed", *m.feed * 60e3);  // mm/min, as in the manifest
   if (!m.compensation.empty()) out.texts.emplace_back("compensation", m.compensation);
   out.texts.emplace_back("at", positions_text(at));
   return out;
 }
 
-/// States what of a circle's values is followed: another way to measure, so other quantities than
-/// those of runs and diagonals. What is not linear in the readings (G, H, F, amplitudes, spikes) is
-/// not followed. Circles are compared at one place, with one radius and one feed.
+/// Marks the values that are followed over time. These quantities differ from those of runs and
+/// diagonals because the method differs. Values that are not linear in the readings (G, H, F,
+/// amplitudes, spikes) are not followed. Circles are comparable at the same position, radius and
+/// feed.
 void follow(const Campaign& campaign, const Measurement& m, Evaluation& e) {
   const std::string plane = plane_of(m);
   const Followed conditions = conditions_of(m);
@@ -70,14 +71,14 @@ using math::Cause;
 using math::CircleReading;
 using math::PathCircle;
 
-constexpr std::size_t fewest = 12;                                          // readings of a path
+constexpr std::size_t fewest = 12;                                          // readings per path
 constexpr double per_deg = std::numbers::pi / 180.0, most_left_out = 20.0;  // deg
-// docs/dev/constants.md, A12.
+// Source: docs/dev/constants.md, A12.
 constexpr double share_for_attention = 0.2;
 
 bool applies(const Campaign&, const Measurement& m) { return m.kind == "circle"; }
 
-/// A path and the value that is taken from it: of several runs the largest counts.
+/// A path and its result. If there are several runs, the largest result is reported.
 struct Worst {
   double value = -INFINITY;
   std::uint32_t run = 0;
@@ -106,8 +107,8 @@ struct Work {
   }
 };
 
-/// Errors of the instrument: none of them is a reading's own. An offset is in the radius; a gain, of
-/// U_fixed at the largest deviation, is in everything by its share.
+/// Splits the fixed error of the instrument, which is common to all readings. An offset changes the
+/// radius; a gain error (U_fixed at the largest deviation) is proportional to the deviation.
 void device_errors(Work& w) {
   double largest = 0.0, mean = 0.0;
   for (const auto& bin : w.fit.bins) mean += bin.deviation / static_cast<double>(w.fit.bins.size());
@@ -127,7 +128,7 @@ void begin_budget(Work& w) {
   std::vector<math::BudgetLine> lines;
   for (const int direction : {1, -1}) {
     math::BudgetLine line;
-    // What all radii have in common is in the result only where the length is known.
+    // An error common to all radii affects the result only if the length is calibrated.
     line.kind = w.calibrated ? math::BudgetLine::Kind::length : math::BudgetLine::Kind::lateral;
     for (const auto& bin : w.fit.bins)
       if (bin.direction == direction) line.length.push_back(w.circle.R);
@@ -146,7 +147,8 @@ void begin_budget(Work& w) {
   w.budget.emplace(w.readings, w.fit.s, w.fit.dof, Quantity::deviation);
 }
 
-/// Derivative of a radial distance about the least-squares centre by the means of the fit.
+/// Derivative of the radial distance of reading `outer` (minus that of `inner`, if given) from the
+/// least-squares center, with respect to the means of the fit.
 std::vector<double> by_bins(const Work& w, const std::vector<CircleReading>& path,
                             std::size_t outer, std::optional<std::size_t> inner) {
   std::vector<double> row(w.fit.bins.size(), 0.0);
@@ -175,7 +177,7 @@ std::vector<double> by_bins(const Work& w, const std::vector<CircleReading>& pat
 void add(Work& w, std::string name, double v, Quantity q, double u, const std::vector<double>& by) {
   v = steady(v, std::max(std::fabs(v), u)), u = steady(u, u);
   math::Shares shares = w.readings.shares(by);
-  // What cancels leaves the rounding of the processor, which is none of the budget.
+  // Shares that cancel leave rounding errors of the processor. They are set to 0.
   double largest = 0.0;
   for (const double share : shares.u) largest = std::max(largest, std::fabs(share));
   for (double& share : shares.u)
@@ -183,7 +185,7 @@ void add(Work& w, std::string name, double v, Quantity q, double u, const std::v
   w.out.values.push_back(w.budget->value(std::move(name), v, q, u, shares));
 }
 
-/// What noise adds to a value of the path of a direction (0: both) and run.
+/// Contribution of noise to a value of one run's path in a direction (+1, -1; 0: both).
 template <class Of>
 double noise_adds(const Work& w, int direction, std::uint32_t run, const Of& value) {
   return w.noise->adds([&](const std::vector<CircleReading>& all) {
@@ -194,13 +196,13 @@ double noise_adds(const Work& w, int direction, std::uint32_t run, const Of& val
   });
 }
 
-/// Repetition of a value that is the largest of many: noise of `readings` single readings, and what
-/// noise adds to the largest. The value is not corrected for it, so its uncertainty contains it.
+/// Standard uncertainty by repetition of a maximum: noise of `readings` single readings, and the
+/// bias `adds` that noise gives to a maximum. The value is not corrected for this bias.
 double repetition(const Work& w, double readings, double adds) {
   return std::hypot(std::sqrt(readings) * w.fit.s_reading, adds);
 }
 
-/// G of each direction and of both, H: of several runs the largest.
+/// G of each direction and of both, and H. The largest value of several runs is reported.
 void path_values(Work& w) {
   for (const auto& [name, direction] : {std::pair{"G_ccw", 1}, {"G_cw", -1}, {"G_b", 0}}) {
     if (direction == 0 && !w.circle.both()) continue;
@@ -212,7 +214,7 @@ void path_values(Work& w) {
       if (c.width() > worst.value) worst = {c.width(), run, std::move(path), c};
     }
     if (worst.path.empty()) continue;
-    // About the least-squares centre: noise does the same to both, and the zone takes longer.
+    // The noise has the same effect about the least-squares center, which is faster to compute.
     const double adds = noise_adds(w, direction, worst.run, [&](const auto& path) {
       return math::least_squares_circle(path, w.circle.R).width();
     });
@@ -238,7 +240,7 @@ void path_values(Work& w) {
   add(w, "H", H->H, Quantity::deviation, repetition(w, 2.0, adds), by_bins(w, pair, 0, 1));
 }
 
-/// Centres, and what requests a known length.
+/// Centers, and the values that require a calibrated length.
 void circle_values(Work& w) {
   const auto ls = math::least_squares_circle(w.circle.readings, w.circle.R),
              mz = math::minimum_zone(w.circle.readings, w.circle.R);
@@ -269,7 +271,7 @@ void circle_values(Work& w) {
   }
 }
 
-/// The highest spike of an axis.
+/// The spike of largest absolute height on the first (`of_v` false) or second axis; height 0: none.
 math::Spike worst_spike(const Work& w, const std::vector<CircleReading>& readings, bool of_v) {
   math::Spike worst;
   for (const math::Spike& s : math::reversal_spikes(readings, w.model, w.fit))
@@ -280,14 +282,14 @@ math::Spike worst_spike(const Work& w, const std::vector<CircleReading>& reading
 void spikes(Work& w, double total) {
   for (std::size_t k = 0; k < 2; ++k) {
     const math::Spike worst = worst_spike(w, w.circle.readings, k == 1);
-    if (worst.height == 0.0) continue;  // no readings behind a reversal
+    if (worst.height == 0.0) continue;  // no readings after a reversal
     const double adds = w.noise->adds([&](const std::vector<CircleReading>& all) {
       return std::fabs(worst_spike(w, all, k == 1).height);
     });
     add(w, "spike_" + w.circle.axis[k], worst.height, Quantity::deviation,
         std::hypot(worst.u, adds), std::vector<double>(w.fit.bins.size(), 0.0));
-    // docs/dev/constants.md, A13.
-    if (!(std::fabs(worst.height) > 4.0 * worst.u)) continue;  // readings of 0: nothing
+    // Source: docs/dev/constants.md, A13.
+    if (!(std::fabs(worst.height) > 4.0 * worst.u)) continue;  // also false if all readings are 0
     const double alone = std::fabs(worst.height), share = alone / (total + alone);
     w.out.findings.push_back({.id = "circle.spikes",
                               .attention = share >= share_for_attention,
@@ -300,7 +302,7 @@ void spikes(Work& w, double total) {
   }
 }
 
-/// The causes that are more than their uncertainty, the largest share first.
+/// The values of all causes, and findings of those that exceed U, by descending share.
 void causes(Work& w, const Wish& wish) {
   std::vector<Finding> refused;
   const auto values = cause_values(w.circle, w.model, w.fit, wish, refused);
@@ -322,7 +324,7 @@ void causes(Work& w, const Wish& wish) {
                      {"share", share, Quantity::ratio}},
         .texts = {{"name", v.name}, {"first", w.circle.axis[0]}, {"second", w.circle.axis[1]}}};
     if (!v.axis.empty()) f.texts.emplace_back("axis", v.axis);
-    if (v.quantity == Quantity::time) {  // a sentence states 0.42 ms, not 0.00042 s
+    if (v.quantity == Quantity::time) {  // the message needs 0.42 ms, not 0.00042 s
       f.evidence.push_back({"value_ms", 1e3 * v.value, Quantity::number});
       f.evidence.push_back({"U_ms", 1e3 * U, Quantity::number});
     }
@@ -341,7 +343,7 @@ void causes(Work& w, const Wish& wish) {
   for (Finding& f : refused) w.out.findings.push_back(std::move(f));
 }
 
-/// Means of ten degrees of each direction, as read: what a person can follow by hand.
+/// Means of the readings in sectors of 10° for each direction, for a check by hand.
 void points(Work& w) {
   constexpr std::size_t sectors = 36;
   std::array<std::array<double, sectors>, 2> sum{}, n{};

@@ -30,7 +30,7 @@ Expected<Circle> circle_of(const Measurement& m, const Observations& o) {
     return fail("expected readings of a circle, with its plane, radius and centre");
   for (std::size_t i = 0; i < o.size(); ++i) {
     const auto& n = o.sense_of(i);
-    // The axes turn about the centre: n x v of the way they came.
+    // The sign of n x (direction of travel) is the direction of rotation about the center.
     const double turn = n[u] * second->approach[i] - n[v] * first->approach[i];
     const int d = turn > 0.0 ? 1 : -1;
     double angle = std::atan2(n[v], n[u]);

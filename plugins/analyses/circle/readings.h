@@ -9,14 +9,14 @@
 
 namespace nonio::circle {
 
-/// A circle of the manifest and its readings.
+/// A circle of the manifest with its readings.
 struct Circle {
-  std::array<std::string, 2> axis;  ///< first and second of the plane
+  std::array<std::string, 2> axis;  ///< first and second axis of the plane
   std::array<double, 2> centre{};   ///< commanded, m
   double R = 0.0;                   ///< commanded radius, m
   std::vector<math::CircleReading> readings;
-  bool plus = false, minus = false;  ///< directions
-  double step = 0.0;                 ///< widest usual distance of neighbours, rad
+  bool plus = false, minus = false;  ///< whether each direction was measured
+  double step = 0.0;                 ///< typical largest angle between neighboring readings, rad
 
   bool both() const { return plus && minus; }
   std::vector<math::CircleReading> of(int direction, std::uint32_t run) const;
@@ -24,8 +24,7 @@ struct Circle {
 
 Expected<Circle> circle_of(const Measurement&, const Observations&);
 
-/// x to ten digits of `size`. What iterations and processors leave beyond is no result, and the same
-/// readings give the same bytes everywhere.
+/// x rounded to ten digits of `size`, so that results are identical on all processors.
 double steady(double x, double size);
 
 }  // namespace nonio::circle

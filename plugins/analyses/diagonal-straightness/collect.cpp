@@ -32,7 +32,7 @@ std::string list(const std::vector<std::string>& ids) {
   return out;
 }
 
-/// Gathers one set; the steps are in the order in which `run` calls them.
+/// Collects the data of one set; `run` calls the steps in order.
 class Gatherer {
  public:
   Gatherer(const AnalysisInput& in, const std::vector<Set>& sets, const Set& set)
@@ -60,7 +60,7 @@ class Gatherer {
   void use(std::size_t i) {
     if (measurement(i).id != in_.measurement.id) out_.uses.push_back(measurement(i).id);
   }
-  /// Ends of the line of measurement i on an axis, smaller one first.
+  /// End positions of measurement i on an axis, the smaller one first, m.
   std::pair<double, double> ends(std::size_t i, const std::string& axis) const {
     const double a = measurement(i).from.at(axis), b = measurement(i).to.at(axis);
     return std::minmax(a, b);
@@ -73,7 +73,7 @@ class Gatherer {
     return sense[0] * sense[1] > 0.0;
   }
 
-  /// The two lines over the largest rectangle are D1 (both axes rise together) and D2.
+  /// The two lines over the largest rectangle: D1, on which both axes rise together, and D2.
   Step sort_lines() {
     std::vector<std::size_t> lines;
     for (const std::size_t i : set_.lines)
@@ -114,8 +114,8 @@ class Gatherer {
     return {};
   }
 
-  /// The kernel takes the axis that carries the other one as X: its yaw acts over the travel of the
-  /// other, so it is measured on two lines. On a gantry this is the axis that is driven on both sides.
+  /// X of the kernel is the axis that carries the other one. Its yaw acts over the travel of the
+  /// other axis, so it is measured on two lines. On a gantry this axis is driven on both sides.
   Step find_carrier(std::size_t widest) {
     const std::string &x = observations(widest).axes[0].axis,
                       &y = observations(widest).axes[1].axis;
@@ -160,7 +160,7 @@ class Gatherer {
     return true;
   }
 
-  /// n equal steps from corner to corner, the same ones on both diagonals.
+  /// n equal steps from corner to corner, equal on both diagonals.
   Step lay_grid() {
     const auto x = ends(out_.D1, out_.x_axis), y = ends(out_.D1, out_.y_axis);
     out_.x0 = x.first;
@@ -217,7 +217,7 @@ class Gatherer {
     return refuse("refused-one-direction", {{"which", ids(which)}});
   }
 
-  /// Sensed in the direction in which the kernel's X grows, whichever way the line was named.
+  /// The line with its sign chosen so that X of the kernel increases along it.
   math::GridLine line_of(std::size_t i, const math::MeasuredLine& curve) {
     const auto& sense = observations(i).lines.front().sense;
     const double sign = sense_of(i) < 0.0 ? -1.0 : 1.0;
@@ -242,8 +242,8 @@ class Gatherer {
     if (curve.s > 0.0) to.walk_seen = curve.walk_seen * std::pow(to.u / curve.s, 2);
   }
 
-  /// Measurements of this kind along an axis of this letter: those of the set by name, else those
-  /// that belong to no other set.
+  /// Measurements of this kind along an axis of this letter: those of the same state if there are
+  /// any, otherwise those that belong to no other set.
   std::vector<std::size_t> candidates(const char* kind, const std::string& axis,
                                       const std::string& lateral = {}) const {
     std::vector<std::size_t> own, common;
@@ -251,8 +251,8 @@ class Gatherer {
       const Measurement& m = measurement(i);
       if (m.kind != kind || m.axis.empty() || m.axis[0] != axis[0]) continue;
       if (!lateral.empty() && (m.lateral.empty() || m.lateral[0] != lateral[0])) continue;
-      if (!m.reversal_of.empty()) continue;  // goes with the one that it names
-      if (!m.square.empty()) continue;       // of its face only the slope counts
+      if (!m.reversal_of.empty()) continue;  // evaluated with the line that it reverses
+      if (!m.square.empty()) continue;       // only the slope of a square's face is evaluated
       if (observations(i).size() == 0 || observations(i).axes.front().rotary) continue;
       const std::string of = state_of(m);
       const bool another = std::any_of(sets_.begin(), sets_.end(), [&](const Set& s) {
@@ -272,7 +272,7 @@ class Gatherer {
     return list(names);
   }
 
-  /// The curve of measurement i at the points of the grid, and only there.
+  /// The curve of measurement i, reduced to the grid points. A missing grid point is an error.
   OrRefusal<math::MeasuredLine> on_grid(std::size_t i, bool along_x) {
     math::MeasuredLine all = math::measured_line(observations(i), 0);
     math::MeasuredLine out = all;
@@ -301,8 +301,8 @@ class Gatherer {
     to.direction = direction;
   }
 
-  /// The directions of approach in which the lines need positioning of X, or of Y: those of both
-  /// diagonals first, which cannot do without.
+  /// Directions of approach in which positioning of X or Y is needed. Those of the two diagonals,
+  /// which are mandatory, come first.
   std::vector<int> directions(bool of_x) const {
     const auto& r = out_.readings;
     std::vector<int> out{of_x ? r.D1.x_direction : r.D1.y_direction};
@@ -315,8 +315,8 @@ class Gatherer {
     return out;
   }
 
-  /// One curve for each direction that is needed and was measured. False if both diagonals cannot
-  /// be evaluated with them.
+  /// Appends one curve for each needed direction that was measured. Returns false if a direction of
+  /// D1 or D2 is missing.
   template <class T>
   bool put_all(std::vector<T>& to, const T& empty, const math::MeasuredLine& curve,
                bool of_x) const {
@@ -345,10 +345,10 @@ class Gatherer {
     return {};
   }
 
-  /// How the manifest states the place of a line of X; the advice shows it.
+  /// Example of the manifest key `at` for a line of X, used in messages.
   std::string place_example() const { return "{ " + out_.y_axis + " = 500 }"; }
 
-  /// Position of a line of X: `at` by the name of the other axis.
+  /// Position of a line of X on the other axis (key `at`), m; nullptr if not stated.
   const double* place(std::size_t i) const {
     const auto& at = measurement(i).at;
     const auto it = at.find(out_.y_axis);
@@ -357,7 +357,8 @@ class Gatherer {
 
   Step find_x() {
     auto found = candidates("axis", out_.x_axis);
-    // The second line is the slave's, wherever the manifest has it: `slave_shift` is of its zero.
+    // The line of the slave comes second, in any manifest order, because `slave_shift` refers to
+    // its zero.
     std::stable_partition(found.begin(), found.end(),
                           [&](std::size_t i) { return measurement(i).side != "slave"; });
     const auto yaw = candidates("angle", out_.x_axis, "Z");
@@ -397,7 +398,7 @@ class Gatherer {
     return yaw.empty() ? Step{} : find_yaw(yaw);
   }
 
-  /// Yaw as an autocollimator or angular optics read it.
+  /// Yaw as measured with an autocollimator or angular optics.
   Step find_yaw(const std::vector<std::size_t>& found) {
     auto curve = on_grid(found.front(), true);
     if (!curve) return tl::unexpected<Finding>(curve.error());
@@ -405,7 +406,7 @@ class Gatherer {
     if (!put_all(yaw, {}, *curve, true)) return one_direction(found);
     const double stated = in_.options.number("yaw_u_urad") * 1e-6;
     for (math::MeanCurve& of : yaw) {
-      if (out_.mirrored)  // positive from the real X towards Y
+      if (out_.mirrored)  // a positive yaw turns from X of the machine to Y
         for (double& v : of.mean) v = -v;
       of.u = stated > 0.0 ? stated : curve->u_mean(of.direction);
       of.dof = stated > 0.0 ? INFINITY : static_cast<double>(curve->dof);
@@ -417,7 +418,7 @@ class Gatherer {
     return {};
   }
 
-  /// Two lines of X give the yaw; another instrument that read it has to agree.
+  /// Compares the yaw from the two lines of X with the yaw read by another instrument.
   void compare_yaw(const math::MeanCurve& yaw, const std::vector<std::size_t>& found) {
     constexpr double limit = 4.0;
     const auto of = [&](std::size_t k) -> const math::PitchLine& {
@@ -441,7 +442,8 @@ class Gatherer {
                                .texts = {{"id", ids(found)}, {"lines", out_.lines_of_x}}});
   }
 
-  /// Where it is known for both, positioning and diagonals were read at one height.
+  /// Refuses positioning lines that were read at another height (Z) than the diagonals, if both are
+  /// stated.
   Step look_at_heights() {
     constexpr double other_height = 1e-3;
     const auto& from = measurement(out_.D1).from;
@@ -457,7 +459,7 @@ class Gatherer {
     return {};
   }
 
-  /// The measurement of the same line with the straightedge turned over.
+  /// The measurement of the same line with the straightedge turned over (`reversal_of`).
   std::optional<std::size_t> turned_over(std::size_t first) const {
     for (std::size_t i = 0; i < in_.campaign.measurements.size(); ++i)
       if (measurement(i).reversal_of == measurement(first).id) return i;
@@ -495,7 +497,7 @@ class Gatherer {
     return {};
   }
 
-  /// Lines other than the two diagonals, as far as their stops are points of the grid.
+  /// Adds the lines other than D1 and D2 if their stops are grid points.
   void add_third_lines() {
     for (const std::size_t i : third_) {
       const math::MeasuredLine curve = curve_of_line(i);
@@ -530,9 +532,9 @@ class Gatherer {
     }
   }
 
-  /// One axis turns between the diagonals, and its lateral reversal b with it. What is even of b
-  /// goes into the straightness of the other axis: c/(2s) b into EYX if Y turned, s/(2c) b into EXY
-  /// if X.
+  /// Between D1 and D2 one axis changes direction, and so does its lateral reversal b. The even
+  /// part of b biases the straightness of the other axis: c/(2s) b in EYX if Y changes, s/(2c) b in
+  /// EXY if X does.
   void tell_one_direction() {
     const auto& r = out_.readings;
     const bool y_turns = r.D1.y_direction != r.D2.y_direction;
@@ -546,7 +548,7 @@ class Gatherer {
                                        {"other", measurement(out_.D2).id}}});
   }
 
-  /// Of the means over all stops: B(D1) + B(D2) = 2 (c B(X) + s B(Y)); what is lateral drops out.
+  /// Compares means over all stops: B(D1) + B(D2) = 2 (c B(X) + s B(Y)). Lateral parts cancel.
   void compare_reversals() {
     const auto& r = out_.readings;
     const double c = std::fabs(r.D1.cx), s = std::fabs(r.D1.cy);

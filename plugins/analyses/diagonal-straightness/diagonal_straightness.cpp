@@ -48,7 +48,7 @@ class Lines {
         if (const auto& turned = (*direct)->reversed)
           put_other(along(*turned, step), BudgetLine::Kind::lateral, ++group);
       }
-    // One curve without repetition: then the residuals of all give the noise.
+    // If one curve has no repetition, the noise is estimated from the residuals of all curves.
     if (std::any_of(out_.begin(), out_.end(), [](const BudgetLine& l) { return l.u == 0.0; }))
       for (BudgetLine& line : out_) line.u = 0.0;
     return std::move(out_);
@@ -97,12 +97,12 @@ class Lines {
   std::vector<BudgetLine> out_;
 };
 
-/// The lines of a set as its budget needs them, in the order of solve_diagonals.
+/// The lines of a set for the uncertainty budget, in the order of solve_diagonals.
 std::vector<BudgetLine> budget_lines(const Collected& c, const Campaign& campaign) {
   return Lines(c, campaign).all();
 }
 
-/// The measurement and the others that it is made from.
+/// Readings of this measurement and of those named in `uses`.
 std::vector<const Observations*> observations_of(const AnalysisInput& in,
                                                  const std::vector<std::string>& uses) {
   std::vector<const Observations*> out{&in.observations};
@@ -113,13 +113,13 @@ std::vector<const Observations*> observations_of(const AnalysisInput& in,
 }
 
 constexpr double um = 1e-6;
-constexpr std::size_t enough_dof = 10;  ///< to take the noise from the residuals
+constexpr std::size_t enough_dof = 10;  ///< degrees of freedom for a noise from residuals
 
 bool applies(const Campaign& campaign, const Measurement& m) {
   return m.kind == "diagonal" && set_led_by(sets_of(campaign), campaign, m) != nullptr;
 }
 
-/// Curves and values of one set that was solved.
+/// Writes the curves and values of one solved set to the evaluation.
 class Report {
  public:
   Report(const AnalysisInput& in, const Collected& c, const math::DiagonalResult& r,
@@ -175,7 +175,7 @@ class Report {
     return in.options.number("reading_u_um") > 0.0 ? "options.diagonal-straightness.reading_u_um"
                                                    : "readings";
   }
-  /// Of the noisiest curve of lengths.
+  /// Largest standard uncertainty of a mean of all length curves, m; from residuals if not known.
   double noise() const {
     if (!r_.noise_known) return r_.residual_u;
     double most = std::max(c_.readings.D1.u, c_.readings.D2.u);
@@ -204,7 +204,7 @@ class Report {
               Quantity q = Quantity::deviation) {
     series(name, axis, c.value, c, q);
   }
-  /// `v` with the uncertainty of c.
+  /// Adds curve `v` with the uncertainty of `c`; an empty `v` is omitted.
   void series(const char* name, const std::string& axis, const std::vector<double>& v,
               const math::KnownCurve& c, Quantity q = Quantity::deviation) {
     if (v.empty()) return;
@@ -213,7 +213,7 @@ class Report {
     e_.series.push_back(std::move(s));
   }
 
-  /// The diagonals as measured, and less positioning and yaw, by distance from the first corner.
+  /// The diagonals by distance from the first corner: as measured, and without positioning and yaw.
   void add_points() {
     const auto& r = c_.readings;
     const double L = std::hypot(r.Lx, r.Ly);
@@ -244,7 +244,8 @@ class Report {
     if (r_.racking) add_racking(*r_.racking);
   }
 
-  /// The range of many values that only scatter is 4 of their standard deviations; u is of two.
+  /// The expected range of many noise values is 4 standard deviations; u is that of a difference of
+  /// two.
   void add_racking(const math::DiagonalResult::Racking& racking) {
     value("racking", racking.value, Quantity::deviation, racking.u, racking.shares);
     const double noise = 4.0 / std::numbers::sqrt2 * racking.u;
@@ -287,7 +288,7 @@ class Report {
     e_.findings.push_back(std::move(f));
   }
 
-  /// A square of the same plane and state: no reading of it is in the diagonals.
+  /// Compares C0Y with a square of the same plane and state, whose readings are independent.
   void compare_squares() {
     constexpr double level = 0.01;
     if (!known_ || !complete_) return;
@@ -315,14 +316,14 @@ class Report {
                         {"U_square", *b.U, Quantity::small_angle},
                         {"p", one.p, Quantity::probability}},
            .texts = {{"name", lines.square}}});
-      return;  // one square is compared
+      return;  // only the first such square is compared
     }
   }
   void use(const std::string& id) {
     if (std::find(e_.uses.begin(), e_.uses.end(), id) == e_.uses.end()) e_.uses.push_back(id);
   }
 
-  /// A straightness measured directly, with the even part that the diagonals have without it.
+  /// Compares a directly measured straightness with the even part computed without it.
   void compare(const std::optional<math::Agreement>& a, const std::string& axis,
                const char* curve) {
     constexpr double level = 0.01;
@@ -371,7 +372,7 @@ class Report {
   const math::DiagonalResult& r_;
   Evaluation& e_;
   bool known_;
-  bool complete_;  ///< nothing is missing for the uncertainty
+  bool complete_;  ///< all inputs of the uncertainty are stated
   math::BudgetOf budget_;
 };
 

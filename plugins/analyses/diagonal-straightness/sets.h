@@ -13,34 +13,34 @@ namespace nonio::diagonal_straightness {
 
 /// Diagonals measured in one state of the machine.
 struct Set {
-  std::string name;                ///< the state: "final", or empty
-  std::vector<std::size_t> lines;  ///< measurements of kind diagonal, in the manifest's order
+  std::string name;                ///< state of the machine, e.g. "final"; empty: not stated
+  std::vector<std::size_t> lines;  ///< indexes of the diagonals, in manifest order
 };
 
 std::vector<Set> sets_of(const Campaign&);
-/// The set whose first line this measurement is; none for the others.
+/// The set whose first line is this measurement; nullptr for any other measurement.
 const Set* set_led_by(const std::vector<Set>&, const Campaign&, const Measurement&);
 
-/// Everything that the kernel needs, and the names for the results.
+/// Input of the kernel, and names for its results.
 struct Collected {
   math::DiagonalReadings readings;
   std::string x_axis, y_axis;
-  /// Y carries X: the kernel's X is the machine's Y, which mirrors the plane, until `turn_back`.
+  /// True if Y carries X: X of the kernel is then Y of the machine until `turn_back` is called.
   bool mirrored = false;
-  double sides_apart = 0.0;       ///< distance of the two lines of X, m; 0: there is one
+  double sides_apart = 0.0;       ///< distance of the two lines of X, m; 0: one line
   double x0 = 0.0, y0 = 0.0;      ///< origin of the grid, m
-  std::vector<std::string> uses;  ///< ids
-  std::string lines_of_x;         ///< ids of the positioning of X, in words
-  bool one_direction = false;     ///< a diagonal was not read from both at every stop
+  std::vector<std::string> uses;  ///< ids of the measurements used
+  std::string lines_of_x;         ///< ids of the positioning lines of X, as text
+  bool one_direction = false;     ///< true if a diagonal has stops read from one direction only
   double reversal_of_diagonals = 0.0, reversal_of_axes = 0.0, u_reversal = 0.0;
-  std::vector<Finding> findings;  ///< what does not hinder
-  std::size_t D1 = 0, D2 = 0;     ///< measurements
+  std::vector<Finding> findings;  ///< remarks that do not prevent the evaluation
+  std::size_t D1 = 0, D2 = 0;     ///< indexes of both diagonals in the measurements
 };
 
 template <class T>
 using OrRefusal = tl::expected<T, Finding>;
 
-/// Readings and results of a mirrored plane by the names and signs of the machine's own axes.
+/// Converts readings and results of a mirrored plane to the axis names and signs of the machine.
 void turn_back(Collected&, math::DiagonalResult&);
 
 OrRefusal<Collected> collect(const AnalysisInput&, const std::vector<Set>&, const Set&);

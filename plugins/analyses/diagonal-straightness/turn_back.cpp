@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A plane whose Y carries X was evaluated with both axes exchanged, which is a mirror image. In it
-//   EYX and EXY, even parts too, have each other's name; q = c EXY + s EYX is the same at each point
-//   the right angle opens to the same side: C0Y and what follows from it keep their sign
-//   a turn about Z has the other sign
-//   the first diagonal is the same line; the second one begins at its other end
+// A plane whose Y carries X is evaluated with exchanged axes, which is a mirror image. To convert
+// its results:
+//   EYX and EXY, with their even parts, are exchanged; q = c EXY + s EYX stays the same at each
+// point
+//   C0Y and derived results keep their sign, because the right angle opens to the same side
+//   rotations about Z change their sign
+//   the first diagonal stays the same line; the second one starts at its other end
 #include <algorithm>
 #include <utility>
 
@@ -18,7 +20,7 @@ void negate(std::vector<double>& values) {
   for (double& v : values) v = -v;
 }
 
-/// Deviations along a line that is named from its other end.
+/// Reverses the deviations along a line, because its start and end are exchanged.
 void turn_line(std::vector<double>& values) {
   std::reverse(values.begin(), values.end());
   negate(values);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Straightness of a line of motion, measured by itself: with straightness optics, a straightedge and
-// its reversal, a taut wire, or a level or autocollimator by integration.
+// Straightness of a line of motion, measured directly: with straightness optics, a straightedge and
+// its reversal, a taut wire, or by integration of a level or autocollimator.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -17,23 +17,22 @@ namespace nonio::direct_straightness {
 
 namespace {
 
-/// Deviations across the line of motion, made from the means y of one measurement or two:
-/// e = D y.
+/// Deviations across the line of motion, e = D y, from the means y of one or two measurements.
 struct Points {
-  std::string name;                     ///< "EYX"
-  std::vector<double> x, e;             ///< m
-  std::vector<double> artefact;         ///< of the straightedge, from a reversal; m
-  std::vector<std::vector<double>> by;  ///< D: a row a point, a column a mean
-  std::vector<double> u;                ///< standard uncertainty of each mean, by repetition
+  std::string name;                     ///< such as "EYX"
+  std::vector<double> x, e;             ///< positions and deviations, m
+  std::vector<double> artefact;         ///< deviations of the straightedge, m; empty: no reversal
+  std::vector<std::vector<double>> by;  ///< D: one row per point, one column per mean
+  std::vector<double> u;                ///< standard uncertainty of each mean by repetition
   double dof = 0.0;                     ///< smallest of the measurements; 0: no repetition
   std::vector<math::BudgetLine> lines;
   std::vector<math::MeasuredLine> measured;  ///< in the order of `lines`
-  std::vector<std::string> uses;             ///< the other measurement
-  int direction = 0;                         ///< 0: means of both
+  std::vector<std::string> uses;             ///< id of the reversal; otherwise empty
+  int direction = 0;                         ///< direction of approach, +1 or -1; 0: means of both
   bool integrated = false;
 };
 
-/// What a measurement needs to be evaluated, or the finding that refuses it.
+/// The data of a measurement, or the finding that explains why it cannot be evaluated.
 using PointsOrRefusal = tl::expected<Points, Finding>;
 
 using Text = std::pair<std::string, std::string>;
@@ -49,8 +48,8 @@ tl::unexpected<Finding> refuse(std::string id, std::vector<Number> evidence,
 
 char letter(const std::string& axis) { return axis.empty() ? '?' : axis[0]; }
 
-/// Component along which a turn about one axis moves a point on the other: the vector product of
-/// their directions. "+Y", "-Z".
+/// Component along which a rotation about one axis moves a point on the other axis, by the vector
+/// product: {'Y', 1} for +Y. {'?', 0} if the axes are equal or not X, Y, Z.
 std::pair<char, double> moved_along(char about, char axis) {
   static constexpr std::string_view order = "XYZ";
   const std::size_t a = order.find(about), b = order.find(axis);
@@ -58,7 +57,7 @@ std::pair<char, double> moved_along(char about, char axis) {
   return {order[3 - a - b], (b + 3 - a) % 3 == 1 ? 1.0 : -1.0};
 }
 
-/// One measurement: its means at the stops.
+/// One measurement: its means by stops, and its direction of approach (0: both).
 struct Side {
   math::MeasuredLine line;
   int direction = 0;
@@ -106,7 +105,7 @@ void put_side(Points& p, const Side& s, math::BudgetLine::Kind kind) {
   p.lines.push_back(std::move(line));
 }
 
-/// The measurement with the straightedge turned over, if there is one.
+/// Index of the measurement with the straightedge turned over; nullopt if none.
 std::optional<std::size_t> reversal_of(const AnalysisInput& in) {
   const auto& all = in.campaign.measurements;
   for (std::size_t i = 0; in.all != nullptr && i < all.size(); ++i)
@@ -114,7 +113,8 @@ std::optional<std::size_t> reversal_of(const AnalysisInput& in) {
   return std::nullopt;
 }
 
-/// e = (y1 + y2)/2; of the straightedge (y1 - y2)/2.
+/// Reversal: the motion has (y1 + y2)/2, the straightedge (y1 - y2)/2. Returns a finding on
+/// failure.
 std::optional<Finding> reverse(Points& p, const AnalysisInput& in, std::size_t other,
                                const Side& first) {
   const std::string& id = in.campaign.measurements[other].id;
@@ -162,14 +162,14 @@ PointsOrRefusal from_lengths(const AnalysisInput& in) {
   return p;
 }
 
-/// A level or autocollimator whose foot was moved by its own length. The reading belongs to the
-/// middle of the foot; the points are the ends of its places.
+/// A level or autocollimator whose foot is moved in steps of its own length. A reading belongs to
+/// the center of the foot. The points are the ends of the foot at each position.
 PointsOrRefusal from_angles(const AnalysisInput& in) {
   const auto side = side_of(in.observations, in.measurement.id);
   if (!side) return tl::unexpected<Finding>(side.error());
   const double foot = *in.measurement.foot;
   const auto& stops = side->line.stops;
-  constexpr double slack = 0.01;  // of the foot: 1 % of an angle's effect
+  constexpr double slack = 0.01;  // relative to the foot: 1 % of the effect of an angle
   for (std::size_t i = 1; i < stops.size(); ++i)
     if (std::fabs(stops[i].position - stops[i - 1].position - foot) > slack * foot)
       return refuse("foot", {{"foot", foot, Quantity::length},
@@ -197,7 +197,7 @@ PointsOrRefusal points_of(const AnalysisInput& in) {
   return in.measurement.kind == "angle" ? from_angles(in) : from_lengths(in);
 }
 
-/// Derivative of a result by the means, from that by the points.
+/// Derivatives with respect to the means, from those with respect to the points.
 std::vector<double> by_means(const Points& p, const std::vector<double>& by_points) {
   std::vector<double> row(p.u.size(), 0.0);
   for (std::size_t i = 0; i < by_points.size(); ++i)
@@ -211,7 +211,7 @@ bool applies(const Campaign&, const Measurement& m) {
   return m.kind == "straightness" ? m.reversal_of.empty() : m.kind == "angle" && m.foot.has_value();
 }
 
-/// The three lines, and what is stated about them.
+/// Straightness about the three reference straight lines.
 struct Lines {
   math::Straightness least_squares, minimum_zone, end_points;
 };
@@ -225,7 +225,7 @@ Expected<Lines> lines_of(const Points& p) {
   return Lines{std::move(*lsq), std::move(*zone), std::move(*ends)};
 }
 
-/// Results with their uncertainty, where the readings have a repetition.
+/// Writes the results, with their uncertainty if the readings have a repetition.
 class Report {
  public:
   Report(const Points& p, const math::ReadingModel& model, Evaluation& e)
@@ -242,7 +242,7 @@ class Report {
     e_.values.push_back(budget_.value(name, v, q, u, shares));
   }
 
-  /// The points about the least-squares line: d = (I - H) e.
+  /// The points about the least-squares line: d = (I - H) e, with the hat matrix H.
   void series(const math::Straightness& s, const std::string& axis) {
     Series out{p_.name + "_LSQ", axis, Quantity::length, Quantity::deviation, p_.x, s.rest, {}};
     if (known_) {
@@ -310,7 +310,7 @@ std::vector<const Observations*> observations_of(const AnalysisInput& in, const 
   return out;
 }
 
-/// The scatter alone makes points look as crooked: the estimate that replaces the value then.
+/// Reports straightness that noise alone can produce, with the estimate from noise.
 void judge_noise(const Points& p, const Lines& lines, Evaluation& e) {
   double most = 0.0;
   for (std::size_t i = 0; i < p.by.size(); ++i) {
@@ -319,7 +319,7 @@ void judge_noise(const Points& p, const Lines& lines, Evaluation& e) {
       square += p.by[i][k] * p.by[i][k] * p.u[k] * p.u[k];
     most = std::max(most, std::sqrt(square));
   }
-  constexpr double range_of_many = 4.0;  // expected range of 30 normal values, in units of sigma
+  constexpr double range_of_many = 4.0;  // expected range of 30 normal values is 4 sigma
   if (most == 0.0 || lines.minimum_zone.width > range_of_many * most) return;
   e.findings.push_back(
       {.id = "straightness.noise",

@@ -33,7 +33,7 @@ void add_values(Evaluation& e, const AxisAnalysis& a, const Iso230Result& r) {
   add_value(e, a, "B_mean", r.B_mean, U.B_mean, Made::of_environment);
 }
 
-/// U at each target is that of the largest: of a mean that of M, of s that of R = 2 k s.
+/// One row per target. A column has one U, the largest: for a mean U of M, for s U of R = 2 k s.
 PointTable table(const AxisAnalysis& a, const Iso230Result& r) {
   const Iso230Uncertainty U = iso230_2_uncertainty(a.budget.value_or(Budget{}), a.approaches, r.k);
   PointTable points;

@@ -19,18 +19,18 @@ namespace {
 
 constexpr double k_of_2002 = 2.0;
 constexpr double same_end = 1e-4;           // m
-constexpr std::size_t approaches_of_R = 5;  // fewer give no R and A of ISO 230-2
+constexpr std::size_t approaches_of_R = 5;  // R and A of ISO 230-2 require five approaches
 
 bool applies(const Campaign&, const Measurement& m) {
   const std::size_t moving = moving_axes(m).size();
   return m.kind == "diagonal" && (moving == 2 || moving == 3);
 }
 
-/// One line between two corners, whichever way it was measured.
+/// One line between two corners; both directions of travel have the same name.
 struct Diagonal {
   std::size_t measurement = 0;
   std::string name;               ///< PPP, NPP, PNP, PPN; PP, PN of a face
-  std::vector<std::string> axes;  ///< X before Y before Z
+  std::vector<std::string> axes;  ///< sorted X, Y, Z
 };
 
 Diagonal diagonal_of(const Campaign& campaign, std::size_t i) {
@@ -52,7 +52,7 @@ bool same_box(const Measurement& a, const Measurement& b, const std::string& axi
   return std::fabs(x.first - y.first) <= same_end && std::fabs(x.second - y.second) <= same_end;
 }
 
-/// The diagonals of one box and one state, in the manifest's order.
+/// The diagonals of the same box and the same state as `of`, in manifest order.
 std::vector<Diagonal> set_of(const Campaign& campaign, const Measurement& of) {
   std::vector<Diagonal> out;
   for (std::size_t i = 0; i < campaign.measurements.size(); ++i) {
@@ -95,7 +95,7 @@ std::optional<Tested> tested(const AnalysisInput& in, std::size_t i) {
   return out;
 }
 
-/// Values of one diagonal; R and A where every target has readings enough from both directions.
+/// Values of one diagonal. R and A require five approaches from each direction at each target.
 void put_values(Evaluation& e, const AxisAnalysis& a, const Tested& t) {
   const Iso230Result& r = t.result;
   add_value(e, a, "E", r.E, t.U.E, Made::of_all);
@@ -127,7 +127,7 @@ std::string joined(const std::vector<std::string>& parts, const char* between) {
   return out;
 }
 
-/// Corners with the machine's coordinates; of a face the third one is 0 throughout.
+/// Corners in machine coordinates, m. The third coordinate of a face diagonal is 0.
 std::vector<ThroughVolume> paths(const Campaign& campaign, const std::vector<Diagonal>& set) {
   std::vector<ThroughVolume> out;
   for (const Diagonal& d : set) {
@@ -140,7 +140,7 @@ std::vector<ThroughVolume> paths(const Campaign& campaign, const std::vector<Dia
   return out;
 }
 
-/// "EYY 1, EXX -0.56": sizes that together move no reading.
+/// Error combinations that the diagonals cannot detect, such as "EYY 1, EXX -0.56".
 Finding blind_finding(const Campaign& campaign, const std::vector<Diagonal>& set) {
   const Blindness b = blind_to(paths(campaign, set));
   std::vector<std::string> combinations;
@@ -156,7 +156,7 @@ Finding blind_finding(const Campaign& campaign, const std::vector<Diagonal>& set
                     {"combinations", joined(combinations, "; ")}}};
 }
 
-/// The names of a set that were not measured.
+/// Names of the diagonals of a complete set that were not measured.
 std::vector<std::string> missing_of(const std::vector<Diagonal>& set) {
   std::vector<std::string> names{"PP", "PN"}, out;
   if (set.front().axes.size() == 3) names = {"PPP", "NPP", "PNP", "PPN"};
@@ -166,7 +166,7 @@ std::vector<std::string> missing_of(const std::vector<Diagonal>& set) {
   return out;
 }
 
-/// The machine's values: the largest of its diagonals, with the U of that one.
+/// Values of the machine: the largest of its diagonals, with U of that diagonal.
 void put_machine(const AnalysisInput& in, const AxisAnalysis& a, const std::vector<Diagonal>& set,
                  Evaluation& e) {
   struct Largest {
@@ -217,7 +217,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
     return e;
   }
   AxisAnalysis a;
-  a.axis = "*";  // of the keys that the budget names: all axes expand along a diagonal
+  a.axis = "*";  // for budget messages: all axes expand along a diagonal
   a.test = t->test;
   a.budget = t->budget.budget;
   a.approaches = t->approaches;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Length measuring errors in the manner of ISO 10360-2: a machine that measures with its own probe.
+// Length measuring errors (based on ISO 10360-2) of a machine that measures with its own probe.
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>
@@ -29,8 +29,8 @@ LengthLimit limit_of(const Settings& options, const std::string& test) {
           options.number("mpe_" + test + "_most_um") * per_um};
 }
 
-/// The artefact and how it lay: its certificate, its temperature where it expands, its alignment.
-/// What the machine does (scatter, drift, its temperature) is in the errors themselves.
+/// Budget of the artefact: certificate, temperature if it expands, and alignment. Scatter, drift
+/// and temperature of the machine are part of the length errors.
 math::ReadingModel model_of(const Campaign& campaign, const std::vector<LengthError>& errors) {
   std::map<std::size_t, BudgetLine> by_line;
   for (const LengthError& e : errors) {
@@ -81,7 +81,7 @@ class Worker {
     for (std::size_t i = 0; i < o.size(); ++i)
       if (o.lines[o.line_of(i)].name.starts_with(test + " "))
         out.push_back({o.axes.front().position[i], o.deviation[i], o.run_of(i), o.line_of(i)});
-    // In the order of the budget: line by line.
+    // Sorted by line, which is the order of the budget.
     std::stable_sort(out.begin(), out.end(), [](const LengthError& a, const LengthError& b) {
       return std::tie(a.line, a.L, a.repeat) < std::tie(b.line, b.L, b.repeat);
     });
@@ -111,8 +111,8 @@ class Worker {
     return in_.observations.lines[e.line].name.starts_with(std::string(test) + " ");
   }
 
-  /// All errors of a test against their limit; the values are the largest, the least, and the one
-  /// nearest to its limit.
+  /// Compares the errors of a test with their limits. Values: the largest and smallest error and,
+  /// with a limit, the error nearest to it.
   void put_test(const char* test, const std::vector<LengthError>& all,
                 const math::ReadingModel& model, math::BudgetOf& budget) {
     std::vector<LengthError> errors;
@@ -267,7 +267,7 @@ class Worker {
 
   void plan(const char* test, const std::vector<LengthError>& errors) {
     const math::LengthPlan p = math::length_plan(errors);
-    // EL is measured in two positions (2009); E0 in seven.
+    // In the 2009 edition, EL has two positions and E0 seven.
     if (p.whole() ||
         (std::string_view(test) == "EL" && p.positions >= 2 && p.lengths >= 5 && p.repeats >= 3))
       return;
@@ -280,7 +280,7 @@ class Worker {
          .texts = {{"name", test}}});
   }
 
-  /// Each length of each position: the largest and the least error, and the limit.
+  /// Table: largest and smallest error and the limit, for each length at each position.
   void points(const std::vector<LengthError>& all) {
     std::map<std::pair<std::size_t, double>, std::array<double, 2>> rows;
     for (const LengthError& e : all) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Periodic error of an axis from a dense run: over two periods of its screw or scale and more.
+// Periodic error of an axis from a dense run over two or more periods of its screw or scale.
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using math::Difference;
 using math::Pass;
 using math::PeriodicError;
 
-/// Linear axes: the budget of a rotary one would need another instrument's uncertainty.
+/// Rotary axes are excluded because their budget needs the uncertainty of another instrument.
 bool applies(const Campaign& c, const Measurement& m) {
   if (m.kind != "axis") return false;
   const Axis* axis = c.machine.axis(m.axis);
@@ -30,7 +30,7 @@ struct Sides {
   std::vector<Pass> plus, minus;
 };
 
-/// Passes of one run in one direction, each along the axis.
+/// One pass per run and direction, sorted by position.
 Sides passes_of(const Observations& o) {
   std::map<std::pair<std::uint32_t, int>, std::vector<std::pair<double, double>>> rows;
   const auto& axis = o.axes.front();
@@ -46,7 +46,8 @@ Sides passes_of(const Observations& o) {
   return out;
 }
 
-/// The period that is declared: the option, else what the manifest states of screw or scale.
+/// Period in m: the option period_mm, otherwise screw_pitch of the manifest; 0 if neither is
+/// stated.
 double period_of(const AnalysisInput& in) {
   if (const double asked = in.options.number("period_mm", 0.0); asked > 0.0) return asked * 1e-3;
   const Axis* axis = in.campaign.machine.axis(in.measurement.axis);

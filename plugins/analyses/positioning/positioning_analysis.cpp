@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Positioning of an axis by any rule of the trade, several at once: one set of statistics, rows of
-// engine/math/axis/positioning.cpp.
+// Positioning of an axis by several rules (standards) at once from one set of statistics. The rules
+// are defined in engine/math/axis/positioning.cpp.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -21,11 +21,11 @@ namespace {
 
 using Rules = std::vector<const math::PositioningRule*>;
 
-/// The constant that a rule without offset takes off.
+/// The constant that a rule without offset subtracts from the deviations.
 struct TakenOff {
   double value = 0.0;  ///< m or rad
   Quantity quantity = Quantity::deviation;
-  std::string option;  ///< as nmtba_offset has it
+  std::string option;  ///< value of the option nmtba_offset
 };
 
 using math::Confidence;
@@ -52,7 +52,7 @@ std::string titles(const Rules& rules) {
 
 class Remarks {
  public:
-  /// Nothing if there is no such rule.
+  /// Adds a remark on the rules `of`; no remark if `of` is empty.
   void say(const char* id, const Rules& of, std::vector<Number> evidence = {}) {
     if (!of.empty()) out_.push_back({id, std::move(evidence), {{"rules", titles(of)}}, {}, {}});
   }
@@ -65,14 +65,14 @@ class Remarks {
   std::vector<Remark> out_;
 };
 
-/// The names of the rules in the values, with their titles: "iso-1988" is "ISO 230-2:1988".
+/// Titles of the rules by the name used in the values: "iso-1988" is "ISO 230-2:1988".
 Remark evaluated(const Rules& rules) {
   Remark out{"rules.evaluated", {}, {{"rules", titles(rules)}}, {}, {}};
   for (const PositioningRule* r : rules) out.texts.emplace_back(r->name, r->title);
   return out;
 }
 
-/// Which rules, what each makes of the readings, how sure its formula is, and why the rules differ.
+/// Remarks: which rules apply, what each evaluates, how reliable its formula is, why they differ.
 std::vector<Remark> remarks_on(const Rules& rules, const TakenOff& off, bool with_U) {
   Remarks remarks;
   for (const double k : {2.0, 3.0})
@@ -160,7 +160,7 @@ Offset offset_option(const Settings& options) {
   return Offset::mean_of_all;
 }
 
-/// Adds the values of the rules; gives the names of what is absent.
+/// Adds the values of the rules and returns the names of values that cannot be computed.
 std::string add_values(Evaluation& e, const AxisAnalysis& a, const AxisStatistics& statistics,
                        const Rules& rules, Offset offset) {
   std::string absent;
@@ -221,14 +221,14 @@ PointTable table(const AxisAnalysis& a, const AxisStatistics& statistics) {
   return points;
 }
 
-/// The common findings name the absent values of ISO 230-2; here they are those of the rules.
+/// Replaces the names of absent ISO 230-2 values in the common findings by those of the rules.
 void name_absent(std::vector<Finding>& findings, const std::string& absent) {
   for (Finding& f : findings)
     for (auto& [name, text] : f.texts)
       if (name == "absent") text = absent.empty() ? "–" : absent;
 }
 
-/// Rules that require more approaches than there are, by that number.
+/// Findings for rules that require 5 or 7 approaches if fewer were measured.
 void plan(Evaluation& e, const AxisAnalysis& a, const Rules& rules) {
   for (const std::size_t asked : {5U, 7U}) {
     std::string titles;

@@ -20,7 +20,7 @@ namespace {
 constexpr double per_K = 1e-6, per_um_per_m = 1e-6;
 const std::string of_options = "options.rigid-body.";
 
-/// The name of a ball: that of its line without " x".
+/// The name of a ball: the name of its line up to the first space ("B1 x" is "B1").
 std::string ball_of(const std::string& line) { return line.substr(0, line.find(' ')); }
 
 std::size_t number_of(Artefact& a, const std::string& name) {
@@ -48,7 +48,7 @@ void put_certificate(const Observations& o, Artefact& a) {
   }
 }
 
-/// Positions of the axes that were not read: as the manifest states them, else NaN.
+/// Positions of axes that were not read, from `at` of the manifest, m; NaN if not stated.
 Corner stood_at(const Measurement& m) {
   Corner at;
   at.fill(std::numeric_limits<double>::quiet_NaN());
@@ -57,10 +57,10 @@ Corner stood_at(const Measurement& m) {
   return at;
 }
 
-/// The means of each ball, and when each of its readings was taken.
+/// Means of each ball, and the times of its readings.
 struct Probed {
   math::ArtefactPlacement placement;
-  std::vector<BudgetLine::Visit> visits;  ///< by time, of each coordinate the same
+  std::vector<BudgetLine::Visit> visits;  ///< in time order, equal for all coordinates
 };
 
 Probed probed(const Measurement& m, const Observations& o, Artefact& a) {
@@ -78,7 +78,7 @@ Probed probed(const Measurement& m, const Observations& o, Artefact& a) {
   const Corner stood = stood_at(m);
   const auto first = static_cast<std::size_t>(std::find(measured.begin(), measured.end(), true) -
                                               measured.begin());
-  std::map<std::size_t, std::size_t> place;  // of a ball in the placement
+  std::map<std::size_t, std::size_t> place;  // index of a ball in the placement, by ball
   std::vector<std::array<std::size_t, 3>> count;
   for (const std::size_t i : order) {
     const std::size_t b = number_of(a, ball_of(o.lines[o.line_of(i)].name));
@@ -104,7 +104,7 @@ Probed probed(const Measurement& m, const Observations& o, Artefact& a) {
   return out;
 }
 
-/// Whether this measurement is of a state that is evaluated here.
+/// Whether a measurement belongs to the evaluated state or to no state.
 bool of_state(const AnalysisInput& in, const Measurement& m) {
   return state_of(m).empty() || state_of(m) == state_of(in.measurement);
 }
@@ -124,7 +124,7 @@ BudgetLine budget_of(const AnalysisInput& in, const math::RigidLine& line, std::
   return b;
 }
 
-/// Standard uncertainties that an artefact's scale has, by the options.
+/// Relative standard uncertainties of the scale of an artefact, from the options.
 struct ScaleInputs {
   double device, temperature, expansion;
   double all() const { return std::hypot(device, temperature, expansion); }
@@ -179,7 +179,7 @@ void take_artefact(const AnalysisInput& in, const std::string& name, std::size_t
     math::RigidLine& line = made->lines[l];
     if (l < made->of.size()) {
       const auto [placement, k] = made->of[l];
-      // What the coordinates of a placement have in common is one for all of them.
+      // All coordinates of a placement share one common error.
       if (l == 0 || made->of[l - 1].placement != placement) {
         common = out.lines.size();
         out.used.push_back(a.placements[placement].name);
@@ -207,7 +207,7 @@ ReadingModel::Input input(const ReadingModel& model, const char* id, Distributio
   return out;
 }
 
-/// First reading of a line, of all of the model.
+/// Index of the first reading of a line among all readings of the model.
 std::size_t first_of(const ReadingModel& model, std::size_t line) {
   std::size_t first = 0;
   for (std::size_t l = 0; l < line; ++l) first += model.lines[l].length.size();
@@ -239,7 +239,7 @@ void put_artefact(const AnalysisInput& in, const Lines& lines, const Stated& sta
   fixed.of_line[stated.line] = fixed.is.u;
   model.inputs.push_back(std::move(fixed));
   const ScaleInputs scale = scale_of(in);
-  double longest = 0.0;  // the budget prints what the scale makes on the longest line
+  double longest = 0.0;  // the budget states the effect of the scale on the longest line
   for (const BudgetLine& b : lines.budget)
     for (const double d : b.length) longest = std::max(longest, d);
   const auto put = [&](const char* id, double u, Distribution d, const char* key) {
@@ -283,8 +283,8 @@ void take_artefacts(const AnalysisInput& in, std::size_t& unknowns, Lines& out) 
   for (const std::string& name : names) take_artefact(in, name, unknowns, out);
 }
 
-/// No instrument read the balls and what is stated: of the inputs only what the machine and the
-/// shop make is left of them, and of what is stated nothing.
+/// Balls and certified values were not read by the instrument. Only inputs of the machine and its
+/// environment remain for balls, and no inputs for certified values.
 void keep_own_inputs(const Lines& lines, ReadingModel& model) {
   static const std::set<std::string> of_machine{"temperature", "expansion", "drift"};
   bool instrument = false;

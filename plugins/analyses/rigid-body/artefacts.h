@@ -4,18 +4,18 @@
 #include "lines.h"
 #include "nonio/math/rigid_artefact.h"
 
-/// Artefacts and squares among the lines of the fit: what several lines share, and what a
-/// certificate states of it.
+/// Artefacts and squares as lines of the fit: unknowns that several lines share, and certified
+/// values.
 namespace nonio::rigid_body {
 
-/// Puts the artefacts of this state behind the lines: three for each placement, then what is
-/// stated. `unknowns`: those that are shared so far.
+/// Appends the artefacts of this state to the lines: three lines per placement, then the certified
+/// values. `unknowns`: number of shared unknowns, which is increased.
 void take_artefacts(const AnalysisInput&, std::size_t& unknowns, Lines&);
 
-/// Inputs of balls and of what is stated, and the keys that are not stated.
+/// Adds the inputs of balls and certified values, and the keys that are missing for these inputs.
 void put_stated_inputs(const AnalysisInput&, const Lines&, math::ReadingModel&);
 
-/// A part of the budget of a line of what is stated.
+/// The budget of a line of certified values.
 math::BudgetLine stated_budget(std::size_t readings, std::size_t group);
 
 }  // namespace nonio::rigid_body

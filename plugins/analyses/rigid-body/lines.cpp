@@ -35,7 +35,7 @@ BudgetLine::Kind budget_kind(RigidLine::Kind kind) {
   return kind == RigidLine::Kind::angle ? BudgetLine::Kind::angle : BudgetLine::Kind::length;
 }
 
-/// Position of a reading; a coordinate that is not stated is NaN.
+/// Position of a reading, m; NaN for a coordinate that is not stated.
 Corner place_of(const Observations& o, const Measurement& m, std::size_t row) {
   Corner at;
   at.fill(std::numeric_limits<double>::quiet_NaN());
@@ -47,7 +47,7 @@ Corner place_of(const Observations& o, const Measurement& m, std::size_t row) {
   return at;
 }
 
-/// +1 or -1 along the line: by the first axis that states from where it came.
+/// Direction of approach, +1 or -1, of the first axis that states one; +1 if none does.
 int way_of(const Observations& o, std::size_t row) {
   for (const auto& column : o.axes)
     if (column.approach.size() == o.size() && column.approach[row] != 0)
@@ -66,8 +66,8 @@ bool certified(const Campaign& c, const std::string& name) {
   return square != nullptr && square->error && square->U;
 }
 
-/// The lines of a square that hold its axes against each other; none of a measurement that is not
-/// among them.
+/// The lines of a square that compare its axes, if `m` is one of these lines; otherwise nullopt.
+/// The square must be turned over or certified.
 std::optional<math::SquareLines> on_square(const Campaign& c, const Measurement& m) {
   if (m.square.empty()) return std::nullopt;
   for (math::SquareLines& s : math::squares_of(c)) {
@@ -83,8 +83,8 @@ std::optional<math::SquareLines> on_square(const Campaign& c, const Measurement&
 struct Reader {
   const AnalysisInput& in;
   Lines& out;
-  std::size_t unknowns = 0;                    ///< that lines share
-  std::map<std::string, std::size_t> named{};  ///< of squares: set-ups and errors
+  std::size_t unknowns = 0;                    ///< number of unknowns that lines share
+  std::map<std::string, std::size_t> named{};  ///< unknowns of squares (set-ups and errors) by name
 
   std::size_t unknown(const std::string& name) {
     const auto [at, fresh] = named.try_emplace(name, unknowns);
@@ -92,8 +92,9 @@ struct Reader {
     return at->second;
   }
 
-  /// On the face of a square the slope is that of the axis and of the set-up, which both faces
-  /// share; the square's own error leans the second face, turned over the other way (square.h).
+  /// On a face of a square, the slope is that of the axis plus the set-up, which both faces share.
+  /// The error of the square enters the second face, with opposite sign when turned over
+  /// (square.h).
   void share_square(const Measurement& m, RigidLine& line) {
     const auto square = on_square(in.campaign, m);
     if (!square) {
@@ -115,7 +116,7 @@ struct Reader {
     line.shared.push_back({unknown("error " + square->square), std::move(way)});
   }
 
-  /// What the certificates of the squares state.
+  /// Adds a line for each certified square error.
   void state_squares() {
     for (const Square& square : in.campaign.squares) {
       const auto error = named.find("error " + square.name);
@@ -137,7 +138,7 @@ struct Reader {
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return times[a] < times[b]; });
-    if (m.kind == "step-diagonal" && o.time.empty())  // along the beam, whatever the rows state
+    if (m.kind == "step-diagonal" && o.time.empty())  // in order along the beam, not of the rows
       std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
         const auto when = [&](std::size_t row) {
           const Corner at = place_of(o, m, row);
@@ -171,7 +172,7 @@ struct Reader {
   BudgetLine budget_line(const RigidLine& line) {
     BudgetLine b;
     b.kind = budget_kind(line.kind);
-    b.group = out.lines.size();  // each line is set up anew
+    b.group = out.lines.size();  // each line has its own set-up
     const auto along = [&](const math::RigidReading& r) {
       double sum = 0.0;
       for (std::size_t k = 0; k < 3; ++k)
@@ -206,7 +207,7 @@ void find_box(Lines& out) {
     if (!(out.low[k] <= out.high[k])) out.low[k] = out.high[k] = 0.0;
 }
 
-/// Positions that are not stated are in the middle of the volume.
+/// Places readings without a stated coordinate at the center of the volume.
 void centre(Lines& out) {
   for (std::size_t l = 0; l < out.lines.size(); ++l) {
     bool any = false;

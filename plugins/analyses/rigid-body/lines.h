@@ -7,10 +7,10 @@
 #include "nonio/math/rigid_body.h"
 #include "nonio/sdk/plugin.h"
 
-/// What the measurements of a campaign give to the fit of all errors.
+/// Input of the fit of all errors from the measurements of a campaign.
 namespace nonio::rigid_body {
 
-/// A line of what a certificate states: of an artefact, or of a square.
+/// A line with the certified values of an artefact or a square.
 struct Stated {
   std::size_t line = 0;
   std::string name, square;
@@ -20,27 +20,27 @@ struct Lines {
   std::vector<math::RigidLine> lines;
   std::vector<math::BudgetLine> budget;          ///< one for each line, readings in the same order
   std::vector<std::string> groups;               ///< kinds of measurements with readings
-  std::vector<bool> angular;                     ///< of each group
-  std::vector<std::string> used;                 ///< ids
-  std::vector<const Observations*> tables;       ///< of these
-  std::vector<std::string> left_out, centred;    ///< ids: of no use here; taken through the middle
-  std::vector<std::size_t> measurement_of_line;  ///< into `used`
+  std::vector<bool> angular;                     ///< per group: readings are angles
+  std::vector<std::string> used;                 ///< ids of the measurements used
+  std::vector<const Observations*> tables;       ///< readings of each measurement in `used`
+  std::vector<std::string> left_out, centred;    ///< ids: not usable; assumed centered
+  std::vector<std::size_t> measurement_of_line;  ///< index into `used`
   std::vector<Stated> stated;
-  std::vector<std::string> certificates;  ///< ids of measurements that state something
+  std::vector<std::string> certificates;  ///< ids of measurements with certified values
   std::vector<std::string> uncalibrated;  ///< artefacts without a certificate
-  std::vector<std::string> free_slope;    ///< lines on a square whose error is not stated
+  std::vector<std::string> free_slope;    ///< ids of lines on squares without a stated error
   std::vector<Finding> findings;
-  math::Corner low{}, high{};  ///< that holds all readings
+  math::Corner low{}, high{};  ///< box that contains all readings, m
 
-  /// Number of a group of readings that have one scatter.
+  /// Index of the group of readings with a common scatter; it is added if new.
   std::size_t group_of(const std::string& kind, bool angle);
 };
 
-/// Whether a measurement is of linear axes, of a kind that the fit takes.
+/// Whether the fit accepts this measurement: linear axes and a supported kind.
 bool is_taken(const Campaign&, const Measurement&);
-/// Whether with such a measurement the readings of its state can determine a squareness.
+/// Whether a measurement like this one makes a squareness of its state identifiable.
 bool shows_squareness(const Campaign&, const Measurement&);
-/// Of the same state as this one, or of every state.
+/// Lines of the measurements of the same state as the input, or without a state.
 Lines lines_of(const AnalysisInput&);
 
 }  // namespace nonio::rigid_body

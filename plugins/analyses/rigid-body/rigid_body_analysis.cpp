@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The 21 errors of three linear axes together, as far as the readings of a campaign determine them,
-// and the error of the tool point in the whole volume.
+// The 21 geometric errors of three linear axes, as far as the readings of a campaign determine
+// them, and the error of the tool point in the whole volume.
 #include <algorithm>
 #include <cmath>
 
@@ -14,11 +14,11 @@ using namespace math;
 
 namespace {
 
-// Results have names of their own: tables of controls are made from those of each method.
+// Suffix of the results, because compensation tables use the results of the single methods.
 const std::string of_all = "_all";
-constexpr double enough = 5.0;         // standard uncertainties of a largest error
-constexpr double enough_dof = 3.0;     // of a scatter
-constexpr std::size_t most_shown = 6;  // combinations in a sentence
+constexpr double enough = 5.0;         // required ratio of the largest error to its u
+constexpr double enough_dof = 3.0;     // degrees of freedom required for a scatter
+constexpr std::size_t most_shown = 6;  // maximum number of combinations in a message
 
 std::string listed_names(const std::vector<std::string>& names) {
   std::string out;
@@ -26,7 +26,7 @@ std::string listed_names(const std::vector<std::string>& names) {
   return out;
 }
 
-/// "ECX.1 - 0.889 EYX.2"
+/// Text such as "ECX.1 - 0.889 EYX.2".
 std::string text_of(const Combination& c) {
   std::string out;
   for (const auto& [name, size] : c) {
@@ -47,7 +47,7 @@ Number count(const char* name, std::size_t n) {
   return {name, static_cast<double>(n), Quantity::count};
 }
 
-/// What the analysis goes through.
+/// State shared by the steps of the analysis.
 struct Work {
   const AnalysisInput& in;
   Lines lines;
@@ -58,7 +58,7 @@ struct Work {
   void say(Finding f) { out.findings.push_back(std::move(f)); }
 };
 
-/// The largest scatter of lengths, which the budget prints.
+/// Index of the length group with the largest scatter, which the budget states.
 std::size_t printed_group(const Work& w) {
   std::size_t best = 0;
   for (std::size_t g = 0; g < w.s.scatter.size(); ++g)
@@ -175,7 +175,6 @@ void put_results(Work& w) {
   if (w.model.missing.empty()) w.out.budget = budget.budget();
 }
 
-/// The names of the axes as in the series; X1 of a gantry is X.
 Expected<Evaluation> analyse(const AnalysisInput& in) {
   Work w{in, lines_of(in), {}, {}, {}};
   std::size_t moving = 0;
@@ -204,7 +203,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   return std::move(w.out);
 }
 
-/// Whether a state has a line that determines a squareness: without it no volume is given.
+/// Whether a measurement of the state makes a squareness identifiable; required for the volume.
 bool has_squareness(const Campaign& c, const std::string& state) {
   return std::any_of(c.measurements.begin(), c.measurements.end(), [&](const Measurement& m) {
     return shows_squareness(c, m) && is_taken(c, m) &&
@@ -212,7 +211,7 @@ bool has_squareness(const Campaign& c, const std::string& state) {
   });
 }
 
-/// The first measurement of a state; of every state if none is named.
+/// True for the first measurement of each state. If no state is named, for the first of all.
 bool applies(const Campaign& c, const Measurement& of) {
   if (!is_taken(c, of) || !has_squareness(c, state_of(of))) return false;
   const bool states = std::any_of(c.measurements.begin(), c.measurements.end(), [&](const auto& m) {

@@ -12,10 +12,10 @@ namespace {
 
 using math::ChainRefusal;
 
-constexpr double surely = 1e-3;  // residuals against a stated sigma
-// Of a pattern, in the residuals. A scale of all coordinates shows only their own residuals, 1e-5.
+constexpr double surely = 1e-3;  // significance level of residual tests
+// Smallest effect of a pattern on the residuals that counts. A common scale has only 1e-5.
 constexpr double least_shown = 1e-3;
-constexpr double no_chain_share = 1e-3;  // of the extent, where no sigma is known
+constexpr double no_chain_share = 1e-3;  // limit of s relative to the extent if no sigma is stated
 
 Finding finding(const char* id, std::vector<Number> evidence,
                 std::vector<std::pair<std::string, std::string>> texts = {}) {
@@ -25,7 +25,7 @@ Finding finding(const char* id, std::vector<Number> evidence,
 Number count(const char* name, double n) { return {name, n, Quantity::count}; }
 Number um(const char* name, double v) { return {name, v, Quantity::deviation}; }
 
-/// The extent of the readings in one coordinate at most.
+/// Largest extent of the centers along one coordinate, m.
 double extent(const Places& places) {
   double size = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -88,7 +88,7 @@ class Solver {
     return refuse(finding("rotary-chain.not-converging", {count("centres", centres())}));
   }
 
-  /// A wrong order, an angle in the wrong column, a table called a head.
+  /// Detects a wrong order of axes, an angle in the wrong column, or a table declared as head.
   bool fits() {
     const double size = extent(places_);
     double expected = wish_.sigma.value_or(0.0);
@@ -100,8 +100,8 @@ class Solver {
                           {{"axes", axes()}}));
   }
 
-  /// Without the span of what the linear axes make in the residuals. Where the residuals show more of
-  /// it than the stated bound can make, the whole of them counts.
+  /// Removes the effects of the linear axes from the residuals. If these effects exceed the stated
+  /// bound, nothing is removed.
   void set_scatter() {
     const math::ChainFit& fit = out_.fit;
     scatter_ = fit.s, dof_ = fit.dof;
@@ -115,7 +115,7 @@ class Solver {
                      [](const auto& input) { return input.is.id == "linear-axes"; });
     if (linear == model_.inputs.end() || fit.residual_by.empty()) return;
     std::vector<std::vector<double>> basis;
-    double most = 0.0;  // that the bound makes, all at their limits
+    double most = 0.0;  // norm of the effects, all errors at their bound
     for (const auto& pattern : linear->patterns) {
       std::vector<double> shown;
       for (const auto& row : fit.residual_by) shown.push_back(dot(row, pattern));
@@ -175,7 +175,7 @@ class Solver {
     out_.from_readings = true;
   }
 
-  /// Encoder against the rest: larger, the angles do not deserve their trust.
+  /// Reports angles as unreliable if the residuals along them exceed the other residuals.
   void tell_angles() {
     for (std::size_t j = 0; j < chain_.axes.size(); ++j) {
       const auto& f = out_.fit.followed[j];

@@ -12,48 +12,48 @@
 
 namespace nonio::rotary_chain {
 
-/// Names with commas between them.
+/// The names, separated by ", ".
 std::string listed(const std::vector<std::string>& names);
 
-/// What the user requires and knows; SI.
+/// Options of the user, in SI units; nullopt: not stated.
 struct Wish {
-  std::optional<double> sigma;        ///< standard uncertainty of a coordinate, stated
+  std::optional<double> sigma;        ///< standard uncertainty of a coordinate
   std::optional<double> linear_axes;  ///< bound of squareness and scale difference, rad
   std::optional<double> offset;       ///< nominal distance of the axes, m
-  std::optional<double> U_tool;       ///< of the stated length of a tool, k = 2, m
+  std::optional<double> U_tool;       ///< U of the stated tool length, k = 2, m
   double tolerance = 0.0, tolerance_direction = 0.0;
-  double circle_limit = 10.0;  ///< residuals beyond this many sigma are no chain
+  double circle_limit = 10.0;  ///< no chain if s is above this many sigma
 };
 
-/// The fitted chain, or why there is none.
+/// The fitted chain, or the findings that explain why it is refused.
 struct Solved {
   bool given = false;
   math::ChainFit fit;
   double sigma = 0.0, dof = INFINITY;
-  bool from_readings = false;  ///< sigma: from the residuals, or stated by the reader
-  /// Derivatives of the residuals that the scatter is taken from; empty where they were not made.
+  bool from_readings = false;  ///< sigma is from residuals or from u of the centers, not an option
+  /// Derivatives of the residuals used for the scatter; empty if not computed.
   std::vector<std::vector<double>> residual_by;
   std::vector<Finding> findings;
 };
-/// The scatter is that of the residuals without what squareness and scales of the linear axes make
-/// in them, if the model has a bound of these: it has a line of its own in the budget.
+/// Fits the chain. If the model has a bound for squareness and scales of the linear axes, their
+/// effects are removed from the scatter, because the budget contains them separately.
 Solved solve(const AnalysisInput&, const Chain&, const Places&, const Wish&,
              const math::ReadingModel&);
 
-/// One value that may be given.
+/// One value that is reported if it is identifiable.
 struct Candidate {
   std::string name;
   Quantity quantity = Quantity::length;
   math::ChainValue value;
-  double by_tool = 0.0;  ///< derivative by the stated length of the tool
+  double by_tool = 0.0;  ///< derivative with respect to the stated tool length
   bool is_direction() const { return quantity != Quantity::length; }
 };
-/// All values of the chain, identifiable or not, in the order in which they are given.
+/// All values of the chain in report order, including those that are not identifiable.
 std::vector<Candidate> candidates(const Chain&, const Places&, const math::ChainFit&);
-/// What the two longest stated tools show of their axis.
+/// The pair of tools with the largest difference of stated lengths.
 struct Tools {
-  bool two = false;              ///< two stated ones of different length
-  std::size_t from = 0, to = 0;  ///< the shorter and the longer
+  bool two = false;              ///< false: no two tools have different stated lengths
+  std::size_t from = 0, to = 0;  ///< indexes of the shorter and longer tool
   double stated = 0.0;           ///< difference of their lengths, m
 };
 Tools tools_of(const Places&);

@@ -9,7 +9,7 @@
 
 namespace nonio::rotary_chain {
 
-/// The order of the axes, as the options state it.
+/// The order of the axes in the kinematic chain, from the options.
 struct Chain {
   std::vector<std::string>
       axes;  ///< tables from the bed outwards, then heads from the bed outwards
@@ -17,23 +17,23 @@ struct Chain {
   bool is_head(std::size_t axis) const { return axis >= tables; }
 };
 
-/// The centres of all measurements that have the angles of both axes, and have one reference point.
+/// The centers of all measurements with angles of both axes and one reference point.
 struct Places {
-  std::vector<math::ChainReading> readings;  ///< in the order in which they were read
+  std::vector<math::ChainReading> readings;  ///< sorted by measurement and time
   math::ChainOrder order;
-  std::vector<const Observations*> tables;  ///< of `used`
-  std::vector<std::string> used, left_out;  ///< ids; a ball each
-  std::vector<const Measurement*> tools;    ///< the first measurement with each of them
-  double stated_u = 0.0;                    ///< of a centre by its reader; 0: not stated
+  std::vector<const Observations*> tables;  ///< readings of each measurement in `used`
+  std::vector<std::string> used, left_out;  ///< ids of measurements, each with its own ball
+  std::vector<const Measurement*> tools;    ///< the first measurement of each tool
+  double stated_u = 0.0;                    ///< u of a center from its file, m; 0: not stated
   std::vector<Finding> findings;
   bool sound = true;
 };
 
-/// Readings of several runs or directions at one position of both axes are one centre with their
-/// number as weight. A position that is given twice in one run and direction is a finding.
+/// Readings of several runs or directions at one position of both axes become one center, weighted
+/// by their number. A position repeated in one run and direction is a finding.
 Places places_of(const AnalysisInput&, const Chain&);
 
-/// Of the same state of the machine, before or after an adjustment.
+/// Same state of the machine and same adjustment ("before" or "after").
 bool same_state(const Measurement&, const Measurement&);
 
 }  // namespace nonio::rotary_chain

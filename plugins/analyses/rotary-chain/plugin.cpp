@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Two rotary axes of one machine as one chain: both lines from one fit of ball centres.
+// Two rotary axes of a machine as one kinematic chain: both axis lines from one fit of ball
+// centers.
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace {
 constexpr double per_um = 1e-6, per_urad = 1e-6, per_mm = 1e-3;
 constexpr const char* linear_axes_key = "options.rotary-chain.linear_axes_urad";
 
-/// The first of its state.
+/// True for the first measurement of each state.
 bool applies(const Campaign& c, const Measurement& m) {
   for (const Measurement& other : c.measurements)
     if (other.kind == "ball-centres" && same_state(other, m)) return other.id == m.id;
@@ -40,7 +41,7 @@ Wish wish_of(const Settings& options) {
   return wish;
 }
 
-/// The order of the axes; none unless two rotary axes of the machine are named, each once.
+/// The order of the axes; nullopt unless two different rotary axes of the machine are named.
 std::optional<Chain> chain_of(const AnalysisInput& in) {
   Chain chain;
   chain.axes = in.options.texts("tables");
@@ -54,7 +55,7 @@ std::optional<Chain> chain_of(const AnalysisInput& in) {
   return chain;
 }
 
-/// What the analysis goes through.
+/// State shared by the steps of the analysis.
 struct Work {
   const AnalysisInput& in;
   Chain chain;
@@ -99,7 +100,7 @@ math::ReadingModel model_of(const Work& w, const Environment& environment) {
   return model;
 }
 
-/// What the repetition of the coordinates makes in a value.
+/// Standard uncertainty of a value by the repetition of the coordinates.
 double repetition_in(const Work& w, const std::vector<double>& by) {
   const std::size_t n = w.places.readings.size();
   double sum = 0.0;
@@ -115,7 +116,7 @@ math::Shares shares_of(const Work& w, const Candidate& c) {
   return shares;
 }
 
-/// Whether no reading shows anything of an axis.
+/// Whether the readings determine no parameter of the axis.
 bool is_unseen(const math::ChainFit& fit, std::size_t axis) {
   return std::count_if(fit.open.begin(), fit.open.end(), [&](const auto& combination) {
            return combination.size() == 1 && combination[0] / 4 == axis;
@@ -125,7 +126,7 @@ bool is_unseen(const math::ChainFit& fit, std::size_t axis) {
 void say_separation(Work& w, const std::vector<std::string>& withheld) {
   if (withheld.empty()) return;
   const math::ChainFit& fit = w.solved.fit;
-  std::vector<std::string> names;  // of the unknowns
+  std::vector<std::string> names;  // of the fit parameters
   for (std::size_t l = 0; l < w.chain.axes.size(); ++l) {
     for (const std::size_t k : fit.across[l])
       names.push_back(std::string(1, "xyz"[k]) + "_" + w.chain.axes[l]);
@@ -156,7 +157,8 @@ void say_separation(Work& w, const std::vector<std::string>& withheld) {
         {{"names", listed(withheld)}, {"which", which}});
 }
 
-/// A pivot needs the stated length of a tool and its U; else the radius holds both together.
+/// The pivot length needs the stated tool length and its U, because the fit only determines their
+/// sum.
 bool pivot_stated(const Work& w) {
   return !w.places.tools.empty() && tool_length(*w.places.tools.front()) > 0.0 &&
          w.wish.U_tool.has_value();
@@ -186,7 +188,7 @@ void say_tools(Work& w, const math::BudgetOf& budget) {
           {{"one", w.places.tools[tools.from]->id}, {"other", w.places.tools[tools.to]->id}});
 }
 
-/// Whether the axes pass each other as the drawing has it.
+/// Compares the distance of the axes with its nominal value.
 void say_offset(Work& w, const Value& distance) {
   if (!w.wish.offset) return;
   const double U = distance.U.value_or(distance.repeatability.value_or(0.0));
@@ -198,8 +200,8 @@ void say_offset(Work& w, const Value& distance) {
         {{"one", w.chain.axes[0]}, {"other", w.chain.axes[1]}});
 }
 
-/// Both axes at 0: other lines than those of one axis alone, so their names in the history differ.
-/// Along the axis of rotation a centre is where the ball was put.
+/// Names for the history. They differ from those of a single axis, because both axes are at 0. A
+/// center coordinate along its axis is omitted, because it depends on the ball position.
 void follow(Evaluation& e) {
   const auto component = [&](const std::string& name) {
     for (const Value& v : e.values)
@@ -231,7 +233,7 @@ void put_values(Work& w, math::BudgetOf& budget) {
       withheld.push_back(c.name);
       continue;
     }
-    if (c.name.starts_with("pivot_") && !pivot_stated(w)) continue;  // a finding states that
+    if (c.name.starts_with("pivot_") && !pivot_stated(w)) continue;  // reported by a finding
     const double u = repetition_in(w, c.value.by);
     const math::Shares shares = shares_of(w, c);
     const math::Expanded e = budget.expand(u, shares);
@@ -246,7 +248,7 @@ void put_values(Work& w, math::BudgetOf& budget) {
     w.out.values.push_back(budget.value(c.name, c.value.value, c.quantity, u, shares));
     if (c.name == "distance") say_offset(w, Value(w.out.values.back()));
   }
-  // Of the centres as read, which no U of theirs knows.
+  // s includes effects that the U of the values does not contain.
   w.out.values.push_back({"s", w.solved.fit.s, Quantity::deviation});
   say_separation(w, withheld);
 }

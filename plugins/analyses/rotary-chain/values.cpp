@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a chain is described by: point and direction of each axis, how the two lie to each other, and
-// of a head how far from them the tool is.
+// Values of a chain: point and direction of each axis, relation of the two axes, and for a head the
+// distance from the axis to the tool.
 #include <algorithm>
 
 #include "chain.h"
@@ -19,13 +19,13 @@ Vector3 minus(const Vector3& a, const Vector3& b) {
 }
 Vector3 times(double f, const Vector3& v) { return {f * v[0], f * v[1], f * v[2]}; }
 
-/// Where the centre of a line is given: nearest to the first ball, of a head to the tip.
+/// Reference point for the center of an axis: the first ball, or for a head the tool tip (0).
 Vector3 anchor(const Chain& chain, const ChainState& s, std::size_t axis) {
   return chain.is_head(axis) ? Vector3{} : s.ball.front();
 }
 
-/// From the spindle nose to the tip of the first tool, with the heads at 0: by its stated length
-/// along the line through both tips, or as it is stated.
+/// Vector from the spindle nose to the tip of the first tool with the heads at 0. Its length is
+/// `length_of`; its direction is the line through both tips, or the stated offset.
 Vector3 tool_vector(const Places& places, const Tools& tools, const ChainState& s,
                     double length_of) {
   Vector3 along{};
@@ -38,7 +38,7 @@ Vector3 tool_vector(const Places& places, const Tools& tools, const ChainState& 
   return times(length_of / length(along), along);
 }
 
-/// All of a direction or nothing: the component along it hardly changes with the others.
+/// Whether all components across the axis are identifiable; the component along it varies little.
 bool identifies_direction(const math::ChainFit& fit, std::size_t axis) {
   return std::all_of(fit.across[axis].begin(), fit.across[axis].end(), [&](std::size_t k) {
     return math::chain_value(fit, [&](const ChainState& s) { return s.lines[axis].direction[k]; })
@@ -69,7 +69,7 @@ void put_line(const Chain& chain, const math::ChainFit& fit, std::size_t axis,
        })});
 }
 
-/// From the spindle nose, where a tool's length is stated.
+/// Pivot lengths from the spindle nose, to which a tool length refers.
 void put_pivots(const Chain& chain, const Places& places, const math::ChainFit& fit,
                 std::vector<Candidate>& out) {
   if (places.tools.empty() || !(tool_length(*places.tools.front()) > 0.0)) return;
@@ -106,7 +106,7 @@ double tool_length(const Measurement& m) {
 
 Tools tools_of(const Places& places) {
   Tools out;
-  constexpr double least = 1e-3;  // m, between two lengths that show a direction
+  constexpr double least = 1e-3;  // m, smallest length difference that determines a direction
   for (std::size_t a = 0; a < places.tools.size(); ++a)
     for (std::size_t b = 0; b < places.tools.size(); ++b) {
       const double from = tool_length(*places.tools[a]), to = tool_length(*places.tools[b]);
@@ -124,7 +124,7 @@ std::vector<Candidate> candidates(const Chain& chain, const Places& places,
     put_line(chain, fit, axis, out);
     identifiable = identifiable && identifies_direction(fit, axis);
   }
-  // The linear axes move a head past a table: their lines have an angle, and no distance.
+  // The linear axes move a head relative to a table, so their axes have an angle but no distance.
   if (chain.is_head(0) == chain.is_head(1)) {
     auto distance = math::chain_value(
         fit, [](const ChainState& s) { return math::signed_distance(s.lines[0], s.lines[1]); });

@@ -24,9 +24,9 @@ const Observations::AxisColumn* column(const Observations& o, std::string_view a
   return nullptr;
 }
 
-/// The centres of a measurement by position of the axis, ascending: readings of several runs,
-/// directions or turns at one position are one centre with their number as weight. A position that
-/// is given twice in one run and direction is a finding.
+/// The centers by ascending axis position. Readings of several runs, directions or turns at one
+/// position become one center, weighted by their number. A position repeated in one run and
+/// direction is a finding.
 tl::expected<std::vector<math::BallCentre>, Finding> centres_of(const Observations& o) {
   const auto *x = column(o, "X"), *y = column(o, "Y"), *z = column(o, "Z");
   std::vector<math::BallCentre> out;
@@ -35,7 +35,7 @@ tl::expected<std::vector<math::BallCentre>, Finding> centres_of(const Observatio
   std::map<long long, math::BallCentre> places;
   std::set<std::tuple<std::uint32_t, int, double>> seen;
   for (std::size_t i = 0; i < o.size(); ++i) {
-    if (o.line_of(i) != 0) continue;  // three readings a centre, each with the whole position
+    if (o.line_of(i) != 0) continue;  // each of the three lines has the whole position
     const double angle = rotary.position[i];
     const int approach = rotary.approach.empty() ? 0 : rotary.approach[i];
     if (!std::isfinite(angle) || !seen.emplace(o.run_of(i), approach, angle).second) {
@@ -61,14 +61,14 @@ using math::DoubleWave;
 using math::RotaryFit;
 using math::RotaryRefusal;
 
-constexpr double significant = 0.01;      // of a wave
-constexpr double surely = 1e-3;           // residuals against a stated sigma
-constexpr double no_circle_share = 1e-3;  // of the radius, where no sigma is known
+constexpr double significant = 0.01;      // significance level of a wave
+constexpr double surely = 1e-3;           // significance level of residuals above the stated sigma
+constexpr double no_circle_share = 1e-3;  // limit relative to the radius if no sigma is stated
 constexpr double half_turn = std::numbers::pi, full_turn = 2.0 * std::numbers::pi;
-constexpr double opposite = 1e-3;     // rad, of half a turn between two places
-constexpr double least_sine = 0.5;    // of half the angle between them: 60 deg
+constexpr double opposite = 1e-3;     // rad, tolerance of half a turn between two positions
+constexpr double least_sine = 0.5;    // of half the angle between two positions: 60 deg
 constexpr double few = 7;             // degrees of freedom below which Student's factor is large
-constexpr double shear_unit = 10e-6;  // rad, for which the sensitivity of an arc is stated
+constexpr double shear_unit = 10e-6;  // rad, example for the sensitivity of an arc
 
 Finding finding(const char* id, bool attention, std::vector<Number> evidence) {
   return {.id = id, .attention = attention, .evidence = std::move(evidence)};
@@ -100,8 +100,8 @@ const char* name_of(RotaryRefusal refusal) {
   return "rotary.angles-disagree";
 }
 
-/// Largest standard uncertainty in any direction: the root of the largest eigenvalue of a block of
-/// the covariance, by power iteration from each axis.
+/// Largest standard uncertainty in any direction for sigma = 1: root of the largest eigenvalue of a
+/// block of the cofactors, by power iteration from each axis.
 double largest(const RotaryFit& fit, std::size_t first) {
   double best = 0.0;
   for (std::size_t start = 0; start < 3; ++start) {
@@ -143,8 +143,8 @@ class Judge {
     out_.findings.push_back(std::move(f));
     return false;
   }
-  /// The circle through three points is exact. An arc of less than half a turn is only given with a
-  /// U that is small enough.
+  /// A circle through three points has no residuals. It is reported without U unless the arc is
+  /// shorter than half a turn.
   bool without_U(Finding f) {
     out_.U_known = false;
     out_.findings.push_back(std::move(f));
@@ -165,7 +165,7 @@ class Judge {
     return true;
   }
 
-  /// What one reading is worth: stated, or from the residuals, or from the instrument.
+  /// sigma is the stated value, or from the residuals, or from the instrument.
   bool with_sigma() {
     const RotaryFit& fit = out_.fit;
     if (wish_.sigma) {
@@ -189,8 +189,8 @@ class Judge {
     return true;
   }
 
-  /// What centres state of themselves (a probing that fitted each of them) is the least that one of
-  /// them is worth, however well they lie on the circle. All weigh alike.
+  /// The u stated with the centers (by a probing that fitted each of them) is the lower limit of
+  /// sigma, even if the residuals are smaller. One mean is used for all centers.
   bool at_least_as_stated() {
     double sum = 0.0, n = 0.0;
     for (const double u : o_.u)
@@ -218,8 +218,8 @@ class Judge {
                           {um("s", left), um("limit", limit), mm("radius", fit.radius)}));
   }
 
-  /// Three points of a full turn take a squareness of the linear axes for a shift of the centre,
-  /// without any residual.
+  /// With three points of a full turn, a squareness error of the linear axes shifts the center but
+  /// leaves no residuals.
   bool squareness_known() {
     const RotaryFit& fit = out_.fit;
     out_.U_shear = 2.0 / std::numbers::sqrt3 * fit.shear_shift * wish_.linear_axes.value_or(0.0);
@@ -277,12 +277,12 @@ class Judge {
     if (wish_.use_angles) tell_angles();
   }
 
-  /// The classic method: two places and the angle between them, the axis taken as parallel to an
-  /// axis m of the machine. What it would have stated about these readings.
+  /// Result and U of the classic method for the same readings: two positions p and q, the angle
+  /// between them, and an axis direction parallel to the machine axis m.
   ///
   ///     c = (p + q)/2 + cot(t/2)/2 m x (q - p)      u = s/2 sqrt(1/w_p + 1/w_q)/|sin(t/2)|
   ///
-  /// t: from p to q by the encoder. Half a turn apart it is the middle. An error dt of the angle
+  /// t: angle from p to q by the encoder. At half a turn, c is the middle. An error dt of the angle
   /// moves c by radius dt/(2 sin(t/2)).
   void tell_two_points() {
     const RotaryFit& fit = out_.fit;
@@ -328,7 +328,7 @@ class Judge {
                                     std::move(evidence)));
   }
 
-  /// Encoder against circle: larger than the rest, the angles do not deserve their trust.
+  /// Reports angles as unreliable if the residuals along the circle exceed the other residuals.
   void tell_angles() {
     const RotaryFit& fit = out_.fit;
     double along = 0.0, rest = 0.0;
@@ -337,7 +337,7 @@ class Judge {
       along += w * fit.tangential[i] * fit.tangential[i];
       rest += w * (fit.radial[i] * fit.radial[i] + fit.axial[i] * fit.axial[i]);
     }
-    // Of the 3N - 7 degrees of freedom the constant angle takes one of the N along the circle.
+    // The constant angle uses one of the N degrees of freedom along the circle, of 3N - 7 in total.
     const double dof = points() - 1.0, others = fit.dof - dof;
     if (!(others > 0.0) || !(rest > 0.0)) return;
     const double p = math::f_upper(along / dof / (rest / others), dof, others);
@@ -369,7 +369,7 @@ class Judge {
   const Wish& wish_;
   Judged out_;
   DoubleWave radial_, axial_;
-  bool exceeds_ = false;  ///< the residuals are larger than the stated sigma allows
+  bool exceeds_ = false;  ///< the residuals exceed the stated sigma
 };
 
 }  // namespace

@@ -10,31 +10,31 @@
 
 namespace nonio::rotary_kinematics {
 
-/// What the user requires and knows; SI.
+/// Options of the user, in SI units; nullopt: not stated.
 struct Wish {
   bool use_angles = false;
-  std::optional<double> sigma;         ///< of one coordinate of one reading, stated
+  std::optional<double> sigma;         ///< standard uncertainty of one coordinate of a reading
   std::optional<double> linear_axes;   ///< bound of squareness and scale difference, rad
   std::optional<double> U_instrument;  ///< k = 2, of a length as large as the circle
-  double tolerance = 0.0;              ///< for U of the centre, m
-  double tolerance_direction = 0.0;    ///< for U of the direction, rad
-  double circle_limit = 10.0;          ///< residuals beyond this many sigma are no circle
+  double tolerance = 0.0;              ///< largest accepted U of the center, m
+  double tolerance_direction = 0.0;    ///< largest accepted U of the direction, rad
+  double circle_limit = 10.0;          ///< no circle if residuals are above this many sigma
 };
 
-/// A fitted axis with its uncertainty, or the reason why there is none.
+/// A fitted axis with its uncertainty, or the findings that explain why it is refused.
 struct Judged {
   std::vector<math::BallCentre> centres;
-  bool given = false;   ///< else refused, and the findings state why
-  bool U_known = true;  ///< else three points without what their uncertainty follows from
+  bool given = false;   ///< false: refused, findings state the reason
+  bool U_known = true;  ///< false: three points, and inputs of U are missing
   math::RotaryFit fit;
-  double sigma = 0.0;             ///< standard uncertainty that the covariance is scaled with
+  double sigma = 0.0;             ///< standard uncertainty of one coordinate
   double dof = INFINITY;          ///< of sigma; infinite if it is stated
-  bool sigma_of_centres = false;  ///< it is what the centres state of themselves
-  double k = 2.0;                 ///< expands it to 95 %
-  double U_shear = 0.0;           ///< in the plane, from the bound of the linear axes
+  bool sigma_of_centres = false;  ///< sigma is the u stated with the centers
+  double k = 2.0;                 ///< coverage factor for 95 %
+  double U_shear = 0.0;           ///< U in the plane from the bound `linear_axes`
   std::vector<Finding> findings;
 
-  /// Standard uncertainties that the repetition makes.
+  /// Standard uncertainties by repetition.
   double u_centre(std::size_t coordinate) const;
   double u_direction(std::size_t coordinate) const;
   double u_radius() const;

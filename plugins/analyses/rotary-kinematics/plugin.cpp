@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Centre, direction and radius of a rotary axis from the centres of a ball that turns with it.
+// Center, direction and radius of a rotary axis from the centers of a ball that turns with it.
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>
@@ -15,17 +15,17 @@
 namespace nonio::rotary_kinematics {
 namespace {
 
-/// Derivatives of what is fitted to a circle by its coordinates: x of every centre, then y, then z.
+/// Derivatives of the fitted values by the coordinates: x of every center, then y, then z.
 struct Derivatives {
   using Row = std::vector<double>;
   std::array<Row, 3> centre, direction;
   Row radius;
-  std::vector<Row> radial, axial;  ///< of each centre; empty above 500 of them
+  std::vector<Row> radial, axial;  ///< for each center; empty above 500 centers
 };
 
-constexpr std::size_t most_residuals = 500;  // a table of this many times three times as many
+constexpr std::size_t most_residuals = 500;  // the derivatives grow with its square
 
-/// By central differences.
+/// Numerical derivatives by central differences.
 Derivatives derivatives_of(const Judged& judged, bool use_angles) {
   constexpr double step = 1e-5;  // m: far above rounding, far below the radius
   const std::size_t n = judged.centres.size();
@@ -42,7 +42,7 @@ Derivatives derivatives_of(const Judged& judged, bool use_angles) {
       for (const double sign : {1.0, -1.0}) {
         centres[i].at[k] = judged.centres[i].at[k] + sign * step;
         const auto fit = math::fit_rotary(centres, use_angles);
-        if (!fit) continue;  // where one fit ended, this one ends too
+        if (!fit) continue;  // does not occur if the first fit converged
         const double by = sign / (2.0 * step);
         for (std::size_t c = 0; c < 3; ++c) {
           d.centre[c][at] += by * fit->centre[c];
@@ -59,8 +59,8 @@ Derivatives derivatives_of(const Judged& judged, bool use_angles) {
   return d;
 }
 
-/// The errors of the coordinates of one circle, or of several in one frame, one after the other:
-/// the lines are x, y and z. linear_axes: bound of squareness and scale difference, if known, rad.
+/// Error model of the coordinates of one circle, or of several circles in one frame; its lines are
+/// x, y and z. linear_axes: bound of squareness and scale difference, rad; nullopt: not stated.
 math::ReadingModel coordinate_model(const Campaign& c, const Environment& e,
                                     const std::vector<const Judged*>& circles,
                                     std::optional<double> linear_axes) {
@@ -76,7 +76,8 @@ math::ReadingModel coordinate_model(const Campaign& c, const Environment& e,
   return math::probed_model(c, e, places);
 }
 
-/// A derivative by the six numbers of a line (centre, direction) as one by its coordinates.
+/// Converts derivatives with respect to (center, direction) to derivatives with respect to
+/// coordinates.
 Derivatives::Row chain(const Derivatives& d, const std::array<double, 6>& by_line) {
   Derivatives::Row out(d.radius.size(), 0.0);
   for (std::size_t i = 0; i < out.size(); ++i)
@@ -91,7 +92,8 @@ constexpr double per_um = 1e-6, per_urad = 1e-6;
 
 bool applies(const Campaign&, const Measurement& m) { return m.kind == "ball-centres"; }
 
-/// The extent of the readings in one coordinate at most, for the instrument's part with the length.
+/// Largest extent of the readings along one coordinate, m, for the length-dependent U of the
+/// instrument.
 double extent(const Observations& o) {
   double size = 0.0;
   for (std::size_t k = 1; k < o.axes.size(); ++k) {
@@ -121,7 +123,7 @@ double range(const std::vector<double>& values) {
   return *high - *low;
 }
 
-/// One axis with its budget while the results are written.
+/// State shared by the steps of the analysis of one axis.
 struct Work {
   const AnalysisInput& in;
   Wish wish;
@@ -138,7 +140,7 @@ std::string source_of(const Wish& wish, const Judged& j) {
   return wish.sigma ? "options.rotary-kinematics.sigma_um" : "instrument.U_fixed_um";
 }
 
-/// A component of the direction from which on its centre is where the ball was put.
+/// Above this direction component, a center coordinate depends on the position of the ball.
 constexpr double along_the_axis = 0.7;
 
 void add_values(Work& w) {
@@ -163,14 +165,13 @@ void add_values(Work& w) {
     follow();
   }
   if (fit.dof == 0) return;
-  // What they are: of the centres as read. Drift and shapes are in them, which no U of theirs
-  // knows.
+  // s and the run-outs include drift and form errors, which the U of the values does not contain.
   w.out.values.push_back({"s", fit.s, Quantity::deviation});
   w.out.values.push_back({"run_out_radial", range(fit.radial), Quantity::deviation});
   w.out.values.push_back({"run_out_axial", range(fit.axial), Quantity::deviation});
 }
 
-/// What the repetition of the coordinates makes in something that depends on them.
+/// Standard uncertainty of a value by the repetition of the coordinates.
 double repetition_in(const Judged& j, const std::vector<double>& by) {
   const std::size_t n = j.centres.size();
   double sum = 0.0;
@@ -211,7 +212,7 @@ void add_curves(Work& w) {
   add_curve(w, "axial", angle, fit.axial, w.by.axial);
 }
 
-/// The rows of both circles as one of all coordinates: x of both, y of both, z of both.
+/// Joins the derivatives of two circles: x of both, y of both, z of both.
 std::vector<double> joined(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> out;
   const auto n = static_cast<std::ptrdiff_t>(a.size() / 3),
@@ -223,7 +224,7 @@ std::vector<double> joined(const std::vector<double>& a, const std::vector<doubl
   return out;
 }
 
-/// Degrees of freedom of both repetitions together (Welch-Satterthwaite).
+/// Degrees of freedom of two combined repetitions (Welch-Satterthwaite).
 double joined_dof(double u_a, double dof_a, double u_b, double dof_b) {
   const double fourth = std::pow(u_a, 4) / dof_a + std::pow(u_b, 4) / dof_b;
   return fourth > 0.0 ? std::pow(std::hypot(u_a, u_b), 4) / fourth : INFINITY;
@@ -234,7 +235,7 @@ void add_relation(Work& w, const std::string& id, const Judged& j) {
   const auto a = math::relation_of(j.fit, j.sigma, w.own.fit, 0.0),
              b = math::relation_of(j.fit, 0.0, w.own.fit, w.own.sigma);
   const auto by = derivatives_of(j, w.wish.use_angles);
-  // One instrument in one frame: what it has in common for both circles is no distance.
+  // Both circles share one frame, so a common error of the instrument cancels in the distance.
   const auto model =
       coordinate_model(w.in.campaign, w.limits.environment, {&j, &w.own}, w.wish.linear_axes);
   auto distance = model.shares(joined(chain(by, r.distance_by_a), chain(w.by, r.distance_by_b)));
@@ -246,8 +247,8 @@ void add_relation(Work& w, const std::string& id, const Judged& j) {
   w.out.values.push_back(w.budget.value("angle_" + id, r.angle, Quantity::angle, r.u_angle, angle));
 }
 
-/// Compared with the axes before this one in the manifest: only if the user states that their
-/// centres have one reference point.
+/// Compares with earlier rotary axes of the manifest if `same_reference` states a common reference
+/// point.
 void add_relations(Work& w) {
   const AnalysisInput& in = w.in;
   if (in.all == nullptr) return;
@@ -267,14 +268,14 @@ void add_relations(Work& w) {
       continue;
     }
     const Judged j = judge((*in.all)[i], wish_of(in.campaign, (*in.all)[i], in.options));
-    if (!j.given) continue;  // its own findings state why
+    if (!j.given) continue;  // its own evaluation reports the reason
     add_relation(w, other.id, j);
     w.out.uses.push_back(other.id);
     w.out.notes.push_back({"rotary.chain", {}, {{"one", other.id}, {"other", in.measurement.id}}});
   }
 }
 
-/// The measurement, and those of the same kind, which may be compared with it.
+/// Readings of all measurements of this kind, because they may be compared.
 std::vector<const Observations*> observations_of(const AnalysisInput& in) {
   std::vector<const Observations*> out{&in.observations};
   for (std::size_t i = 0; in.all != nullptr && i < in.all->size(); ++i)
@@ -282,7 +283,7 @@ std::vector<const Observations*> observations_of(const AnalysisInput& in) {
   return out;
 }
 
-/// What the residuals of this circle show of the budget. (Each place read as often as the others.)
+/// Gives the model the residuals of this circle, if all positions have the same number of readings.
 void show_residuals(math::ReadingModel& model, const Judged& j, const Derivatives& by) {
   const bool alike = std::all_of(j.centres.begin(), j.centres.end(),
                                  [&](const auto& c) { return c.weight == j.centres[0].weight; });
@@ -292,7 +293,7 @@ void show_residuals(math::ReadingModel& model, const Judged& j, const Derivative
   model.see_residuals(rows, j.fit.dof);
 }
 
-/// Where another axis turned too, the centres lie on no circle.
+/// If another axis turned as well, the centers are not on a circle.
 Evaluation of_two_axes(const Measurement& m, const std::string& other) {
   Evaluation out;
   out.findings.push_back(
@@ -300,7 +301,7 @@ Evaluation of_two_axes(const Measurement& m, const std::string& other) {
   return out;
 }
 
-/// Of the circle through three points, whose U cannot be given.
+/// Result of a circle through three points whose U cannot be computed.
 Evaluation without_U(Judged judged) {
   Evaluation e;
   e.findings = std::move(judged.findings);

@@ -12,7 +12,7 @@
 namespace nonio::rtcp {
 namespace {
 
-constexpr double surely = 1e-3;  // residuals against a stated sigma
+constexpr double surely = 1e-3;  // significance level of residuals above the stated sigma
 
 Finding finding(const char* id, std::vector<Number> evidence,
                 std::vector<std::pair<std::string, std::string>> texts = {}) {
@@ -64,7 +64,7 @@ class Check {
       return line.name.ends_with(" found x") || line.name.ends_with(" found y") ||
              line.name.ends_with(" found z");
     });
-    // By the names of the lines and by time: the order of the rows has no meaning.
+    // Sorted by line name and time, because the order of the rows has no meaning.
     std::vector<std::size_t> rank(o_.lines.size());
     for (const auto& line : o_.lines) names_.push_back(line.name);
     std::sort(names_.begin(), names_.end());
@@ -133,8 +133,8 @@ class Check {
     }
   }
 
-  /// Squareness and scale differences of the linear axes that follow the ball: within +-bound. At
-  /// the point of the axis in the control their coordinates are right by definition.
+  /// Squareness and scale errors (within ±bound) of the linear axes that follow the ball. They are
+  /// zero at the axis point stored in the control.
   math::ReadingModel::Input linear_axes(double bound) const {
     const double u = bound / std::numbers::sqrt3;
     const math::Vector3& middle = out_.fit.point;
@@ -159,7 +159,7 @@ class Check {
     return input;
   }
 
-  /// Of each ball, along X, Y and Z with the axis at 0.
+  /// Position error of each ball along X, Y and Z, with the axis at 0.
   math::ReadingModel::Input ball_place(double U) const {
     math::ReadingModel::Input input;
     for (std::size_t b = 0; b < out_.fit.place.size(); ++b)
@@ -222,7 +222,7 @@ class Check {
     }
   }
 
-  /// The values that the directions of sensing do not determine, by name.
+  /// Reports the values that the sensing directions do not determine.
   void report_not_identifiable() {
     std::string by_ball, by_direction;
     for (std::size_t k = 0; k < 4; ++k) {
@@ -246,7 +246,7 @@ class Check {
   const Wish& wish_;
   Checked out_;
   bool probe_ = false;
-  std::vector<std::string> names_;  ///< of the lines, sorted: a line is its place here
+  std::vector<std::string> names_;  ///< of the lines, sorted; a line is an index into it
 };
 
 }  // namespace

@@ -11,20 +11,20 @@
 
 namespace nonio::rtcp {
 
-/// What the user requires and knows; SI.
+/// Options of the user, in SI units; nullopt: not stated.
 struct Wish {
-  std::optional<bool> head;           ///< the axis carries the tool; none: not stated
-  std::optional<double> sigma;        ///< standard uncertainty of a reading, stated
+  std::optional<bool> head;           ///< whether the axis carries the tool
+  std::optional<double> sigma;        ///< standard uncertainty of a reading
   std::optional<double> linear_axes;  ///< bound of squareness and scale difference, rad
-  std::optional<double> U_ball;       ///< of the ball's place, each coordinate, k = 2
+  std::optional<double> U_ball;       ///< U of each coordinate of the ball position, k = 2
   double tolerance = 0.0, tolerance_direction = 0.0;
 };
 
-/// One measurement: what it determines of the control's axis, or why it does not.
+/// Errors of the axis parameters of the control from one measurement, or why they are refused.
 struct Checked {
   bool given = false;
-  std::vector<math::RtcpReading> readings;  ///< by line
-  std::vector<std::size_t> row;             ///< of the observations, of each reading
+  std::vector<math::RtcpReading> readings;  ///< sorted by line
+  std::vector<std::size_t> row;             ///< row of each reading in the observations
   math::RtcpFit fit;
   double sigma = 0.0, dof = INFINITY;
   math::ReadingModel model;
@@ -32,17 +32,17 @@ struct Checked {
   std::string names[4];  ///< of the values: centre_error_x, ..., direction_error_i
 
   double u_repetition(std::size_t value) const;
-  /// Whether the readings, and the uncertainty that is required, give it.
+  /// Whether the readings determine the value with a U within the tolerance.
   bool is_identifiable(std::size_t value) const {
     return given && fit.identifiable[value] && wide[value] == 0.0;
   }
-  double wide[4] = {0.0, 0.0, 0.0, 0.0};  ///< U that is above the tolerance; 0: it is not
+  double wide[4] = {0.0, 0.0, 0.0, 0.0};  ///< U if above the tolerance, otherwise 0
 };
 
 Checked check(const Campaign&, const Observations&, const std::string& axis, const Environment&,
               const Wish&);
 
-/// Standard uncertainty of each value, all of it.
+/// Combined standard uncertainty of each value.
 std::array<double, 4> whole_u(const Checked&);
 
 }  // namespace nonio::rtcp

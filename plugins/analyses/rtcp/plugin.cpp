@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What is wrong in the rotary axis that a control has, from readings with its tool centre point
-// control on.
+// Errors of the rotary axis parameters of a control, from readings with active tool center point
+// control.
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>
@@ -44,7 +44,7 @@ void add_values(const Checked& c, math::BudgetOf& budget, Evaluation& out) {
                                         c.u_repetition(k), c.model.shares(c.fit.by[k])));
 }
 
-/// What the workshop looks at: how far a gauge went. Of the readings as they are, so without U.
+/// Largest range of a line, as seen on a gauge. It has no U because it uses raw readings.
 void add_span(const Checked& c, Evaluation& out) {
   double span = 0.0;
   std::vector<double> low, high;
@@ -56,8 +56,8 @@ void add_span(const Checked& c, Evaluation& out) {
   for (std::size_t l = 0; l < low.size(); ++l)
     if (low[l] <= high[l]) span = std::max(span, high[l] - low[l]);
   out.values.push_back({"span", span, Quantity::deviation});
-  // What new parameters can compensate: the readings about their lines, and the residuals of the
-  // fit.
+  // Scatter that new parameters can reduce: readings about the mean of their line, and fit
+  // residuals.
   std::vector<double> sum(low.size(), 0.0), n(low.size(), 0.0);
   for (const auto& r : c.readings) sum[r.line] += r.deviation, n[r.line] += 1.0;
   double measured = 0.0, optimised = 0.0;
@@ -112,8 +112,8 @@ void add_curves(const Checked& c, const Observations& o, Evaluation& out) {
   }
 }
 
-/// Whether something is left that U does not explain: beyond three standard uncertainties, so that
-/// of four good values one in a hundred campaigns states that.
+/// Reports values above three standard uncertainties. With this limit, 1 % of campaigns with four
+/// correct values report one.
 void tell_left(const Checked& c, Evaluation& out) {
   std::string names;
   bool any = false;
@@ -131,7 +131,8 @@ void tell_left(const Checked& c, Evaluation& out) {
                           .texts = {{"names", names}}});
 }
 
-/// The measurement of the same axis before the adjustment; nothing if there is none, or several.
+/// Index of the measurement of the same axis before the adjustment; nullopt if none or several
+/// exist.
 std::optional<std::size_t> before_of(const Campaign& campaign, const Measurement& after) {
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < campaign.measurements.size(); ++i) {
@@ -143,9 +144,9 @@ std::optional<std::size_t> before_of(const Campaign& campaign, const Measurement
   return found;
 }
 
-/// What is left of the errors before, f of them: 0 where the new parameters took them away, 1 where
-/// they are not active, 2 where they were entered with the wrong sign. Each f by chi-square of
-/// after - f before; the parameters hold the error of the measurement before.
+/// Which factor f fits after = f before, by a chi-square test: f = 0 if the new parameters
+/// compensate, 1 if they are not active, 2 if their sign is wrong. The new parameters are from
+/// `one`.
 void compare(const Checked& one, const Checked& two, const std::string& before, Evaluation& out) {
   const auto u_one = whole_u(one), u_two = whole_u(two);
   double n = 0.0, p[3] = {1.0, 1.0, 1.0}, top = 0.0, bottom = 0.0;

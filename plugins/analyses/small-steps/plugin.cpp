@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Small steps of a linear axis: how far the shortest and the longest are from the commanded one, and
-// what a reversal of the direction takes of the first.
+// Small steps of a linear axis: deviations of the shortest and the longest step, and the loss of
+// the first step after a reversal.
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ Difference of_step(const SmallSteps& all, const SmallSteps::One& s, std::string 
           .scale = static_cast<double>(s.direction)};
 }
 
-/// Least and largest deviation of the steps to each target, from either side.
+/// Smallest and largest step deviation at each target, for each direction.
 PointTable table(const SmallSteps& all) {
   struct Errors {
     double least = NAN, largest = NAN;

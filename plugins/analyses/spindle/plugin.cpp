@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Axes of rotation (ISO 230-7): error motions of a spindle from one sensor or a nest of them.
+// Axes of rotation (ISO 230-7): error motions of a spindle from one sensor or several sensors.
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>
@@ -20,27 +20,27 @@ namespace nonio::spindle {
 namespace {
 
 struct Place {
-  double ball = 0.0, sensor = 0.0;  ///< rad, to a thousandth of a degree
+  double ball = 0.0, sensor = 0.0;  ///< orientations, rad, rounded to 0.001°
   auto operator<=>(const Place&) const = default;
 };
 
 struct SetUps {
-  std::map<std::string, std::map<Place, math::Turns>> of;  ///< by the sensor: X, Y1, ...
-  std::vector<Finding> findings;                           ///< sensors that gave no turns
+  std::map<std::string, std::map<Place, math::Turns>> of;  ///< by sensor (X, Y1) and place
+  std::vector<Finding> findings;                           ///< sensors without turns
   bool resampled = false;
 };
 
-/// Error separation: of the places of one sensor, a pair turned by half a turn, or the ball all
-/// round in even steps.
+/// Error separation by the orientations of one sensor: a pair with ball and sensor turned by 180°,
+/// or the ball turned in equal steps over 360°.
 struct Separation {
   enum class Kind { none, donaldson, multi_step } kind = Kind::none;
-  std::vector<Place> places;  ///< of a pair the values are in the orientation of the first one
+  std::vector<Place> places;  ///< results are in the orientation of the first
 };
 
 constexpr double full = 2.0 * std::numbers::pi;
-constexpr double grain = full / 360e3;  // a thousandth of a degree
+constexpr double grain = full / 360e3;  // 0.001°, in rad
 
-/// In [0, 360): 360 is where 0 is.
+/// Rounded to 0.001° within [0°, 360°), in rad.
 double rounded(double angle) {
   const double turned = std::fmod(std::fmod(angle, full) + full, full);
   const double steps = std::round(turned / grain);
@@ -123,12 +123,12 @@ using math::Turns;
 
 bool applies(const Campaign&, const Measurement& m) { return m.kind == "spindle"; }
 
-/// What values are taken from: a sensor, both of them together, or a tilt.
+/// Source of a set of values: one sensor, two sensors together, or a tilt.
 struct Channel {
   std::string name;
   Turns turns;
   bool axial = false;
-  double lever = 0.0;  ///< of a tilt: distance of the sensors, m; else 0
+  double lever = 0.0;  ///< of a tilt: distance of the sensors, m; otherwise 0
   bool with_ball = true;
 };
 
@@ -175,7 +175,7 @@ class Worker {
                       .with_ball = ball});
   }
 
-  /// Range of a mean curve: two readings of it, and what noise adds to the largest of many.
+  /// Range of a mean curve. Its uncertainty contains two readings and the bias of a range by noise.
   void put_synchronous(const Channel& c, const char* name, const std::vector<double>& curve,
                        double u_mean, double dof) {
     const auto [low, high] = std::minmax_element(curve.begin(), curve.end());
@@ -187,7 +187,7 @@ class Worker {
   void one(const Channel& c, const Separation* how) {
     const ErrorMotion e = math::error_motion(c.turns);
     const double half = e.total / 2.0, N = static_cast<double>(c.turns.N);
-    // What these turns did is what is requested: no repetition of its own.
+    // The total motion is defined for these turns only, so it has no repetition uncertainty.
     const double total = c.axial ? e.total_with_once : e.total;
     put(c, "total", total, 0.0, INFINITY, -total / 2.0, total / 2.0, c.with_ball && !c.axial);
     std::vector<double> curve = c.axial ? e.with_once : e.motion;
@@ -213,7 +213,8 @@ class Worker {
     }
   }
 
-  /// The motion of the spindle without the form of the ball, and that form.
+  /// Replaces `curve` by the spindle motion without the form error of the ball, and adds that form
+  /// error.
   void separate(const Channel& c, const Separation& how, std::vector<double>& curve,
                 double& u_mean) {
     const auto& places = set_ups_.of.at(c.name);
@@ -243,7 +244,7 @@ class Worker {
           {.id = "spindle.reversal", .attention = false, .texts = {{"sensor", c.name}}});
   }
 
-  /// The wave of the synchronous motion that is largest: its number shows where to look.
+  /// Reports the largest harmonic of the synchronous motion, because its order indicates the cause.
   void waves(const Channel& c, const std::vector<double>& curve, double u_mean) {
     constexpr int most = 64;
     const auto n = static_cast<double>(curve.size());
@@ -295,7 +296,8 @@ class Worker {
     return found == set_ups_.of.end() ? nullptr : &found->second.begin()->second;
   }
 
-  /// Rotating sensitive direction: from two sensors at a right angle, of the pair nearest the nose.
+  /// Rotating sensitive direction, from two sensors at 90° in the plane nearest to the spindle
+  /// nose.
   void both_directions() {
     for (const auto& [x, y] : {std::pair{"X", "Y"}, {"X1", "Y1"}}) {
       const Turns *X = first(x), *Y = first(y);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Squareness of two axes that were read against the two faces of one square.
+// Squareness of two axes measured against the two faces of one square.
 #include "nonio/math/square.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ bool applies(const Campaign& campaign, const Measurement& m) {
   return !m.square.empty() && led_by(campaign, m).has_value();
 }
 
-/// The square's own error as it was found, against its certificate.
+/// Compares the error found for the square with its certificate.
 void judge_certificate(const AnalysisInput& in, const math::SquareLines& lines, double found,
                        const math::Expanded& e, Evaluation& out) {
   for (const Square& square : in.campaign.squares) {
@@ -44,8 +44,8 @@ void judge_certificate(const AnalysisInput& in, const math::SquareLines& lines, 
   }
 }
 
-/// The same plane by the same square in other placements, or in other states of the machine: the
-/// first of them that gives a value reports all.
+/// Compares the results of all placements and states for the same plane and square. The first
+/// placement with a result reports the comparison.
 void compare_placements(const AnalysisInput& in, const math::SquareLines& own, double U_square,
                         Evaluation& out) {
   std::vector<double> values;

@@ -11,20 +11,21 @@
 namespace nonio::step_diagonal {
 namespace {
 
-constexpr double same_place = 1e-6;  // of the travel
+constexpr double same_place = 1e-6;  // tolerance of positions, relative to the travel
 constexpr std::string_view letters = "XYZ";
 
 Number count(const char* name, std::size_t n) {
   return {name, static_cast<double>(n), Quantity::count};
 }
 
-/// One line of the observations: where its readings lie, in moves of each axis from its start.
+/// One line of the observations, with its positions as numbers of moves of each axis from the
+/// start.
 struct Line {
   std::string name;
   std::array<int, 3> sign{};
   std::vector<std::size_t> rows;
-  std::size_t n = 0;                              ///< steps of an axis; 0: not even
-  std::vector<std::array<std::size_t, 3>> moves;  ///< of each row
+  std::size_t n = 0;                              ///< number of steps per axis
+  std::vector<std::array<std::size_t, 3>> moves;  ///< numbers of moves of each axis, for each row
 };
 
 Expected<void> place(Passes& p, const AnalysisInput& in) {
@@ -42,7 +43,8 @@ Expected<void> place(Passes& p, const AnalysisInput& in) {
   return {};
 }
 
-/// Steps of each axis in a line: whole parts of the travel, the same on all three; else 0.
+/// Number of steps per axis: travel divided by the smallest distance of two positions, the largest
+/// of the axes.
 std::size_t steps_of(const Passes& p, const Observations& o, const Line& line) {
   std::size_t n = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -58,8 +60,8 @@ std::size_t steps_of(const Passes& p, const Observations& o, const Line& line) {
   return n;
 }
 
-/// The first row that does not lie a whole number of steps from the start, or none; the numbers go
-/// to the line.
+/// Counts the moves to each row of the line. Returns the first row that is not a whole number of
+/// steps from the start; nullopt: none.
 std::optional<std::size_t> count_moves(const Passes& p, const Observations& o, Line& line) {
   line.n = steps_of(p, o, line);
   for (const std::size_t row : line.rows) {
@@ -74,7 +76,7 @@ std::optional<std::size_t> count_moves(const Passes& p, const Observations& o, L
         return row;
       moves[k] = static_cast<std::size_t>(std::llround(steps));
     }
-    if (moves[0] + moves[1] + moves[2] == 0) return row;  // before the first move
+    if (moves[0] + moves[1] + moves[2] == 0) return row;  // error: row before the first move
     line.moves.push_back(moves);
   }
   return std::nullopt;
@@ -91,7 +93,7 @@ std::vector<Line> lines_of(const Observations& o) {
   return lines;
 }
 
-/// How many readings of the line come in this order before the first one that does not.
+/// Number of readings up to the first one that contradicts this order of the axes.
 std::size_t in_order(const Line& line, const std::array<std::size_t, 3>& order) {
   math::StepDiagonals d;
   d.order = order;
@@ -107,7 +109,7 @@ std::string words(const std::array<std::size_t, 3>& order) {
   return out;
 }
 
-/// The order in which the axes of a line move: the one that holds longest.
+/// The order of the axes that agrees with the largest number of readings.
 std::array<std::size_t, 3> order_of(const Line& line) {
   std::array<std::size_t, 3> order{0, 1, 2}, best = order;
   do
@@ -116,7 +118,7 @@ std::array<std::size_t, 3> order_of(const Line& line) {
   return best;
 }
 
-/// "sd.csv:17", for words; only the file if the line is not known.
+/// Text such as "sd.csv:17"; only the file name if the line number is not known.
 std::string place_of(const AnalysisInput& in, std::size_t row) {
   const auto& lines = in.observations.source_line;
   return in.measurement.file + (row < lines.size() ? ":" + std::to_string(lines[row]) : "");
@@ -216,7 +218,7 @@ double mean_of(std::span<const math::AxisTest::Reading> readings) {
   return sum / static_cast<double>(readings.size());
 }
 
-/// Mean deviations of an axis, and the standard uncertainty of one from the scatter of repeats.
+/// Mean deviations of an axis, with their standard uncertainty by repetition.
 math::AxisSeries series_of(const math::AxisTest& test, const std::vector<double>& times,
                            std::size_t axis) {
   math::AxisSeries s{axis, {}, {}, 0.0, {}};
@@ -248,7 +250,8 @@ math::AxisSeries series_of(const math::AxisTest& test, const std::vector<double>
   return s;
 }
 
-/// The lengths that were measured in the same state, or those that the user names.
+/// Whether `m` is named by the option `lengths`; without this option, whether it has the same
+/// state.
 bool wanted(const AnalysisInput& in, const Measurement& m) {
   const auto ids = in.options.texts("lengths");
   if (!ids.empty()) return std::find(ids.begin(), ids.end(), m.id) != ids.end();
@@ -291,7 +294,7 @@ std::vector<math::BudgetLine> budget_lines(const Passes& p, const Lengths& lengt
     math::BudgetLine line;
     line.zeroed = true;
     line.group = k;
-    // The scatter of the passes is that of increments, which a walk has too: 1/(3 n) = 2 u^2.
+    // A random walk also contributes to the scatter of increments: 1/(3 n) = 2 u^2.
     line.walk_seen = 1.0 / (6.0 * static_cast<double>(d.n));
     for (std::size_t t = 0; t <= 3 * d.n; ++t) {
       const auto moves = d.counts(t);
@@ -307,7 +310,7 @@ std::vector<math::BudgetLine> budget_lines(const Passes& p, const Lengths& lengt
   for (const math::AxisSeries& s : lengths.series) {
     math::BudgetLine line;
     line.group = lines.size();
-    line.in_residuals = false;  // the scatter is that of the passes
+    line.in_residuals = false;  // the scatter is estimated from the passes
     line.visits = s.visits;
     for (const double x : s.position) line.length.push_back(x - s.position.front());
     const double whole = 1.0;
@@ -326,10 +329,10 @@ double triple(const Vector3& a, const Vector3& b, const Vector3& c) {
          a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-/// Readings of a pass by a turn about e_w of the carriage of `axis`, by a = shape(-1..1) over its
-/// travel. The beam starts at P and goes along u; the carriage turns about R, in its own place of
-/// the axes that carry it and in the middle of those that it carries: a w.(u x (R - P)), less the
-/// zero.
+/// Readings of a pass if the carriage of `axis` turns about e_w by a = shape(-1..1) over its
+/// travel. The beam starts at P in direction u. The center R of rotation is at the position of the
+/// axes that carry `axis`, and in the middle of those that it carries. Reading: a w.(u x (R - P))
+/// minus its first value.
 std::vector<double> turned(const math::StepDiagonals& d, const math::StepDiagonals::Pass& pass,
                            std::size_t axis, std::size_t w, double (*shape)(double)) {
   Vector3 u{}, start{}, about{};
@@ -364,7 +367,7 @@ math::ReadingModel::Input angles_input(const Passes& p, const math::ReadingModel
   math::ReadingModel::Input input;
   input.is = {.id = "angles",
               .with_length = true,
-              .distribution = Distribution::normal,  // a mixture of shapes
+              .distribution = Distribution::normal,  // because several shapes are mixed
               .correlation = Correlation::device,
               .source = "options.step-diagonal.angle_urad"};
   input.of_line.assign(model.lines.size(), u);
@@ -378,7 +381,7 @@ math::ReadingModel::Input angles_input(const Passes& p, const math::ReadingModel
             pattern.push_back(u * one);
             input.is.u = std::max(input.is.u, std::fabs(pattern.back()));
           }
-        pattern.resize(model.readings(), 0.0);  // the lengths go through the middle
+        pattern.resize(model.readings(), 0.0);  // lengths are measured at mid-travel
         input.patterns.push_back(std::move(pattern));
       }
   return input;

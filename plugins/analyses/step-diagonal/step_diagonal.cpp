@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Sequential step diagonals: three positionings, six straightnesses and three squarenesses of a
-// volume, as far as the readings know them.
+// Sequential step diagonals: three positioning, six straightness and three squareness errors of a
+// volume, as far as the readings determine them.
 #include <algorithm>
 #include <cmath>
 
@@ -37,8 +37,8 @@ PointTable table_of(const Passes& p) {
   return table;
 }
 
-/// Puts points, a row a whole step: `target` along the diagonal and a column for each pass, by its
-/// name; and D_max, the largest deviation there, with its U.
+/// Adds a table with one row per whole step (`target` along the diagonal, one column per pass), and
+/// D_max, the largest deviation in it, with U.
 void put_whole_steps(const Passes& p, const math::StepSolution& s, const math::ReadingModel& model,
                      math::BudgetOf* budget, Evaluation& out) {
   PointTable table = table_of(p);
@@ -52,7 +52,7 @@ void put_whole_steps(const Passes& p, const math::StepSolution& s, const math::R
       if (std::fabs(v) > most) most = std::fabs(v), pass = k - 1, step = i;
     }
   if (budget != nullptr && step > 0) {
-    // The reading there less that before the first move.
+    // Difference of this reading and the one before the first move.
     std::vector<double> row(model.readings(), 0.0);
     const std::size_t zero = pass * (3 * p.readings.n + 1);
     row[zero + 3 * step] = 1.0;
@@ -66,7 +66,7 @@ void put_whole_steps(const Passes& p, const math::StepSolution& s, const math::R
 }
 
 constexpr double level = 0.01;
-constexpr double enough_dof = 15.0;  // below it two standard deviations are not 95 %
+constexpr double enough_dof = 15.0;  // with fewer, k = 2 does not cover 95 %
 constexpr double urad = 1e-6, um = 1e-6, mm = 1e-3;
 
 Number number(const char* name, double value, Quantity quantity) { return {name, value, quantity}; }
@@ -76,7 +76,7 @@ Finding attention(const char* id, std::vector<Number> evidence,
   return {.id = id, .attention = true, .evidence = std::move(evidence), .texts = std::move(texts)};
 }
 
-/// Largest distance of a stop from the line of the beam: the mirror must reach so far.
+/// Largest distance of a stop from the beam, m. The mirror must be larger than this.
 double lateral(const StepDiagonals& d) {
   double most = 0.0;
   for (std::size_t t = 1; t < 3; ++t) {
@@ -92,7 +92,7 @@ double lateral(const StepDiagonals& d) {
   return most;
 }
 
-/// What the analysis goes through, with what it may state.
+/// State shared by the steps of the analysis.
 struct Work {
   const AnalysisInput& in;
   const Passes& passes;
@@ -141,7 +141,7 @@ void judge_lengths(Work& w, const StepSolution& s) {
                                                      number("u", gap->u, Quantity::deviation)}));
 }
 
-/// Names of the positionings whose scale is open.
+/// Names of the positioning errors whose scale is not identifiable, separated by ", ".
 std::string open_scales(const StepSolution& s) {
   std::string open;
   for (const StepCurve& c : s.curves)
@@ -158,7 +158,7 @@ void say_scales(Work& w, const StepSolution& s) {
                                      {{"scales", open}}));
 }
 
-/// Straightness that stated angular errors could make by themselves, beyond what is allowed.
+/// Whether stated angular errors could cause a straightness above budget_um; adds a finding.
 bool withheld(Work& w, const StepCurve& c) {
   const double angle = w.in.options.number("angle_urad") * urad;
   const double budget = w.in.options.number("budget_um") * um;
@@ -208,7 +208,8 @@ void put_values(Work& w, const StepSolution& s, const ReadingModel& model) {
   if (certain && model.missing.empty()) w.out.budget = budget.budget();
 }
 
-/// The largest drift that the check sums show, over a whole pass.
+/// Limits of the environment. The drift is increased to that of the check sums if this is
+/// significant.
 HeldLimits limits_of(const Work& w) {
   HeldLimits held = limits_held(w.in.campaign, observations_of(w.in, w.lengths));
   auto& drift = held.environment.drift;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Thermal tests (ISO 230-3): a machine at rest (ETVE), a spindle that turns, an axis that is
-// exercised.
+// Thermal tests (ISO 230-3): a machine at rest (ETVE), a rotating spindle, or a cycling axis.
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>
@@ -15,7 +14,7 @@ namespace {
 
 bool applies(const Campaign&, const Measurement& m) { return m.kind == "thermal"; }
 
-/// What a machine at rest states about the drift that budgets of its other campaigns should have.
+/// Proposes environment.drift for the budgets of other campaigns from a machine at rest.
 void propose_drift(const AnalysisInput& in, const Worked& worked, const Wish& wish,
                    Evaluation& out) {
   if (!(worked.drift > 0.0)) return;

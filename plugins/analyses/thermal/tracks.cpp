@@ -10,13 +10,13 @@ namespace nonio::thermal {
 
 namespace {
 
-/// Rows of the file at which a spindle starts and stops; the speed of a row holds until the next.
+/// Indexes of start and stop of the spindle. The speed of a row applies until the next row.
 struct Run {
   std::size_t start = 0, stop = 0;
   bool stopped = false;
 };
 
-/// Of one line: every line has the same speeds, but for readings that were not taken.
+/// Start and stop from the readings of one line; nullopt if the spindle never turns.
 std::optional<Run> run_of(const Observations& o, const std::vector<std::size_t>& rows,
                           Tracks& out) {
   const auto& s = o.axes.front();
@@ -64,7 +64,7 @@ Followed followed(std::string name, const math::Track& whole, const std::optiona
   return f;
 }
 
-/// Times that both have, and the difference of the first from the second over their distance.
+/// Difference of two tracks divided by their distance, at the times that both contain.
 math::Track tilt_of(const math::Track& one, const math::Track& two, double distance) {
   math::Track out;
   std::size_t j = 0;

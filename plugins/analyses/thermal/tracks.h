@@ -9,29 +9,29 @@
 #include "nonio/sdk/observations.h"
 #include "nonio/sdk/results.h"
 
-/// What a thermal test followed over time.
+/// Displacements over time in a thermal test.
 namespace nonio::thermal {
 
 enum class Test { etve, spindle, axis };
 
-/// One sensor, or a tilt from two of them; zero at its first reading.
+/// One sensor, or a tilt from two sensors; 0 at its first reading.
 struct Followed {
-  std::string name;    ///< X, Y1; of a tilt A (about X), B (about Y)
-  math::Track run;     ///< of a spindle: from its start to its stop; else all
-  math::Track cool;    ///< from the stop on, zero there; empty if it did not stop
-  bool tilt = false;   ///< rad in place of m
+  std::string name;    ///< X, Y1; for a tilt A (about X) or B (about Y)
+  math::Track run;     ///< of a spindle: from start to stop; otherwise all
+  math::Track cool;    ///< from the stop on, 0 at the stop; empty: no stop
+  bool tilt = false;   ///< whether values are in rad instead of m
   double lever = 0.0;  ///< of a tilt: distance of the sensors, m
 };
 
 struct Tracks {
   Test test = Test::etve;
   std::vector<Followed> all;
-  std::vector<math::Visits> visits;  ///< of an axis
+  std::vector<math::Visits> visits;  ///< readings of an axis test by position
   bool speed_steps = false;
   std::vector<Finding> findings;
 };
 
-/// Sensors by their lines, cut where the spindle starts and stops; the visits of an axis.
+/// Displacement of each sensor, split at start and stop of the spindle; the visits of an axis.
 Tracks tracks_of(const Measurement&, const Observations&);
 
 }  // namespace nonio::thermal

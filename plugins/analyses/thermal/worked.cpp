@@ -34,7 +34,7 @@ class Worker {
   }
 
  private:
-  /// Noise of a range: two readings, and what noise adds to the largest and the least of many.
+  /// The u of a range contains two readings and the bias of maximum and minimum by noise.
   Item range_item(const std::string& name, const Track& k, const RangeOf& r, const Followed& f) {
     const auto noise = math::reading_noise(k);
     const std::span<const double> d(k.d);
@@ -101,7 +101,7 @@ class Worker {
     put_constants(f.name, f.run, 1.0, Quantity::deviation, 1.0);
   }
 
-  /// Of a track whose unit is `quantity`; times `lever` it is a length of the machine.
+  /// Time constants of a track in `quantity`; its values times `lever` are lengths in m.
   TimeConstants put_constants(const std::string& name, const Track& k, double lever,
                               Quantity quantity, double scale) {
     const TimeConstants fit = math::time_constants(k);
@@ -174,7 +174,7 @@ class Worker {
     out_.findings.push_back(std::move(f));
   }
 
-  /// The largest of all targets and sides.
+  /// Reports the item of largest absolute value among all targets and directions.
   void put_largest(const char* name, const std::vector<Item>& all) {
     const auto worst = std::max_element(all.begin(), all.end(), [](const Item& a, const Item& b) {
       return std::fabs(a.value) < std::fabs(b.value);
@@ -237,11 +237,11 @@ class Worker {
       propose_effect(fit, g.time.front(), low, high);
   }
 
-  /// The effect of the model that is the same: w (p - fixed) (1 - exp(-t/tau)).
+  /// The equivalent warm-up effect of a machine model: w (p - fixed) (1 - exp(-t/tau)).
   void propose_effect(const TimeConstants& fit, double first, double low, double high) {
     if (fit.parts.size() != 1) return once("thermal.two-for-the-model", {});
     const auto& p = fit.parts.front();
-    // The first cycle is 0 here, and the effect is 0 when the exercise starts.
+    // Tracks are 0 at the first cycle, but the effect is 0 at the start of the exercise.
     const double before = std::exp(first / p.tau);
     double mean = 0.0, place = 0.0, n = 0.0;
     for (const auto& v : tracks_.visits)
@@ -274,7 +274,7 @@ class Worker {
         {"reversal_" + m_.axis, "t", Quantity::time, Quantity::deviation, r.time, r.d, {}});
   }
 
-  /// Per target: what each side did.
+  /// Table: range and end value for each target and direction.
   void points() {
     std::set<double> places;
     for (const auto& v : tracks_.visits) places.insert(v.position);
@@ -296,7 +296,7 @@ class Worker {
       }
   }
 
-  /// How long to warm up, where every sensor that moves states it.
+  /// Warm-up time by the slowest sensor; a lower limit if a sensor has no result.
   void settle() {
     if (tracks_.test == Test::etve || slowest_name_.empty()) return;
     out_.findings.push_back({.id = open_ ? "thermal.warm-up-at-least" : "thermal.warm-up-time",

@@ -12,12 +12,12 @@ namespace nonio::thermal {
 
 struct Wish {
   double window = 3600.0;   ///< s
-  double remaining = 1e-6;  ///< m, change that may remain after the warm-up
+  double remaining = 1e-6;  ///< m, permitted change after the warm-up
 };
 
 using Item = math::Difference;
 
-/// Everything that the tracks give, and what they do not.
+/// Results of the tracks, and findings for results that cannot be computed.
 struct Worked {
   std::vector<Item> items;
   std::vector<Finding> findings;

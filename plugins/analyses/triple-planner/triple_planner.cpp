@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which stops to measure: two axes and the diagonals of their rectangle on one grid.
+// Plans the stops of two axes and of the diagonals of their rectangle on a common grid.
 #include <algorithm>
 
 #include "nonio/math/triples.h"
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double mm = 1e-3;
 
-/// The axis that an option names, which must be linear and have a travel.
+/// The axis named by an option. Error: unknown axis, rotary axis, or no travel stated.
 Expected<const Axis*> planned_axis(const CampaignInput& in, const char* option) {
   const std::string name = in.options.text(option);
   const Axis* axis = in.campaign.machine.axis(name);

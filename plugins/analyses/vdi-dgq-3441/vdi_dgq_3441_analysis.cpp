@@ -45,7 +45,7 @@ PointTable table(const AxisAnalysis& a, const VdiResult& r) {
   return points;
 }
 
-// The common findings name the absent values of ISO 230-2; here they are those of this standard.
+// Replaces the names of absent ISO 230-2 values in the common findings by those of VDI/DGQ 3441.
 void name_absent(std::vector<Finding>& findings) {
   for (Finding& f : findings)
     for (auto& [name, text] : f.texts)
@@ -54,7 +54,7 @@ void name_absent(std::vector<Finding>& findings) {
             f.id == "runs.single" ? "P, Ps_max, Ps_mean" : "P, Pa, Ps_max, Ps_mean, U_max, U_mean";
 }
 
-// What the same readings show by ISO 230-2 and this standard averages away.
+// Findings for properties that ISO 230-2 shows but the averages of VDI/DGQ 3441 hide.
 void hidden(const AxisAnalysis& a, const VdiResult& vdi, Evaluation& e) {
   const Iso230Result iso = evaluate_iso230_2(a.test, 2.0);
   if (scatter_is_asymmetric(a.test) && std::isfinite(iso.R_plus) && std::isfinite(iso.R_minus) &&

@@ -5,7 +5,7 @@
 
 namespace nonio::aerotech {
 
-/// The tables of one axis (:START n ... :END) in a backup; planes and those of other axes stay.
+/// Replaces the tables of one axis (:START n ... :END) in a backup; other axes and planes are kept.
 Expected<std::vector<Artifact>> merge(const MergeInput& in);
 
 }  // namespace nonio::aerotech

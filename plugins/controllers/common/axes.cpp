@@ -8,7 +8,7 @@
 namespace nonio::controllers {
 namespace {
 
-// What every control's tables take: the machine is the same whoever compensates it.
+// Allowed keys, with those that all controls accept because they describe the machine; empty: any.
 std::set<std::string> full_keys(const std::vector<std::string_view>& keys) {
   std::set<std::string> out;
   if (!keys.empty())
@@ -83,7 +83,7 @@ KnownAxis axis_of_file(const std::vector<KnownAxis>& axes, std::string_view file
   if (!ours) return axes.size() == 1 ? axes.front() : KnownAxis{std::string(file), 0, false, {}};
   std::string_view stem = file.substr(prefix.size());
   stem = stem.substr(0, stem.rfind('.'));
-  const KnownAxis* found = nullptr;  // the longest name that fits
+  const KnownAxis* found = nullptr;  // the longest matching name
   for (const KnownAxis& a : axes) {
     const std::string part = file_part(a.name);
     const bool fits = stem == part || stem.rfind(part + "-", 0) == 0;

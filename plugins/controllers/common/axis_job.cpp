@@ -34,10 +34,10 @@ Expected<void> check_names(const NumberTables& settings, const ControllerInput& 
   return {};
 }
 
-/// The compensation that was active while the axis was measured, as far as it is stated.
+/// The compensation that was active during the measurement of the axis.
 struct Active {
-  std::optional<std::string> table;  ///< its files; empty: there was none
-  bool backlash = false;             ///< the value is stated
+  std::optional<std::string> table;  ///< file names; empty: none; nullopt: not stated
+  bool backlash = false;             ///< whether the backlash value is stated
 };
 
 const Measurement* measurement_of(const ControllerInput& input, const std::string& id) {
@@ -89,7 +89,8 @@ std::vector<std::string> about(const ControllerInput& input, const AxisJob& job)
   return lines;
 }
 
-// The table stage looks itself: the analyses that would report it may not have been requested.
+// Ids of drift findings with severity warning. They are computed here because the analyses that
+// report drift are optional.
 std::vector<std::string> drift_of(const math::AxisTest& test) {
   std::vector<Finding> findings;
   math::drift_findings(test, findings);
@@ -99,7 +100,7 @@ std::vector<std::string> drift_of(const math::AxisTest& test) {
   return ids;
 }
 
-// "190.0 mm (3, +)": target, run, direction.
+// Suspect readings as text: target, run and direction, such as "190.0 mm (3, +)".
 std::vector<std::string> suspects_of(const math::AxisTest& test, const AxisJob& job) {
   std::vector<Finding> findings;
   math::suspect_findings(test, findings);
@@ -153,7 +154,7 @@ void say_what_was_left_out(const AxisJob& job, OutputResult& result) {
     say("table.reversal-unjudged");
 }
 
-// A table of the state in which the axis happened to be is wrong by tomorrow.
+// Refuses a table of an unstable axis, because its error changes.
 void refuse_drift(const AxisJob& job, OutputResult& result) {
   result.findings.push_back(
       {"table.refused-drift",
@@ -166,7 +167,7 @@ void refuse_drift(const AxisJob& job, OutputResult& result) {
            job.axis + " in the options of this control."});
 }
 
-// Two measurements of one axis (before, after): each has its own files, and the user chooses.
+// Gives each of several measurements of an axis (before, after) its own file names.
 Expected<void> name_files(std::vector<AxisJob>& jobs, OutputResult& result) {
   std::map<std::string, std::size_t> count;
   for (const AxisJob& j : jobs) ++count[j.axis];
@@ -197,8 +198,8 @@ Expected<void> name_files(std::vector<AxisJob>& jobs, OutputResult& result) {
   return {};
 }
 
-/// A gantry axis measured on parallel lines, without a statement which side has which line: the
-/// tables of master and slave could be confused.
+/// Gantry axes measured on parallel lines without a stated `side`, so that the tables of master and
+/// slave could be exchanged.
 std::set<std::string> unsided_axes(const Campaign& campaign) {
   std::set<std::string> axes;
   if (campaign.machine.structure != "gantry") return axes;
@@ -214,12 +215,12 @@ std::set<std::string> unsided_axes(const Campaign& campaign) {
   return axes;
 }
 
-/// Whether a control that numbers its axes would get a table under a number that is not stated.
+/// Whether the control needs an axis number (key "number:") that is not stated.
 bool number_unsaid(const AxisJob& job, const std::vector<std::string_view>& keys) {
   return job.number == 0 && std::find(keys.begin(), keys.end(), "number:") != keys.end();
 }
 
-/// What to write, and where.
+/// Adds a finding that states the missing axis number and the file for it.
 void refuse_number(const std::string& axis, const std::string& measurement,
                    const ControllerInput& input, OutputResult& result) {
   const std::string& asset = input.campaign.machine.asset;

@@ -14,9 +14,9 @@ namespace nonio::controllers {
 
 namespace {
 
-/// Straightness and what of squareness belongs to it: error of `output` over `input` is the series
-/// plus `sign` times the value times the way. C0Y turns +Y towards -X, B0Z turns +Z towards +X, A0Z
-/// turns +Z towards -Y (ISO 230-1).
+/// A straightness and the squareness that belongs to it. The error is the series plus `sign` times
+/// the squareness times the distance. C0Y turns +Y towards -X, B0Z turns +Z towards +X, A0Z turns
+/// +Z towards -Y (ISO 230-1).
 struct Part {
   const char *series, *squareness;
   double sign;
@@ -40,7 +40,8 @@ const Value* value_of(const Evaluation& e, std::string_view name) {
   return nullptr;
 }
 
-/// The curve of one part towards `output`, or its even part; nothing where a number of it is not known.
+/// The error curve of a part on axis `output`; series names end with `ending`. nullopt: not
+/// determined.
 std::optional<CrossCurve> curve_of(const Evaluation& e, const Part& part, const std::string& output,
                                    const char* ending = "") {
   const Series* s = series_of(e, std::string(part.series) + ending);
@@ -70,7 +71,7 @@ TableSize size_of_curve(const CrossCurve& curve) {
   return size;
 }
 
-/// Settings of option `axes`; one that is malformed is stated where the axes themselves are read.
+/// Settings of option `axes`. A malformed option is empty here; `known_axes` reports it.
 NumberTables known_settings(const ControllerInput& in) {
   return settings_of_axes(in.options).value_or(NumberTables{});
 }
@@ -81,7 +82,7 @@ const Measurement* measurement_named(const Campaign& campaign, std::string_view 
   return nullptr;
 }
 
-/// States the directions of X in which this diagonal was read, and its uncertainty.
+/// Sets the directions of X in which this diagonal was read, and its uncertainty.
 void put_readings(ReadLine& line, const ControllerInput& in, const Measurement& m) {
   const auto index = static_cast<std::size_t>(&m - in.campaign.measurements.data());
   if (index >= in.observations.size() || in.observations[index].axes.empty()) return;
@@ -94,7 +95,7 @@ void put_readings(ReadLine& line, const ControllerInput& in, const Measurement& 
   line.U = math::compensated_uncertainty_along(in.campaign, m, readings);
 }
 
-/// Returns the diagonal of the set that rises or falls over this rectangle; nullptr if there is none.
+/// Returns the diagonal of the set that rises (or falls) over this rectangle; nullptr: none.
 const Measurement* diagonal_over(const ControllerInput& in, const Results::Analysed& a,
                                  const Series& x, const Series& y, bool rising) {
   std::vector<std::string> ids = a.evaluation.uses;
@@ -116,12 +117,12 @@ const Measurement* diagonal_over(const ControllerInput& in, const Results::Analy
   return nullptr;
 }
 
-/// Both diagonals as read, at the stops of the curves.
+/// The curves and both diagonals as read, at the stops of the curves.
 std::optional<CrossJob> of_diagonals(const ControllerInput& in, const Results::Analysed& a) {
   const Evaluation& e = a.evaluation;
   const bool even_only = series_of(e, "q_odd") != nullptr;
-  // After a compensation from the same two diagonals they state nothing new: what they show is left
-  // by the tables in the control, and a table of that would take their place.
+  // A repeated measurement of two diagonals after compensation shows what the tables leave. A table
+  // from it would wrongly replace them.
   if (even_only && std::any_of(e.findings.begin(), e.findings.end(), [](const Finding& found) {
         return found.id == "diagonals.remeasured";
       }))
@@ -154,8 +155,8 @@ std::optional<CrossJob> of_diagonals(const ControllerInput& in, const Results::A
   return job;
 }
 
-/// The body diagonals as read where all axes have moved equally far: they do not contain what a
-/// tilted mirror adds to single moves.
+/// The body diagonals at the stops where all axes have moved equally far, which a tilted mirror
+/// does not affect.
 std::vector<ReadLine> body_diagonals(const Campaign& campaign, const Measurement& m,
                                      const Observations& o) {
   constexpr double same_part = 1e-6;
@@ -245,7 +246,8 @@ std::vector<std::string> CrossJob::outputs() const {
 
 namespace {
 
-/// False, with a finding, where a table of the first side is known to move nothing but it.
+/// Adds the curves of the second gantry side according to `rule`. False, with a finding, if the
+/// effect of a table on that side is not known.
 bool both_sides(CrossJob& job, SecondSide rule, const Campaign& campaign, OutputResult& result) {
   if (rule == SecondSide::moves_along) return true;
   std::vector<CrossCurve> all;
@@ -269,12 +271,12 @@ bool is_by_slave_zero(const ControllerInput& in, bool volume) {
   return !volume && in.options.has("squareness") && in.options.text("squareness") == "slave-zero";
 }
 
-/// "+0.0123 mm"
+/// Text such as "+0.0123 mm".
 std::string shift_words(const SlaveZero& z) {
   return (z.shift < 0.0 ? "" : "+") + decimal(z.shift * 1e3, 4) + " mm";
 }
 
-/// The shift as a drawing, with the driven axis to the right.
+/// Text drawing of the shift, with the driven axis on the right.
 std::vector<std::string> drawing(const SlaveZero& z) {
   const bool plus = z.shift > 0.0;
   const auto place = [&](const std::string& side, double at) {
@@ -293,7 +295,7 @@ std::vector<std::string> drawing(const SlaveZero& z) {
   return lines;
 }
 
-/// A cross table replaces the active one too; a backlash value has no part in it.
+/// Whether the active tables of all axes are stated; findings for those that are not.
 bool all_active_stated(const ControllerInput& in, const CrossJob& job, OutputResult& result) {
   bool all = true;
   for (const std::string& axis : job.moving())
@@ -453,7 +455,7 @@ bool together(const CrossJob& set, const AxisJob& job, const Campaign& campaign)
   }
   if (names_one) return false;
   if (!set.volume) return true;
-  // Step diagonals use runs of their own occasion only.
+  // Step diagonals only use runs of the same state.
   const Measurement *one = measurement_named(campaign, set.measurement),
                     *other = measurement_named(campaign, job.measurement);
   return one != nullptr && other != nullptr && state_of(*one) == state_of(*other);

@@ -12,7 +12,7 @@
 namespace nonio::controllers {
 namespace {
 
-/// Of a whole turn the closed one, where the control goes on at its beginning.
+/// The curve of a whole turn if the control repeats its table every turn, otherwise the axis curve.
 const math::ErrorCurve& compensated_curve(const AxisJob& job, const Writer& w) {
   return w.turn_end == TurnEnd::repeats ? job.table_curve() : job.curve;
 }
@@ -28,7 +28,7 @@ std::string in_steps(double si, double step, double unit) {
   return decimals == 0 ? fixed_text(si / unit, 0) : decimal(si * (1.0 / unit), decimals);
 }
 
-/// A reference position is a point of the grid where the numbers count from it.
+/// Whether the reference must be a grid point, because entries refer to it.
 bool anchored(const ControlTable& t) {
   return t.entry == Entry::increment || t.zero == ControlTable::Zero::first;
 }
@@ -51,8 +51,8 @@ math::GridRule rule_of(const AxisJob& job, const ControllerInput& input, const W
   return rule;
 }
 
-/// Increments begin next to the reference: there is an interval on both sides of it, so that a
-/// control whose axis is homed at its end has its numbers too.
+/// Extends the grid so that increments exist on both sides of the reference, even if the axis is
+/// homed at its end.
 void surround(math::Grid& grid, double reference) {
   if (reference - grid.first < grid.step / 2.0) {
     grid.first -= grid.step;
@@ -70,7 +70,7 @@ std::vector<double> wanted(const AxisJob& job, const Writer& w) {
   return rows;
 }
 
-/// The targets as rows; those that are equal when printed are one.
+/// The targets as rows, without rows that are equal after rounding.
 std::vector<double> listed(const AxisJob& job, const Writer& w, const ControlTable& t) {
   const double unit = t.position_unit.of(job.rotary);
   const int digits = decimals_of(t.position_step.of(job.rotary), unit);
@@ -100,7 +100,8 @@ Expected<void> place_points(Sheet& s, const Writer& w) {
   return {};
 }
 
-/// Where the curve is known over a turn that does not repeat itself, its end is its beginning.
+/// The curve at x. If the table of a turn does not repeat, the gap after its last point is
+/// interpolated to the first value.
 double value_at(const AxisJob& job, const Writer& w, const std::vector<double>& values, double x) {
   const auto& position = compensated_curve(job, w).position;
   const double open = position.front() + full_turn - position.back();
@@ -110,7 +111,7 @@ double value_at(const AxisJob& job, const Writer& w, const std::vector<double>& 
   return values.back() + part * (values.front() - values.back());
 }
 
-/// What the error is where entries are to be 0: the zero of the instrument is no error of the axis.
+/// The error at the reference, which is subtracted because the zero of the instrument is arbitrary.
 double zero_of(const Sheet& s, const Writer& w, const math::ErrorCurve& curve) {
   const auto& values = !s.directions || w.zero_of == ZeroOf::mean ? curve.mean
                        : w.zero_of == ZeroOf::plus                ? curve.plus
@@ -148,7 +149,7 @@ struct Outside {
   std::size_t where = 0;
 };
 
-/// The largest increment that is out of range, with steps that are so many times coarser.
+/// The largest out-of-range increment, for a value step multiplied by `coarser`; largest 0: none.
 Outside outside(const Sheet& s, double coarser) {
   Outside out;
   if (!s.table.increment) return out;
@@ -162,7 +163,7 @@ Outside outside(const Sheet& s, double coarser) {
   return out;
 }
 
-/// The way out, tried before it is advised.
+/// Advice for out-of-range increments. An option value is suggested only if it is sufficient.
 std::string advice(const Sheet& s, const Writer::Coarser& c) {
   const std::string smaller = s.job.rotary ? "step_deg" : "step_mm";
   if (c.option.empty()) return "set a smaller " + smaller;
@@ -192,8 +193,8 @@ Expected<void> check_range(const Sheet& s, const Writer& w) {
   return {};
 }
 
-/// Where entries are 0, before the points are placed. Increments count from the reference, so the
-/// nearest end of what was measured will not do for them; some controls count from their own zero.
+/// Sets the position with entry 0 before the points are placed. Increments refer to it, so it
+/// cannot be the nearest end of the measured range.
 Expected<void> set_reference(Sheet& s, OutputResult& result) {
   const auto told = s.job.position_setting("reference");
   if (!anchored(s.table)) {
@@ -237,7 +238,7 @@ Expected<Sheet> sheet_of(const AxisJob& job, const ControlTable& table,
   return s;
 }
 
-/// The part of the reversal that is left to a parameter, or not compensated.
+/// Reports a reversal that is left to a backlash parameter or not compensated.
 void look_at_reversal(const AxisJob& job, const ControlTable& t, OutputResult& result) {
   if (!t.backlash.empty()) return doubt_backlash(job, result);
   Remark stays = remark(job, "table.reversal-stays");
@@ -245,7 +246,7 @@ void look_at_reversal(const AxisJob& job, const ControlTable& t, OutputResult& r
   result.notes.push_back(std::move(stays));
 }
 
-/// True with its files, false where the table is refused.
+/// True if the files of the axis were written; false, with findings, if its table is refused.
 Expected<bool> write_axis(AxisJob& job, const ControllerInput& input, const Writer& w,
                           OutputResult& result) {
   const bool directions =
@@ -279,7 +280,7 @@ Expected<bool> write_axis(AxisJob& job, const ControllerInput& input, const Writ
   return true;
 }
 
-/// The other side of a gantry axis of the control; empty: it has none.
+/// The other side of a gantry axis by its name in the control; empty: not a gantry axis.
 std::string other_side(const Machine& machine, const std::string& axis) {
   for (const Axis& a : machine.axes) {
     if (a.slave.empty()) continue;
@@ -289,7 +290,7 @@ std::string other_side(const Machine& machine, const std::string& axis) {
   return {};
 }
 
-/// A table of one side alone turns the beam of a gantry: a finding in its place.
+/// Replaces a table for one gantry side by a finding, because it would rotate the beam.
 void withdraw_one_sided(std::vector<AxisJob>& jobs, std::vector<OutputResult>& of_jobs,
                         const Machine& machine) {
   std::set<std::string> written;

@@ -88,7 +88,7 @@ Expected<std::vector<LoadedTable>> parse_list(const TableInput& in, const Contro
     return true;
   });
   if (!tables) return tables;
-  for (LoadedTable& t : *tables)  // a column of zeros is read as "the same as towards plus"
+  for (LoadedTable& t : *tables)  // zeros for minus mean that one column applies to both directions
     if (std::all_of(t.minus.begin(), t.minus.end(), [](double v) { return v == 0.0; }))
       t.minus.clear();
   return tables;

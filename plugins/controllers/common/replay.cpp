@@ -18,14 +18,15 @@ double range_of(const std::vector<double>& v) {
   return *high - *low;
 }
 
-/// Where the line of this axis of the control was measured.
+/// The measurement with a stated line position (`at`) for this axis of the control; nullptr: none.
 const Measurement* line_on(const Campaign& campaign, const std::string& axis) {
   for (const Measurement& m : campaign.measurements)
     if (m.kind == "axis" && !m.at.empty() && control_axis(campaign.machine, m) == axis) return &m;
   return nullptr;
 }
 
-/// Deviations along the line with the tables in the control: the mean of the directions in which it was read.
+/// Deviations along the line with the new tables: mean over the directions of reading. nullopt:
+/// positions of the gantry sides are missing.
 std::optional<std::vector<double>> after(const ReadLine& line, const Replay& replay) {
   std::vector<double> out = line.deviation;
   for (const int way : line.ways)
@@ -41,8 +42,8 @@ std::optional<std::vector<double>> after(const ReadLine& line, const Replay& rep
   return out;
 }
 
-/// Error of one side of a gantry at the reference point of its pitch table, less that at `x0`: what the table of
-/// that side leaves.
+/// Error of a gantry side at the reference point of its pitch table minus that at `x0`, m. nullopt:
+/// this side was not measured for `job`.
 std::optional<double> left_on_side(const ControllerInput& in, const CrossJob& job,
                                    const std::string& axis, double x0,
                                    const NumberTables& settings) {
@@ -65,7 +66,8 @@ std::optional<double> left_on_side(const ControllerInput& in, const CrossJob& jo
   return std::nullopt;
 }
 
-/// By how much the beam is turned where the pitch tables of its sides are zero, against the first stop, rad.
+/// Rotation of the beam at the reference points of the pitch tables relative to the first stop,
+/// rad.
 std::optional<double> turn_of(const ControllerInput& in, const CrossJob& job, const Beam& beam,
                               const NumberTables& settings) {
   const double x0 = job.lines.front().at.front().at(beam.axis);
@@ -75,7 +77,7 @@ std::optional<double> turn_of(const ControllerInput& in, const CrossJob& job, co
   return (*other - *one) / (beam.at_slave - beam.at_axis);
 }
 
-/// Several runs of a line: the worst of them.
+/// Keeps the largest prediction of several runs of a line.
 void keep_worst(std::vector<Prediction>& all, const Prediction& one) {
   const auto known =
       std::find_if(all.begin(), all.end(), [&](const Prediction& p) { return p.name == one.name; });
@@ -96,7 +98,7 @@ std::vector<Beam> beams_of(const Campaign& campaign) {
     for (const auto& [axis, place] : one->at) {
       const auto there = other->at.find(axis);
       if (there == other->at.end() || there->second == place) continue;
-      // Sides that differ in two axes: the axis along which the beam runs is not known.
+      // sides that differ along two axes: the direction of the beam is ambiguous
       if (!beam.along.empty()) {
         beam.along.clear();
         break;
@@ -115,7 +117,7 @@ void turn_to_reference(const ControllerInput& in, CrossJob& job, const NumberTab
       if (!turn) continue;
       for (std::size_t i = 0; i < curve.value.size(); ++i)
         curve.value[i] += *turn * (curve.position[i] - curve.position.front());
-      job.yaw_at_reference = beam.along.front() == 'X' ? *turn : -*turn;  // +X turns towards +Y
+      job.yaw_at_reference = beam.along.front() == 'X' ? *turn : -*turn;  // positive from +X to +Y
     }
 }
 
@@ -126,7 +128,7 @@ bool shift_slave(const ControllerInput& in, CrossJob& job, double C0Y,
       return curve.output == beam.axis && curve.input == beam.along;
     });
     if (!carries) continue;
-    CrossCurve& along_y = job.curves.back();  // EXY alone has C0Y
+    CrossCurve& along_y = job.curves.back();  // only EXY, the last curve, contains C0Y
     for (std::size_t i = 0; i < along_y.value.size(); ++i)
       along_y.value[i] += C0Y * (along_y.position[i] - along_y.position.front());
     const double turn = turn_of(in, job, beam, settings).value_or(0.0);
@@ -188,7 +190,7 @@ void predict_lines(const CrossJob& job, const Replay& replay, OutputResult& resu
   }
   std::vector<Prediction> all;
   for (const ReadLine& line : job.lines) {
-    if (line.deviation.size() < 2) continue;  // nothing of it was read at whole steps
+    if (line.deviation.size() < 2) continue;  // no reading at whole steps
     const auto will = after(line, replay);
     if (!will) {
       result.notes.push_back({"table.sides-not-placed", {}, {}, job.measurement});

@@ -13,7 +13,7 @@ namespace {
 constexpr double least_step = 1e-6, least_angle = 1.0 / arcsec_per_rad, digits = 3.0,
                  steepest = 1e-3, impossible = 5e-2;
 
-/// Smallest difference of two readings that differ; 0 if all are equal.
+/// Smallest nonzero difference of two readings; 0 if all are equal.
 double resolution_of(std::vector<double> all) {
   std::sort(all.begin(), all.end());
   const double size = all.empty() ? 0.0 : std::max(std::fabs(all.front()), std::fabs(all.back()));
@@ -27,7 +27,7 @@ double resolution_of(std::vector<double> all) {
 
 enum class Side { plus, minus, both };
 
-/// Variance of the mean of these directions at a target, by its repeats.
+/// Variance of the mean of the directions in `side` at target i, from repeated readings.
 double variance_at(const math::AxisTest& test, std::size_t i, Side side) {
   double sum = 0.0, sides = 0.0;
   for (const bool minus : {false, true}) {

@@ -9,7 +9,7 @@
 namespace nonio::controllers {
 namespace {
 
-/// Then the model, from which the table is made, has taken it out of the readings.
+/// Whether the machine model contains drift of the axis. Its tables are then free of drift.
 bool is_drift_modelled(const Campaign& campaign, const std::string& axis) {
   return std::any_of(campaign.model.begin(), campaign.model.end(), [&](const std::string& e) {
     const bool drift = e.find("drift") != e.npos || e.starts_with("warm-up");
@@ -31,7 +31,7 @@ void take_uncertainties(const ControllerInput& input, std::size_t index, AxisJob
   if (!job.curve.bidirectional() || job.reversal.kind == Kind::not_constant ||
       job.reversal.kind == Kind::unknown || math::is_reversal_known(mean, job.U.B_mean))
     return;
-  // It stays: how large it may be decides who has to know.
+  // The severity depends on the largest possible reversal.
   job.held = {
       mean, job.reversal.kind != Kind::none || math::matters(test, std::fabs(mean) + job.U.B_mean)};
   if (!job.measured) job.measured = job.curve;

@@ -7,10 +7,9 @@
 
 namespace nonio::controllers {
 
-/// Sets U of the errors that a table of this measurement compensates, from the budget of the
-/// campaign and from drift and repetition. If the mean reversal is not known well enough, it is
-/// removed from the curve: the table is then that of the mean of both directions.
-/// docs/dev/constants.md, A28.
+/// Sets job.U from the budget of the campaign, drift and repetition. If U of the mean reversal is
+/// at least half of it, the reversal is removed from the curve, so that the table compensates the
+/// mean of both directions. Source: docs/dev/constants.md, A28.
 void take_uncertainties(const ControllerInput& input, std::size_t index, AxisJob& job);
 
 /// Adds the finding about a mean reversal that was removed.

@@ -8,7 +8,7 @@
 namespace nonio::controllers {
 namespace {
 
-/// EXX, or EXX_shape where its scale is not known.
+/// Positioning series: EXX, EYY, EZZ, or EXX_shape if the scale is not known.
 struct Positioning {
   bool is = false, shape = false;
 };
@@ -21,8 +21,8 @@ Positioning positioning(std::string_view name) {
   return p;
 }
 
-/// Whether the axis has a run of its own that makes the better table: among those that the step diagonals were
-/// evaluated with, or in their state of the machine.
+/// Whether the axis has a positioning run, which gives a better table: one used for these step
+/// diagonals, or one of the same state.
 bool has_run(const ControllerInput& in, const Results::Analysed& a, const std::string& axis) {
   const auto& all = in.campaign.measurements;
   const auto of = std::find_if(all.begin(), all.end(),
@@ -53,7 +53,8 @@ std::vector<AxisJob> series_jobs(const ControllerInput& in) {
       job.curve.mean = job.curve.plus = s.value;
       job.unresolved = unresolved_step(in, a.measurement, s.position, s.value);
       jobs.push_back(job);
-      // Both sides of a gantry move as far: the diagonals see the beam's middle.
+      // Both gantry sides have the same error, because the diagonals measure the center of the
+      // beam.
       const Axis* axis = in.campaign.machine.axis(s.over);
       if (axis == nullptr || axis->slave.empty()) continue;
       job.axis = axis->slave;

@@ -7,9 +7,9 @@
 
 namespace nonio::controllers {
 
-/// Returns jobs for the positioning from step diagonals (series EXX, EYY, EZZ; EXX_shape if the
-/// scale is not known), for axes without runs of their own in that state, because those give a
-/// better table. On a gantry for both sides.
+/// Returns jobs from step diagonals (series EXX, EYY, EZZ; EXX_shape if the scale is unknown) for
+/// axes without positioning runs in the same state, which would give a better table. A gantry axis
+/// gets one job per side.
 std::vector<AxisJob> series_jobs(const ControllerInput&);
 
 }  // namespace nonio::controllers

@@ -12,10 +12,10 @@
 namespace nonio::controllers {
 namespace {
 
-/// A table that is zero at a target is at most E; twice that cannot belong to this axis.
+/// A table that is 0 at a target cannot exceed E. More than twice E is not a table of this axis.
 constexpr double times_explained = 2.0;
 
-/// What the readings themselves show: range of all mean deviations, and their steepest change.
+/// Limits from the readings: range of all mean deviations, and their steepest change. SI.
 struct Explained {
   double E = 0.0, slope = 0.0;
 };
@@ -37,7 +37,7 @@ Explained explained(const AxisJob& job) {
 
 struct Limit {
   double value;
-  std::string key;  ///< empty: what the readings explain
+  std::string key;  ///< setting of the maker; empty: limit from the readings
 };
 
 Limit tighter(double of_readings, std::optional<double> of_maker, std::string key) {

@@ -12,10 +12,10 @@
 namespace nonio::controllers {
 namespace {
 
-/// ISO 230-1: C0Y turns +Y towards -X, B0Z turns +Z towards +X, A0Z turns +Z towards -Y.
+/// Signs of ISO 230-1: C0Y turns +Y towards -X, B0Z turns +Z towards +X, A0Z turns +Z towards -Y.
 struct Square {
   const char *plane, *value;
-  double lean;  ///< of the second axis towards the first one, for a value of 1
+  double lean;  ///< rotation of the second axis towards the first, per unit of `value`
 };
 constexpr std::array<Square, 3> squares{
     {{"XY", "C0Y", -1.0}, {"XZ", "B0Z", 1.0}, {"YZ", "A0Z", -1.0}}};
@@ -28,7 +28,7 @@ double travel_of(const ControllerInput& in, const std::string& measurement,
         from->second != to->second)
       return std::fabs(to->second - from->second);
   }
-  return 0.1;  // the factor knows no lengths
+  return 0.1;  // any length, because the factor does not depend on it
 }
 
 }  // namespace
@@ -126,7 +126,7 @@ Expected<OutputResult> write_skew(const ControllerInput& in, const Writer& w,
     double found = NAN;
     for (const LoadedTable& t : *read)
       if (t.output == f.first && t.input.front() == f.second) found = -t.plus.back();
-    if (!(std::fabs(found - wanted) < 2e-7))  // 6 decimals of a millimetre, and the product of two
+    if (!(std::fabs(found - wanted) < 2e-7))  // 6 decimals of mm, and a product of two factors
       return fail(w.name + ": plane " + f.plane + " cannot be read back");
     result.predictions.push_back({{},
                                   f.plane,
@@ -134,7 +134,7 @@ Expected<OutputResult> write_skew(const ControllerInput& in, const Writer& w,
                                   std::fabs(std::atan(wanted) - std::atan(found)),
                                   Quantity::small_angle});
   }
-  // The factor turns the commanded position, so both motors of an axis get it.
+  // The correction changes the commanded position, so it applies to both motors of an axis.
   for (const CrossJob& set : cross_jobs(in, SecondSide::moves_along, result))
     predict_lines(set, {.tables = *read}, result);
   result.artifacts.push_back(std::move(file));

@@ -144,7 +144,7 @@ std::string plain(std::string_view text) {
   std::string out;
   for (const char c : text) {
     const auto u = static_cast<unsigned char>(c);
-    if ((u & 0xC0U) == 0x80U) continue;  // the rest of a UTF-8 character
+    if ((u & 0xC0U) == 0x80U) continue;  // continuation byte of a UTF-8 character
     out += u < 0x20 || u > 0x7E ? '?' : c;
   }
   return out;

@@ -7,7 +7,8 @@ namespace {
 using Confidence = ControlTable::Confidence;
 using controllers::Sheet;
 
-// Encoder reading and what is taken off it: reading - truth, the opposite of the deviation.
+// The table has (reading of the encoder - true position), the opposite of the deviation. The
+// control subtracts it.
 ControlTable declared() {
   ControlTable t;
   t.name = "encoder.lookuptable";
@@ -47,7 +48,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
     if (w.empty() || w[0].front() == '#' || w[0].rfind("PREC=", 0) == 0) return false;
     if (w[0] == "scale:" && (w.size() != 2 || controllers::real(w[1]) != 1.0))
       return fail("expected scale: 1, found \"" + std::string(line) + "\"");
-    if (w[0].back() == ':') return false;  // the settings that go with a table
+    if (w[0].back() == ':') return false;  // settings that accompany the table
     const auto x = controllers::real(w[0]), v = controllers::real(w.size() == 2 ? w[1] : "");
     if (!x || !v) return controllers::no_point(line);
     raw.position.push_back(*x);

@@ -29,7 +29,8 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
            : tl::unexpected<Error>(t.error());
 }
 
-// A column of zeros is read as "the same as towards plus": zero itself cannot be stated there.
+// An all-zero second column means equal errors in both directions, so an error of 0 towards minus
+// cannot be expressed.
 Expected<std::vector<Artifact>> files(const controllers::Sheet& s) {
   if (s.directions && std::all_of(s.minus_steps.begin(), s.minus_steps.end(),
                                   [](std::int64_t v) { return v == 0; }))

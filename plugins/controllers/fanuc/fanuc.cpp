@@ -38,7 +38,7 @@ ControlTable declared() {
   return t;
 }
 
-/// With the units, the range and the magnification of this control.
+/// The declaration with units, range and magnification from the options.
 ControlTable table_of(const Settings& o) {
   ControlTable t = *controllers::chosen(declared(), o);
   const double m = static_cast<double>(o.integer("magnification", 1));
@@ -53,16 +53,16 @@ ControlTable table_of(const Settings& o) {
   return t;
 }
 
-// The parameters of one axis, other than its numbers.
+// Parameters of one axis without its compensation values; the comments are parameter numbers.
 struct Parameters {
   std::int64_t reference = 0, low = 0, high = 0;  // 3620, 3621, 3622
   std::int64_t magnification = 1;                 // 3623
-  std::int64_t interval = 0, turn = 0;            // 3624; 3625, 0 where there is no end to close
+  std::int64_t interval = 0, turn = 0;            // 3624; 3625, 0 unless rotary over a turn
   std::int64_t negative_low = 0, opposite = 0;    // 3626, 3627
   std::int64_t backlash = 0;                      // 1851
 };
 
-// A turn begins with the number of the reference position, which repeats the last interval.
+// In a table of a whole turn, the first value (at the reference position) repeats the last one.
 Integers numbers_of(Integers steps, bool turn) {
   if (turn) steps.insert(steps.begin(), steps.back());
   return steps;
@@ -79,22 +79,23 @@ Expected<Parameters> parameters_of(const Sheet& s) {
   if (std::abs(p.backlash) > 9999)
     return fail("axis " + s.job.axis + ": parameter 1851 would be " + std::to_string(p.backlash) +
                 ", the control takes -9999..9999: set a larger detection_unit_um");
-  // Zero where the axis returns to reference; 3627 is the other direction's.
+  // 3627 applies to the direction opposite to the reference return.
   p.opposite = (o.text("reference_return", "+") != "-" ? 1 : -1) * s.minus_start();
   return p;
 }
 
-// Numbers of all axes share one list; each axis gets the next free ones unless they are stated.
+// Assigns point numbers. All axes share one list, and each axis gets the next free range unless its
+// reference_number is stated.
 struct Numbering {
   std::int64_t next = 0;
   struct Range {
     std::string axis;
     std::int64_t low, high;
-    bool chosen = false;  ///< not stated by the user
+    bool chosen = false;  ///< true: range chosen by the program, not stated
   };
   std::vector<Range> taken{};
 
-  /// The first number from which so many more are not in use.
+  /// The first number at or above `low` with `above` more free numbers after it.
   static std::int64_t free_from(std::int64_t low, std::int64_t above, const Settings& o) {
     const auto used = controllers::ranges_of(o.texts("taken"));
     for (std::size_t i = 0; i < used.size();)
@@ -135,7 +136,7 @@ struct Numbering {
   }
 };
 
-// Parameters of a whole word only: 3605 holds other bits that belong to the machine's builder.
+// Writes complete parameter words only, because 3605 contains other bits of the machine builder.
 std::string parameter_text(const Sheet& s, const Parameters& p) {
   std::string out = "%\n";
   const auto parameter = [&](int number, std::int64_t value) {

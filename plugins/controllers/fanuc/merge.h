@@ -5,7 +5,7 @@
 
 namespace nonio::fanuc {
 
-/// The axis' parameters and numbers in a punched backup; numbers of other axes are never taken.
+/// Replaces parameters and point numbers of an axis in a punched backup; other axes keep their own.
 Expected<std::vector<Artifact>> merge(const MergeInput& in);
 
 }  // namespace nonio::fanuc

@@ -18,12 +18,12 @@ using ParameterValues = std::map<std::int64_t, std::int64_t>;
 struct Memory {
   std::map<std::int64_t, ParameterValues> parameter;  // by axis
   std::map<std::int64_t, std::int64_t> pitch;         // by point number
-  std::int64_t least = -7, most = 7;                  // what one number holds
+  std::int64_t least = -7, most = 7;                  // permitted range of one compensation value
 };
 
 Expected<void> put(Memory& memory, std::int64_t number, std::int64_t axis, std::int64_t value,
                    const std::string& whole_line) {
-  constexpr std::int64_t word = 1000000000;  // what a parameter of a control can be
+  constexpr std::int64_t word = 1000000000;  // largest plausible parameter value
   if (number < 0 || number > word || std::abs(value) > word || std::abs(axis) > word)
     return fail("not a block: " + whole_line);
   if (number < 10000) {
@@ -37,8 +37,8 @@ Expected<void> put(Memory& memory, std::int64_t number, std::int64_t axis, std::
   return {};
 }
 
-// N<number>P<value>, or N<number>A<axis>P<value>A<axis>P<value>, one block a line. Newer controls (30i,
-// 31i, 0i-F) write Q0 (pitch data) or Q1 (parameters) after the number.
+// Block formats, one per line: N<number>P<value>, or N<number>A<axis>P<value>A<axis>P<value>. Newer
+// controls (30i, 31i, 0i-F) write Q0 (pitch data) or Q1 (parameters) after the number.
 Expected<void> block(Memory& memory, std::string_view line) {
   std::int64_t number = -1, axis = 0;
   bool has_value = false;
@@ -75,8 +75,8 @@ Expected<void> punched(Memory& memory, std::string_view text) {
   return percents == 2 ? Expected<void>{} : fail("not enclosed by %");
 }
 
-// Absolute compensation in pulses at the ends of the intervals, zero at the reference position.
-// Number n holds the change over the interval that ends n - reference intervals from there.
+// Absolute compensation in pulses at the ends of the intervals, 0 at the reference position. Point
+// n has the change over the interval that ends (n - reference) intervals from this position.
 Expected<std::vector<double>> staircase(const Memory& m, const ParameterValues& p,
                                         std::int64_t offset) {
   std::vector<double> value{0.0};
@@ -92,7 +92,7 @@ Expected<std::vector<double>> staircase(const Memory& m, const ParameterValues& 
   return value;
 }
 
-// A turn ends where it began, and the number of the reference position repeats the last one.
+// Whether the values of a whole turn end as they begin; the first value repeats the last one.
 bool closed(const std::vector<double>& s) {
   const std::size_t n = s.size();
   return n > 2 && s[n - 1] == s[1] && s[n - 2] == s[0];
@@ -117,7 +117,7 @@ Expected<LoadedTable> table(const Memory& m, const ParameterValues& p,
   auto plus = staircase(m, p, 0);
   if (!plus) return tl::unexpected<Error>(plus.error());
   auto minus = plus;
-  // 3605#0 is set by hand where there are two sets; a whole backup states it.
+  // 3605#0 selects two value sets. Without 3605 (not a whole backup), 3626 decides.
   const auto bits = p.find(3605);
   const bool directions = bits == p.end() ? p.count(3626) != 0 : bits->second % 10 == 1;
   if (directions) {
@@ -141,7 +141,7 @@ Expected<LoadedTable> table(const Memory& m, const ParameterValues& p,
   const double pulse = static_cast<double>(p.at(3623)) * unit.detection;
   const double step = static_cast<double>(p.at(3624)) * unit.interval;
   const double first = turn ? 0.0 : axis.position_setting("reference").value_or(0.0);
-  // The first number of a turn, that of the reference position, is the last one once more.
+  // The first value of a whole turn repeats the last one, so it is skipped.
   for (std::size_t i = turn ? 1 : 0; i < plus->size(); ++i) {
     const double at = static_cast<double>(p.at(3621) - 1 - p.at(3620)) + static_cast<double>(i);
     out.position[0].push_back(first + at * step);
@@ -154,7 +154,7 @@ Expected<LoadedTable> table(const Memory& m, const ParameterValues& p,
   return out;
 }
 
-/// Parameter 1001#0 (INM): the linear axes of the machine work in inch. The units of the options are then to be stated.
+/// Parameter 1001#0 (INM) is 1 on machines in inch. The options must then state the units.
 Expected<void> check_units(const Memory& m, const Settings& o) {
   const auto common = m.parameter.find(0);
   if (common == m.parameter.end()) return {};
@@ -167,7 +167,7 @@ Expected<void> check_units(const Memory& m, const Settings& o) {
       "interval_unit_um under [options.fanuc], 2.54 if the least increment is 0.0001 inch");
 }
 
-/// A backup has these parameters of every axis, 0 where there is no table.
+/// A backup contains the parameters of all axes; they are 0 without a table.
 bool has_table(const ParameterValues& p) {
   const auto interval = p.find(3624);
   return interval != p.end() ? interval->second != 0 : p.count(3620) != 0;
@@ -183,7 +183,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   if (o.flag("extended")) memory.least = -128, memory.most = 127;
   bool any = false;
   for (const Artifact& f : in.files) {
-    if (f.bytes.rfind('%', 0) != 0) continue;  // the text that goes with it
+    if (f.bytes.rfind('%', 0) != 0) continue;  // skip the accompanying text file
     any = true;
     if (auto done = punched(memory, f.bytes); !done) return tl::unexpected<Error>(done.error());
   }

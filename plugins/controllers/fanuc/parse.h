@@ -7,8 +7,8 @@
 
 namespace nonio::fanuc {
 
-/// The control as the manual describes it: what it does with these files. Shares nothing with the
-/// code that writes them.
+/// Parses the files as the manual describes the control. It is independent of the code that writes
+/// the files, so that it can verify it.
 Expected<std::vector<LoadedTable>> parse(const TableInput&);
 
 }  // namespace nonio::fanuc

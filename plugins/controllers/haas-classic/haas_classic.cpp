@@ -7,7 +7,7 @@ namespace {
 using Confidence = ControlTable::Confidence;
 constexpr double inch = 25.4e-3;
 
-// A value every 0.5 inch from machine zero towards minus, to 0.0001 inch.
+// One value every 0.5 inch from machine zero towards minus, in units of 0.0001 inch.
 ControlTable declared() {
   ControlTable t;
   t.name = "lead screw compensation of X, Y, Z";

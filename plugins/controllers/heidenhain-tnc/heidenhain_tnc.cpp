@@ -39,7 +39,7 @@ ControlTable declared() {
 
 struct Layout {
   bool listed, power_of_two;
-  // Columns as the table editor has them: a cell starts where its heading starts.
+  // First columns as in the table editor, where a cell begins at the column of its heading.
   std::size_t position, negative, first_axis, width;
 };
 
@@ -71,7 +71,7 @@ std::vector<std::string> axis_columns(const Campaign& campaign, const AxisJob& j
   return names;
 }
 
-// The .COM text; it accepts no comments, the text is in a second file.
+// The .COM text. Comments are not allowed in it, so they are in a second file.
 std::string com_table(const Sheet& s, const std::vector<std::string>& axes, const Crosses& crosses,
                       const Layout& layout) {
   const auto place = [&](std::size_t i) { return s.position[i] / s.position_unit(); };
@@ -110,11 +110,11 @@ bool unfit_for_columns(const std::vector<std::string>& axes) {
   return false;
 }
 
-/// Where the rows of a table are required: at the targets, and where other axes have their points.
+/// Row positions: the targets, and the points of the cross curves.
 std::vector<double> wanted(const AxisJob& job, const Crosses& crosses, const Layout& layout) {
   std::vector<double> at = job.table_curve().position;
   if (crosses.empty()) return at;
-  if (!layout.listed) return crosses.front()->position;  // these are evenly spaced
+  if (!layout.listed) return crosses.front()->position;  // evenly spaced positions
   for (const CrossCurve* cross : crosses)
     at.insert(at.end(), cross->position.begin(), cross->position.end());
   std::sort(at.begin(), at.end());
@@ -150,7 +150,7 @@ std::string words(const Sheet& s, const Crosses& crosses, const Layout& layout,
   return controllers::comments(lines, "");
 }
 
-// One line for each combination; where an axis has two tables, nothing is made active.
+// Writes one row per combination of tables. No row is active if an axis has two tables.
 std::string cma_table(const std::vector<const AxisJob*>& written,
                       const std::vector<std::string>& axes, const Layout& layout) {
   const std::size_t active = 5, first = layout.listed ? 14 : 8;
@@ -178,7 +178,7 @@ std::string cma_table(const std::vector<const AxisJob*>& written,
   return layout.listed ? out + "[END]\n" : out;
 }
 
-/// The columns that belong into the table of this axis, if one state of the machine alone has them.
+/// Cross columns for the table of this axis; empty if several states of the machine have some.
 Crosses columns_of(const std::vector<CrossJob>& sets, const AxisJob& job,
                    const ControllerInput& input) {
   Crosses columns;
@@ -192,11 +192,11 @@ Crosses columns_of(const std::vector<CrossJob>& sets, const AxisJob& job,
   return states == 1 ? columns : Crosses{};
 }
 
-/// What the control computes from columns of other axes and the pitch, from the tables of each.
+/// Predicts the effect of cross columns and pitch together.
 void predict_columns(const CrossJob& set, const std::vector<AxisJob>& jobs,
                      const ControllerInput& input, OutputResult& result) {
   const controllers::Replay replay = controllers::replay_of(set, jobs, input);
-  // A table that was refused takes its columns with it; its finding states why.
+  // A refused table also omits its columns; its finding states the reason.
   const bool any = std::any_of(set.curves.begin(), set.curves.end(), [&](const CrossCurve& curve) {
     return std::any_of(replay.tables.begin(), replay.tables.end(), [&](const LoadedTable& t) {
       return t.output == curve.output && t.input.front() == curve.input;
@@ -239,7 +239,7 @@ Expected<OutputResult> write(const ControllerInput& input) {
     return fail("layout " + input.options.text("layout") +
                 " has no column for the negative direction: set layout = \"tnc640\" or "
                 "directions = false");
-  // The columns of other axes are for one state of the machine, and have no direction.
+  // Cross columns belong to one state of the machine and do not depend on direction.
   auto sets = directions
                   ? std::vector<CrossJob>{}
                   : controllers::cross_jobs(input, controllers::SecondSide::own_table, result);

@@ -5,7 +5,8 @@
 
 namespace nonio::heidenhain_tnc {
 
-/// The axis' .COM under the name that CONFIG.CMA has for it; its cell there, if it was empty.
+/// Writes the .COM table under the name that CONFIG.CMA assigns to the axis. An empty cell of
+/// CONFIG.CMA is filled.
 Expected<std::vector<Artifact>> merge(const MergeInput& in);
 
 }  // namespace nonio::heidenhain_tnc

@@ -15,7 +15,7 @@ namespace {
 using controllers::KnownAxis;
 using Lines = std::vector<std::string_view>;
 
-// The word that starts in this column of the line; the table editor knows columns only.
+// The word that starts in this column of the line. The table editor only uses column positions.
 std::string_view cell(std::string_view line, std::size_t column) {
   if (column == std::string_view::npos || column >= line.size()) return {};
   const std::string_view rest = line.substr(column);
@@ -23,11 +23,11 @@ std::string_view cell(std::string_view line, std::size_t column) {
 }
 
 std::optional<double> real(std::string_view s) {
-  if (s.empty() || (s[0] != '+' && s[0] != '-')) return {};  // the sign is always written
+  if (s.empty() || (s[0] != '+' && s[0] != '-')) return {};  // a sign is mandatory
   return controllers::real(s);
 }
 
-// Start of a column by its heading.
+// First column of a heading; npos if missing.
 std::size_t column_of(std::string_view head, std::string_view name) {
   for (std::size_t at = 0; (at = head.find(name, at)) != std::string_view::npos; ++at) {
     const bool begins = at == 0 || head[at - 1] == ' ';
@@ -42,7 +42,7 @@ std::optional<double> after(std::string_view line, std::string_view key) {
   return at == std::string_view::npos ? std::nullopt : real(cell(line, at + key.size()));
 }
 
-/// Positions of all rows; DATUM and DISTANCE state them again where line 1 has them.
+/// Positions of all rows. If line 1 has DATUM and DISTANCE, the rows must agree with them.
 Expected<std::vector<double>> positions(const Lines& lines, std::size_t end) {
   const auto datum = after(lines[0], "DATUM:"), distance = after(lines[0], "DISTANCE:");
   if (datum.has_value() != distance.has_value() || (distance && !(*distance > 0.0)))
@@ -60,7 +60,7 @@ Expected<std::vector<double>> positions(const Lines& lines, std::size_t end) {
   return out;
 }
 
-/// The numbers of a column; none if it is empty.
+/// The numbers of a column; empty if it has none. Error: partly filled.
 Expected<std::vector<double>> column(const Lines& lines, std::size_t end, std::string_view name) {
   std::vector<double> out;
   const std::size_t at = column_of(lines[1], name);
@@ -71,7 +71,7 @@ Expected<std::vector<double>> column(const Lines& lines, std::size_t end, std::s
   return out;
 }
 
-/// +e: the error is taken off.
+/// Entries are errors (+e), which the control subtracts.
 LoadedTable table(const KnownAxis& input, const KnownAxis& output, const std::vector<double>& x,
                   const std::vector<double>& plus, const std::vector<double>& minus) {
   const bool turn = input.rotary && x.front() == 0.0 && x.back() == 360.0;
@@ -88,7 +88,7 @@ LoadedTable table(const KnownAxis& input, const KnownAxis& output, const std::ve
   return t;
 }
 
-/// Which axis a table is of, as CONFIG.CMA states: by the table's name.
+/// Axis by the name of its table, from CONFIG.CMA.
 using Owners = std::map<std::string, std::string, std::less<>>;
 
 void note_owners(std::string_view cma, Owners& owners) {
@@ -146,7 +146,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   const auto axes = controllers::known_axes(in);
   if (!axes) return tl::unexpected<Error>(axes.error());
   std::vector<LoadedTable> tables;
-  std::map<std::string, double> backlash;  // by axis; "": whatever axis it is
+  std::map<std::string, double> backlash;  // keys are axes; "" applies to any axis
   const auto most = static_cast<std::size_t>(in.options.integer("max_points", 256));
   Owners owners;
   for (const Artifact& f : in.files)

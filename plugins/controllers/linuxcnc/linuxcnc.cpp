@@ -26,21 +26,21 @@ ControlTable declared() {
   return t;
 }
 
-/// Of type 1: columns 2 and 3 are what is added.
+/// The declaration for type 1: columns 2 and 3 are corrections.
 ControlTable corrections(ControlTable t) {
   t.entry = ControlTable::Entry::absolute;
   t.sign = ControlTable::Sign::correction;
   return t;
 }
 
-/// In the machine's unit; type 1 holds what is added, type 0 the actual position.
+/// The declaration in units of the machine: type 1 has corrections, type 0 actual positions.
 ControlTable table_of(const Settings& o) {
   ControlTable t = declared();
   if (o.text("units", "mm") == "inch") t.position_unit.linear = t.value_unit.linear = 25.4e-3;
   return o.integer("type") == 0 ? t : corrections(std::move(t));
 }
 
-// Three numbers a line and nothing else: the reader stops at anything that is not.
+// Only lines with three numbers, because the control stops reading at any other line.
 std::string comp_file(const Sheet& s) {
   std::string out;
   for (std::size_t i = 0; i < s.position.size(); ++i) {
@@ -51,14 +51,15 @@ std::string comp_file(const Sheet& s) {
   return out;
 }
 
-/// As the machine numbers them, from 0; none if not stated.
+/// Joint number from 0; nullopt: not stated.
 std::optional<std::string> joint_of(const AxisJob& job) {
   const auto joint = job.setting("joint"), number = job.setting("number");
   if (!joint && !number) return std::nullopt;
   return fixed_text(joint ? *joint : *number, 0);
 }
 
-/// No section that could be pasted where it does not belong.
+/// The section heading of the joint. If it is not stated, comments replace it, so that lines are
+/// not inserted into a wrong section.
 std::string section_of(const AxisJob& job) {
   const auto joint = joint_of(job);
   if (joint) return "[JOINT_" + *joint + "]\n";
@@ -69,7 +70,7 @@ std::string section_of(const AxisJob& job) {
          "], or number in the machine's record\n";
 }
 
-/// The table itself has no visible end: its length is stated in the second file.
+/// The number of lines, to detect a truncated table; it is written to the second file.
 std::string lines_said(const std::string& comp, const Sheet& s) {
   return comp + " has " + std::to_string(s.position.size()) + " lines";
 }
@@ -125,8 +126,8 @@ Expected<std::vector<Artifact>> files(const Sheet& s) {
       {comp, comp_file(s)}, {stem + ".ini", ini_snippet(s, comp)}, {stem + ".txt", words(s, comp)}};
 }
 
-/// The controller stops reading for good at the first line that is not three numbers, and states
-/// nothing: a file that was cut, or of which a part has no effect, cannot be relied on.
+/// Error if lines were not read. The control silently stops at the first line that is not three
+/// numbers, so a truncated or partly effective file would not be detected.
 Expected<void> whole(const Artifact& f, std::size_t taken, const std::vector<Artifact>& files) {
   const auto all = controllers::lines_of(f.bytes);
   std::size_t last = all.size();
@@ -154,9 +155,8 @@ Expected<void> whole(const Artifact& f, std::size_t taken, const std::vector<Art
   return {};
 }
 
-/// Whether the entries rise with this slope from each end, to within a tenth of the range: actual
-/// positions have slope 1, since an axis goes to where it is sent, and corrections have slope 0. The
-/// file does not state its type.
+/// Whether the entries rise with this slope from each end, within a tenth of the range. Actual
+/// positions have slope 1 and corrections slope 0. The file does not state its type.
 bool follow(const controllers::RawTable& raw, double slope) {
   const auto& x = raw.position;
   const double tenth = 0.1 * (x.back() - x.front());
@@ -168,7 +168,7 @@ bool follow(const controllers::RawTable& raw, double slope) {
   return true;
 }
 
-/// The settings of a joint that go with its table state how to interpret it.
+/// Error if COMP_FILE_TYPE or LINEAR_UNITS in the files contradict the options.
 Expected<void> check_type(const TableInput& in) {
   const std::int64_t type = in.options.integer("type");
   const std::string units = in.options.text("units", "mm");
@@ -189,9 +189,9 @@ Expected<void> check_type(const TableInput& in) {
   return {};
 }
 
-// As the controller's source and runs of it show: reading stops for good at the first line that is
-// not three numbers; a nominal that does not increase drops its line, which is never intended;
-// trims are floats. The axis is in the name of the file, or there is one axis only.
+// As in the source of the control: reading stops at the first line that is not three numbers, a
+// line whose nominal position does not increase is dropped (an error here), and corrections are
+// floats. The file name states the axis, unless the machine has only one.
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   if (auto fits = check_type(in); !fits) return tl::unexpected<Error>(fits.error());
   const auto axes = controllers::known_axes(in);
@@ -220,7 +220,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
       raw.plus.push_back(*plus);
       raw.minus.push_back(*minus);
     }
-    if (raw.position.empty()) continue;  // an .ini, or words; or a table that has no effect
+    if (raw.position.empty()) continue;  // an .ini file, or no effective line
     if (auto ok = whole(f, taken, in.files); !ok) return tl::unexpected<Error>(ok.error());
     const bool rises = follow(raw, 1.0), flat = follow(raw, 0.0);
     if (t.entry == ControlTable::Entry::absolute && rises && !flat)
@@ -250,7 +250,7 @@ Expected<OutputResult> write(const ControllerInput& input) {
 
 std::vector<Option> options() {
   ControlTable t = declared();
-  t.bidirectional = false;  // always: no option for it
+  t.bidirectional = false;  // always bidirectional, so there is no option for it
   t.points = 0;
   return controllers::table_options(
       t,

@@ -4,7 +4,7 @@
 namespace nonio::marlin {
 namespace {
 
-// XY_DIAG_AC and so on of Configuration.h, in mm.
+// Lines of Configuration.h such as XY_DIAG_AC, in mm.
 std::string text(const std::vector<controllers::Face>& faces) {
   std::string out = "#define SKEW_CORRECTION\n";
   if (faces.size() > 1 || faces.front().plane != "XY") out += "#define SKEW_CORRECTION_FOR_Z\n";

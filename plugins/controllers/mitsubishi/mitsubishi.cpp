@@ -9,8 +9,8 @@ namespace {
 using Confidence = ControlTable::Confidence;
 using controllers::Sheet;
 
-// Incremental system: (division interval - way moved) x 2, towards plus as towards minus from the
-// reference position: the opposite of the change of the error, in halves of a micrometre.
+// Incremental system: (nominal - actual length of the interval) x 2, equal in both directions from
+// the reference position. This is the negative change of the error in units of 0.5 um.
 ControlTable declared() {
   ControlTable t;
   t.name = "machine error data";
@@ -29,13 +29,13 @@ ControlTable declared() {
   return t;
 }
 
-ControlTable scaled(const Settings& o) {  // the numbers are pulses times the scale factor
+ControlTable scaled(const Settings& o) {  // entries are pulses times the scale factor
   ControlTable t = *controllers::chosen(declared(), o);
   t.value_unit.linear = t.value_step.linear = 0.5e-6 * static_cast<double>(o.integer("scale", 1));
   return t;
 }
 
-// Point k > 0 holds the interval that ends there, point k < 0 the one that begins there.
+// Point k > 0 applies to the interval that ends at it, point k < 0 to the one that begins at it.
 Expected<std::vector<Artifact>> files(const Sheet& s) {
   std::string out = controllers::comments(s.words(), "# ") + "# point interval_mm number\n";
   const std::int64_t zero = std::llround((s.reference - s.grid.first) / s.grid.step);

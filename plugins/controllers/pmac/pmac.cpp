@@ -12,8 +12,8 @@ using Confidence = ControlTable::Confidence;
 using controllers::AxisJob;
 using controllers::Sheet;
 
-// #motor DEFINE COMP entries,span: motor - load in 1/16 count at 1, 2, ... spacings from motor
-// zero, where it is 0; the table rolls over, so that negative positions are its second half.
+// #motor DEFINE COMP entries,span: (motor - load) in 1/16 count at 1, 2, ... spacings from motor
+// zero, where it is 0. The table is periodic, so its second half has the negative positions.
 ControlTable declared() {
   ControlTable t;
   t.name = "DEFINE COMP";
@@ -28,7 +28,7 @@ ControlTable declared() {
   return t;
 }
 
-/// Counts of the encoder per mm or deg: every length of the file is in counts.
+/// The declaration in encoder counts per mm or deg, because the file uses counts only.
 Expected<ControlTable> in_counts(const controllers::AxisSettings& settings, const std::string& axis,
                                  bool rotary, ControlTable t) {
   const auto counts = settings.find(rotary ? "counts_per_deg" : "counts_per_mm");
@@ -43,8 +43,9 @@ Expected<ControlTable> in_counts(const controllers::AxisSettings& settings, cons
   return t;
 }
 
-/// Entries that hold the value of an end outside of the readings: as far as the travel goes, or a
-/// tenth of the table where it is not stated. Without them the table goes on at its other end.
+/// Numbers of entries outside of the readings that repeat the end value: to the end of the travel,
+/// or a tenth of the table if no travel is stated. Without them, the value would jump to the other
+/// end.
 struct Held {
   std::size_t below = 0, above = 0;
 };
@@ -71,7 +72,7 @@ Expected<std::vector<Artifact>> files(const Sheet& s) {
   const auto below = static_cast<std::size_t>(std::llround(-s.grid.first / s.grid.step));
   const bool turn = s.job.turn.has_value();
   const Held held = turn ? Held{} : held_of(s);
-  std::vector<std::int64_t> circle;  // from motor zero upwards; negative positions come last
+  std::vector<std::int64_t> circle;  // from motor zero upwards; negative positions follow
   for (std::size_t i = below + 1; i < q.size() - (turn ? 1 : 0); ++i) circle.push_back(q[i]);
   circle.insert(circle.end(), held.above, q.back());
   circle.insert(circle.end(), held.below, q.front());
@@ -106,11 +107,11 @@ Expected<std::vector<Artifact>> files(const Sheet& s) {
 }
 
 struct Word {
-  std::string text;  ///< in capital letters
+  std::string text;  ///< word in upper case
   std::size_t line = 0;
 };
 
-/// Without comments: ';' or "//" to the end of the line.
+/// Splits into words without comments (';' or "//" to the end of the line).
 std::vector<Word> words_in(std::string_view bytes) {
   std::vector<Word> out;
   std::size_t number = 0;
@@ -127,8 +128,8 @@ std::vector<Word> words_in(std::string_view bytes) {
   return out;
 }
 
-/// #motor DEFINE COMP entries[,#source[,#target]],span and the entries; the motor may be addressed
-/// in a line before.
+/// One definition: #motor DEFINE COMP entries[,#source[,#target]],span and its entries. An earlier
+/// line may address the motor.
 struct Definition {
   std::size_t motor = 0, source = 0, target = 0;
   std::int64_t entries = 0, span = 0;
@@ -140,14 +141,14 @@ class Definitions {
  public:
   Definitions(const Artifact& file) : file_(file), words_(words_in(file.bytes)) {}
 
-  /// None in a text that goes with a table.
+  /// All definitions; empty for an accompanying text without a table.
   Expected<std::vector<Definition>> all() {
     std::vector<Definition> out;
     while (at_ < words_.size()) {
       if (const auto motor = motor_at(at_)) {
         motor_ = *motor;
         ++at_;
-      } else if (is("DELETE") || is("DEL")) {  // what was there before
+      } else if (is("DELETE") || is("DEL")) {  // deletes a table that existed before
         at_ += 2;
       } else if (is("DEFINE") || is("DEF")) {
         NONIO_TRY(auto one, definition());
@@ -168,7 +169,7 @@ class Definitions {
   std::optional<std::size_t> motor_at(std::size_t i) const {
     if (i >= words_.size() || !words_[i].text.starts_with('#')) return std::nullopt;
     std::string_view number = std::string_view(words_[i].text).substr(1);
-    if (number.ends_with('D')) number.remove_suffix(1);  // by the desired position
+    if (number.ends_with('D')) number.remove_suffix(1);  // table indexed by desired position
     const auto motor = controllers::whole(number);
     if (!motor || *motor < 1 || *motor > 1000) return std::nullopt;
     return static_cast<std::size_t>(*motor);
@@ -219,8 +220,8 @@ class Definitions {
   std::size_t at_ = 0, motor_ = 0;
 };
 
-/// The axis of a motor; of a table that moves the motor from which it takes its position, also by
-/// the motor in whose memory it is.
+/// The axis of the target motor. If source and target are equal and the target is unknown, the axis
+/// of the motor that stores the table.
 controllers::KnownAxis axis_of(const std::vector<controllers::KnownAxis>& axes,
                                const Definition& d) {
   controllers::KnownAxis target = axis_numbered(axes, d.target);
@@ -252,10 +253,10 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   if (!axes) return tl::unexpected<Error>(axes.error());
   std::vector<LoadedTable> tables;
   std::map<std::string, double> backlash;
-  std::optional<Error> unknown;  // a motor that no axis has
+  std::optional<Error> unknown;  // error about a motor without an axis
   for (const Artifact& f : in.files) {
     NONIO_TRY(const auto all, Definitions(f).all());
-    if (all.empty()) {  // the text that goes with it
+    if (all.empty()) {  // text that accompanies a table
       if (const auto v = controllers::parameter_in(f.bytes, declared().backlash))
         backlash[axis_of_file(*axes, f.name, "pmac-").name] = *v;
       continue;

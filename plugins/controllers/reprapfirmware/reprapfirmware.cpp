@@ -5,7 +5,7 @@
 namespace nonio::reprapfirmware {
 namespace {
 
-/// Letters of M556: X the XY pair, Y the YZ pair, Z the XZ pair.
+/// Letters of M556: X is the XY pair, Y the YZ pair, Z the XZ pair.
 struct Pair {
   char letter;
   const char *plane, *output, *input;
@@ -13,7 +13,7 @@ struct Pair {
 constexpr std::array<Pair, 3> pairs{
     {{'X', "XY", "X", "Y"}, {'Y', "YZ", "Y", "Z"}, {'Z', "XZ", "X", "Z"}}};
 
-constexpr double height = 1000.0;  // S, mm
+constexpr double height = 1000.0;  // parameter S, mm
 
 ControlTable declared() {
   ControlTable t = controllers::skew_declared("M556");
@@ -25,7 +25,7 @@ ControlTable declared() {
   return t;
 }
 
-// One line of config.g; a plane that is not known keeps what the control has.
+// One line of config.g. A plane without a result keeps the value of the control.
 std::string text(const std::vector<controllers::Face>& faces) {
   std::string out = "M556 S" + fixed_text(height, 0);
   for (const Pair& pair : pairs)

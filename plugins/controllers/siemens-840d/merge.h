@@ -5,8 +5,8 @@
 
 namespace nonio::siemens_840d {
 
-/// The axis' lines in archives that hold several; direction tables get the numbers that the axis
-/// has, or free ones.
+/// Replaces the lines of the axis in archives of several axes. Direction tables keep the numbers of
+/// the backup, or get free ones.
 Expected<std::vector<Artifact>> merge(const MergeInput& in);
 
 }  // namespace nonio::siemens_840d

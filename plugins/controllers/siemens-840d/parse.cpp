@@ -31,16 +31,16 @@ struct Table {
   std::string input, output;
 };
 
-constexpr std::int64_t most_elements = 5000;  // of MD38000, manual K3
+constexpr std::int64_t most_elements = 5000;  // limit of MD38000 (manual K3)
 
 struct Memory {
-  std::size_t points = 0;                // MD38000, MD18342, if they are stated
-  std::map<std::string, Table> encoder;  // "0,AX1"
-  std::map<std::string, Table> cec;      // table number
+  std::size_t points = 0;                // MD38000, MD18342; 0: not stated
+  std::map<std::string, Table> encoder;  // by encoder and axis: "0,AX1"
+  std::map<std::string, Table> cec;      // by table number
   std::map<std::string, double> backlash;
 };
 
-// (AX1) or "AX1"
+// AX1 from (AX1) or "AX1"; empty if too short.
 std::string axis_word(const std::string& s) {
   return s.size() > 2 ? s.substr(1, s.size() - 2) : std::string();
 }
@@ -106,7 +106,7 @@ Expected<void> put_entry(Table& table, const std::string& index, const Assignmen
   return {};
 }
 
-/// MD10240 of the control and MD32711 of an axis: 0 where positions and entries are in inch.
+/// Error unless MD10240 of the control and MD32711 of an axis are 1 (metric).
 Expected<void> put_unit(const Assignment& a) {
   const auto v = real(a.value);
   if (v && *v == 1.0) return {};
@@ -138,8 +138,8 @@ Expected<void> put(Memory& memory, const Assignment& a) {
   return fail("unknown variable " + a.name);
 }
 
-/// An archive has %_N_, CHANDATA(1), assignments and M17; a part program that sets the tables has the
-/// assignments alone, and ends with M17, M2 or M30.
+/// Reads an archive (%_N_, CHANDATA(1), assignments, M17) or a part program, which contains only
+/// assignments and ends with M17, M2 or M30.
 Expected<void> read_file(Memory& memory, const Artifact& file) {
   bool any = false, archive = false, begun = false, ended = false;
   std::size_t number = 0;
@@ -159,7 +159,7 @@ Expected<void> read_file(Memory& memory, const Artifact& file) {
     } else if (line == "M17" || (!archive && (line == "M2" || line == "M02" || line == "M30"))) {
       ended = true;
     } else if (!archive && (line == "M0" || line == "M00")) {
-      continue;  // a stop of the program
+      continue;  // M0 stops the program and changes nothing
     } else {
       if (archive && !begun) return wrong("assignment before CHANDATA: " + std::string(line));
       auto a = assignment(line);
@@ -184,7 +184,7 @@ Expected<void> whole(const Table& t) {
   return {};
 }
 
-// An entry is added to the actual value: a positive one drives the output axis towards minus.
+// A positive entry is added to the actual value, so it drives the output axis towards minus.
 Expected<LoadedTable> loaded(const Table& t, const KnownAxis& input, const KnownAxis& output) {
   if (auto ok = whole(t); !ok) return tl::unexpected<Error>(ok.error());
   using Outside = LoadedTable::Outside;
@@ -207,7 +207,7 @@ Expected<LoadedTable> loaded(const Table& t, const KnownAxis& input, const Known
   return out;
 }
 
-// AXn is the axis of that number.
+// The axis of the number n in AXn.
 KnownAxis axis_of(const std::vector<KnownAxis>& axes, const std::string& word) {
   const auto number = word.rfind("AX", 0) == 0 ? controllers::whole(word.substr(2)) : std::nullopt;
   KnownAxis axis = number && *number > 0 ? axis_numbered(axes, static_cast<std::size_t>(*number))
@@ -222,7 +222,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   const auto axes = controllers::known_axes(in);
   if (!axes) return tl::unexpected<Error>(axes.error());
   Memory memory;
-  // The default is that of the smallest control: a file of a larger one states more by itself.
+  // The default is the limit of the smallest control, so it is not applied to files of larger ones.
   constexpr std::int64_t fewest = 200;
   if (const auto points = in.options.integer("max_points", fewest); points != fewest)
     memory.points = static_cast<std::size_t>(points);

@@ -17,8 +17,8 @@ ControlTable declared() {
   t.name = "$AA_ENC_COMP, $AN_CEC";
   t.zero = ControlTable::Zero::reference;
   t.position_step = {1e-4 / 1e3, 1e-3 / deg_per_rad};
-  t.value_step = {1e-9, 1e-6 / deg_per_rad};  // of no limit: 1 nm, 0.004 arcsec
-  t.points = 200;                             // 808D, 828D; else MD38000 and MD18342 state
+  t.value_step = {1e-9, 1e-6 / deg_per_rad};  // no limit in practice: 1 nm, 0.004 arcsec
+  t.points = 200;                             // 808D, 828D; others state MD38000 and MD18342
   t.bidirectional = t.straightness = t.squareness = true;
   t.backlash = "MD32450";
   t.facts = {{"sign", Confidence::documented, "A positive entry drives the axis towards minus."},
@@ -32,7 +32,7 @@ ControlTable declared() {
 
 std::string axis_name(const Sheet& s) { return "AX" + std::to_string(s.job.number); }
 
-// Every file of an axis has the same text; then follows that about this table.
+// Comments that all files of an axis share, followed by those of this table.
 std::string remarks(const Sheet& s, const std::vector<std::string>& of_table) {
   return controllers::comments(s.warning, "; ") + controllers::comments(s.job.about, "; ") +
          controllers::comments(of_table, "; ");
@@ -43,7 +43,7 @@ const char* const sign_is =
 const char* const sign_does =
     "the control adds them to the actual position, a positive entry drives towards minus";
 
-// What stays the same in both kinds of table; `index` is "0,AX1" or the number of a table.
+// Lines that both kinds of table share; `index` is "0,AX1" or the number of a table.
 std::string range_lines(const std::string& variable, const std::string& index, const Sheet& s) {
   const auto line = [&](const char* name, const std::string& value) {
     return "$" + variable + "_" + name + "[" + index + "]=" + value + "\n";

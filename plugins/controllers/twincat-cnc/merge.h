@@ -5,7 +5,7 @@
 
 namespace nonio::twincat_cnc {
 
-/// kw.ssfk in the list of the axis; whatever else the list holds, kw.crosscomp too, stays.
+/// Replaces kw.ssfk in the list of the axis; other content such as kw.crosscomp is kept.
 Expected<std::vector<Artifact>> merge(const MergeInput& in);
 
 }  // namespace nonio::twincat_cnc

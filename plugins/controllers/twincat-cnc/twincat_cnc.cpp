@@ -49,10 +49,11 @@ std::string head(const std::vector<std::string>& words, std::size_t number,
          line("kopf.log_achs_name", controllers::plain(name));
 }
 
-// P-AXIS-00103 is a whole number of 16 bits, in 0.1 um as the lists are (0.0001 deg).
+// P-AXIS-00103 has 16 bits and the unit of the lists, 0.1 um (0.0001 deg).
 constexpr std::int64_t most_lose = 32767;
 
-/// The words of a list with the parameter as it is typed in, not in mm.
+/// The header text of a list, with the backlash in units of the parameter instead of mm. Error: it
+/// exceeds 16 bits.
 Expected<std::vector<std::string>> words_with_lose(const Sheet& s) {
   std::vector<std::string> words = s.words();
   const double unit = s.position_unit();
@@ -84,7 +85,7 @@ Expected<std::vector<Artifact>> files(const Sheet& s) {
   return std::vector<Artifact>{{"twincat-cnc-" + s.job.stem + ".lis", out}};
 }
 
-// The keys of a list with their numbers.
+// Numbers by key of a list.
 using List = std::map<std::string, double, std::less<>>;
 
 List read_list(std::string_view bytes) {
@@ -129,7 +130,7 @@ Expected<LoadedTable> screw(const List& list, const controllers::KnownAxis& axis
   return controllers::loaded(declared(), raw);
 }
 
-/// `sign`: what one of its units adds to the slave.
+/// Converts kw.crosscomp to a table. `sign`: contribution of one unit to the slave axis.
 Expected<LoadedTable> cross(const List& list, const std::vector<controllers::KnownAxis>& axes,
                             const controllers::KnownAxis& slave, double sign) {
   const auto master = list.find("kw.crosscomp.master_ax_nr");
@@ -149,7 +150,7 @@ Expected<LoadedTable> cross(const List& list, const std::vector<controllers::Kno
   return t;
 }
 
-/// "getriebe[0].lose = 30": among the words, as in the list of the axis itself.
+/// Value of "getriebe[0].lose = 30" in comments or in the list of the axis, SI; nullopt: none.
 std::optional<double> lose_in(std::string_view bytes, bool rotary) {
   const std::string_view key = "getriebe[0].lose";
   const std::size_t at = bytes.find(key);
@@ -216,7 +217,8 @@ std::string cross_list(const CrossCurve& c, const std::vector<controllers::Known
   return out;
 }
 
-/// A slave has one master: two diagonals have that, step diagonals do not.
+/// Writes cross tables of two diagonals. Step diagonals are skipped, because a slave has only one
+/// master.
 Expected<void> write_cross(const ControllerInput& in,
                            const std::vector<controllers::AxisJob>& pitch, OutputResult& result) {
   const std::string said = in.options.text("cross_sign");

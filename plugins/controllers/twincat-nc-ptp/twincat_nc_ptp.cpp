@@ -7,7 +7,8 @@ namespace {
 using Confidence = ControlTable::Confidence;
 using controllers::Sheet;
 
-// MC_TableBasedPositionCompensation: equidistant, rising positions with what is added there.
+// MC_TableBasedPositionCompensation: equidistant, increasing positions with the value that is
+// added.
 ControlTable declared() {
   ControlTable t;
   t.name = "ST_PositionCompensationTableElement";
@@ -40,7 +41,7 @@ Expected<std::vector<Artifact>> files(const Sheet& s) {
   return std::vector<Artifact>{{"twincat-nc-ptp-" + s.job.stem + ".st", out + "END_VAR\n"}};
 }
 
-/// The number behind this word.
+/// The integer after this key; nullopt: none.
 std::optional<std::int64_t> number_behind(std::string_view text, std::string_view key) {
   const std::size_t at = text.find(key);
   if (at == std::string_view::npos) return std::nullopt;
@@ -48,7 +49,7 @@ std::optional<std::int64_t> number_behind(std::string_view text, std::string_vie
   return words.empty() ? std::nullopt : controllers::whole(words.front());
 }
 
-/// The text states how many elements there are, and ends: one that was cut is no shorter table.
+/// Error if the number of elements differs from the declared one, because the text was truncated.
 Expected<void> whole(const Artifact& f) {
   const std::string_view text = f.bytes;
   const std::string_view element = "Compensation :=";

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// day-wave: deviation = (p - fixed) (a sin(w t) + b (1 - cos(w t))); zero-wave: the same without
-// (p - fixed). p: position from the middle of the measured stretch, m or rad; fixed: what does not
-// move, the same; t: time since the first reading of its line, s; w = 2 pi/86400 s. a, b: m/m or
-// rad/rad; of zero-wave m or rad.
+// day-wave: deviation = (p - fixed) (a sin(w t) + b (1 - cos(w t))); zero-wave: the same without (p
+// - fixed). p: position from the middle of the measured range, fixed: that of the fixed point, m or
+// rad; t: time since the first reading of its line, s; w = 2 pi/86400 s. a, b: m/m or rad/rad; of
+// zero-wave m or rad.
 #include <cmath>
 #include <numbers>
 
@@ -12,7 +12,7 @@
 namespace nonio::day_wave {
 
 constexpr double day = 86400.0;         // s
-constexpr double shortest = day / 6.0;  // a shorter piece cannot be recognised as a wave
+constexpr double shortest = day / 6.0;  // s, minimum duration for a wave
 constexpr double of_time = 2.0 * std::numbers::pi / day;
 
 static bool long_enough(const Observations& o, const Axis& axis) {

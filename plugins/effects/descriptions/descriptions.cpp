@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is left, not why. free-growth: p v_k, straight in time from one knot to the next (p:
-// position from the middle of the measured stretch, m or rad; v in m/m or rad/rad). free-position:
-// s_k at target k; free-reversal: d r_k/2 at target k; free-time: straight from one knot of time to
-// the next, v_k at knot k. s, r, v: m or rad; d: direction of approach.
+// Effects that describe residuals without a cause. free-growth: p v_k, piecewise linear in time (p:
+// position from the middle of the measured range, m or rad; v in m/m or rad/rad). free-position:
+// s_k at target k; free-reversal: d r_k/2 at target k; free-time: v_k at knot k, piecewise linear
+// in time. s, r, v: m or rad; d: direction of approach.
 #include <algorithm>
 #include <cmath>
 
@@ -11,14 +11,14 @@
 
 namespace nonio::descriptions {
 
-constexpr std::size_t fewest_targets = 5;  // ISO 230-2 requires no fewer
+constexpr std::size_t fewest_targets = 5;  // minimum number of targets in ISO 230-2
 constexpr std::size_t most_targets = 400;
 
 static std::vector<double> targets(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
   if (!r) return {};
   const std::vector<double> all = targets_of(*r);
-  // Each target was read twice at least, else the curve is the readings themselves.
+  // Two readings per target are required; otherwise the curve would be the readings themselves.
   if (all.size() < fewest_targets || all.size() > most_targets || o.size() < 2 * all.size())
     return {};
   return {static_cast<double>(all.size())};
@@ -30,7 +30,7 @@ static std::vector<double> reversals(const Observations& o, const Axis& axis) {
   return targets(o, axis);
 }
 
-/// The column of a target is `of(reading)` at its readings.
+/// One column per target: `of(reading)` at readings of this target, otherwise 0.
 template <class Value>
 static Expected<Effect::Columns> by_target(const Observations& o, const Axis& axis, Value of) {
   NONIO_TRY(const auto r, readings_of(o, axis));
@@ -47,7 +47,7 @@ static Expected<Effect::Columns> by_target(const Observations& o, const Axis& ax
 static Expected<Effect::Columns> of_position(const Observations& o, const Axis& axis,
                                              const std::vector<double>&) {
   auto columns = by_target(o, axis, [](const AxisReadings&, std::size_t) { return 1.0; });
-  if (columns && !columns->empty()) columns->erase(columns->begin());  // the line has a zero
+  if (columns && !columns->empty()) columns->erase(columns->begin());  // the line zero is free
   return columns;
 }
 
@@ -56,7 +56,7 @@ static Expected<Effect::Columns> of_reversal(const Observations& o, const Axis& 
   return by_target(o, axis, [](const AxisReadings& r, std::size_t i) { return r.d[i] / 2.0; });
 }
 
-/// Numbers of knots: six readings at least for each.
+/// Numbers of knots with at least six readings per knot.
 static std::vector<double> knots(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
   if (!r || !(r->duration > 0.0)) return {};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// deviation = g (p - fixed) t; p: position from the middle of the measured stretch, m or rad;
-// fixed: the same, of the fixed point that the manifest states, else 0 (another one is growth about
-// the middle and a drift of the zero); t: time since the first reading of its line, s; g: 1/s.
+// deviation = g (p - fixed) t; p: position from the middle of the measured range, m or rad; fixed:
+// position of the fixed point in the manifest from the same middle, otherwise 0 (another fixed
+// point only adds a drift of the zero); t: time since the first reading of its line, s; g: 1/s.
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Displacements over time that follow recorded channels. L(x, tau): first-order lag of x, s
-// (sdk/channels.h); T, T1, T2: temperatures, degC; n: a speed or a load; t: time since the first reading, s.
+// Displacements over time caused by recorded channels. L(x, tau): first-order lag of x, s
+// (sdk/channels.h); T, T1, T2: temperatures, degC; n: speed or load; t: time since the first
+// reading, s.
 //
 //     heat:T               g L(T, tau)                      g: m/K
 //     heat-slow:T          g L(T, tau), tau longer than that of heat:T    g: m/K
@@ -22,7 +23,7 @@ namespace {
 using Channel = Observations::Channel;
 using Columns = Effect::Columns;
 
-/// K; a channel that changes less is its own noise.
+/// Minimum range of a temperature channel, K; a smaller range is considered sensor noise.
 constexpr double least_range = 0.05;
 
 bool varies(const Channel& c, double least) {
@@ -52,12 +53,12 @@ std::vector<std::string> sources(const Observations& o) {
   return names(o, [](const Channel& c) { return is_source(c) && varies(c, 0.0); });
 }
 
-/// Of the structure, where the manifest states what a sensor measures.
+/// Whether the temperature may bend the structure: its role is "structure" or not stated.
 bool may_bend(const Channel& c) {
   return c.is_temperature() && (c.role.empty() || c.role == "structure") && varies(c, least_range);
 }
 
-/// Every pair once; a name that is one of two has no "-" of its own.
+/// Names "A-B" of all pairs of channels. Channels with "-" in their name are omitted.
 std::vector<std::string> differences(const Observations& o) {
   std::vector<std::string> out;
   const std::vector<std::string> all = names(o, may_bend);
@@ -73,7 +74,7 @@ std::vector<std::string> of_time(const Observations& o) {
                                                    : std::vector<std::string>{};
 }
 
-/// The axis that was moved between targets; none in a test over time.
+/// The column of the axis that moved between targets; nullptr in a test over time.
 const Observations::AxisColumn* moved(const Observations& o) {
   if (o.axes.size() != 1 || o.axes.front().position.size() != o.size()) return nullptr;
   return o.axes.front().axis == "S" ? nullptr : &o.axes.front();
@@ -84,7 +85,7 @@ bool has_times(const Observations& o) {
          std::all_of(o.time.begin(), o.time.end(), [](double t) { return std::isfinite(t); });
 }
 
-/// Of axis runs: a displacement that follows a temperature, and growth with it, once each.
+/// Tests over time only. Positioning runs use the effects of `applies_to_runs`.
 bool applies(const Observations& o, const Axis&) { return has_times(o) && moved(o) == nullptr; }
 bool applies_to_all(const Observations& o, const Axis&) { return has_times(o); }
 bool applies_to_runs(const Observations& o, const Axis&) {
@@ -96,7 +97,7 @@ Effect::Shape lag(const char* name, const char* help) {
           .grid = [](const Observations& o, const Axis&) { return time_constants_for(o.time); }};
 }
 
-/// A time constant that is not 0.
+/// Shape parameter: a time constant other than 0.
 Effect::Shape decay(const char* name, const char* help) {
   return {.parameter = {name, help, Quantity::time},
           .grid = [](const Observations& o, const Axis&) {
@@ -106,7 +107,7 @@ Effect::Shape decay(const char* name, const char* help) {
           }};
 }
 
-/// The longer half of the lags.
+/// Shape parameter: the longer half of the time constants.
 Effect::Shape slow(const char* name, const char* help) {
   return {.parameter = {name, help, Quantity::time},
           .grid = [](const Observations& o, const Axis&) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Errors of the linear axes that read the centres of a ball: the circle becomes an ellipse. A
-// machine whose axes err by e reads P - e at P; n: direction of sensing, x, y, z: place, m:
+// Errors of the linear axes that measure ball centers: the circle becomes an ellipse. A machine
+// whose axes have errors e reads P - e at P. n: direction of sensing; x, y, z: position, m:
 //     linear-squareness  XY: +c y n_x   XZ: -c z n_x   YZ: +c z n_y   (signs as squareness, rad)
 //     linear-scale       X: -k x n_x, and so on   (k: m/m, as scale)
 #include "nonio/sdk/space_readings.h"
@@ -17,7 +17,7 @@ struct Pair {
 constexpr Pair squares[] = {{"XY", 0, 1, +1.0}, {"XZ", 0, 2, -1.0}, {"YZ", 1, 2, +1.0}};
 constexpr Pair scales[] = {{"X", 0, 0, -1.0}, {"Y", 1, 1, -1.0}, {"Z", 2, 2, -1.0}};
 
-/// A ball that hardly leaves a plane does not determine the coordinate across it.
+/// Whether the ball moves far enough along both coordinates to determine the effect.
 bool seen(const SpaceReadings& s, const Pair& pair) {
   const double widest = *std::max_element(s.length.begin(), s.length.end());
   return s.length[pair.lever] > 0.05 * widest && s.length[pair.error] > 0.05 * widest;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// deviation = a sin(2 pi p/P) + b cos(2 pi p/P); p: position from the middle of the measured
-// stretch, m; P: period, m; a, b: m.
+// deviation = a sin(2 pi p/P) + b cos(2 pi p/P); p: position from the center of the measured range,
+// m; P: period, m; a, b: m.
 #include <algorithm>
 #include <numbers>
 
@@ -9,11 +9,11 @@
 
 namespace nonio::periodic {
 
-/// ISO 3408-2:1991 table 1, nominal leads, and those of inch screws; m.
+/// Nominal leads of ISO 3408-2:1991, table 1, and of inch screws; m.
 constexpr double usual_leads[] = {0.0025, 0.003, 0.004, 0.005, 0.006,  0.008, 0.010, 0.012,
                                   0.0127, 0.016, 0.020, 0.025, 0.0254, 0.032, 0.040};
 
-/// Targets of several lines that are the same but for their last digits are one.
+/// Targets in ascending order. Targets of several lines that differ only by rounding are merged.
 static std::vector<double> places_of(const AxisReadings& r) {
   const double same = 1e-5 * r.length;
   std::vector<double> places = targets_of(r);
@@ -23,12 +23,11 @@ static std::vector<double> places_of(const AxisReadings& r) {
   return places;
 }
 
-/// The period of the manifest, or fewer periods than half the targets (evenly spaced ones), or than
-/// twice the targets (uneven ones show shorter periods too); three at least over the stretch. The
-/// step is a quarter of the width of a spectral line, coarser beyond 240 periods; on a circle, whose
-/// readings lie apart by more than that where the axis moves fast, not coarser. Below, uneven
-/// targets are searched for the usual leads of ball screws only, each with its spectral line: any
-/// period at all would find one that fits.
+/// Candidate periods, m: screw_pitch of the manifest if stated. Otherwise at least three periods
+/// over the range, and fewer than half as many periods as intervals (uneven targets: twice as
+/// many). The step is a quarter of a spectral line, wider above 240 periods, but not for circles,
+/// whose readings are sparse at high speed. Of shorter periods, only usual screw leads are tried
+/// with uneven targets, because some arbitrary period would always fit.
 static std::vector<double> grid(const Observations& o, const Axis& axis) {
   constexpr double most = 240.0, fewest_periods = 3.0;
   constexpr std::size_t fewest_targets = 8;
@@ -42,7 +41,7 @@ static std::vector<double> grid(const Observations& o, const Axis& axis) {
   bool even = true;
   for (std::size_t k = 1; k < targets.size(); ++k)
     even = even && std::abs(targets[k] - targets[k - 1] - mean) <= 0.01 * mean;
-  double limit = intervals * (even ? 0.5 : 2.0);  // periods over the stretch
+  double limit = intervals * (even ? 0.5 : 2.0);  // maximum number of periods over the range
   if (!o.sense.empty()) limit = std::min(limit, fewest_periods + 0.25 * most);
   const double step = std::max(0.25, (limit - fewest_periods) / most);
   std::vector<double> periods;

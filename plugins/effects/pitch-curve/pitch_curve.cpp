@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // deviation = sum c_k s_k(p); s_k: smooth basis of cubic splines without constant and slope
-// (nonio/math/spline.h), dimensionless, rms 1 over the targets; p: position from the middle of the
-// measured stretch, m or rad; c_k: m or rad.
+// (nonio/math/spline.h), dimensionless, rms 1 over the targets; p: position from the center of the
+// measured range, m or rad; c_k: m or rad.
 #include "nonio/math/spline.h"
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 
 namespace nonio::pitch_curve {
 
-/// Numbers of knots: at most 10, and at least three targets for two free values, so that the curve
-/// cannot follow single targets. `explain` does not name a curve that needs more than half of them.
+/// Numbers of knots: at most 10, and at least three targets per two free values, so that the curve
+/// cannot follow single targets. `explain` omits curves that need more than half of the targets.
 static std::vector<double> grid(const Observations& o, const Axis& axis) {
   constexpr int fewest = 3, most = 10;
   constexpr std::size_t fewest_targets = 8;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// deviation = j for t > instant, else 0; t: time since the first reading of its line, s; j: m or
-// rad.
+// deviation = j for t > instant, otherwise 0; t: time since the first reading of its line, s; j: m
+// or rad.
 #include <utility>
 
 #include "nonio/sdk/axis_readings.h"
@@ -13,7 +13,7 @@ static bool applies(const Observations& o, const Axis& axis) {
   return r && r->duration > 0.0;
 }
 
-/// At most `most` of the instants, ascending, each once.
+/// At most `most` different instants in ascending order, evenly selected.
 static std::vector<double> thinned(std::vector<double> instants, std::size_t most) {
   std::sort(instants.begin(), instants.end());
   instants.erase(std::unique(instants.begin(), instants.end()), instants.end());
@@ -24,8 +24,8 @@ static std::vector<double> thinned(std::vector<double> instants, std::size_t mos
   return kept;
 }
 
-/// Between readings of a line that follow each other in time; where a pass ends (another run or
-/// direction follows) rather than within one.
+/// Candidate instants, s, between consecutive readings of a line. More instants at ends of passes
+/// (change of run or direction) than within passes are used.
 static std::vector<double> grid(const Observations& o, const Axis& axis) {
   constexpr std::size_t most_ends = 300, most_others = 100;
   const auto r = readings_of(o, axis);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Run-out of a rotary axis on centres of a ball: radial rows (the first line) or axial rows (the
-// second): sum over k = 2 .. m + 1 of a_k cos(k theta) + b_k sin(k theta); theta: angle of the
-// axis, rad; a, b: m. Once a turn is the centre, or the direction.
+// Run-out of a rotary axis from ball centers. Radial readings (first line) or axial readings
+// (second line): sum over k = 2 .. m + 1 of a_k cos(k theta) + b_k sin(k theta). theta: angle of
+// the axis, rad; a, b: m. k = 1 would be the center or the direction of the axis.
 #include <set>
 
 #include "nonio/sdk/space_readings.h"
@@ -10,8 +10,7 @@ namespace nonio::run_out {
 
 namespace {
 
-/// Waves of 2 .. m + 1 a turn; of n angles n - 3 values are left after the circle, half of which
-/// are used.
+/// Values of m (1 to 3). The circle leaves n - 3 values of n angles; at most half of them are used.
 std::vector<double> grid(const Observations& o, const Axis&) {
   if (!of_ball_centres(o)) return {};
   const std::set<double> angles(o.axes.front().position.begin(), o.axes.front().position.end());

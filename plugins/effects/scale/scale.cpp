@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// deviation = a p; p: position from the middle of the measured stretch, m or rad; a: m/m or
-// rad/rad. Source: EFFECTS catalogue of docs/formulas.md.
+// deviation = a p; p: position from the center of the measured range, m or rad; a: m/m or rad/rad.
+// Source: catalog EFFECTS in docs/formulas.md.
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Unknowns of the set-up, in every model of readings that have them:
+// Unknowns of the set-up, part of every model of such readings:
 //     line-slope   of a line sensed across its travel (straightness): a q, the straightedge or beam
-//                  was not parallel to the axis; q: way along the travel, m; a: rad
+//                  was not parallel to the axis; q: distance along the travel, m; a: rad
 //     mirror-tilt  of a step diagonal: (a t1 + b t2) . P, the mirror was not square to the beam;
 //                  t1, t2: unit vectors across the beam, P: commanded point, m; a, b: rad
 //     body-turn    of a part on the table: (w x P) . n; w: turn about one axis, rad; n: direction of
@@ -23,7 +23,7 @@ Vector unit(Vector v) {
   return v;
 }
 
-/// Everything moves along one straight, and is sensed across it.
+/// Whether the line is straight and sensed at a right angle to its direction.
 bool sensed_across(const SpaceLine& line) {
   return line.straight && line.length > 0.0 &&
          std::fabs(SpaceLine::dot(line.farthest, line.sense)) < 1e-6 * line.length;
@@ -35,7 +35,7 @@ std::vector<std::string> lines_that(const Observations& o, bool (*is)(const Spac
   const SpaceReadings s = space_of(o);
   for (std::size_t line = 0; line < o.lines.size(); ++line) {
     const SpaceLine way = space_line(o, s, line);
-    // A circle's readings are sensed all round.
+    // On a circle the direction of sensing varies.
     const bool one_sense = std::all_of(way.rows.begin(), way.rows.end(), [&](std::size_t i) {
       return SpaceLine::dot(o.sense_of(i), way.sense) > 1.0 - 1e-9;
     });
@@ -50,7 +50,7 @@ SpaceLine line_named(const Observations& o, const std::string& name) {
   return {};
 }
 
-/// The column of each direction: the way of the line's rows along it.
+/// One column per direction: the displacement of each reading of the line along it.
 Effect::Columns ways_along(const Observations& o, const SpaceLine& line,
                            const std::vector<Vector>& directions) {
   Effect::Columns out(directions.size(), std::vector<double>(o.size(), 0.0));
@@ -60,7 +60,7 @@ Effect::Columns ways_along(const Observations& o, const SpaceLine& line,
   return out;
 }
 
-/// Towards larger coordinates, from whichever end the line was begun.
+/// The direction with a positive largest component, independent of the start of the line.
 Vector upwards(Vector v) {
   const auto largest = std::max_element(
       v.begin(), v.end(), [](double a, double b) { return std::fabs(a) < std::fabs(b); });
@@ -85,7 +85,7 @@ Expected<Effect::Columns> tilt(const Observations& o, const Axis& place,
   return ways_along(o, line, {level, SpaceLine::cross(line.sense, level)});
 }
 
-/// "<body> Z": the part and the axis about which it is turned.
+/// A part and the axis of its rotation, named "<body> Z".
 struct Turn {
   std::string body;
   std::size_t about = 0;
@@ -101,7 +101,7 @@ std::vector<std::string> bodies(const Observations& o, bool of_unknown_size) {
   return out;
 }
 
-/// What `of` says of the readings of a body: of the point and the direction of sensing.
+/// Column of `of(point, direction of sensing)` at the readings of a body, otherwise 0.
 template <class Of>
 std::vector<double> column_of(const Observations& o, const std::string& body, Of of) {
   const SpaceReadings s = space_of(o);
@@ -120,7 +120,7 @@ std::vector<double> column_of(const Observations& o, const Turn& turn) {
   });
 }
 
-/// Whether a column says something that the zeros of the lines do not.
+/// Whether a column varies within a line; otherwise the zeros of the lines already contain it.
 bool varies_in_a_line(const Observations& o, const std::vector<double>& column) {
   std::vector<double> first(o.lines.size(), std::nan(""));
   for (std::size_t i = 0; i < column.size(); ++i) {

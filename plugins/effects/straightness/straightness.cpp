@@ -14,7 +14,7 @@ namespace nonio::straightness {
 namespace {
 
 struct Name {
-  std::size_t error = 3, axis = 3;  // coordinates
+  std::size_t error = 3, axis = 3;  // coordinates 0 to 2; 3: none
 };
 Name read(const std::string& name) {
   if (name.size() != 3 || name[0] != 'E') return {};
@@ -32,11 +32,11 @@ std::vector<std::string> of(const Observations& o) {
   return names;
 }
 
-/// The readings with a place along the axis only on lines that move along it and sense the error.
-/// Elsewhere the zero of the line takes what the curve predicts; a slope over such places would be
-/// left in the curve on the others, where it is squareness.
+/// The readings, with a position along the axis only on lines that move along it and sense the
+/// error. On other lines the zero of the line includes the error, and a slope over their positions
+/// would be confused with squareness.
 SpaceReadings told(const Observations& o, const Name& name) {
-  constexpr double least = 1e-9;  // m; of a unit vector
+  constexpr double least = 1e-9;  // smallest component of a unit vector that senses
   SpaceReadings s = space_of(o);
   std::vector<double>& at = s.r[name.axis];
   const auto senses = [&](std::size_t i) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// deviation = k (p - fixed) K; p: position from the middle of the measured stretch, m or rad;
-// fixed: what does not move, the same; K: material temperature less its mean, K; k: 1/K.
+// deviation = k (p - fixed) K; p: position from the middle of the measured range, fixed: that of
+// the fixed point, m or rad; K: material temperature minus its mean, K; k: 1/K.
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 
 namespace nonio::temperature {
 
-constexpr double least_range = 0.05;  // K; less is the sensor's own noise
+constexpr double least_range = 0.05;  // K; a smaller range is sensor noise
 
 static bool varies(const AxisReadings& r) {
   const auto [low, high] = std::minmax_element(r.K.begin(), r.K.end());
@@ -18,7 +18,7 @@ static bool applies(const Observations& o, const Axis& axis) {
   return r && r->temperature && r->length > 0.0 && varies(*r);
 }
 
-/// The rows without a temperature, where some have one.
+/// Reason why the effect does not apply; the rows without a temperature if only some have none.
 static WhyNot why_not(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
   if (!r || !(r->length > 0.0)) return {};

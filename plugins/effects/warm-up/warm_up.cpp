@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// deviation = w (p - fixed) (1 - exp(-t/tau)); p: position from the middle of the measured stretch,
-// m or rad; fixed: what does not move, the same; t: time since the first reading of its line, s;
-// tau: time constant, s; w: m/m or rad/rad.
+// deviation = w (p - fixed) (1 - exp(-t/tau)); p: position from the middle of the measured range,
+// fixed: that of the fixed point, m or rad; t: time since the first reading of its line, s; tau:
+// time constant, s; w: m/m or rad/rad.
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 
@@ -12,11 +12,12 @@ static bool applies(const Observations& o, const Axis& axis) {
   return r && r->length > 0.0 && r->duration > 0.0;
 }
 
-/// Time constants in equal ratios. Below a fortieth of the test it is over after a few readings,
-/// above one and a half of it it is the straight line of growth-drift.
+/// Time constants in equal ratios. Below 1/40 of the duration, the warm-up ends within a few
+/// readings. Above 1.5 durations, it cannot be distinguished from the straight line of
+/// growth-drift.
 static std::vector<double> grid(const Observations& o, const Axis& axis) {
   constexpr int count = 14;
-  constexpr double shortest = 1.0 / 40.0, longest = 1.5;  // of the duration
+  constexpr double shortest = 1.0 / 40.0, longest = 1.5;  // time constants relative to the duration
   const auto r = readings_of(o, axis);
   if (!r || !(r->duration > 0.0)) return {};
   std::vector<double> taus;

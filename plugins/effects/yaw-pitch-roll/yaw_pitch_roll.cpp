@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Angular errors of the carriages of X and Y. Chain bed - X - Y - Z - tool, x, y, z from the corner
-// of the measured volume (there positions are taken to be measured), tool in the spindle's axis:
+// of the measured volume (where positions are assumed to be measured), tool in the spindle axis:
 //     yaw:X   (ECX)  e_x = -y a(x)            pitch:X (EBX)  e_x = +z a(x)
 //     roll:X  (EAX)  e_y = -z a(x), e_z = +y a(x)
 //     pitch:Y (EAY)  e_y = -z a(y)            roll:Y  (EBY)  e_x = +z a(y)
-// with a flat mirror on the tool (step diagonals), which turns with it, besides
+// with a flat mirror on the tool (step diagonals), which turns with it, in addition
 //     (w x n) . (P - Q) a,  w: axis of the angle, n: direction of sensing, Q: a point on the beam
-// and, where one carriage follows its bent guide (structure single-column), the way it goes:
+// and, if one carriage follows its bent guide (structure single-column), its lateral motion:
 //     yaw:X   e_y = +integral of a dx         pitch:X  e_z = -integral of a dx
 // a = sum c_k s_k; s_k without constant, which is squareness: the straight line, then the smooth
 // basis (nonio/math/spline.h), rms 1 over the measured places; c_k: rad. ECY and the angles of Z
@@ -28,7 +28,7 @@ struct Angle {
   const char* kind;
   std::size_t axis, about;
   std::vector<Lever> levers;
-  std::size_t guided;  // the direction in which a bent guide leads; 3: in none
+  std::size_t guided;  // direction of a bent guide's effect; 3: none
   double guide_sign;
 };
 
@@ -53,7 +53,8 @@ bool follows_its_guide(const Observations& o, const Angle& a) {
   return o.structure == "single-column" && a.guided < 3;
 }
 
-/// A lever is seen if readings that sense its error change the angle's axis away from the corner.
+/// Whether the angle is identifiable: readings that sense its error move along a lever and the
+/// axis.
 bool shown(const Observations& o, const SpaceReadings& s, const Angle& a) {
   if (!s.moves(a.axis)) return false;
   for (const Lever& lever : a.levers)
@@ -62,7 +63,7 @@ bool shown(const Observations& o, const SpaceReadings& s, const Angle& a) {
   return false;
 }
 
-/// The straight line and `knots` smooth functions at x; at least the line.
+/// The basis at x: a straight line and, if knots >= 2, smooth functions.
 Expected<Effect::Columns> basis_at(const std::vector<double>& x, const std::vector<double>& places,
                                    int knots) {
   const auto n = static_cast<double>(places.size());
@@ -77,8 +78,8 @@ Expected<Effect::Columns> basis_at(const std::vector<double>& x, const std::vect
   return out;
 }
 
-/// Integrals of the basis from the first place to each: Gauss, two points in each sixteenth of the
-/// way between neighbours (exact for cubics, and knots lie where they like).
+/// Integrals of the basis from the first position to each other one: two-point Gauss rule in 16
+/// parts of each interval (exact for cubics; a part may contain a knot).
 Expected<Effect::Columns> integrals(const std::vector<double>& places, int knots) {
   constexpr std::size_t parts = 16;
   const double offset = 0.5 / std::sqrt(3.0);
@@ -101,7 +102,7 @@ Expected<Effect::Columns> integrals(const std::vector<double>& places, int knots
   return out;
 }
 
-/// What a reading changes by for an angle of 1.
+/// Change of each reading per unit of the angle, m/rad.
 std::vector<double> levers_of(const Observations& o, const SpaceReadings& s, const Angle& a) {
   std::vector<double> out(o.size(), 0.0);
   for (std::size_t i = 0; i < o.size(); ++i)
@@ -113,9 +114,9 @@ std::vector<double> levers_of(const Observations& o, const SpaceReadings& s, con
     const bool one_sense = std::all_of(line.rows.begin(), line.rows.end(), [&](std::size_t i) {
       return SpaceLine::dot(o.sense_of(i), line.sense) > 1.0 - 1e-9;
     });
-    if (!one_sense || !line.is_stepwise()) continue;  // a circle is sensed all round
+    if (!one_sense || !line.is_stepwise()) continue;  // circles are not sensed in one direction
     const auto turned = SpaceLine::cross(about, line.sense);
-    // The beam meets the far corner: there all axes have moved all steps.
+    // The beam meets the far corner, at which all axes have made all steps.
     const auto far = *std::max_element(
         line.way.begin(), line.way.end(), [&](const auto& one, const auto& other) {
           return SpaceLine::dot(one, line.sense) < SpaceLine::dot(other, line.sense);
@@ -137,7 +138,7 @@ Expected<Effect::Columns> columns(const Observations& o, const Angle& a, int kno
   Effect::Columns out(basis.size(), std::vector<double>(o.size(), 0.0));
   for (std::size_t i = 0; i < o.size(); ++i) {
     if (!std::isfinite(s.r[a.axis][i])) continue;
-    // The measured places themselves: the nearest is the same within rounding.
+    // The nearest position is equal within rounding.
     const auto above =
         std::lower_bound(places.begin(), places.end(), s.r[a.axis][i] - 1e-6 * s.length[a.axis]);
     const auto place = static_cast<std::size_t>(std::min(above, places.end() - 1) - places.begin());

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A part that the machine made, with the features that a coordinate measuring machine found on it.
+// A machined part whose features were measured on a coordinate measuring machine.
 //     d = R (m - p (1 + alpha (T2 - T1)))
-// p, m: nominal and measured place of a feature in the part, m; R: turn of the part on the table,
-// turned about Z; d: error of the machine where it made the feature, origin + R p; T1, T2: temperature
-// of the part while it was made, and to which the measurement refers.
-// Place and turn of the part are unknown; without temperatures its size is, too (effects body-turn and
-// body-size). Signs: a hole is where the machine really was.
+// p, m: nominal and measured position of a feature in the part, m; R: rotation of the part on the
+// table about Z; d: error of the machine at the position origin + R p of the feature; T1, T2:
+// temperature of the part during machining, and reference temperature of the measurement. Position
+// and rotation of the part are unknown, and so is its size without temperatures (effects body-turn
+// and body-size). Sign: a hole is at the actual position of the machine.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,9 +22,9 @@ using Vector = std::array<double, 3>;
 constexpr const char* coordinates[] = {"X", "Y", "Z"};
 constexpr const char* nominal[] = {"nominal_x", "nominal_y", "nominal_z"};
 constexpr const char* measured[] = {"measured_x", "measured_y", "measured_z"};
-constexpr double largest = 0.01;  // m
+constexpr double largest = 0.01;  // m, largest plausible deviation
 
-/// Whether coordinates stay coordinates.
+/// Whether the angle is a multiple of 90°, for which coordinates remain exact.
 bool is_quarter(double angle) {
   return std::fabs(std::remainder(angle, std::numbers::pi / 2)) < 1e-9;
 }
@@ -35,7 +35,7 @@ Vector turned(const Vector& v, double angle) {
   return {v[0] * c - v[1] * s, v[0] * s + v[1] * c, v[2]};
 }
 
-/// Growth of the part between its machining and its measurement, and whether it is known.
+/// Relative growth of the part between machining and measurement, and whether it is known.
 Expected<std::pair<double, bool>> growth_of(const Measurement& m) {
   const auto temperatures = m.settings.numbers("temperatures_c");
   const double expansion = m.settings.number("expansion_um_per_m_K") * 1e-6;
@@ -47,7 +47,7 @@ Expected<std::pair<double, bool>> growth_of(const Measurement& m) {
   return std::pair{expansion * (temperatures[1] - temperatures[0]), true};
 }
 
-/// The three lines of a part, of which those without readings go.
+/// Collects the three lines of a part; lines without readings are omitted.
 class Rows {
  public:
   Rows(const Measurement& m, std::array<bool, 3> places, bool size_known) {
@@ -67,7 +67,7 @@ class Rows {
     for (std::size_t k = 0; k < 3; ++k)
       if (places_[k]) {
         o_.axes[axis_[k]].position.push_back(at[k]);
-        o_.axes[axis_[k]].approach.push_back(1);  // not known: the same for all
+        o_.axes[axis_[k]].approach.push_back(1);  // unknown, therefore equal for all readings
       }
     o_.line.push_back(static_cast<std::uint32_t>(line));
     o_.deviation.push_back(deviation);
@@ -143,11 +143,11 @@ Expected<Observations> observations_of(const MethodInput& in) {
   }
   Observations o = rows.made();
   o.missing = missing;
-  o.order_known = false;  // features are measured in another order than they were made in
+  o.order_known = false;  // the order of measurement is not the order of machining
   return o;
 }
 
-/// A feature for each place at which all sensed coordinates are there.
+/// One feature for each position at which all sensed coordinates have readings.
 Expected<Readings> readings_of_part(const SimulationInput& in) {
   const Measurement& m = in.measurement;
   NONIO_TRY(const auto growth, growth_of(m));

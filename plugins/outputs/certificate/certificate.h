@@ -7,22 +7,22 @@
 #include "dcc.h"
 #include "pages.h"
 
-/// The document that goes to the customer: what ISO/IEC 17025:2017, 7.8 requests.
+/// The document for the customer, with the content required by ISO/IEC 17025:2017, 7.8.
 namespace nonio::certificate {
 
 using pages::Blocks;
 using pages::Source;
 
-/// What of a test was other than its method plans, as the program knows it: sentences.
+/// Sentences about departures of a test from its method, as far as the data show them.
 std::vector<std::string> departures_of(const Source&, const pages::Measured&);
-/// How a test was made, and what of that is not stated.
+/// Text about the conditions of a test, and which of these are not stated.
 std::string test_parameters(const Source&, const pages::Measured&);
 
-/// The name of an analysis as a method, with the edition and k that it used; without that of a
-/// standard whose plan of the test was not followed.
+/// Name of the method of an analysis, with edition and k. The name of a standard is omitted if the
+/// test did not follow its plan.
 std::string method_of(const Source&, const Results::Analysed&);
 
-/// The conditions of a measurement as its readings contain them, degC, hPa, %: lowest and highest.
+/// Lowest and highest reading of an influence quantity, in degC, hPa or %; low > high: no readings.
 struct Range {
   double low, high;
   bool known() const { return low <= high; }
@@ -32,31 +32,31 @@ struct Conditions {
 };
 Conditions conditions_of(const std::vector<Observations>&);
 
-/// An analysis whose values a certificate prints.
-/// A method of the laboratory that is based on a standard, not the standard's own: the document
-/// names the laboratory's procedure (ISO/IEC 17025:2017, 7.2.1).
+/// Whether the method belongs to the laboratory and is only based on a standard, so that the
+/// document names the laboratory's procedure (ISO/IEC 17025:2017, 7.2.1).
 bool is_by_own_procedure(const Results::Analysed&);
+/// Whether the certificate prints the analysis or measurement: it has a value with U > 0.
 bool is_printed(const Results::Analysed&);
 bool is_printed(const pages::Measured&);
 
-/// With a full stop, where a person's text ends without one and another sentence follows.
+/// Text of a user with a full stop added if it has none, because another sentence follows.
 std::string ended(const Source&, std::string text);
 
-/// The title in the document's language: the laboratory's, or that of the words.
+/// Title in the language of the document: from the manifest, otherwise from the template texts.
 std::string title_of(const Source&);
 
-/// The number, or the word for what has none yet.
+/// The number of the certificate, or the word "draft" in the language of the document.
 std::string number_of(const Source&);
 
-/// Everything that is missing, as keys with their file.
+/// All missing items, as keys with their file.
 std::vector<std::string> lacks(const OutputInput&);
 
-/// What of the template cannot be had without an accreditation: a title that claims one, a mark.
+/// A title or mark of the template that requires an accreditation; empty: none.
 std::string accredited_claim(const OutputInput&);
 
 Expected<pages::Look> look_of(const Templates&, const std::string& name);
 
-/// The parts, in the language of the source.
+/// The parts of the document in the language of the source.
 void add_title(const Source&, Blocks&);
 void add_amendment(const Source&, Blocks&);
 void add_parties(const Source&, Blocks&);
@@ -64,33 +64,32 @@ void add_item(const Source&, Blocks&);
 void add_method(const Source&, Blocks&);
 void add_conditions(const Source&, Blocks&);
 void add_conformity(const Source&, Blocks&);
-/// Pictures with the lines of the limits; before and after an adjustment in one.
+/// Figures with tolerance limits; results before and after an adjustment share a figure.
 void add_overview(const Source&, Blocks&);
 void add_opinions(const Source&, Blocks&);
 void add_statements(const Source&, Blocks&);
-/// How to verify it.
+/// Instructions for verification.
 void add_authority(const Source&, Blocks&);
-/// Who released it, the frame of the signature and the code: at the foot of the first page.
+/// Approver, frame of the signature, and code, at the bottom of the first page.
 void add_signature(const Source&, Blocks&);
 
-/// Limits that no result was compared with; empty if there are none.
+/// Text about limits that were not compared with a result; empty if there are none.
 std::string undecided_text(const Source&);
 
-/// Measurements of the campaign of which nothing is printed; empty if there are none.
+/// Text about measurements without printed results; empty if there are none.
 std::string not_reported_text(const Source&);
 
-/// Directions of approach and their signs mean something: a test over targets is printed.
+/// Whether a printed test has targets, so that the sign of the directions must be explained.
 bool has_directions(const OutputInput&);
 
-/// Instruments whose calibration was not valid on the day of the measurement, and who has approved
-/// the certificate in spite of it, for which reason; empty if there are none.
+/// Text about instruments whose calibration was not valid on the date of measurement, with the
+/// person who approved this and the reason; empty if there are none.
 std::string expired_text(const Source&);
 
-/// What it states about the certificate that it replaces, with every change; empty if there is
-/// none.
+/// Text about the replaced certificate with all changes; empty if none is replaced.
 std::string amendment_text(const Source&);
 
-/// What the DCC states in words; a source for each language.
+/// Texts of the DCC from one source per language.
 dcc::About about_of(const std::vector<Source>&, const char* release);
 
 /// The document in one language.

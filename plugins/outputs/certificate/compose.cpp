@@ -39,7 +39,7 @@ constexpr Part parts[] = {{"title", add_title},           {"amendment", add_amen
                           {"overview", add_overview},     {"opinions", add_opinions},
                           {"statements", add_statements}, {"authority", add_authority}};
 
-/// Without these a certificate is none: a template may move them, not leave them out.
+/// Mandatory parts of a certificate. A template can move but not omit them.
 constexpr const char* wanted[] = {"title",    "amendment",  "parties",  "item",
                                   "method",   "conditions", "results",  "conformity",
                                   "opinions", "statements", "authority"};

@@ -16,14 +16,15 @@ using namespace reports;
 
 namespace {
 
-/// A result of the first page.
+/// A result on the first page; limit nullptr: no tolerance limit.
 struct Shown {
   const pages::Measured* measured;
   const Value* value;
   const Conformity* limit;
 };
 
-/// "A↑" where a test in one direction has no "A".
+/// Whether the summary of the template names the value; "A+" (printed "A↑") is also included for
+/// "A" if the test has no "A".
 bool is_named(const Source& source, const Evaluation& e, const std::string& name) {
   const std::vector<std::string>& summary = source.look.summary;
   const auto in_summary = [&](const std::string& n) {
@@ -36,8 +37,8 @@ bool is_named(const Source& source, const Evaluation& e, const std::string& name
                                           [&](const Value& v) { return v.name == both && v.U; });
 }
 
-/// All that have a limit: the paper states nowhere else what was decided. And those that the
-/// template names; of very many not those of a measurement that has others.
+/// All results with a limit, because no other part contains their decisions, and those that the
+/// template names. If there are more than 18, fewer of these are shown.
 std::vector<Shown> shown_results(const Source& source,
                                  const std::vector<pages::Measured>& measured) {
   constexpr std::size_t most = 18;
@@ -59,7 +60,7 @@ std::vector<Shown> shown_results(const Source& source,
       if (limited(s)) with_limit.insert(s.measured);
     std::erase_if(all,
                   [&](const Shown& s) { return !limited(s) && with_limit.contains(s.measured); });
-  } else {  // the first of each measurement
+  } else {  // keep the first one per measurement
     const pages::Measured* last = nullptr;
     std::erase_if(all,
                   [&](const Shown& s) { return std::exchange(last, s.measured) == s.measured; });
@@ -67,10 +68,11 @@ std::vector<Shown> shown_results(const Source& source,
   return all;
 }
 
-/// In two languages a column of meanings makes each row two lines high: they are printed below.
+/// With two languages, meanings are printed below the table, because a column would double the row
+/// height.
 bool is_brief(const Source& source) { return source.in.campaign.certificate.languages.size() > 1; }
 
-/// "A: bi-directional accuracy. B: largest reversal error."
+/// Text such as "A: bi-directional accuracy; B: largest reversal error."
 std::string meanings(const Source& source, const std::vector<Shown>& all) {
   std::string text;
   std::set<std::string> said;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What of a test was other than its method plans, as far as readings and manifest show it (ISO/IEC
-// 17025:2017, 7.8.2.1 n), and how it was made. It need not be stated and cannot be left out.
+// Departures of a test from its method as far as readings and manifest show them (ISO/IEC
+// 17025:2017, 7.8.2.1 n), and its parameters. The user cannot suppress them.
 #include <algorithm>
 
 #include "certificate.h"
@@ -16,7 +16,7 @@ using namespace reports;
 
 namespace {
 
-/// "x.csv: line 57 (88.0 µm), line 60 (91.2 µm). Reason: ..."
+/// Text such as "x.csv: line 57 (88.0 µm), line 60 (91.2 µm). Reason: ..."; empty: none.
 std::string excluded(const Source& source, const pages::Measured& m) {
   std::string which;
   for (const Remark& note : m.observations.notes) {
@@ -33,7 +33,7 @@ std::string excluded(const Source& source, const pages::Measured& m) {
                                                        {"reason", reason.empty() ? "–" : reason}}));
 }
 
-/// Of ISO 230-2, if it is not the usual edition.
+/// Text about an edition of ISO 230-2 before 2014; otherwise empty.
 std::string edition(const Source& source, const Results::Analysed& a) {
   for (const Remark& note : a.evaluation.notes)
     for (const Number& n : note.evidence)
@@ -59,7 +59,7 @@ std::string quantity(const Source& source, double si, Quantity q, const char* un
   return pages::plain_number(source, si, q) + " " + (unit != nullptr ? unit : unit_text(q));
 }
 
-/// "X 0 mm, Z −120 mm"
+/// Text such as "X 0 mm, Z −120 mm".
 std::string places(const Source& source, const std::map<std::string, double>& at) {
   std::string text;
   for (const auto& [axis, position] : at)
@@ -106,7 +106,7 @@ std::vector<std::string> departures_of(const Source& source, const pages::Measur
 
 namespace {
 
-/// "instrument L-1", "sensor pressure 77" in the words of the document.
+/// Name such as "instrument L-1" or "sensor pressure 77" in the language of the document.
 std::string instrument_name(const Source& source, const std::string& name) {
   constexpr std::string_view instrument = "instrument", sensor = "sensor ";
   if (name.starts_with(instrument))
@@ -123,7 +123,7 @@ std::string instrument_name(const Source& source, const std::string& name) {
 std::string expired_text(const Source& source) {
   std::string all;
   const auto add = [&](const std::string& text) { all += (all.empty() ? "" : " ") + text; };
-  std::vector<std::string> said;  // ids, whose reasons follow once
+  std::vector<std::string> said;  // finding ids; their reasons follow once
   for (const Results::Analysed& a : source.in.results.analyses)
     for (const Finding& f : a.evaluation.findings) {
       const std::string words = source.words.get_or("expired." + f.id, "");
@@ -147,13 +147,13 @@ bool is_printed(const pages::Measured& m) {
                      [](const Results::Analysed* a) { return is_printed(*a); });
 }
 
-/// Its parts, and then those that are not stated: ISO 230-2 requires them to be reported.
+/// The stated test parameters, then those not stated, which ISO 230-2 requires to be reported.
 std::string test_parameters(const Source& source, const pages::Measured& m) {
   const Wording& w = source.words;
   const Measurement& t = m.measurement;
   const Environment& e = source.in.campaign.environment;
   std::string said, not_said;
-  const bool moves = pages::over_one_position(t);  // targets, one after the other
+  const bool moves = pages::over_one_position(t);  // the test moves from target to target
   const auto add = [&](const char* name, bool there, const std::string& sentence,
                        bool wanted = true) {
     if (there)
@@ -166,7 +166,7 @@ std::string test_parameters(const Source& source, const pages::Measured& m) {
   };
   const double per_minute = 60.0;
   const Quantity travel = position_of(m.rotary);
-  // That of a circle is printed with its readings.
+  // The feed of a circle is printed with its readings.
   if (t.kind != "circle" || !t.feed)
     add("feed", t.feed.has_value(),
         with("test.feed", "feed",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the DCC states in words: the same as the pages, in the same languages.
+// Texts of the DCC, equal to those of the printed pages in all languages.
 #include <algorithm>
 
 #include "certificate.h"
@@ -14,7 +14,7 @@ using namespace reports;
 
 namespace {
 
-/// The same in every language of the certificate.
+/// The text `say(source)` in every language of the certificate.
 template <class Say>
 dcc::Text in_all(const std::vector<Source>& sources, const Say& say) {
   dcc::Text text;
@@ -123,7 +123,7 @@ void add_statements(const std::vector<Source>& sources, dcc::About& about) {
   const auto add = [&](const char* ref_type, dcc::Text says) {
     about.statements.push_back({ref_type, std::move(says)});
   };
-  const auto own = [&](const char* key, const std::string& text) {  // of the manifest
+  const auto own = [&](const char* key, const std::string& text) {  // adds a text from the manifest
     if (!text.empty())
       add("", in_all(sources, [&](const Source& s) { return labelled(s, key, text); }));
   };

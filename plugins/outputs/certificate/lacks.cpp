@@ -13,7 +13,7 @@ namespace nonio::certificate {
 
 namespace {
 
-/// A place-holder names no instrument: "n/a", "unknown", "xxx", "000".
+/// False for placeholders such as "n/a", "unknown", "xxx", "000".
 bool names_something(std::string_view text) {
   if (!has_content(text)) return false;
   std::string letters;
@@ -50,8 +50,8 @@ std::vector<std::string> split(const std::string& text) {
   return out;
 }
 
-/// The keys of the uncertainty budget, as the analyses name them. A budget that is stated with
-/// zeros only in part (no drift) leaves results without U among others: no certificate either.
+/// Adds the missing keys of the uncertainty budget. A budget with a zero entry such as no drift
+/// also prevents a certificate, because a result would lack U.
 void want_uncertainty(const OutputInput& in, List& list) {
   for (const Results::Analysed& a : in.results.analyses) {
     if (a.plugin == reports::model_analysis || a.evaluation.values.empty()) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The pictures of the first page.
+// The figures of the first page.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -29,8 +29,8 @@ struct Span {
   }
 };
 
-/// What of the points a limit takes in, as printed: mean and k s of both directions for A, the
-/// means alone for E.
+/// Range of the points to which a limit applies, in printed units: mean and ± R/2 of both
+/// directions with `scatter` (A), means only without (E).
 Span span_of(const pages::Measured& m, bool scatter) {
   Span span;
   for (const Results::Analysed* a : m.analyses) {
@@ -49,7 +49,7 @@ Span span_of(const pages::Measured& m, bool scatter) {
   return span;
 }
 
-/// Two lines, the limit of a range apart, about the middle of what was measured.
+/// Adds two lines whose distance is the tolerance limit, centered on the measured range.
 bool add_limit(const Source& source, const pages::Measured& m, Plot& plot) {
   for (const char* name : {"A", "E"}) {
     const Conformity* limit = limit_of(source.in, m, name);
@@ -78,7 +78,7 @@ bool add_limit(const Source& source, const pages::Measured& m, Plot& plot) {
   return false;
 }
 
-/// The means of the test before the adjustment, below those after it.
+/// Adds the mean curves of the test before the adjustment behind those after it.
 void lay_under(const Source& source, const pages::Measured& before, Plot& plot) {
   for (const Results::Analysed* a : before.analyses) {
     const PointTable& points = a->evaluation.points;
@@ -104,7 +104,7 @@ void lay_under(const Source& source, const pages::Measured& before, Plot& plot) 
   }
 }
 
-/// The same test of the same axis, as found.
+/// The same test of the same axis before the adjustment; nullptr if none.
 const pages::Measured* as_found(const std::vector<pages::Measured>& all,
                                 const pages::Measured& after) {
   if (after.measurement.adjustment != "after") return nullptr;
@@ -119,8 +119,8 @@ bool looks_alike(const Curve& a, const Curve& b) {
   return a.kind == b.kind && a.colour == b.colour && a.dash == b.dash && a.marker == b.marker;
 }
 
-/// What the lines of several plots are, stated once above them. A plot in which a line of the same
-/// name looks otherwise (its last run is another one) keeps its own.
+/// Moves the legends of several plots to a common one. A plot keeps its legend if one of its lines
+/// looks different from the line of the same name.
 Plot common_legend(std::vector<Plot>& plots) {
   Plot common;
   common.only_legend = true;
@@ -128,7 +128,7 @@ Plot common_legend(std::vector<Plot>& plots) {
     return std::find_if(common.curves.begin(), common.curves.end(),
                         [&](const Curve& k) { return k.legend == c.legend; });
   };
-  const auto is_own = [](const Curve& c) {  // a limit has the number of its axis
+  const auto is_own = [](const Curve& c) {  // limit lines differ between axes
     return c.legend.empty() || c.dash == Dash::dash_dot;
   };
   for (Plot& plot : plots) {
@@ -165,7 +165,7 @@ void add_overview(const Source& source, Blocks& blocks) {
     if (!plot) continue;
     if (plot->scales) {
       plot->title = pages::heading_of(source, m);
-    } else {  // its caption is printed with the measurement
+    } else {  // the caption is printed with the measurement
       plot->x_title.clear();
       for (Curve& c : plot->curves) c.legend.clear();
     }

@@ -23,7 +23,7 @@ void widen(Range& range, const std::vector<double>& values) {
     if (std::isfinite(v)) range.low = std::min(range.low, v), range.high = std::max(range.high, v);
 }
 
-/// "19.8 – 20.3 °C", or one number where nothing changed.
+/// Text such as "19.8 – 20.3 °C"; one number if both are equal; empty if not known.
 std::string range_text(const Source& source, const Range& range, Quantity q, const char* unit,
                        int decimals) {
   if (!range.known()) return {};
@@ -38,7 +38,7 @@ void paragraph(Blocks& blocks, std::string text, std::string field, Look look = 
   if (!text.empty()) blocks.push_back({Paragraph{std::move(text), look}, std::move(field)});
 }
 
-/// "2026-03-23", or "2026-03-23 – 2026-03-25".
+/// Text such as "2026-03-23" or "2026-03-23 – 2026-03-25".
 std::string days(const Campaign& c) {
   return c.end_date.empty() || c.end_date == c.date ? c.date : c.date + " – " + c.end_date;
 }
@@ -108,7 +108,7 @@ void add_title(const Source& source, Blocks& blocks) {
 
 namespace {
 
-/// A row for each place: its former and its present text.
+/// One row per change, with the previous and the new text.
 void add_changes(const Source& source, const FileChange& file, Grid& into) {
   const Wording& w = source.words;
   const std::string field = "amendment.changes";
@@ -143,7 +143,7 @@ Grid changes_of(const Source& source) {
   return changes;
 }
 
-/// So long that the results would not fit the first page: it is printed before the method.
+/// Whether the changes would move the results off the first page; they then precede the method.
 bool is_long(const Grid& changes) {
   constexpr std::size_t few = 6;
   return changes.rows.size() > few;
@@ -190,7 +190,8 @@ void add_parties(const Source& source, Blocks& blocks) {
 
 namespace {
 
-/// "Thermo T2, no. 17, certificate C-3 (LAT 9), calibrated 2026-01-02, valid until 2027-01-02".
+/// Text such as "Thermo T2, no. 17, certificate C-3 (LAT 9), calibrated 2026-01-02, valid until
+/// 2027-01-02".
 std::string sensor_text(const Source& source, const Sensor& s) {
   std::string text;
   const auto add = [&](const std::string& part, const char* between = ", ") {
@@ -243,7 +244,7 @@ void add_item(const Source& source, Blocks& blocks) {
 
 namespace {
 
-/// Its readings are behind what is printed, of itself or of another measurement.
+/// Whether its readings contribute to a printed result, possibly of another measurement.
 bool has_part(const OutputInput& in, const pages::Measured& m) {
   const auto& analyses = in.results.analyses;
   return is_printed(m) ||
@@ -270,7 +271,7 @@ std::string not_reported_text(const Source& source) {
 
 namespace {
 
-/// What the program found, then what a person states. By default no person states anything.
+/// Departures found by the program, then those stated by the user (default: none).
 void add_departures(const Source& source, Blocks& blocks) {
   const CertificateTexts& texts = source.in.campaign.certificate;
   blocks.push_back({Heading{label(source, "method_heading.departures"), 2}, "departures"});
@@ -304,8 +305,7 @@ void add_departures(const Source& source, Blocks& blocks) {
 
 namespace {
 
-/// Of an analysis that used two methods (the standard's plan here, one of its own there) each with
-/// the measurements that it holds for.
+/// Adds the methods. If an analysis used two methods, each is listed with its measurements.
 void add_methods(const Source& source, Blocks& blocks) {
   struct Method {
     std::string plugin, words, measurements;
@@ -362,9 +362,9 @@ void add_method(const Source& source, Blocks& blocks) {
 
 namespace {
 
-/// What is known of the correction of one measurement to the reference temperature.
+/// Known facts about the correction of a measurement to the reference temperature.
 struct Normalised {
-  std::optional<bool> is;             ///< of the file, else as stated
+  std::optional<bool> is;             ///< from the file, otherwise from the manifest
   std::optional<double> coefficient;  ///< 1/K
 };
 
@@ -383,9 +383,9 @@ Normalised normalised(const Source& source, const pages::Measured& m) {
 
 }  // namespace
 
-/// ISO 1 and ISO 230-2: results are for 20 degC, and a document states how they came there.
+/// Results refer to 20 degC (ISO 1, ISO 230-2), and a document must state how they were converted.
 std::string reference_temperature_text(const Source& source) {
-  std::vector<std::pair<std::string, std::string>> sentences;  // words, and of which measurements
+  std::vector<std::pair<std::string, std::string>> sentences;  // text, measurements
   for (const pages::Measured& m : pages::measured(source.in)) {
     if (!has_part(source.in, m) || m.observations.angular) continue;
     const Normalised n = normalised(source, m);
@@ -464,7 +464,7 @@ void add_statements(const Source& source, Blocks& blocks) {
 
 namespace {
 
-/// The person; or who answers for the laboratory's rules where these have released it.
+/// The approving person, or the person responsible for the rules that approved the certificate.
 std::string released_by(const Source& source) {
   const Issue& issue = *source.in.issue;
   const std::string& responsible = source.in.campaign.laboratory.authoriser;
@@ -475,7 +475,7 @@ std::string released_by(const Source& source) {
 
 }  // namespace
 
-/// For who holds a print in his hands: how to verify, and the digest of the readings.
+/// Adds instructions for verification of a print, and the digest of the readings.
 void add_authority(const Source& source, Blocks& blocks) {
   const Wording& w = source.words;
   const Issue& issue = *source.in.issue;
@@ -490,7 +490,7 @@ void add_authority(const Source& source, Blocks& blocks) {
 
 namespace {
 
-/// RFC 3986, 2.1: of a value in the fragment of an address.
+/// Percent-encodes a value for the fragment of a URL (RFC 3986, 2.1).
 std::string percent_encoded(std::string_view text) {
   constexpr std::string_view digits = "0123456789ABCDEF", plain = "-._~";
   std::string out;
@@ -504,7 +504,8 @@ std::string percent_encoded(std::string_view text) {
   return out;
 }
 
-/// With an address a telephone opens the page that verifies; a fragment never leaves the browser.
+/// With an address, a smartphone opens the verification page. The data are in the fragment, which
+/// the browser does not send.
 std::string text_of_code(const Source& source) {
   const Issue& issue = *source.in.issue;
   const std::string& address = source.look.verification;
@@ -516,7 +517,7 @@ std::string text_of_code(const Source& source) {
 
 }  // namespace
 
-/// A draft has neither frame nor code.
+/// A draft has neither signature frame nor code.
 void add_signature(const Source& source, Blocks& foot) {
   const Wording& w = source.words;
   const Issue& issue = *source.in.issue;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The certificate (or report) of calibration for the customer: a PDF and a Digital Calibration
-// Certificate, both signed by the host, under a number that the host draws.
+// Certificate. The host assigns the number and signs both.
 #include <algorithm>
 
 #include "certificate.h"
@@ -16,14 +16,15 @@ namespace {
 
 using Blocks = std::vector<Block>;
 
-/// The same but for the decimal sign.
+/// Whether two texts are equal except for the decimal separator.
 bool same(const std::string& a, const std::string& b) {
   const auto plain = [](char c) { return c == ',' ? '.' : c; };
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [&](char x, char y) { return plain(x) == plain(y); });
 }
 
-/// "Hall 4 (beim Auftraggeber / at the customer's)": the common beginning is printed once.
+/// Joins texts with equal beginnings: "Hall 4 (beim Auftraggeber / at the customer's)". False if
+/// not possible.
 bool join_in_brackets(std::string& a, const std::string& b) {
   const std::size_t open = a.find(" (");
   if (open == std::string::npos || open == 0 || b.find(" (") != open || !a.ends_with(')') ||
@@ -56,7 +57,8 @@ void merge(Grid& a, const Grid& b) {
   }
 }
 
-/// Titles of axes have a stroke before their unit. Upwards there is no room for two.
+/// Joins the texts of two plots, in axis titles by " · " because "/" precedes the unit. The y title
+/// stays in one language for lack of space.
 void merge(Plot& a, const Plot& b) {
   join(a.title, b.title);
   join(a.x_title, b.x_title, " · ");
@@ -65,7 +67,7 @@ void merge(Plot& a, const Plot& b) {
     join(a.curves[i].legend, b.curves[i].legend);
 }
 
-/// The labels of its rows have to be the same in both.
+/// Joins the titles. The row labels must not depend on the language.
 void merge(BarChart& a, const BarChart& b) {
   join(a.title, b.title);
   join(a.x_title, b.x_title, " · ");
@@ -112,8 +114,8 @@ Blocks joined(Blocks first, const Blocks& second) {
   return first;
 }
 
-/// A document in two languages out of the same document in each of them: labels joined, sentences
-/// side by side, numbers once, with the first one's decimal sign.
+/// Merges documents in two languages: labels are joined, sentences are side by side, and numbers
+/// are printed once with the decimal separator of the first.
 Document side_by_side(Document first, const Document& second) {
   join(first.title, second.title);
   join(first.page_of, second.page_of);
@@ -136,7 +138,7 @@ void prepare(const Templates& templates) {
   if (const auto look = look_of(templates, words_file)) (void)pages::fonts_of(templates, *look);
 }
 
-/// Marks what the customer stated; the keys that are printed nowhere stay.
+/// Marks values that the customer stated with " *". Keys that are not printed remain in `keys`.
 void mark(Blocks& blocks, std::vector<std::string>& keys) {
   std::vector<std::string> found;
   const auto visit = [&](const auto& self, Blocks& all) -> void {
@@ -223,7 +225,8 @@ std::vector<Error> check_templates(const Templates& templates) {
 
 }  // namespace
 
-/// Words of every language that claim an accreditation are listed in title.claims, divided by commas.
+/// A title is a claim if it contains one of the words listed, separated by commas, in title.claims
+/// of any language.
 std::string accredited_claim(const OutputInput& in) {
   const auto lower = [](std::string text) {
     for (char& c : text)

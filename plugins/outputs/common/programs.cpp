@@ -13,7 +13,7 @@ namespace nonio::programs {
 
 namespace {
 
-/// Printable ASCII on one line, without what ends a comment.
+/// Printable ASCII on one line, without characters that end a comment.
 std::string plain(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -29,10 +29,10 @@ using math::MeasuringRequest;
 constexpr double mm = 1e-3;
 constexpr double deg = 1.0 / deg_per_rad;
 constexpr double full_turn = 360.0 * deg;
-constexpr double slack = 1e-9;         // m or rad: rounding, no travel
-constexpr double most_readings = 1e5;  // of one program: 140 h at 5 s
+constexpr double slack = 1e-9;         // m or rad, tolerance for rounding
+constexpr double most_readings = 1e5;  // limit per program: 140 h at 5 s per reading
 
-/// The plan that the diagonals follow: a row with equal steps of two axes.
+/// Plan of the diagonals: n equal steps of two axes.
 struct Plan {
   std::string x, y;
   int n = 0;
@@ -80,7 +80,7 @@ class Requests {
     }
     for (auto it = asked.begin(); it != asked.end(); ++it) {
       const std::string& what = *it;
-      if (std::find(asked.begin(), it, what) != it) continue;  // stated twice
+      if (std::find(asked.begin(), it, what) != it) continue;  // listed twice
       const auto done = what == "axes"             ? axes()
                         : what == "diagonals"      ? diagonals(false)
                         : what == "half-diagonal"  ? diagonals(true)
@@ -103,7 +103,7 @@ class Requests {
     return rotary ? o_.number("over_travel_deg") * deg : o_.number("over_travel_mm") * mm;
   }
 
-  /// The linear axis of that name, with its travel.
+  /// The linear axis with this name. Error: unknown, rotary, or without travel.
   Expected<const Axis*> axis(const std::string& name) const {
     const Axis* a = in_.campaign.machine.axis(name);
     if (a == nullptr || a->rotary || !a->travel)
@@ -112,7 +112,7 @@ class Requests {
     return a;
   }
 
-  /// That `length` from `start`, with the over-travel before and after it, is within the travel.
+  /// Error if `length` plus the over-travel at both ends exceeds the travel of the axis.
   Expected<void> room(const Axis& a, double length) const {
     const double wanted = length + 2.0 * over_travel(a.rotary);
     const double travel = a.travel->second - a.travel->first;
@@ -123,7 +123,7 @@ class Requests {
                                        number(travel / mm) + " mm");
   }
 
-  /// Limits the length of the program to that of a realistic measurement.
+  /// Error if the program is too long for a realistic measurement.
   Expected<void> bounded(const std::string& name, double stops) const {
     const double readings = stops * wish_.runs * (wish_.both_directions ? 2.0 : 1.0);
     if (readings <= most_readings) return {};
@@ -183,9 +183,9 @@ class Requests {
            last + over_travel(a.rotary) > a.travel->second + slack;
   }
 
-  /// Where targets may lie: the travel less the over-travel. Of a whole turn one turn, from a
-  /// cardinal angle where there is room: 0 deg and 360 deg are both targets, and the over-travel
-  /// goes beyond the travel if need be.
+  /// Range of the targets: the travel without the over-travel. A rotary axis with a full turn has
+  /// targets at 0 deg and 360 deg, if possible from a cardinal angle, even if the over-travel then
+  /// exceeds the travel.
   std::pair<double, double> range(const Axis& a) const {
     const auto [from, to] = *a.travel;
     const double o = over_travel(a.rotary);
@@ -197,7 +197,7 @@ class Requests {
     return {from, from + full_turn};
   }
 
-  /// Targets as ISO 230-2 requests them.
+  /// Distributes the targets as required by ISO 230-2.
   Expected<void> spread(const Axis& a, const std::string& choice, math::AxisTargets& wanted,
                         std::string& how) const {
     const double length = wanted.last - wanted.first;
@@ -269,7 +269,7 @@ class Requests {
     return {};
   }
 
-  /// Stops of the rows `start`, `from`, `to` on the one axis of option `axes`.
+  /// Stops of `start`, `from` and `to` in the table rows, for the axis in option `axes`.
   Expected<void> sign_probe() {
     const std::vector<std::string> names = o_.texts("axes");
     const Axis* a = names.size() == 1 ? in_.campaign.machine.axis(names.front()) : nullptr;
@@ -341,7 +341,7 @@ class Requests {
   std::vector<Program> programs_;
 };
 
-/// The paths that the options request.
+/// The programs requested by the options.
 Expected<std::vector<Program>> requested(const OutputInput& in) { return Requests(in).all(); }
 
 std::string trimmed(std::string text) {
@@ -357,8 +357,8 @@ std::string file_part(std::string_view name) {
   return out;
 }
 
-/// That the control takes the name for an axis: with a digit behind its letter, a number that
-/// follows would be another one.
+/// Error if the dialect does not support the name. In some dialects a digit after the axis letter
+/// would be read as part of the position.
 Expected<void> check_name(const std::string& axis, const Dialect& dialect) {
   const auto letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
   if (letter(axis.front()) && file_part(axis) == axis && (axis.size() == 1 || dialect.long_names))
@@ -374,7 +374,7 @@ Expected<void> check_name(const std::string& axis, const Dialect& dialect) {
 
 std::string position(const math::MeasuringPath& path, std::size_t axis, double si) {
   std::string text = trimmed(fixed_text(printed(si, position_of(path.rotary[axis])), 6));
-  // A number without a point is a count of increments to some controls.
+  // Some controls read a number without a decimal point as increments.
   return text.find('.') == std::string::npos ? text + ".0" : text;
 }
 

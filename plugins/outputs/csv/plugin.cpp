@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// values.csv, and files of the points and curves of each analysis, for spreadsheets.
+// values.csv, and one file per analysis with points and curves, for spreadsheets.
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace nonio::csv_output {
 namespace {
 
-/// Empty where the value is not known.
+/// The value in printed units; empty if it is not finite.
 std::string number(double si, Quantity quantity) {
   if (!std::isfinite(si)) return {};
   std::string text;
@@ -66,7 +66,7 @@ std::vector<std::string> value_row(const Results& results, const Results::Analys
   return row;
 }
 
-/// A tolerance whose value could not be given is a row too, so that it is not overlooked.
+/// Adds rows for tolerances without a value, so that they are not overlooked.
 void add_undecided(std::string& out, const Results& results) {
   for (const Conformity& c : results.conformity) {
     const bool has_value =
@@ -108,7 +108,7 @@ std::string table_file(const PointTable& points) {
   return out;
 }
 
-/// A plain file name that no artifact has yet.
+/// A file name with safe characters that no other output file has.
 std::string file_name(const std::string& kind, const Results::Analysed& a,
                       const std::vector<Artifact>& others) {
   const auto plain = [](std::string part) {
@@ -129,7 +129,7 @@ std::string file_name(const std::string& kind, const Results::Analysed& a,
   return name;
 }
 
-/// Curves of one axis over another (EYX, EXX), one row for each point.
+/// One row per point of the curves of one axis over another (EYX, EXX).
 std::string series_file(const std::vector<Series>& all) {
   std::string out = "curve,over,position,position_unit,value,unit,U,k\n";
   for (const Series& s : all)

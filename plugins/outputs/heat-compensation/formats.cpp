@@ -18,7 +18,7 @@ std::string lower(std::string s) {
 std::string mm(double m) { return fixed_text(1e3 * m, 9); }
 std::string um(double m) { return fixed_text(1e6 * m, 2); }
 
-/// What is above every file, without the signs of a comment.
+/// Header lines of every file, without comment marks.
 std::vector<std::string> heading(const OutputInput& in, const Law& law) {
   std::string effects;
   for (const std::string& effect : law.effects) effects += (effects.empty() ? "" : ", ") + effect;
@@ -38,7 +38,7 @@ std::string comment(const std::vector<std::string>& lines, const std::string& be
                     const std::string& after = "") {
   std::string out;
   for (std::string line : lines) {
-    for (char& c : line)  // the end of a comment, or of a line, within one
+    for (char& c : line)  // characters that would end the comment or the line
       if (c == '\n' || c == '\r' || c == '*') c = ' ';
     out += before + line + after + "\n";
   }
@@ -51,7 +51,7 @@ std::string file_of(const Law& law, const char* control, const char* ending) {
 
 std::string anything(const Law&) { return ""; }
 
-// LinuxCNC: HAL
+// LinuxCNC: HAL files
 
 std::string signal_of(const Law& law, const std::string& channel) {
   for (const auto& c : law.channels)
@@ -60,7 +60,7 @@ std::string signal_of(const Law& law, const std::string& channel) {
   return "";
 }
 
-/// Components of one law; `add` is called in the order in which the thread must run them.
+/// HAL components of a law; `component` adds them in the order of execution in the thread.
 class Hal {
  public:
   Hal(const Law& law, double period) : law_(law), period_(period), axis_(lower(plain(law.axis))) {}
@@ -102,7 +102,7 @@ class Hal {
     lines_ += "net " + signal_of(law_, channel) + " => " + pin + "\n";
   }
 
-  /// A channel, or its power, with its lag; the pin that has it.
+  /// Adds components for a channel (or its power) with its lag; returns the output pin.
   std::string lagged(const Term& term, std::size_t channel, const std::string& id) {
     std::string from;
     if (term.kind == Term::Kind::source) {
@@ -128,7 +128,7 @@ class Hal {
     return lag + ".out";
   }
 
-  /// Adds a term to `sum`, a pin; the pin of the new sum. In mm, what the axis has to add.
+  /// Adds a term to the pin `sum`; returns the pin of the new sum: compensation of the axis in mm.
   std::string one(const Term& term, std::size_t i, const std::string& sum) {
     const std::string id = std::to_string(i + 1);
     const std::string first = lagged(term, 0, id + "a");
@@ -203,11 +203,11 @@ std::vector<Artifact> klipper(const OutputInput& in, const Law& law) {
 
 struct Dialect {
   const char *number, *result;
-  double sign;  ///< of the result: of the error
+  double sign;  ///< sign of the result relative to the error
 };
 
-/// s: not below a tenth of a second, a fiftieth of the shortest lag, and at most 10 s, so that single
-/// precision still adds.
+/// Cycle time, s: a fiftieth of the shortest lag, from 0.1 s to 10 s, so that single precision is
+/// sufficient.
 double step_of(const Law& law) {
   double step = 10.0;
   for (const Term& term : law.terms)

@@ -6,13 +6,13 @@
 
 #include "law.h"
 
-/// The files of one law for one kind of control; README.md has the source of every fact.
+/// Files of a compensation law for each control; README.md states the sources.
 namespace nonio::heat_compensation {
 
 struct Format {
   const char* name;  ///< choice of option `control`
-  const char* note;  ///< id of the remark on what is inferred; null: all is documented
-  /// Empty where the control can have this law; else id of the finding that refuses it.
+  const char* note;  ///< id of the remark about inferred facts; nullptr: none
+  /// Returns the id of the finding that refuses the law; empty: accepted.
   std::string (*refusal)(const Law&);
   std::vector<Artifact> (*files)(const OutputInput&, const Law&);
 };

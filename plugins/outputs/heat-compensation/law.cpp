@@ -15,7 +15,8 @@ std::string trimmed(const std::string& s) {
   return from == std::string::npos ? "" : s.substr(from, s.find_last_not_of(" \t") - from + 1);
 }
 
-/// Axis of a displacement, with "-" in front where the sensor counts against it.
+/// Axis of each displacement from option `axes`, with prefix "-" if the sensor has the opposite
+/// sign.
 Expected<std::map<std::string, std::string>> stated_axes(const OutputInput& in) {
   std::map<std::string, std::string> out;
   for (const std::string& entry : in.options.texts("axes")) {
@@ -33,7 +34,8 @@ Expected<std::map<std::string, std::string>> stated_axes(const OutputInput& in) 
   return out;
 }
 
-/// "z" and "z2" are of Z, if the machine has it.
+/// The axis Z for "z" or "z2" if the machine has it, and likewise for other letters; otherwise
+/// empty.
 std::string axis_by_name(const Campaign& campaign, const std::string& displacement) {
   for (const Axis& axis : campaign.machine.axes)
     if (!axis.rotary && axis.name.size() == 1 &&
@@ -68,7 +70,7 @@ Values values_of(const ModelFit& fit, const std::string& effect) {
   return v;
 }
 
-/// Kind by the effect's name (plugins/effects/heat); nothing of one that follows no channel.
+/// Term by the name of the effect (plugins/effects/heat); nullopt: it does not use a channel.
 std::optional<Term> term_of(const ModelFit& fit, const std::string& effect,
                             const Observations& readings) {
   const std::size_t colon = effect.find(':');

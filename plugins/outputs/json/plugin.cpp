@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// readings.json: what was read, in printed units, for other programs.
+// readings.json: the readings in printed units, for other programs.
 #include "nonio/sdk/plugin.h"
 
 #include <array>
@@ -17,7 +17,7 @@
 namespace nonio::json_output {
 namespace {
 
-/// `[a, b, c]` on one line, each entry appended by write(out, i): a column of readings.
+/// Writes an array on one line; write(out, i) appends element i.
 template <class Write>
 void list(JsonWriter& json, std::string_view name, std::size_t size, Write write) {
   std::string out = "[";
@@ -29,7 +29,7 @@ void list(JsonWriter& json, std::string_view name, std::size_t size, Write write
   json.raw(out += ']');
 }
 
-/// null where a value is not known.
+/// Writes an array of numbers in printed units; null for values that are not finite.
 void numbers(JsonWriter& json, const std::string& name, const std::vector<double>& si,
              Quantity quantity) {
   if (si.empty()) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page from disk, which contains its data. Updates the pictures (draw.js) while effects, directions and runs are
-// removed and put back. What is removed is in the address after "#".
+// Script of the stored page, which contains its data. It updates the figures (draw.js) when
+// effects, directions or runs are switched off or on. The fragment of the URL stores what is off.
 "use strict";
 (function () {
   const data = JSON.parse(document.getElementById("data").textContent);
@@ -12,8 +12,9 @@
   const {number, text, finite} = pictures;
   let residual = data.residual;
 
-  // ---- the residual without some effects: without one it comes from a fit of the others; without several
-  // their fitted parts are added to the residual, and each measurement keeps a zero of its own ----
+  // ---- residuals without some effects: for one effect, from a fit of the others; for several
+  // effects, their fitted parts are added to the residuals, and the zero of each measurement is
+  // updated ----
   let refitted = null;
   function work() {
     const one = out.e.size === 1 ? data.effects[[...out.e][0]].without : null;
@@ -55,14 +56,14 @@
       (whole && finite(refitted.cv_rms) ? " " + text(words.without_cv, {rms: number(refitted.cv_rms, 2), unit: data.unit}) : "");
   }
 
-  // ---- the choice of effects, directions and runs: boxes, and the address ----
+  // ---- selection of effects, directions and runs: checkboxes and URL fragment ----
   function remember() {
     const list = [];
     for (const kind in out) for (const v of [...out[kind]].sort()) list.push(kind + v);
     try {
       history.replaceState(null, "", list.length ? "#" + list.join(",") : location.pathname);
     } catch (e) {
-      // where a page from disk is not allowed to change its address, the choice is not stored
+      // browsers may not allow a local page to change its URL; the selection is then not stored
     }
   }
   function recall() {

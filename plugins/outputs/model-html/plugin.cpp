@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The model of each part of the machine as a page for a browser, in one file that needs nothing
-// else. What it states is in templates/words/<language>/pictures.toml.
+// The model of each part of the machine as a self-contained HTML page. Its texts are in
+// templates/words/<language>/pictures.toml.
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 namespace nonio::model_html {
 namespace {
 
-/// What a page is made from.
+/// Input of a page.
 struct Source {
   const OutputInput& in;
   const ModelFit& fit;
@@ -46,7 +46,7 @@ void add_head(View& view, const Source& source) {
   view.set("identity", line);
 }
 
-/// The verdict in a box, and in it where something is left, line by line.
+/// Adds the verdict in a box, and below it the remaining patterns as a list.
 void add_notes(View& view, const Source& source) {
   const auto says = [&](const Finding& f, const char* part) {
     return Html{typeset_html(finding_text(source.in.templates, source.words.language(), f, part))};
@@ -61,7 +61,7 @@ void add_notes(View& view, const Source& source) {
     view.flag("attention", f.attention);
     const Html title = says(f, "title");
     if (title.text != f.id || says(f, "says").text.empty())
-      view.set("note_title", title);  // a verdict has none
+      view.set("note_title", title);  // a verdict has no title
     for (const char* part : {"says", "advice"})
       if (const Html text = says(f, part); !text.text.empty()) view.add("note").set("note", text);
   }
@@ -82,7 +82,7 @@ void add_parameters(View& view, const Source& source) {
     if (!text.empty()) view.add("about_fit").set("about_fit", text);
 }
 
-/// What effects are and their remedies, from the catalogue.
+/// Adds descriptions and remedies of effects from the catalog.
 void add_cards(View& view, const Source& source) {
   bool any = false;
   for (const ModelFit::Candidate& c : source.fit.candidates) {
@@ -100,7 +100,8 @@ void add_cards(View& view, const Source& source) {
   view.flag("cards", any);
 }
 
-/// Effects that are not in the model: those with evidence, those without, what to measure next.
+/// Adds effects that are not in the model: with evidence, without evidence, and what to measure
+/// next.
 void add_candidates(View& view, const Source& source) {
   const std::string& language = source.words.language();
   const auto rows = candidate_rows(source.fit, language);
@@ -118,8 +119,7 @@ void add_candidates(View& view, const Source& source) {
         "plan", Html{typeset_html(finding_text(source.in.templates, language, f, "says"))});
 }
 
-/// How RMS falls with each effect: bars in percent of the chart's width, so that they fit any
-/// screen without a script.
+/// Adds the decrease of RMS per effect as bars in percent of the chart width, which need no script.
 void add_steps(View& view, const Source& source) {
   const ModelFit& fit = source.fit;
   const Wording& words = source.words;
@@ -206,7 +206,7 @@ Expected<std::string> page_of(const Source& source) {
 
 bool applies(const Campaign& campaign) { return !campaign.model.empty(); }
 
-/// The part's name as a plain file name.
+/// The file name for a part, with safe characters.
 std::string file_name(const std::string& part) {
   std::string name = "model-" + part + ".html";
   for (char& c : name) {

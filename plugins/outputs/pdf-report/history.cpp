@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The page of the machine's history up to this campaign.
+// The history of the machine up to this campaign.
 #include "nonio/sdk/history.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 
 constexpr const char* history_field = "history";
 
-/// Days since 1970-01-01; the host gives no others than YYYY-MM-DD.
+/// Days since 1970-01-01; `day` must be YYYY-MM-DD.
 double day_number(const std::string& day) {
   const auto part = [&](std::size_t at, std::size_t n) {
     int value = 0;
@@ -40,7 +40,7 @@ constexpr double days_a_year = 365.25;
 
 bool is_largest(const HistorySeries& s) { return s.model.empty(); }
 
-/// Largest deviations first, as the other pages have them, then what is followed.
+/// Order of the page: largest deviations (A, B, R), then the other followed quantities.
 int rank(const HistorySeries& s) {
   constexpr const char* first[] = {"A", "B", "R"};
   if (is_largest(s))
@@ -100,7 +100,8 @@ class HistoryPage {
                                         {"digest", digest}});
   }
 
-  /// What people wrote into other files than the manifest must not stop the report.
+  /// Replaces characters that the fonts do not contain, because texts from other files must not
+  /// stop the report.
   std::string visible(const std::string& text) const { return visible_text(text, source_.fonts); }
 
   std::string name(const HistorySeries& s) const {
@@ -120,7 +121,7 @@ class HistoryPage {
     if (c.cause == "instrument") return w_.get("history.instrument_cause");
     if (c.cause == "table") return w_.get("history.table_cause");
     if (c.cause != "event") return w_.get("history.unknown_cause");
-    return kind(c.event.substr(0, c.event.find(": ")));  // its text is printed with the events
+    return kind(c.event.substr(0, c.event.find(": ")));  // the text is printed with the events
   }
 
   std::string change(const HistorySeries& s, const HistoryChange& c) const {
@@ -162,7 +163,7 @@ class HistoryPage {
     return w_.get("history.new_value");
   }
 
-  /// The columns before the value: what it is compared with, and the difference.
+  /// Table columns about the previous value: value, date, difference.
   struct Before {
     std::string value = "–", since = "–", difference = "–";
     bool any = false;
@@ -182,7 +183,7 @@ class HistoryPage {
     return {};
   }
 
-  /// The unit is in a column of the table; a factor has none.
+  /// The step without a unit, which has its own column; a factor is printed with "×".
   std::string step_text(const HistorySeries& s, const HistoryStep& step) const {
     const FollowedNumbers shown = numbers(s);
     return shown.is_scatter() ? "× " + scatter_text(source_.site, step.size, step.u)
@@ -222,7 +223,7 @@ class HistoryPage {
     if (!table.rows.empty()) blocks.push_back({std::move(table), history_field});
   }
 
-  /// Days as the horizontal axis has them.
+  /// Converts dates to positions on the horizontal axis.
   struct Time {
     double first = 0.0;
     bool years = false;
@@ -294,7 +295,7 @@ class HistoryPage {
             line({x, x}, {out.range->first, out.range->second}, style.muted, Dash::dotted));
     for (const HistorySegment& g : s.segments) {
       std::vector<double> x, y;
-      const int steps = shown.is_scatter() ? 8 : 1;  // a line of logarithms is a curve
+      const int steps = shown.is_scatter() ? 8 : 1;  // a straight line of logarithms is a curve
       for (int i = 0; i <= steps; ++i) {
         const double t = static_cast<double>(i) / steps;
         x.push_back(std::lerp(time.at(g.from), time.at(g.to), t));
@@ -321,7 +322,8 @@ class HistoryPage {
     return c;
   }
 
-  /// As many as one page has room for below the table; what changed first.
+  /// Indexes of the series with a plot below the table, limited by the page height; changed ones
+  /// first.
   std::vector<std::size_t> drawn(double height, std::size_t per_row) const {
     constexpr double line = 8.6, around = 2.4;
     double taken = 150 + line * std::ceil(static_cast<double>(events().size()) / 140.0);
@@ -402,14 +404,14 @@ class HistoryPage {
   const Wording& w_;
   const HistorySoFar& h_;
   const std::string& id_;
-  std::vector<std::size_t> shown_{};  ///< of the series, in the order of the page
+  std::vector<std::size_t> shown_{};  ///< indexes of series, in page order
 };
 
 }  // namespace
 
 void add_history(const Source& source, Blocks& blocks) {
   if (!source.in.options.flag("history")) return;
-  // What is only a sentence needs no page.
+  // no new page for a single sentence
   if (source.in.history != nullptr && !source.in.history->campaigns.empty())
     blocks.push_back({PageBreak{}});
   blocks.push_back({Heading{source.words.get("history.title"), 1}, history_field});

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Readings with their model, and the page of residuals. Its nine pictures have the same places
-// whatever the data are, so that the eye learns where to look; one whose data are missing states
-// that in its frame.
+// Readings with their model, and the page of residuals. Its nine figures always have the same
+// positions, so that readers find them. A figure without data states this in its frame.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,7 +23,7 @@ std::vector<double> scaled(std::vector<double> values, double factor) {
   return values;
 }
 
-/// Halfway to the paper.
+/// The color mixed with 50 % white.
 Colour pale(Colour c) { return {(1 + c.red) / 2, (1 + c.green) / 2, (1 + c.blue) / 2}; }
 
 class Pictures {
@@ -89,7 +88,7 @@ class Pictures {
     return plot;
   }
 
-  /// Readings of each pass with the model, and what it leaves below, over the same places.
+  /// Plot of readings and model by pass, and of the residuals below it, over the same positions.
   std::array<Plot, 2> with_model(const PictureWords& said, const PictureWords& left) const {
     Plot above = frame(said), below = frame(left);
     below.title.clear();
@@ -108,8 +107,8 @@ class Pictures {
     return {std::move(above), std::move(below)};
   }
 
-  /// Temperatures, speeds and loads during the readings, a plot for each unit: those that the model
-  /// follows by name, the others thin.
+  /// Temperatures, speeds and loads during the readings, one plot per unit. Channels in the model
+  /// have a legend; the others are thin lines.
   std::vector<Plot> channels(const PictureWords& said) const {
     std::vector<Plot> out;
     std::vector<std::string> units;
@@ -134,7 +133,7 @@ class Pictures {
 
   std::string legend() const { return words_.get("picture.legend") + " " + marks(); }
 
-  /// What the grey band and the rings are.
+  /// Legend of the gray band and the rings.
   std::string marks() const {
     std::string text =
         fit_.floor
@@ -180,12 +179,13 @@ class Pictures {
     return plot;
   }
 
-  double held(double y) const {  // suspects beyond the picture are drawn at its edge
+  double held(double y) const {  // clamps suspect readings to the edge of the figure
     const double inset = 0.03 * (range_.second - range_.first);
     return std::clamp(y, range_.first + inset, range_.second - inset);
   }
 
-  /// Readings by direction, in printed units; `row`: which reading a point is, if not the i-th.
+  /// Adds readings by direction, in printed units. `row`: index of the reading of each point;
+  /// empty: i.
   void scatter(Plot& plot, const std::vector<double>& x, const std::vector<double>& y,
                const std::vector<std::size_t>& row = {}) const {
     Curve plus, minus, other;
@@ -217,21 +217,21 @@ class Pictures {
     if (c.x.size() > 1) plot.curves.push_back(std::move(c));
   }
 
-  /// Residuals over x (SI), with their mean along it.
+  /// Adds residuals over x (SI), and their mean along x.
   void residuals(Plot& plot, const std::vector<double>& x, double per_si) const {
     scatter(plot, scaled(x, per_si), scaled(fit_.residual, per_si_));
     const Trace mean = mean_by_part(fit_, x);
     line(plot, scaled(mean.x, per_si), scaled(mean.y, per_si_), style_.text);
   }
 
-  /// Where targets of a measurement lie in a picture by position.
+  /// Horizontal positions of a measurement's targets in a figure over position.
   std::vector<double> along(std::vector<double> targets, std::size_t measurement) const {
     for (double& t : targets)
       t = lanes_.names.empty() ? (t - scale_.from) * scale_.per_si : lanes_.at(measurement, t);
     return targets;
   }
 
-  /// Of every reading.
+  /// Horizontal position of every reading.
   std::vector<double> places() const {
     if (lanes_.names.empty()) return along(fit_.target, 0);
     std::vector<double> out(fit_.size());
@@ -248,7 +248,7 @@ class Pictures {
   }
 
   void readings(Plot& plot) const {
-    constexpr std::size_t most_lines = 60;  // of more passes the lines hide each other
+    constexpr std::size_t most_lines = 60;  // with more passes, lines would overlap too much
     constexpr std::size_t most_single = 5000;
     const std::vector<double> x = places(), y = scaled(fit_.deviation, per_si_);
     std::vector<double> model(x.size());
@@ -284,7 +284,7 @@ class Pictures {
     }
   }
 
-  /// Of very many readings the mean of the model at each target.
+  /// For very many readings: mean of the model at each target.
   void mean_model(Plot& plot) const {
     ModelFit model = fit_;
     for (std::size_t i = 0; i < model.size(); ++i)
@@ -321,7 +321,7 @@ class Pictures {
       for (const double spread : r.spread) widest = std::max(widest, spread);
       if (!r.values.x.empty()) reversal_line(plot, r, m, false);
     }
-    // One belt for all lines: bands would darken each other.
+    // One belt for all lines, because overlapping bands would become darker.
     const double half = fit_.floor ? 2 * widest * *fit_.floor * per_si_ : 0;
     if (half > 0) plot.belts.push_back({-half, half, style_.rule});
   }
@@ -386,7 +386,7 @@ class Pictures {
   Quantity deviation_;
   PlaceScale scale_;
   double per_si_;
-  std::vector<char> suspect_;  ///< of each reading
+  std::vector<char> suspect_;  ///< for each reading: suspected misreading
   Lanes lanes_;
   std::pair<double, double> range_;
 };
@@ -421,11 +421,11 @@ void add_pictures(const Source& source, const ModelFit& fit, Blocks& blocks) {
   blocks.push_back(
       {Heading{source.pictures.get("picture.heading", {{"part", fit.part}}), 1}, field});
   blocks.push_back({Paragraph{pictures.legend(), Paragraph::Look::small}, field});
-  // What heading, legend, captions of up to three lines and gaps need is missing for the plots.
+  // Heading, legend, captions of up to three lines and gaps reduce the height of the plots.
   constexpr double between = 7;
   const double heading = 9 + 1.3 * style.heading + 6, legend = 3 * 1.3 * style.small + 2;
   const double around = 5 + 3 * 1.3 * style.small + 2 + between;
-  const double end = 1.3 * style.small + 2;  // the line that ends the report
+  const double end = 1.3 * style.small + 2;  // height of the last line of the report
   const double height = (page_room(style) - heading - legend - end) / 3 - around;
   const auto said = picture_words(fit, source.pictures);
   for (std::size_t i = 0; i < said.size(); i += per_row) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The report of a campaign as a PDF, for people. What it states and shows is in templates/.
+// The report of a campaign as a PDF. Its texts and layout are in templates/.
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>

@@ -18,30 +18,29 @@ using reports::Wording;
 using pages::Blocks;
 using pages::Measured;
 
-/// What every part of the report is made from.
+/// Input of every part of the report.
 struct Source : pages::Source {
-  const Wording& pictures;  ///< words of the model's pictures
-  const Wording& site;      ///< words of the laboratory's pages: quantities, events
+  const Wording& pictures;  ///< texts of the model figures
+  const Wording& site;      ///< texts of the laboratory's pages: quantities, events
 };
 
-/// Its template, checked.
+/// Reads and checks the layout template.
 Expected<pages::Look> look_of(const Templates&, const std::string& name);
 
-/// Title and status (with what requires action), campaign, machine, instrument.
+/// Title, status (with required actions), campaign, machine, instrument.
 void add_title(const Source&, Blocks&);
 void add_identity(const Source&, Blocks&);
 void add_status(const Source&, Blocks&);
 
-/// What analyses of the whole campaign state: rows of a plan, and their findings.
+/// Results of analyses of the whole campaign: rows of a plan, and findings.
 void add_plans(const Source&, Blocks&);
-/// Whether advice is printed in a part of its own, block "laboratory".
+/// Whether the block "laboratory" prints all advice.
 bool has_laboratory_part(const Source&);
-/// What a model states is not a result: it is printed in that part alone.
+/// Whether a finding is printed in that block only, because a model is not a result.
 bool is_for_laboratory(const Source&, const Finding&);
 void add_laboratory(const Source&, Blocks&);
 void add_findings(const Source&, const Measured&, Blocks&);
-/// What controllers' tables have to state; what several of them state alike once, with all their
-/// names.
+/// Finding of a controller plugin; equal findings of several plugins are merged, with all names.
 struct TableFinding {
   const Finding* finding;
   std::string outputs;
@@ -50,25 +49,25 @@ struct TableFinding {
 std::vector<TableFinding> table_findings(const Source&);
 std::string title_of(const Source&, const TableFinding&);
 
-/// How the models fit: verdict, parameters, the falling error.
+/// Quality of the models: verdict, parameters, decrease of the error.
 void add_models(const Source&, Blocks&);
-/// Readings with their model, and what it leaves.
+/// Readings with their model, and the residuals.
 void add_fit(const Source&, const ModelFit&, Blocks&);
-/// A page of pictures for each model.
+/// One page of figures per model.
 void add_residuals(const Source&, Blocks&);
-/// Always the same nine, in the same places, together with their heading on one page.
+/// Nine figures in fixed positions on one page, with their heading.
 void add_pictures(const Source&, const ModelFit&, Blocks&);
 
-/// The machine over its campaigns up to this one: a page, if the options request it.
+/// History of the machine up to this campaign; one page if the option `history` is set.
 void add_history(const Source&, Blocks&);
 
 void add_tables(const Source&, Blocks&);
 void add_notes(const Source&, Blocks&);
 
-/// A finding as the document shows it.
+/// A finding as a block of the document.
 reports::Block note_of(const Source&, const Finding&);
 
-/// The whole document.
+/// The complete document.
 reports::Document compose(const Source&);
 
 }  // namespace nonio::pdf_report

@@ -10,7 +10,7 @@ namespace {
 
 using programs::Program;
 
-/// The rest in the word that the control understands: controls differ in the unit of P.
+/// The dwell in the given word, because controls differ in word and unit.
 std::string dwell(double seconds, const std::string& word) {
   if (word == "X") return "G4 X" + programs::number(seconds);
   if (word == "P-ms") return "G4 P" + programs::number(seconds * 1e3);

@@ -10,7 +10,7 @@ namespace {
 
 using programs::Program;
 
-/// Blocks are numbered from 0, which is BEGIN PGM.
+/// Numbers the blocks from 0, which is BEGIN PGM.
 class Blocks {
  public:
   void add(const std::string& text) { out_ += std::to_string(number_++) + " " + text + "\n"; }
@@ -43,7 +43,7 @@ std::string format(const Program& p, const Settings&) {
     std::string line = "L";
     for (std::size_t a = 0; a < p.path.axes.size(); ++a)
       line += " " + p.path.axes[a] + signed_position(p, a, move.to[a]);
-    // M91: positions of the machine, in this block only.
+    // M91: machine coordinates in this block.
     blocks.add(line + " R0 F" + programs::number(p.feed) + " M91");
     if (move.dwell > 0.0) {
       blocks.add("CYCL DEF 9.0 DWELL TIME");

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Part programs that probe a ball on a rotary axis, or on two of which one carries the other, at
-// several angles and heights, for the kind ball-centres. Each touch is logged as nine numbers, X Y Z A B C U V W, as the reader
-// linuxcnc-probe takes them.
+// Part programs that probe a ball on a rotary axis, or on a pair of stacked rotary axes, at several
+// angles and heights (kind ball-centres). Each touch is logged as nine numbers, X Y Z A B C U V W,
+// for the reader linuxcnc-probe.
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>
@@ -22,20 +22,20 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-/// A rotary axis: what turns about a line along a coordinate.
+/// A rotary axis about a line parallel to a coordinate axis.
 struct Turning {
   std::string axis;
   Vector centre{};
-  bool with = true;  ///< right-handed about +X, +Y or +Z
+  bool with = true;  ///< right-handed about +X, +Y or +Z; false: left-handed
   std::size_t about() const { return static_cast<std::size_t>(axis.front() - 'A'); }
   Vector direction(const Vector&, double angle) const;
   Vector point(const Vector&, double angle) const;
 };
 
 struct Ball {
-  Turning table;                      ///< which carries the ball
-  std::optional<Turning> carrier;     ///< on the bed, which carries the table
-  Vector at{}, stem{0.0, 0.0, -1.0};  ///< with the axes at 0; from the ball along its stem
+  Turning table;                      ///< the axis that carries the ball
+  std::optional<Turning> carrier;     ///< the axis that carries the table; nullopt: none
+  Vector at{}, stem{0.0, 0.0, -1.0};  ///< mm; unit vector along the stem; at axis positions 0
   double radius = 0.0, approach = 0.0, beyond = 0.0;
 };
 
@@ -46,7 +46,7 @@ struct Place {
   Vector ball{}, stem{};
 };
 
-/// One touch: from next to the ball to inside it.
+/// One touch: from outside the ball to a point inside it.
 struct Touch {
   Vector from{}, to{};
 };
@@ -68,8 +68,8 @@ Vector Turning::point(const Vector& p, double angle) const {
   return out;
 }
 
-/// The ball set on by `height` along the table's axis, turned about the table's line as it is with
-/// the carrier at 0, then about the carrier's.
+/// The ball, `height` higher along the table axis, rotated about the table axis and then about the
+/// carrier.
 Place place_of(const Ball& ball, double height, double angle, std::optional<double> carrier) {
   Vector at = ball.at;
   at[ball.table.about()] += height;
@@ -80,8 +80,8 @@ Place place_of(const Ball& ball, double height, double angle, std::optional<doub
   return out;
 }
 
-/// From above, then from four sides at the height of the centre. A side to which the stem leans by
-/// less than 60 deg gives way to those between the sides that are free. None where the stem is above.
+/// Touches from above and from four sides at the height of the center. A side less than 60 deg from
+/// the stem is replaced by free directions between the sides. Empty if the stem points up.
 std::vector<Touch> touches(const Ball& ball, const Place& place) {
   constexpr double diagonal = std::numbers::sqrt2 / 2.0, nearest = 0.5;  // cos 60 deg
   const auto is_free = [&](const Vector& way) {
@@ -112,7 +112,7 @@ std::vector<Touch> touches(const Ball& ball, const Place& place) {
 
 constexpr std::array<const char*, 3> linear{"X", "Y", "Z"};
 
-/// The values of the options, mm and deg.
+/// Values of the options, in mm and deg.
 struct Wish {
   std::string dialect;
   Ball ball;
@@ -133,10 +133,10 @@ std::string mm(double value) {
   return text.find('.') == std::string::npos ? text + ".0" : text;
 }
 
-/// The words of a control.
+/// Formats the program in the language of the control.
 struct Dialect {
   const Wish& w;
-  std::string log;  ///< name of the file
+  std::string log;  ///< name of the log file
   std::string out;
 
   bool siemens() const { return w.dialect == "siemens"; }
@@ -172,13 +172,13 @@ struct Dialect {
   void touch(const Touch& t, const Place& place) {
     const std::string feed = " F" + programs::number(w.probe_feed);
     std::string to;
-    std::size_t k = 0;  // the axis that goes farthest
+    std::size_t k = 0;  // index of the axis with the largest motion
     for (std::size_t i = 0; i < 3; ++i) {
       if (t.from[i] != t.to[i]) to += (to.empty() ? "" : " ") + (linear[i] + mm(t.to[i]));
       if (std::fabs(t.from[i] - t.to[i]) > std::fabs(t.from[k] - t.to[k])) k = i;
     }
     if (siemens()) {
-      // All three: positions are stored of the axes that the block names.
+      // All three axes, because only positions of axes in the block are stored.
       std::string all;
       for (std::size_t i = 0; i < 3; ++i) all += std::string(" ") + linear[i] + mm(t.to[i]);
       line("MEAS=1 G1" + all + feed);
@@ -218,7 +218,7 @@ std::optional<Vector> three(const Settings& o, const char* name) {
   return Vector{v[0], v[1], v[2]};
 }
 
-/// The axis that carries the other, and its positions, if one is named.
+/// Adds the carrying axis and its positions if option `carried_by` is set.
 Expected<void> add_carrier(const Settings& o, const Machine& machine, Wish& w) {
   Turning carrier;
   carrier.axis = o.text("carried_by");
@@ -271,7 +271,7 @@ Expected<Wish> wish_of(const Settings& o, const Machine& machine) {
   const auto places = static_cast<std::size_t>(o.integer("places"));
   if (!(from < to) || to - from > 360.0)
     return wrong("to_deg", "from_deg to_deg: expected a range of at most 360 deg, from below to");
-  const bool turn = to - from > 359.999;  // the last place would be the first one
+  const bool turn = to - from > 359.999;  // the last position would equal the first
   for (std::size_t i = 0; i < places; ++i)
     w.angles.push_back(from + (to - from) * static_cast<double>(i) /
                                   static_cast<double>(turn ? places : places - 1));
@@ -282,7 +282,7 @@ Expected<Wish> wish_of(const Settings& o, const Machine& machine) {
   return w;
 }
 
-/// That the machine reaches a place, if its travel is known.
+/// Error if the position is outside of the travel, if this is stated.
 Expected<void> reaches(const Machine& machine, const char* name, double value, bool rotary) {
   const Axis* axis = machine.axis(name);
   if (axis == nullptr || !axis->travel) return {};
@@ -293,7 +293,7 @@ Expected<void> reaches(const Machine& machine, const char* name, double value, b
                std::string("axis ") + name + " would go to " + mm(value) + ", outside its travel");
 }
 
-/// All places, in the order of the program.
+/// All positions in program order.
 std::vector<Place> places_of(const Wish& w, double height) {
   std::vector<Place> out;
   std::vector<std::optional<double>> carrier(w.carrier_angles.begin(), w.carrier_angles.end());
@@ -324,7 +324,7 @@ void begin(Dialect& d, const Wish& w) {
   d.begin();
 }
 
-/// That the machine reaches a place and all its touches.
+/// Error if the machine cannot reach a position or one of its touches.
 Expected<void> reaches(const Wish& w, const Machine& machine, const Place& place, double safe) {
   if (auto there = reaches(machine, w.ball.table.axis.c_str(), place.angle, true); !there)
     return there;

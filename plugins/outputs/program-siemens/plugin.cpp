@@ -10,7 +10,7 @@ namespace {
 
 using programs::Program;
 
-/// An axis whose name is not a single letter is assigned with "=".
+/// The word for a position; an axis name of several characters needs "=".
 std::string word(const std::string& axis, const std::string& value) {
   return axis + (axis.size() > 1 ? "=" : "") + value;
 }
@@ -20,14 +20,14 @@ std::string format(const Program& p, const Settings&) {
   for (const std::string& line : p.about) out += "; " + line + "\n";
   // G500: no settable offset; D0: no tool offset; G60: exact stop.
   out += "G710 G90 G94 G40 G500 D0\nG60\nMSG(\"" + p.path.name + ": DRY RUN FIRST\")\n";
-  // SUPA: neither frames nor external, set or handwheel offsets in this block.
+  // SUPA: no frames and no external, set or handwheel offsets in this block.
   const bool probe = p.path.moves.back().stop;
   for (const math::MeasuringMove& move : p.path.moves) {
     out += probe ? "G1 SUPA" : "G1";
     for (std::size_t a = 0; a < p.path.axes.size(); ++a)
       out += " " + word(p.path.axes[a], programs::position(p.path, a, move.to[a]));
     out += " F" + programs::number(p.feed) + "\n";
-    // F of a G4 block is seconds and leaves the feed alone.
+    // F of a G4 block is in seconds and does not change the feed.
     if (move.dwell > 0.0) out += "G4 F" + programs::number(move.dwell) + "\n";
     if (move.stop) out += "M0\n";
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Kinematic parameters under the names that controls have for them.
+// Kinematic parameters with the names that controls use.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -14,7 +14,7 @@ namespace {
 struct TiltingTable {
   const Line *c = nullptr, *tilt = nullptr;
   std::size_t about = 0;   ///< coordinate along the tilting axis: 0 for A, 1 for B
-  std::size_t across = 1;  ///< the other horizontal one
+  std::size_t across = 1;  ///< the other horizontal coordinate
   std::array<double, 3> c_point{}, tilt_point{};
 };
 
@@ -26,11 +26,11 @@ std::array<double, 3> point_at(const Line& line, std::size_t coordinate, double 
 }
 
 bool along(const Line& line, std::size_t coordinate) {
-  constexpr double near = 0.999;  // 2.6 deg: what leans more is another kind of machine
+  constexpr double near = 0.999;  // 2.6 deg; larger angles are another type of machine
   return line.direction[coordinate].value > near;
 }
 
-/// The same, whichever way positive angles turn.
+/// Like `along`, but for both signs of rotation.
 bool parallel(const Line& line, std::size_t coordinate) {
   constexpr double near = 0.999;
   return std::fabs(line.direction[coordinate].value) > near;
@@ -45,7 +45,7 @@ bool compared(const Line& a, const Line& b) {
   return names(a, b) || names(b, a);
 }
 
-/// The only C and the only A or B of the campaign; an axis measured twice is not chosen from.
+/// The only C and the only A or B of the campaign; empty if an axis occurs twice.
 TiltingTable tilting_table(const std::vector<Line>& lines) {
   TiltingTable t;
   for (const Line& line : lines) {
@@ -61,29 +61,31 @@ TiltingTable tilting_table(const std::vector<Line>& lines) {
   return t;
 }
 
-/// A chain states how it goes: here the tilting axis has to carry C, and both the workpiece.
+/// Whether a chain contradicts the assumption that the tilting axis carries C and both carry the
+/// workpiece.
 bool of_another_chain(const TiltingTable& t) {
   const std::string wanted = t.tilt->axis + ", C";
   return (t.c->of_chain && t.c->tables != wanted) || (t.tilt->of_chain && t.tilt->tables != wanted);
 }
 
-/// Nearest points of the lines: that of C at the height of the tilting axis, and that of the latter.
+/// Sets the reference points: that of C at the height of the tilting axis, and that of the tilting
+/// axis nearest to C.
 void meet(TiltingTable& t) {
   t.c_point = point_at(*t.c, 2, t.tilt->centre[2].value);
   t.tilt_point = point_at(*t.tilt, t.about, t.c_point[t.about]);
   t.c_point = point_at(*t.c, 2, t.tilt_point[2]);
 }
 
-/// A parameter of a control with what is known of it.
+/// A parameter of a control and the reliability of its meaning.
 struct Field {
-  std::string name;  ///< as the control has it
+  std::string name;  ///< parameter name in the control
   double value = 0.0;
-  bool length = true;      ///< mm, else a plain number
-  bool documented = true;  ///< else inferred, and `why` states from what
+  bool length = true;      ///< in mm; false: dimensionless
+  bool documented = true;  ///< false: inferred, for the reason `why`
   const char* why = "";
 };
 
-/// The parameters of one control, what the control had before, and how far they may change.
+/// The parameters of one control.
 struct Change {
   std::string control;
   std::vector<Field> fields;
@@ -93,7 +95,7 @@ std::string text_of(const Field& f, double value) {
   return f.length ? millimetres(value) : component(value);
 }
 
-/// The former value, from the options; none if it is not stated.
+/// The present value from the options, SI; nullopt: not stated.
 std::optional<double> before(const Wish& wish, const Change& c, const Field& f) {
   const auto table = wish.before.find(c.control);
   if (table == wish.before.end()) return std::nullopt;
@@ -102,7 +104,7 @@ std::optional<double> before(const Wish& wish, const Change& c, const Field& f) 
   return f.length ? value->second * 1e-3 : value->second;
 }
 
-/// Whether every length changes by no more than the limit, and every stated name is one of these.
+/// Whether all lengths change within the limit and all stated names are known; adds findings.
 bool within_limits(const Wish& wish, const Change& c, OutputResult& result) {
   bool good = true;
   for (const Field& f : c.fields)
@@ -127,7 +129,7 @@ bool within_limits(const Wish& wish, const Change& c, OutputResult& result) {
   return good;
 }
 
-/// name, before, new, change, and how sure the meaning of the field is.
+/// Table of name, present value, new value, change, and reliability of the meaning.
 std::string rows_of(const Wish& wish, const Change& c, const char* comment) {
   std::size_t wide = 0;
   for (const Field& f : c.fields) wide = std::max(wide, f.name.size());
@@ -175,7 +177,7 @@ std::string linuxcnc(const TiltingTable& t, const std::string& campaign, const C
   return out;
 }
 
-/// From the machine's base to the tilting axis, and from there to C, as rows of the table.
+/// Rows of a kinematics table: from the machine base to the tilting axis, and from it to C.
 std::string heidenhain(const TiltingTable& t, const std::string& campaign, const Change& c) {
   std::string out = "; " + campaign + ": values for a kinematics table (iTNC 530), mm\n";
   out += "; Documented: the columns KEY, AXIS, COORD and the keys Trans, MachAxis.\n";
@@ -194,7 +196,7 @@ std::string heidenhain(const TiltingTable& t, const std::string& campaign, const
   return out;
 }
 
-/// `first`: names of the vector to the tilting axis; `second`: from there to C.
+/// Adds two vectors: `first` names that to the tilting axis, `second` that from it to C.
 void put_vectors(const TiltingTable& t, Change& c, const std::array<const char*, 3>& first,
                  const std::array<const char*, 3>& second, bool documented, const char* why) {
   for (std::size_t k = 0; k < 3; ++k)
@@ -203,9 +205,9 @@ void put_vectors(const TiltingTable& t, Change& c, const std::array<const char*,
     c.fields.push_back({second[k], t.c_point[k] - t.tilt_point[k], true, documented, why});
 }
 
-/// Swivel table: I2 from the machine's reference point to the first rotary axis, I3 from there to
-/// the second one, I4 = -(I2 + I3); V1, V2: the rotary axes, with the other sign where they move
-/// the workpiece (SINUMERIK Operate, Commissioning Manual 12/2017, swivelling).
+/// Swivel table: I2 from the machine reference point to the first rotary axis, I3 to the second
+/// axis, I4 = -(I2 + I3). V1, V2: directions of the rotary axes, negative if they move the
+/// workpiece (SINUMERIK Operate, Commissioning Manual 12/2017, swivelling).
 Change siemens_fields(const TiltingTable& t, bool sign_shown) {
   Change c{"siemens", {}};
   put_vectors(t, c, {"$TC_CARR4", "$TC_CARR5", "$TC_CARR6"},
@@ -224,7 +226,7 @@ Change siemens_fields(const TiltingTable& t, bool sign_shown) {
   return c;
 }
 
-/// Table rotation type (No. 19680 = 12), first axis the tilting one (FANUC A-79348E: 19700 to 19705,
+/// Table rotation type (No. 19680 = 12); the first axis tilts (FANUC A-79348E: 19700 to 19705,
 /// 19684).
 Change fanuc_fields(const TiltingTable& t) {
   Change c{"fanuc", {}};
@@ -259,7 +261,7 @@ bool contains(const std::vector<std::string>& list, const char* name) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
 
-/// Of every control for which it was stated, what it had before, has now, and the change.
+/// Present value, new value and change for each control with stated values; empty: none.
 std::string log_of(const std::string& campaign, const Wish& wish, const std::vector<Change>& all) {
   std::string out;
   for (const Change& c : all)

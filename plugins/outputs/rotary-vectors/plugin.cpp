@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Centre and direction of the rotary axes as text, JSON and CSV, and under the names of controls.
+// Center and direction of rotary axes as text, JSON and CSV, and as parameters of controls.
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ std::string padded(std::string text, std::size_t width) {
 
 namespace {
 
-/// The line whose values end in `suffix`; none if one of them is missing.
+/// The axis from values with this suffix; nullopt if one is missing.
 std::optional<Line> line_of(const Results::Analysed& a, const std::string& suffix) {
   const auto take = [&](const std::string& name, Value& into) {
     for (const Value& v : a.evaluation.values)
@@ -45,7 +45,7 @@ std::optional<Line> line_of(const Results::Analysed& a, const std::string& suffi
   return line;
 }
 
-/// The axes that a note of rotary-chain names, "B, C".
+/// The axes stated by a note of rotary-chain, such as "B, C".
 std::string noted(const Evaluation& e, std::string_view note) {
   for (const Remark& r : e.notes)
     for (const auto& [name, text] : r.texts)
@@ -154,8 +154,8 @@ bool applies(const Campaign& campaign) {
                      [](const Measurement& m) { return m.kind == "ball-centres"; });
 }
 
-/// Findings without a stated reason why the readings are accepted (evidence `accepted`):
-/// what a control reads is held back, as the host does with tables.
+/// Ids of plausibility findings without a stated reason for acceptance (text `accepted`). They
+/// prevent files for controls, as for tables.
 std::string doubts_of(const Results& results) {
   std::set<std::string> ids;
   for (const Results::Analysed& a : results.analyses)

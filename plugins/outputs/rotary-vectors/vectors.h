@@ -10,34 +10,34 @@
 
 namespace nonio::rotary_vectors {
 
-/// A rotary axis as an analysis gave it; SI.
+/// A rotary axis as determined by an analysis; SI.
 struct Line {
   std::string measurement, axis;
   std::array<Value, 3> centre, direction;
   Value radius;
   std::vector<std::string> shares_reference;  ///< measurements it was compared with
-  /// Of the fit of two axes together: the order of those that carry the workpiece, "B, C".
+  /// If two axes were fitted together: those that carry the workpiece, in order: "B, C".
   bool of_chain = false;
   std::string tables{};
-  bool head = false;  ///< as seen from the tip of the tool
+  bool head = false;  ///< the axis carries the tool; coordinates relative to its tip
 };
-/// Of an axis that is part of a fit of two together, that one alone.
+/// The rotary axes of all results, including each axis of a common fit.
 std::vector<Line> lines_of(const Campaign&, const Results&);
 
-/// In mm, or without a unit: as many digits as 0.1 um and 0.1 urad need.
+/// Fixed decimals for a resolution of 0.1 um and 0.1 urad.
 std::string millimetres(double si);
 std::string component(double value);
-/// With spaces before it.
+/// Right-aligned in `width` characters.
 std::string padded(std::string text, std::size_t width);
 
-/// What the user knows of the controls.
+/// Data of the controls from the options.
 struct Wish {
   double limit = 2e-4;                  ///< largest change of a length, m
-  std::vector<std::string> sign_shown;  ///< controls on which a move has shown the signs
-  NumberTables before;                  ///< by control: what it has, mm
+  std::vector<std::string> sign_shown;  ///< controls whose signs were verified by a motion
+  NumberTables before;                  ///< by control: present parameters, mm
 };
 
-/// Files for controls whose parameters have known names, for a table C on a tilting axis A or B.
+/// Writes files for controls with known parameter names, for a table C on a tilting axis A or B.
 void write_controllers(const std::vector<Line>&, const std::string& campaign, const Wish&,
                        OutputResult&);
 

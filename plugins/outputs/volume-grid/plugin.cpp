@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The error of the tool point at the nodes of a grid as JSON, for a control or program that
-// compensates in the volume, and what it would leave of the readings.
+// Errors of the tool point on a grid as JSON for volumetric compensation, with predicted residuals.
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>
@@ -21,7 +20,7 @@ using Vector = std::array<double, 3>;
 constexpr std::array<const char*, 3> places{"X", "Y", "Z"}, errors{"e_x", "e_y", "e_z"},
     uncertainties{"U_x", "U_y", "U_z"};
 
-/// The map of an analysis: rows over X, Y, Z, Z fastest.
+/// The error map of an analysis: nodes over X, Y, Z; Z varies fastest.
 struct Grid {
   std::string measurement;
   std::array<std::vector<double>, 3> nodes;
@@ -53,7 +52,8 @@ std::optional<Grid> grid_of(const Results::Analysed& a) {
   return g;
 }
 
-/// The cell of a coordinate, and the part of the way to its upper node; outside the edge counts.
+/// The interval of a coordinate and the relative position in it. Outside of the grid, the edge
+/// applies.
 struct Cell {
   std::size_t low = 0, high = 0;
   double part = 0.0;
@@ -67,7 +67,7 @@ Cell cell_of(const std::vector<double>& nodes, double at) {
   return {high - 1, high, std::clamp(part, 0.0, 1.0)};
 }
 
-/// Linear in each coordinate.
+/// Trilinear interpolation of the error.
 Vector interpolated(const Grid& g, const Vector& at) {
   std::array<Cell, 3> cell;
   for (std::size_t k = 0; k < 3; ++k) cell[k] = cell_of(g.nodes[k], at[k]);
@@ -85,7 +85,7 @@ Vector interpolated(const Grid& g, const Vector& at) {
   return out;
 }
 
-/// Where a reading was; a place that is not stated is the middle of the grid.
+/// Position of a reading, m; a coordinate that is not stated is the center of the grid.
 Vector place_of(const Grid& g, const Measurement& m, const Observations& o, std::size_t row) {
   Vector at{};
   for (std::size_t k = 0; k < 3; ++k) at[k] = (g.nodes[k].front() + g.nodes[k].back()) / 2.0;
@@ -97,7 +97,7 @@ Vector place_of(const Grid& g, const Measurement& m, const Observations& o, std:
   return at;
 }
 
-/// rms about the mean of each line, of the readings as they are and with the grid loaded.
+/// RMS about the mean of each line, as measured and predicted with compensation, m.
 struct Predicted {
   double before = 0.0, after = 0.0;
   std::size_t readings = 0;
@@ -130,7 +130,7 @@ Predicted predicted(const Grid& g, const Measurement& m, const Observations& o) 
   return p;
 }
 
-/// Lengths along the axes and diagonals: mirrors and straightedges have slopes of their own.
+/// Only lengths along axes and diagonals, because mirrors and straightedges have unknown slopes.
 bool counts(const Measurement& m) { return m.kind == "axis" || m.kind == "diagonal"; }
 
 double in_um(double si) { return printed(si, Quantity::deviation); }

@@ -22,14 +22,14 @@ using namespace readers;
 
 namespace {
 
-/// One line: PV, date, time, value; a status and a severity may follow.
+/// One line: PV, date, time, value, and optionally status and severity.
 struct Entry {
   std::string_view pv, value;
-  std::int64_t time = 0;  ///< us since 1970-01-01, of the clock that the log is in
+  std::int64_t time = 0;  ///< us since 1970-01-01 in the time zone of the log
   std::uint64_t line = 0;
 };
 
-/// `count` digits at `at`; -1 if there is something else.
+/// Value of `count` digits at `at`; -1: not digits.
 int digits(std::string_view text, std::size_t at, std::size_t count) {
   int value = 0;
   if (at + count > text.size()) return -1;
@@ -40,7 +40,7 @@ int digits(std::string_view text, std::size_t at, std::size_t count) {
   return value;
 }
 
-/// 2022-04-07 and 08:23:29.748369
+/// Time in us from "2022-04-07" and "08:23:29.748369"; nullopt: invalid.
 std::optional<std::int64_t> time_of(std::string_view date, std::string_view time) {
   const int year = digits(date, 0, 4), month = digits(date, 5, 2), day = digits(date, 8, 2);
   const int h = digits(time, 0, 2), m = digits(time, 3, 2), s = digits(time, 6, 2);
@@ -64,7 +64,7 @@ std::optional<std::int64_t> time_of(std::string_view date, std::string_view time
   return ((days * 24LL + h) * 60 + m) * 60'000'000LL + s * 1'000'000LL + us;
 }
 
-/// Nothing if the line is none of a camonitor log.
+/// nullopt: not a line of a camonitor log.
 std::optional<Entry> entry_of(std::string_view line) {
   const auto fields = by_blanks(line);
   if (fields.size() < 4) return std::nullopt;
@@ -73,8 +73,7 @@ std::optional<Entry> entry_of(std::string_view line) {
   return Entry{fields[0], fields[3], *time, 0};
 }
 
-/// All entries of these PVs, by time; lines of one instant stay as they were. A log's first lines
-/// (values at its start) are not in order.
+/// Entries of these PVs in stable time order, because the initial values of a log are unordered.
 Expected<std::vector<Entry>> entries_of(std::string_view bytes,
                                         const std::vector<std::string_view>& pvs) {
   std::vector<Entry> entries;
@@ -102,10 +101,10 @@ Expected<std::vector<Entry>> entries_of(std::string_view bytes,
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// What the log cannot state.
+/// Data from the options that the log does not contain.
 struct Wiring {
   std::string target, reference, test;             ///< names of PVs
-  double target_unit = 0.0, reference_unit = 0.0;  ///< SI value of 1
+  double target_unit = 0.0, reference_unit = 0.0;  ///< SI value of one unit of each PV
   double gain = 1.0;
 };
 
@@ -122,7 +121,7 @@ Expected<double> unit_of_option(const ReadInput& input, const char* option, bool
                                     "\"; a log does not state its units"));
 }
 
-/// The first PVs that a log names.
+/// List of up to 12 PVs in the log, for messages.
 std::string pvs_of(std::string_view bytes) {
   std::set<std::string> known;
   Lines lines(bytes);
@@ -158,10 +157,10 @@ Expected<Wiring> wiring_of(const ReadInput& input, bool rotary) {
   return w;
 }
 
-/// 1101: forward, cycle 1, position 1; 2109: backward, cycle 1, position 9. From 3000 on they are
-/// those of other tests (limit switches, standstill).
+/// Step number: 1101 is forward, cycle 1, position 1; 2109 is backward, cycle 1, position 9.
+/// Numbers from 3000 on belong to other tests (limit switches, standstill).
 struct Step {
-  int direction = 0;  ///< 1 forward, -1 backward; 0: no step of the test
+  int direction = 0;  ///< 1 forward, -1 backward; 0: not a step of the test
   std::uint32_t cycle = 0, position = 0;
 };
 Step step_of(std::int64_t number) {
@@ -174,11 +173,11 @@ Step step_of(std::int64_t number) {
 struct Sample {
   Step step;
   double target = 0.0, reference = 0.0;  ///< as logged
-  std::uint64_t line = 0;                ///< of the reference
+  std::uint64_t line = 0;                ///< line number of the reference value
   std::int64_t time = 0;
 };
 
-/// What was true last when the test's number changed.
+/// Samples the latest values whenever the test number changes.
 class Sampler {
  public:
   Sampler(const Wiring& wiring) : wiring_(wiring) {}
@@ -229,7 +228,7 @@ class Sampler {
   std::vector<Sample> samples_;
 };
 
-/// One target a position, whatever the cycle and the direction.
+/// The target of each position. Error: it differs between cycles or directions.
 Expected<std::map<std::uint32_t, double>> targets_of(const std::vector<Sample>& samples) {
   std::map<std::uint32_t, double> targets;
   for (const Sample& s : samples) {
@@ -243,7 +242,7 @@ Expected<std::map<std::uint32_t, double>> targets_of(const std::vector<Sample>& 
   return targets;
 }
 
-/// A pass that was begun has every position.
+/// Error if a cycle does not contain every position in a direction.
 Expected<void> whole(const std::vector<Sample>& samples, std::size_t positions) {
   std::map<std::pair<int, std::uint32_t>, std::size_t> passes;
   for (const Sample& s : samples) ++passes[{s.step.direction, s.step.cycle}];
@@ -256,7 +255,8 @@ Expected<void> whole(const std::vector<Sample>& samples, std::size_t positions) 
   return {};
 }
 
-/// Reference over target: a user sees it, and the other way round is refused.
+/// Adds a note with the fitted line of reference over target. Error: its slope is not within 10 %
+/// of 1.
 Expected<void> check_line(const std::vector<Sample>& samples, const Wiring& w, Observations& obs,
                           bool rotary) {
   std::vector<double> x, y;
@@ -316,7 +316,7 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
   return runs.finish();
 }
 
-/// Some first lines are all of this form.
+/// Whether the first three nonblank lines are camonitor entries.
 bool recognises(std::string_view head) {
   Lines lines(head);
   std::string_view line;

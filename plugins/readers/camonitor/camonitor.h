@@ -5,7 +5,7 @@
 
 namespace nonio::camonitor {
 
-/// Logs of EPICS' camonitor, of a test whose steps are numbered by ecmc's tools.
+/// Reads logs of EPICS camonitor from tests whose steps are numbered by the ecmc tools.
 Reader reader();
 
 }  // namespace nonio::camonitor

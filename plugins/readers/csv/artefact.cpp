@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Balls of an artefact: their centres as the machine probed them, and what its certificate states.
+// Balls of an artefact: centers probed by the machine, and certified positions or lengths.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -22,7 +22,7 @@ Expected<void> sound_name(const std::string& name, const Table& table, std::size
       "expected the name of a ball, up to 20 characters without a blank, found \"" + name + "\""));
 }
 
-/// Lines of balls: one along each coordinate, whose names are that of the ball and x, y or z.
+/// Three lines per ball, one per coordinate, named by the ball and x, y or z.
 class BallLines {
  public:
   BallLines(Observations& obs, std::vector<std::size_t> coordinates)
@@ -47,7 +47,7 @@ class BallLines {
 
 constexpr const char* coordinate_columns[] = {"x_mm", "y_mm", "z_mm"};
 
-/// Those that were measured: a hole in a plate has no height.
+/// The measured coordinates; a hole in a plate has no height.
 std::vector<std::size_t> coordinates_in(const Table& table) {
   std::vector<std::size_t> out;
   for (std::size_t k = 0; k < 3; ++k)
@@ -64,7 +64,7 @@ Expected<void> few_enough(const Table& table) {
   return fail("expected at most 20000 rows, found " + std::to_string(table.size()));
 }
 
-/// The same ball, or pair of balls, once.
+/// Error if a ball or a pair of balls occurs twice.
 class Once {
  public:
   Expected<void> see(std::string what, const Table& table, std::size_t row, const char* meant) {
@@ -122,7 +122,7 @@ Expected<double> stated_u(const Table& table, std::size_t row) {
   return fail(at_line(table.line[row], "U_um", "expected an expanded uncertainty (k = 2) above 0"));
 }
 
-/// Coordinates: as of centres. Lengths: a line for each, named by both balls.
+/// Coordinates are stored as lines of centers, lengths as one line per pair of balls.
 Expected<Observations> certificate_of(const ReadInput& input, const Table& table, bool lengths) {
   if (auto few = few_enough(table); !few) return fail(few.error());
   Observations obs = begin(input.measurement, table);

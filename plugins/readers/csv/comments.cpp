@@ -12,9 +12,9 @@ namespace nonio::csv {
 using namespace readers;
 namespace {
 
-constexpr std::size_t head_and_foot = 65536;  ///< bytes of each that are looked at
+constexpr std::size_t head_and_foot = 65536;  ///< bytes that are checked at each end
 
-/// A word of a comment, in lower case; the characters before and after it.
+/// A word of a comment in lower case, with the adjacent characters.
 struct Word {
   std::string text;
   char before = ' ', behind = ' ';
@@ -50,7 +50,7 @@ struct Stem {
   std::string_view text;
   About about;
 };
-/// Begin of a word, or anywhere in one where words are not parted by blanks.
+/// Start of a word, or any part of it in languages without spaces.
 constexpr Stem stems[] = {{"deviation", About::deviation},
                           {"abweichung", About::deviation},
                           {"scostament", About::deviation},
@@ -86,8 +86,8 @@ constexpr std::string_view fillers[] = {
     "in",      "en",    "is",     "are",    "sind",   "ist", "the", "values", "werte", "valori",
     "valores", "given", "stated", "column", "spalte", "of",  "all", "alle",   "sono",  "son"};
 
-/// The unit that a word names, as column names do; empty if none. A single letter m and the word
-/// in only in brackets.
+/// The unit that a word names, as in column names; empty: none. "m" and "in" count only in
+/// brackets.
 std::string_view unit_in(const Word& word) {
   struct Name {
     std::string_view word, unit;
@@ -121,7 +121,7 @@ struct Contradiction {
   std::string column;
 };
 
-/// A unit that a comment states of a column and that this column does not have.
+/// A unit in the comment that contradicts the column it refers to; nullopt: none.
 std::optional<Contradiction> wrong_unit_in(const std::vector<Word>& words, const Header& header,
                                            const Expectation& e) {
   const std::string_view target = e.rotary ? "deg" : "mm";
@@ -136,7 +136,7 @@ std::optional<Contradiction> wrong_unit_in(const std::vector<Word>& words, const
       continue;
     }
     const std::string_view unit = unit_in(word);
-    // Degrees of a thermometer.
+    // degrees Celsius or Fahrenheit
     const bool thermal = unit == "deg" && i + 1 < words.size() &&
                          (words[i + 1].text == "c" || words[i + 1].text == "f");
     if (!unit.empty() && !thermal) {
@@ -156,7 +156,7 @@ std::optional<Contradiction> wrong_unit_in(const std::vector<Word>& words, const
   return std::nullopt;
 }
 
-/// "axis: Y", where Y is another axis of the machine than the measured one.
+/// The axis Y of "axis: Y" if it is another axis of the machine; nullopt: none.
 std::optional<std::string> other_axis(const std::vector<Word>& words, const ReadInput& input) {
   constexpr std::string_view names[] = {"axis", "achse", "asse", "eje", "轴"};
   const Measurement& m = input.measurement;

@@ -22,12 +22,12 @@ namespace {
 
 constexpr std::size_t report_every = std::size_t{4} << 20U;
 
-/// How many rows the file may hold, from lines counted in windows spread over it. Only a hint:
-/// reserving too much costs address space and no memory, too little one more copy.
+/// Estimated number of rows, from line counts in windows of the file. It is only used to reserve
+/// memory.
 std::size_t estimated_rows(std::string_view bytes, std::size_t columns) {
   constexpr std::size_t window = 4096, windows = 64;
   if (bytes.empty()) return 0;
-  const std::size_t shortest = 2 * columns;  // of a row: a character and a separator a field
+  const std::size_t shortest = 2 * columns;  // per row: a character and a separator per field
   const std::size_t pieces = bytes.size() <= window * windows ? 1 : windows;
   const std::size_t length = pieces == 1 ? bytes.size() : window;
   std::size_t lines = 0;
@@ -41,7 +41,7 @@ std::size_t estimated_rows(std::string_view bytes, std::size_t columns) {
   return std::min(rows, bytes.size() / shortest) + 64;
 }
 
-/// Reads the rows that follow a header into observations.
+/// Converts the rows after a header to observations.
 class Rows {
  public:
   Rows(const Header& header, const Expectation& expectation, Observations& obs)
@@ -51,7 +51,7 @@ class Rows {
         obs_(obs) {}
 
   void reserve(std::size_t rows);
-  /// False if the line is not a row; `error` then states why. Bool, because this runs once a row.
+  /// False if the row is invalid; `error` has the reason. A bool is used for speed.
   bool add(std::string_view line, std::uint64_t number);
   const Error& error() const { return error_; }
   Expected<void> finish();
@@ -62,7 +62,7 @@ class Rows {
     double target = 0.0;   ///< in the unit of the file
     double reading = 0.0;  ///< in the unit of the file
     bool taken = false;
-    double extra[5] = {};  ///< time and what follows it in Role
+    double extra[5] = {};  ///< values of time and the roles after it
   };
   struct Sample {
     double time, value;
@@ -94,11 +94,11 @@ class Rows {
   Observations& obs_;
   std::vector<std::string_view> fields_;
   std::uint64_t line_ = 0;
-  std::uint64_t first_point_ = 0, first_comma_ = 0;  ///< lines with that decimal mark; 0: none
+  std::uint64_t first_point_ = 0, first_comma_ = 0;  ///< first line with each decimal mark; 0: none
   std::uint64_t empty_rows_ = 0;
   std::vector<Key> not_taken_;
-  std::vector<double> channel_;               ///< of the row, in the order of the columns
-  std::vector<std::vector<Sample>> samples_;  ///< of each channel
+  std::vector<double> channel_;               ///< channel values of the row, by column
+  std::vector<std::vector<Sample>> samples_;  ///< samples of each channel
   PassOrder order_;
   Error error_;
 };
@@ -137,7 +137,7 @@ Error Rows::bad_number(std::size_t column) const {
   return at(column, std::move(message));
 }
 
-/// 1.234 in a file with decimal commas may mean 1234; it is ambiguous and not guessed.
+/// Refuses mixed decimal marks, because 1.234 in a file with decimal commas may mean 1234.
 bool Rows::consistent_mark(const Field& number, std::size_t column) {
   const bool point = number.mark == DecimalMark::point;
   std::uint64_t& first = point ? first_point_ : first_comma_;
@@ -196,7 +196,7 @@ void Rows::store(const Row& row) {
     not_taken_.push_back(row.key);
     return;
   }
-  // The difference is taken before the conversion: 100.25 - 100 is exact, 0.10025 - 0.1 is not.
+  // Subtraction before conversion, because 100.25 - 100 is exact and 0.10025 - 0.1 is not.
   const double deviation = header_.reading_is_position
                                ? (row.reading - row.target) / position_scale_
                                : row.reading / deviation_scale_;
@@ -213,7 +213,7 @@ bool Rows::add(std::string_view line, std::uint64_t line_number) {
   line_ = line_number;
   if (!split(line, header_.separator, fields_))
     return refuse({"unterminated quoted field, or text after the closing quote: " + shown(line)});
-  // Spreadsheets leave rows of separators behind; nothing is in them that could be misread.
+  // Rows of separators only, as written by spreadsheets, are skipped.
   if (fields_[0].empty() &&
       std::all_of(fields_.begin(), fields_.end(), [](auto field) { return field.empty(); })) {
     ++empty_rows_;
@@ -232,7 +232,7 @@ bool Rows::add(std::string_view line, std::uint64_t line_number) {
   return true;
 }
 
-/// In the order of their times.
+/// Adds the channels in time order.
 void Rows::put_channels() {
   std::size_t k = 0;
   for (std::size_t column = 0; column < header_.roles.size(); ++column) {
@@ -304,7 +304,7 @@ Observations empty_observations(const Measurement& m, const Expectation& e) {
   return obs;
 }
 
-/// The next line; with stated columns the next one that has all of them, whatever is above.
+/// The next line; with stated columns, the next line that contains all of them.
 Expected<std::string_view> header_line(Lines& lines, const StatedColumns& stated) {
   std::string_view line;
   std::optional<Error> error;
@@ -338,7 +338,7 @@ Expected<void> read_rows(const ReadInput& input, Lines& lines, const Header& hea
     if (lines.number() > std::numeric_limits<std::uint32_t>::max())
       return fail("expected at most 4294967295 lines");
     if (line.size() > longest_line || !rows.add(line, lines.number())) {
-      // Bytes that are no text explain a bad field better than the field does.
+      // An invalid character is a better explanation than an invalid field.
       error = not_text(line);
       if (error) return fail(std::move(*error));
       return fail(rows.error());
@@ -365,7 +365,7 @@ bool has_spatial_name(std::string_view line) {
   return false;
 }
 
-/// Readings over one position: of an axis, or of the distance along a diagonal.
+/// Reads positions of an axis, or distances along a diagonal.
 Expected<Observations> read_runs(const ReadInput& input) {
   NONIO_TRY(const auto expectation, expectation_of(input));
   NONIO_TRY(const auto stated, StatedColumns::of(input.options.texts(columns_option)));
@@ -387,7 +387,7 @@ Expected<Observations> read_runs(const ReadInput& input) {
   return obs;
 }
 
-/// A stop beyond the ends of its diagonal is a mistake in the manifest or in the file.
+/// Reads a diagonal. Error: a stop is outside of its ends.
 Expected<Observations> read_diagonal(const ReadInput& input) {
   const auto span = span_of(input.campaign, input.measurement);
   if (!span) return fail(span.error());
@@ -409,7 +409,7 @@ Expected<Observations> read_diagonal(const ReadInput& input) {
   return obs;
 }
 
-/// How each kind of measurement is read.
+/// The reading function of each kind of measurement.
 struct Way {
   std::string_view kind;
   Expected<Observations> (*read)(const ReadInput&);
@@ -431,8 +431,7 @@ constexpr Way ways[] = {{"axis", read_runs},
 
 }  // namespace
 
-/// UTF-16 is recognised, to be refused with a word for it: Latin letters in it have a zero byte
-/// each, all before them or all behind.
+/// Also recognizes UTF-16, so that the error can name it: every second byte of Latin text is zero.
 bool recognises(std::string_view head) {
   std::string narrow;
   if (const std::size_t first = head.find('\0'); first != head.npos) {

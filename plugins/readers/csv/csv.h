@@ -7,21 +7,21 @@
 
 namespace nonio::csv {
 
-/// Whether the first bytes of a file look like a CSV file with at least one column known here.
+/// Whether the start of a file is CSV with at least one known column.
 bool recognises(std::string_view head);
 
-/// The kinds of measurement that this reader reads.
+/// Whether this reader supports the kind of measurement.
 bool reads(std::string_view measurement_kind);
 
-/// What a person states of columns with other names, for readings of one axis or diagonal.
+/// Option that maps columns with other names, for readings of one axis or diagonal.
 inline constexpr std::string_view columns_option = "columns";
 Option columns_declared();
 
-/// The first rows as text, the names of the columns first.
+/// The header row and the first rows as text.
 Expected<std::vector<std::vector<std::string>>> first_rows(std::string_view bytes,
                                                            std::size_t most);
 
-/// A whole file, or an error with its line and column. Never a part of a file.
+/// Reads a complete file. Error: invalid line or column; no partial result.
 Expected<Observations> read(const ReadInput& input);
 
 }  // namespace nonio::csv

@@ -14,7 +14,7 @@
 namespace nonio::csv {
 namespace {
 
-/// Beyond this the passes cost more memory than sorting needs.
+/// With more passes, this check needs more memory than sorting.
 constexpr std::size_t most_passes = 100000;
 
 Key key_of(const Observations& obs, std::size_t row) {
@@ -52,7 +52,7 @@ Error contradiction(const Observations& obs, std::size_t first, std::size_t late
   return error;
 }
 
-/// Rows by key, and in the order of the file within a key.
+/// Row indexes sorted by key, then by file order.
 std::vector<std::uint32_t> sorted_rows(const Observations& obs) {
   std::vector<std::uint32_t> rows(obs.size());
   std::iota(rows.begin(), rows.end(), 0U);
@@ -63,7 +63,7 @@ std::vector<std::uint32_t> sorted_rows(const Observations& obs) {
   return rows;
 }
 
-/// Distinct keys of `not_taken` that no row of `rows` has.
+/// Number of distinct keys of `not_taken` that do not occur in `rows`.
 std::uint64_t count_missing(const Observations& obs, const std::vector<std::uint32_t>& rows,
                             std::vector<Key>& not_taken) {
   std::sort(not_taken.begin(), not_taken.end());
@@ -103,7 +103,7 @@ Expected<void> settle_duplicates(Observations& obs, std::vector<Key>& not_taken)
   std::vector<char> kept(obs.size(), 1);
   std::uint64_t dropped = 0;
   std::uint32_t first_dropped = 0;
-  std::optional<std::pair<std::size_t, std::size_t>> worst;  // the contradiction met first
+  std::optional<std::pair<std::size_t, std::size_t>> worst;  // rows of a contradiction
   for (std::size_t i = 1, first = 0; i < rows.size(); ++i) {
     if (!(key_of(obs, rows[i]) == key_of(obs, rows[first]))) {
       first = i;

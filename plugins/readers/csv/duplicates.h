@@ -11,7 +11,7 @@
 
 namespace nonio::csv {
 
-/// Run, direction and target of a reading: it can be taken only once.
+/// Run, direction and target, which identify a reading.
 struct Key {
   std::uint32_t run = 0;
   std::int8_t approach = 0;
@@ -22,8 +22,8 @@ struct Key {
   bool operator==(const Key& other) const { return tie() == other.tie(); }
 };
 
-/// Watches the rows go by. As long as the targets of every pass (run, direction) only rise or only
-/// fall, whatever is between them, no key can have occurred twice, and nothing needs sorting.
+/// Detects cheaply that no key occurs twice: within each pass (run, direction) all targets are
+/// increasing or decreasing. Sorting is then not needed.
 class PassOrder {
  public:
   void see(const Key& key);
@@ -32,7 +32,7 @@ class PassOrder {
  private:
   struct Pass {
     double last = 0.0;
-    int sense = 0;  ///< of its targets; 0: only one so far
+    int sense = 0;  ///< +1 rising, -1 falling; 0: one target so far
   };
   bool unique_ = true;
   std::uint64_t current_ = 0;  ///< number of the pass; 0: none yet
@@ -40,9 +40,9 @@ class PassOrder {
   std::unordered_map<std::uint64_t, Pass> passes_;
 };
 
-/// Drops repeated rows, with a note; an error where rows of one key contradict each other. A key
-/// that was not taken in one row and taken in another is taken. `not_taken` may be reordered; on
-/// return obs.missing counts its distinct keys that were never taken.
+/// Removes repeated rows and adds a note. Error: rows with one key contradict each other. A reading
+/// that exists in one of several rows is used. `not_taken` may be reordered; obs.missing is set to
+/// the number of its keys without a reading.
 Expected<void> settle_duplicates(Observations& obs, std::vector<Key>& not_taken);
 
 }  // namespace nonio::csv

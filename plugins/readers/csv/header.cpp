@@ -47,19 +47,19 @@ const Known* find(std::string_view name) {
 
 tl::unexpected<Error> fail_at(std::string_view column, std::string message) {
   Error error{std::move(message)};
-  // A name that cannot be shown unchanged is in the message only.
+  // The message alone has names that cannot be displayed unchanged.
   if (shown(column) == "\"" + std::string(column) + "\"") error.column = column;
   return fail(std::move(error));
 }
 
-/// A channel by its ending, with a name that is no slip of a known one.
+/// Whether the name is that of a channel by its ending, and not a misspelled known name.
 bool is_channel(std::string_view name) {
   constexpr std::size_t slip = 2;
   const auto ends = [&](const ChannelEnding& e) {
     return name.size() > e.end.size() && name.ends_with(e.end);
   };
   if (std::none_of(std::begin(channel_endings), std::end(channel_endings), ends)) return false;
-  // A name that cannot be shown as it is is none.
+  // names that cannot be displayed are refused
   if (shown(name) != "\"" + std::string(name) + "\"") return false;
   return std::none_of(known_columns.begin(), known_columns.end(), [&](const Known& k) {
     return edit_distance(name, k.name) <= slip && k.name.size() > 5;
@@ -79,7 +79,7 @@ tl::unexpected<Error> unknown_column(std::string_view name, std::size_t number) 
                            std::string(nearest(name, names)) + "\"?");
 }
 
-/// A unit that does not belong to this kind of axis.
+/// Error if the unit of a column does not fit the kind of axis.
 std::optional<Error> wrong_unit(const Known& column, const Expectation& e) {
   const bool target = column.role == Role::target;
   const bool angle = target ? e.rotary : e.angular_reading();
@@ -116,7 +116,7 @@ std::optional<Error> missing_column(const Header& header, const Expectation& e) 
   return Error{"missing column: expected " + missing + ", found " + found};
 }
 
-/// A role that a column before `name` has already.
+/// Error that `name` has the same meaning as an earlier column.
 tl::unexpected<Error> twice(const std::string& before, std::string_view name) {
   if (before == name)
     return fail_at(name, "column \"" + before + "\" occurs twice; expected it once");
@@ -128,7 +128,7 @@ tl::unexpected<Error> twice(const std::string& before, std::string_view name) {
 
 namespace {
 
-/// 3 of "#3"; 0 if it is another text.
+/// 3 for "#3"; 0 for any other text.
 std::size_t column_number(std::string_view text) {
   std::size_t number = 0;
   if (!text.starts_with('#') || text.size() < 2 || text[1] == '0') return 0;
@@ -177,7 +177,7 @@ bool StatedColumns::all_in(const std::vector<std::string_view>& row) const {
   const bool has_name =
       std::any_of(names_.begin(), names_.end(), [](const Stated& one) { return one.number == 0; });
   return std::all_of(names_.begin(), names_.end(), [&](const Stated& one) {
-    // The last names of a row may be blank; its other names show which row it is.
+    // The last names of a row may be blank.
     if (one.number != 0) return has_name || one.number <= row.size();
     return std::any_of(row.begin(), row.end(),
                        [&](std::string_view name) { return trimmed(name) == one.name; });
@@ -225,7 +225,7 @@ Expected<Header> parse_header(std::string_view row, const Expectation& e,
     return fail("option columns: \"#" + std::to_string(last) + "\" is stated, and the row has " +
                 std::to_string(names.size()) + " columns");
   for (std::size_t i = 0; i < names.size(); ++i) {
-    // By numbers alone the first readings would pass for the names.
+    // Column numbers alone would accept a row of readings as header.
     if (stated.last_number() != 0 && parse_number(names[i], true).kind == Field::Kind::taken)
       return fail(
           "option columns: expected a row with the names of the columns, which may be "

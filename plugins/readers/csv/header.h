@@ -11,54 +11,54 @@
 
 namespace nonio::csv {
 
-/// What a column holds.
+/// Meaning of a column.
 enum class Role : std::uint8_t {
   run,
   direction,
   target,
   reading,
-  ignored,  ///< a person stated that it is none of these
+  ignored,  ///< ignored by option `columns`
   time,
   material,
   air,
   pressure,
   humidity,
-  channel  ///< of any name: a temperature, speed or load next to the readings
+  channel  ///< a temperature, speed or load of any name
 };
 
-/// What a channel holds, by the end of its column's name.
+/// Unit of a channel by the end of its column name.
 struct ChannelEnding {
   std::string_view end, unit;
 };
 inline constexpr ChannelEnding channel_endings[] = {
     {"_c", "degC"}, {"_rpm", "rpm"}, {"_pct", "%"}, {"_kw", "kW"}, {"_a", "A"}};
 
-/// What a person stated of columns with other names (option `columns`): the name in the file, or
-/// "#3" for the third column, and the known name, "ignore" for none.
+/// Column names from option `columns`: the name in the file (or "#3" for the third column) and a
+/// known name or "ignore".
 class StatedColumns {
  public:
-  /// Of entries such as "Soll mm = target_mm". An error if one has another form.
+  /// Parses entries such as "Soll mm = target_mm". Error: any other form.
   static Expected<StatedColumns> of(const std::vector<std::string>& entries);
   bool empty() const { return names_.empty(); }
-  /// The known name of column `index`, from 0; the same name where nothing is stated of it.
+  /// The known name of column `index` (from 0); `name` itself if it is not in the option.
   std::string_view known(std::string_view name, std::size_t index) const;
-  /// Whether the row has all the names and numbers that are stated.
+  /// Whether the row contains all names and column numbers of the option.
   bool all_in(const std::vector<std::string_view>& row) const;
-  /// The largest number of a column; 0: all are stated by name.
+  /// The largest column number; 0: names only.
   std::size_t last_number() const;
-  /// The names as a list, for messages.
+  /// The names, separated by commas, for messages.
   std::string list() const;
 
  private:
   struct Stated {
-    std::string name;        ///< as it is stated, "#3" too
-    std::size_t number = 0;  ///< of the column, from 1; 0: by its name
+    std::string name;        ///< as in the option, "#3" included
+    std::size_t number = 0;  ///< column number from 1; 0: identified by name
     std::string known;
   };
   std::vector<Stated> names_{};
 };
 
-/// What the file is expected to hold.
+/// Expected content of the file.
 struct Expectation {
   std::string axis;
   bool rotary = false;
@@ -73,18 +73,18 @@ struct Expectation {
 
 struct Header {
   char separator = ',';
-  std::vector<Role> roles;         ///< of each column
-  std::vector<std::string> names;  ///< of each column
+  std::vector<Role> roles;         ///< role of each column
+  std::vector<std::string> names;  ///< name of each column
   bool reading_is_position = false;
 
   bool has(Role role) const;
   bool comma_allowed() const { return separator != ','; }
 };
 
-/// The separator with which most names of the header row are known or stated ones.
+/// The separator with the most known names in the header row.
 char find_separator(std::string_view row, const StatedColumns& stated = {});
 
-/// How many names of the row are known or stated ones.
+/// Number of names in the row that are known or in `stated`.
 std::size_t known_names(std::string_view row, char separator, const StatedColumns& stated = {});
 
 Expected<Header> parse_header(std::string_view row, const Expectation& expectation,

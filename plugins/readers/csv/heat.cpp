@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Displacements of a tool against the work over time (thermal tests) and over the angle of a spindle.
-// Each sensor is a line; the spindle is an axis "S" whose position is the angle that it has turned.
+// Displacements between tool and workpiece over time (thermal tests) and over the angle of a
+// spindle. Each sensor is a line. The position of axis "S" is the accumulated spindle angle.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr double heat_turn = 2.0 * std::numbers::pi, heat_deg = std::numbers::pi / 180.0;
 
-/// One of the sensors of a nest about a test mandrel: along an axis, 1 nearer to the spindle than 2.
+/// A sensor of a nest around a test mandrel; 1 is nearer to the spindle than 2.
 struct Sensor {
   const char *column, *name;
   std::size_t coordinate;
@@ -30,7 +30,7 @@ constexpr Sensor nest[] = {{"x_um", "X", 0}, {"x1_um", "X1", 0}, {"x2_um", "X2",
 
 constexpr std::string_view displacement_end = "_um";
 
-/// Any displacements, temperatures, speeds and loads of a test over time.
+/// Adds columns for displacements, temperatures, speeds and loads of any name.
 std::vector<ColumnSpec> with_channels(std::vector<ColumnSpec> columns) {
   columns.push_back({"*" + std::string(displacement_end)});
   for (const ChannelEnding& e : channel_endings) columns.push_back({"*" + std::string(e.end)});
@@ -41,7 +41,7 @@ std::string without(std::string_view name, std::string_view end) {
   return std::string(name.substr(0, name.size() - end.size()));
 }
 
-/// Each with the rows in which it was recorded. The humidity of the air is none.
+/// Channels with the rows in which they were recorded, without air humidity.
 std::vector<Observations::Channel> channels_of(const Table& table) {
   std::vector<Observations::Channel> out;
   const auto& time = *table.column("time_s");
@@ -66,7 +66,7 @@ std::vector<ColumnSpec> with_sensors(std::vector<ColumnSpec> columns) {
   return columns;
 }
 
-/// Those of the nest that the file has.
+/// The sensors of the nest that the file contains.
 std::vector<Sensor> nest_of(const Table& table) {
   std::vector<Sensor> out;
   for (const Sensor& s : nest)
@@ -74,7 +74,7 @@ std::vector<Sensor> nest_of(const Table& table) {
   return out;
 }
 
-/// The same; none: an error that names them.
+/// Like nest_of. Error: the file has none.
 Expected<std::vector<Sensor>> sensors_of(const Table& table) {
   std::vector<Sensor> out = nest_of(table);
   if (out.empty())
@@ -83,7 +83,7 @@ Expected<std::vector<Sensor>> sensors_of(const Table& table) {
   return out;
 }
 
-/// A column of displacements: of a sensor of the nest, or of one whose direction is not known.
+/// A column of displacements; `sense` is zero if the direction of the sensor is not known.
 struct Displacement {
   std::string column, name;
   Sense sense{};
@@ -115,8 +115,8 @@ std::optional<Error> times_grow(const Table& table) {
   return std::nullopt;
 }
 
-/// Angle that a spindle has turned, by its speed until the next row; and whether it turns then.
-/// Without speeds nothing turns.
+/// Accumulated angle of a spindle from its speed, which applies until the next row, and its
+/// direction of rotation. Without speeds it is at rest.
 struct Turning {
   std::vector<double> angle;
   std::vector<std::int8_t> turns;
@@ -139,13 +139,13 @@ Expected<Turning> turning_of(const Table& table) {
   return out;
 }
 
-/// Outside the period of a measurement only the channels are used.
+/// Whether a row is in the period of the measurement; outside of it only channels are used.
 bool in_period(const Measurement& m, double time) {
   const std::vector<double> period = m.settings.numbers("period");
   return period.size() != 2 || (time >= period[0] && time < period[1]);
 }
 
-/// Displacements against time, the machine not moving or its spindle turning.
+/// Reads displacements over time, with the machine at rest or the spindle turning.
 Expected<Observations> read_nest(const ReadInput& input, const Table& table) {
   NONIO_TRY(const auto sensors, displacements_of(table));
   if (auto error = times_grow(table)) return fail(std::move(*error));
@@ -175,7 +175,8 @@ Expected<Observations> read_nest(const ReadInput& input, const Table& table) {
   return complete(std::move(obs));
 }
 
-/// An axis that is exercised between targets: each reading of a target from a side is a cycle more.
+/// Reads an axis that cycles between targets. Each reading of a target and direction is a new
+/// cycle.
 Expected<Observations> read_exercised(const ReadInput& input, const Table& table) {
   const Measurement& m = input.measurement;
   const Axis* axis = input.campaign.machine.axis(m.axis);
@@ -208,8 +209,8 @@ Expected<Observations> read_exercised(const ReadInput& input, const Table& table
   return complete(std::move(obs));
 }
 
-/// Angles of a file with a pulse a turn: rows between two pulses are equally far apart. Rows before
-/// the first pulse and after the last one have none.
+/// Angles from one pulse per turn, rad: equal steps between pulses. NaN before the first and after
+/// the last pulse.
 std::vector<double> angles_by_pulses(const std::vector<double>& index) {
   std::vector<double> out(index.size(), NAN);
   std::vector<std::size_t> pulses;
@@ -223,8 +224,7 @@ std::vector<double> angles_by_pulses(const std::vector<double>& index) {
   return out;
 }
 
-/// The position of a row in its set-up: orientation of the ball on the spindle, positions of the
-/// sensors.
+/// Set-up of a row: orientation of the ball on the spindle, and of the sensors, deg.
 struct SetUp {
   double ball = 0.0, sensor = 0.0;
   auto operator<=>(const SetUp&) const = default;
@@ -240,7 +240,7 @@ std::string set_up_name(const Sensor& s, const SetUp& at) {
 Expected<std::vector<double>> angles_of(const Table& table, const std::vector<std::size_t>& rows) {
   std::vector<double> out;
   if (const auto* angle = table.column("angle_deg")) {
-    // Of a spindle that turns the other way the angles fall: the angle that it has turned grows.
+    // With falling angles (opposite rotation), the sign is changed so that angles increase.
     const bool falls = rows.size() > 1 && (*angle)[rows[1]] < (*angle)[rows[0]];
     for (std::size_t k = 0; k < rows.size(); ++k) {
       out.push_back((*angle)[rows[k]] * (falls ? -heat_deg : heat_deg));
@@ -271,7 +271,7 @@ Expected<void> put_set_up(Observations& obs, const Table& table, const Sensor& s
                           const std::vector<std::size_t>& rows, std::uint64_t& outside) {
   NONIO_TRY(const auto angles, angles_of(table, rows));
   Observations::Line line{set_up_name(s, at), {}};
-  // The sensors are turned about the spindle, Z; its own axis stays.
+  // The sensors rotate about the spindle axis Z, so the direction of Z is constant.
   const double c = std::cos(at.sensor * heat_deg), t = std::sin(at.sensor * heat_deg);
   if (s.coordinate == 0) line.sense = {c, t, 0.0};
   if (s.coordinate == 1) line.sense = {-t, c, 0.0};

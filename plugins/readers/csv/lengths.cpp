@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Lengths measured on a machine with its probe, and points on a sphere.
+// Lengths measured by a machine with its probe, and points on a sphere.
 #include <cmath>
 #include <map>
 
@@ -12,14 +12,14 @@ namespace nonio::csv {
 
 namespace {
 
-/// A line for each test and position: E0 1, E0 2, ..., EL 1. Run: the repeat.
+/// One line per test and position (E0 1, E0 2, ..., EL 1); run: repetition.
 Expected<Observations> read_errors(const ReadInput& input, const Table& table) {
   Observations obs = begin(input.measurement, table);
   obs.axes = {{"length", false, {}, {}}};
   const auto &position = *table.column("position"), &repeat = *table.column("repeat"),
              &length = *table.column("length_mm"), &deviation = *table.column("deviation_um");
   const auto& test = table.words.find("test")->second;
-  constexpr std::size_t most = 5000;  // the plan has 105
+  constexpr std::size_t most = 5000;  // far above the 105 lengths of the ISO 10360-2 plan
   if (table.size() > most)
     return fail("expected at most 5000 lengths, found " + std::to_string(table.size()));
   std::map<std::pair<std::string, double>, std::uint32_t> lines;
@@ -55,7 +55,7 @@ Expected<Observations> read_errors(const ReadInput& input, const Table& table) {
   return obs;
 }
 
-/// Three readings a point, along X, Y and Z, of which the deviation is the coordinate.
+/// Three readings per point, one per coordinate; the deviation is the coordinate.
 Expected<Observations> read_points(const ReadInput& input, const Table& table) {
   Observations obs = begin(input.measurement, table);
   obs.axes = {{"point", false, {}, {}}};

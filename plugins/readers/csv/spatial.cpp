@@ -19,7 +19,7 @@ Expected<Span> span_of(const Campaign& campaign, const Measurement& m) {
   for (const auto& [axis, from] : m.from) {
     const auto to = m.to.find(axis);
     if (to == m.to.end()) return bad("`from` has axis " + axis + ", `to` has not");
-    if (to->second == from) continue;  // it does not move
+    if (to->second == from) continue;  // the axis does not move
     const Axis* known = campaign.machine.axis(axis);
     if (known != nullptr && known->rotary)
       return bad("expected linear axes in `from` and `to`, found the rotary axis " + axis);
@@ -60,7 +60,7 @@ void spread(Observations& obs, const Span& span) {
 
 namespace {
 
-/// In addition to the axis of the measurement, the axes that a table of ball centres may have.
+/// The rotary axes that a table of ball centers may have in addition to `axis`.
 std::vector<std::string> other_rotary_axes(const Campaign& campaign, const std::string& axis) {
   std::vector<std::string> names;
   for (const Axis& other : campaign.machine.axes)
@@ -123,7 +123,7 @@ Expected<Observations> read_ball_centres(const ReadInput& input) {
 
 namespace {
 
-/// An axis that a general table may have: those of the machine, and X, Y, Z.
+/// Axes (name, rotary) of a general table: those of the machine, and X, Y, Z.
 std::vector<std::pair<std::string, bool>> possible_axes(const Campaign& campaign) {
   std::vector<std::pair<std::string, bool>> axes;
   for (const Axis& axis : campaign.machine.axes) axes.emplace_back(axis.name, axis.rotary);
@@ -133,8 +133,7 @@ std::vector<std::pair<std::string, bool>> possible_axes(const Campaign& campaign
   return axes;
 }
 
-/// The number of a line, which is new if its name is; a reading that senses another way than the
-/// first one of its line needs `sense` for all.
+/// Numbers the lines by name. `sense` is kept for all readings if a line has several directions.
 class GeneralLines {
  public:
   explicit GeneralLines(Observations& obs) : obs_(obs) {}

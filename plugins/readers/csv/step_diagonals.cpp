@@ -11,7 +11,7 @@
 namespace nonio::csv {
 namespace {
 
-/// The rows of one pass over one step diagonal, by step.
+/// Rows of one pass over a step diagonal, by step.
 using Pass = std::map<std::uint32_t, std::size_t>;
 
 struct Corner {

@@ -12,25 +12,24 @@
 
 namespace nonio::csv {
 
-/// A column that a file may have. A name "*_c" is that of every column which ends so and is no other
-/// one: the table has them by their own names.
+/// A column that a file may have. A name "*_c" matches all other columns with this ending; the
+/// table contains them by their own names.
 struct ColumnSpec {
   enum class Kind : std::uint8_t {
-    number,  ///< a reading: NaN where it was not taken
-    place,   ///< a number that must be there: a coordinate, an angle
+    number,  ///< reading; NaN if missing
+    place,   ///< mandatory number: coordinate or angle
     whole,   ///< 1, 2, ...
     sign,    ///< + or -
-    motion,  ///< + or -, or blank where the axis did not move
+    motion,  ///< + or -; blank: no motion of the axis
     word,
   };
   std::string name;
   Kind kind = Kind::number;
   bool required = false;
-  std::vector<std::string> words{};  ///< of a word: what is allowed; empty: anything
+  std::vector<std::string> words{};  ///< allowed values of a word; empty: any
 };
 
-/// A file of few rows (unlike the runs of an axis) by its columns: numbers in the unit of the file,
-/// signs as +1, -1 and 0.
+/// A short file by columns: numbers in units of the file, signs as +1, -1 and 0.
 struct Table {
   std::vector<std::uint32_t> line;
   std::map<std::string, std::vector<double>, std::less<>> numbers;
@@ -38,14 +37,14 @@ struct Table {
   std::uint64_t empty_rows = 0;
 
   std::size_t size() const { return line.size(); }
-  /// Null if the file does not have it.
+  /// nullptr if the file does not contain it.
   const std::vector<double>* column(std::string_view name) const {
     const auto found = numbers.find(name);
     return found == numbers.end() ? nullptr : &found->second;
   }
 };
 
-/// A whole file, or an error with its line and column.
+/// Reads a complete file. Error: invalid line or column.
 Expected<Table> read_table(std::string_view bytes, const std::vector<ColumnSpec>& columns);
 
 }  // namespace nonio::csv

@@ -11,8 +11,8 @@
 namespace nonio::csv {
 namespace {
 
-/// The direction about which places go round right-handed with the angle, from neighbours by angle
-/// less than half a turn apart; none if they do not go round.
+/// Axis of right-handed rotation of the positions with increasing angle, from neighbors less than
+/// half a turn apart; nullopt if they do not rotate.
 std::optional<Sense> turned_about(const std::vector<std::pair<double, Sense>>& places) {
   auto sorted = places;
   std::sort(sorted.begin(), sorted.end());
@@ -45,8 +45,8 @@ Sense turned(const Sense& v, const Sense& n, double angle) {
   return out;
 }
 
-/// Rows of kind rtcp: a gauge (with nx, ny, nz as it points, or tx, ty, tz as it points with the
-/// axis at 0 where it turns with it), or the whole centre as a probe found it.
+/// Rows of kind rtcp: a gauge with its direction (nx, ny, nz; or tx, ty, tz at axis position 0 if
+/// it rotates with the axis), or the center from a probe.
 class ToolCentreRows {
  public:
   ToolCentreRows(const Table& table, Observations& obs) : table_(table), obs_(obs) {
@@ -105,7 +105,7 @@ class ToolCentreRows {
       }
     return false;
   }
-  /// A sweep: run, and direction where the file states it.
+  /// Number of a sweep, from run and direction (if stated).
   int run(std::size_t row) const {
     const auto *runs = table_.column("run"), *directions = table_.column("direction");
     return 2 * static_cast<int>(runs == nullptr ? 1.0 : (*runs)[row]) +
@@ -131,7 +131,7 @@ class ToolCentreRows {
     put_common(obs_, table_, row);
   }
 
-  /// The deviation is that of the tool: commanded less found.
+  /// The deviation of the tool is commanded minus found position.
   Expected<void> put_probe(std::size_t row) {
     const Sense at = place(row),
                 found{number("dx_um", row), number("dy_um", row), number("dz_um", row)};

@@ -28,7 +28,7 @@ struct Contents {
   std::optional<std::uint32_t> cycles, positions;
 };
 
-/// "REF_DATA_FWD[3,1]=24.9" taken apart.
+/// Parts of a line such as "REF_DATA_FWD[3,1]=24.9".
 struct Assignment {
   std::string_view name, index, value;
 };
@@ -52,7 +52,7 @@ class Parser {
     while (lines.next(line)) {
       if (auto error = not_text(line)) return fail(at_line(lines.number(), error->message));
       line = trimmed(line);
-      // The first line of some files is "TEST_DATA=# Input data ...".
+      // Some files begin with "TEST_DATA=# Input data ...".
       if (line.empty() || line.front() == '#' || line.starts_with("TEST_DATA=")) continue;
       const auto a = assignment_of(line);
       if (!a)
@@ -60,7 +60,7 @@ class Parser {
             at_line(lines.number(), "expected NAME=VALUE or a comment, found " + shown(line)));
       if (auto ok = take(*a, lines.number()); !ok) return fail(ok.error());
     }
-    // The tools end every line; a number that was cut would still be a number.
+    // The tools end every line, and a truncated number would not be detected otherwise.
     if (!bytes.ends_with('\n'))
       return fail(at_line(lines.number(),
                           "expected an end of the last line, found none; was the file cut?"));
@@ -122,7 +122,7 @@ class Parser {
   Contents out_;
 };
 
-/// Every position has its target, and every pass that was begun has every position.
+/// Error if a target is missing, or a position in one of the passes.
 Expected<void> whole(const Contents& c) {
   const auto n = static_cast<std::uint32_t>(c.targets.size());
   if (n < 2) return fail("expected two targets or more (TGT_DATA), found " + std::to_string(n));
@@ -170,8 +170,8 @@ Expected<double> unit_of_file(const Contents& c, bool rotary) {
               " for this axis, found " + shown(c.unit));
 }
 
-/// The tools fit the targets as a line of the reference before they write it: then the deviations
-/// have no line over the reference, to the last digits of numbers with nine decimals.
+/// Adds a note about the line. If the tools subtracted it, the deviations have no slope and offset
+/// over the reference within the rounding of nine decimals.
 void add_line_note(Observations& obs, const Axis& axis) {
   const auto& target = obs.axes[0].position;
   std::vector<double> reference = target;
@@ -202,7 +202,7 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
   for (const auto& [key, value] : contents.readings) {
     const auto [direction, cycle, position] = key;
     const double target = targets[position - 1];
-    // The difference before the conversion: it is exact there.
+    // The difference is exact before the conversion.
     if (auto ok = runs.add({cycle, static_cast<std::int8_t>(direction * listed), target * *unit,
                             (value.value - target) * *unit, value.line});
         !ok)

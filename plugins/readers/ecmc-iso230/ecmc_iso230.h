@@ -5,7 +5,7 @@
 
 namespace nonio::ecmc_iso230 {
 
-/// Reference positions that ecmc's tools extract from a log (_ISO230.dat).
+/// Reads reference positions that the ecmc tools extract from a log (_ISO230.dat).
 Reader reader();
 
 }  // namespace nonio::ecmc_iso230

@@ -30,14 +30,14 @@ struct Touch {
   std::uint64_t line = 0;
 };
 
-/// What the log does not state.
+/// Data from the options that the log does not contain.
 struct Wish {
-  double unit = 0.0;               ///< m
-  std::size_t axis = 0;            ///< of A, B and C the one of the measurement
-  std::size_t touches = 0;         ///< of one centre; 0: as long as the angle stays
+  double unit = 0.0;               ///< SI value of one unit of the log, m
+  std::size_t axis = 0;            ///< index of the measured axis in A, B, C
+  std::size_t touches = 0;         ///< per center; 0: until the angle changes
   double same_angle = 0.0;         ///< deg
-  std::optional<double> radius{};  ///< m
-  double limit = 0.0;              ///< m, largest residual
+  std::optional<double> radius{};  ///< stated radius of the ball, m; nullopt: fitted
+  double limit = 0.0;              ///< largest accepted residual of a touch, m
 };
 
 Expected<Wish> wish_of(const ReadInput& input, const Axis& axis) {
@@ -94,7 +94,7 @@ bool same_angles(const Angles& a, const Angles& b, double within) {
   return true;
 }
 
-/// "0.000000 deg", or of several axes "B 30.00000, C 0.000000 deg".
+/// Text such as "0.000000 deg", or "B 30.00000, C 0.000000 deg" for several axes.
 std::string words_of(const Angles& angles, const Wish& wish, const std::vector<std::size_t>& also) {
   std::string text;
   for (const std::size_t k : also)
@@ -103,7 +103,7 @@ std::string words_of(const Angles& angles, const Wish& wish, const std::vector<s
   return text + short_text(angles[wish.axis], 7) + " deg";
 }
 
-/// The other rotary axes that turned in the log.
+/// Indexes of the other rotary axes that turned in the log.
 Expected<std::vector<std::size_t>> also_turned(const std::vector<Touch>& touches, const Wish& wish,
                                                const Campaign& campaign) {
   std::vector<std::size_t> also;
@@ -126,7 +126,7 @@ Expected<std::vector<std::size_t>> also_turned(const std::vector<Touch>& touches
   return also;
 }
 
-/// Touches of one centre: as many as stated, or as long as no rotary axis moves.
+/// Groups the touches of each center: the stated number, or until a rotary axis moves.
 Expected<std::vector<Group>> groups_of(const std::vector<Touch>& touches, const Wish& wish,
                                        const std::vector<std::size_t>& also) {
   std::vector<Group> groups;
@@ -189,7 +189,7 @@ Observations begin(const Measurement& m, const std::vector<std::size_t>& also) {
   return obs;
 }
 
-/// The scatter of a touch is that of all centres together: the same ball and the same probe.
+/// Adds a note with the scatter of a touch, pooled over all centers.
 void note_spheres(const std::vector<Centre>& centres, double s, int dof, Observations& obs) {
   std::uint64_t touches = 0;
   double largest = 0.0, radius = 0.0;
@@ -210,7 +210,7 @@ void note_spheres(const std::vector<Centre>& centres, double s, int dof, Observa
 
 void put(const std::vector<Centre>& centres, const Wish& wish, const std::vector<std::size_t>& also,
          double s, Observations& obs) {
-  std::map<std::array<std::int64_t, 3>, std::uint32_t> visits;  // how often the axes stopped there
+  std::map<std::array<std::int64_t, 3>, std::uint32_t> visits;  // number of stops at each position
   for (const Centre& c : centres) {
     const Angles& angle = c.group->front().angle;
     std::array<std::int64_t, 3> place{};
@@ -249,7 +249,7 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
   const double s = std::sqrt(rss / dof);
   Observations obs = begin(input.measurement, also);
   put(centres, wish, also, s, obs);
-  if (!(s > 0.0)) obs.u.clear();  // touches without any scatter show nothing of it
+  if (!(s > 0.0)) obs.u.clear();  // without scatter, u is unknown
   note_spheres(centres, s, dof, obs);
   return obs;
 }
@@ -263,13 +263,13 @@ Expected<Observations> read(const ReadInput& input) {
   return obs;
 }
 
-/// The first lines are nine numbers each.
+/// Whether the first lines have nine numbers each.
 bool recognises(std::string_view head) {
   Lines lines(head);
   std::string_view line;
   int seen = 0;
   while (seen < 3 && lines.next(line)) {
-    if (lines.offset() == head.size() && seen > 0) break;  // the last line may be cut
+    if (lines.offset() == head.size() && seen > 0) break;  // the last line may be truncated
     const auto fields = by_blanks(line);
     if (fields.empty()) continue;
     if (fields.size() != columns) return false;

@@ -5,7 +5,7 @@
 
 namespace nonio::linuxcnc_probe {
 
-/// Logs of LinuxCNC's (PROBEOPEN ...): touches of a ball, whose centres are fitted.
+/// Reads LinuxCNC probe logs (PROBEOPEN) of touches on a ball, and fits its centers.
 Reader reader();
 
 }  // namespace nonio::linuxcnc_probe

@@ -38,7 +38,7 @@ constexpr std::array<std::pair<const char*, Role>, 8> roles = {{{"ignore", Role:
 
 struct Map : TableMap {
   std::vector<Role> columns;
-  std::string heading;  ///< before the target in a line above the rows; empty: it has a column
+  std::string heading;  ///< text before a target above the rows; empty: target column
   bool has(Role role) const {
     return std::find(columns.begin(), columns.end(), role) != columns.end();
   }
@@ -101,7 +101,7 @@ Expected<Map> map_of(const Settings& options, bool rotary) {
 struct Row {
   std::uint32_t cycle = 0, pos = 0;
   Way way = Way::none;
-  double target = 0.0, value = 0.0;  ///< as in the file
+  double target = 0.0, value = 0.0;  ///< in units of the file
   std::uint64_t line = 0;
 };
 
@@ -124,7 +124,7 @@ class TableReader {
       if (auto error = not_text(line)) return fail(at_line(number, error->message));
       if (table != table_) {
         table_ = table, visits_.clear();
-        if (map_.heading.empty()) runs_before_ = runs_;  // else each target has a table
+        if (map_.heading.empty()) runs_before_ = runs_;  // otherwise each target has a table
       }
       if (auto ok = row(line, number, map_.tables[table].way); !ok) return fail(ok.error());
     }
@@ -163,8 +163,8 @@ class TableReader {
     return {};
   }
 
-  /// Without a column of runs each table is one more run of its direction, or as many as it has
-  /// readings of one target.
+  /// Without a column `cycle`, each table is a new run of its direction, or several if it has
+  /// repeated targets.
   void take(Row row) {
     if (!map_.has(Role::cycle)) {
       row.cycle = runs_before_[row.way] + ++visits_[{row.way, row.target}];
@@ -173,7 +173,8 @@ class TableReader {
     rows_.push_back(row);
   }
 
-  /// "## Target position 15 mm, both directions": the number after the words of the option.
+  /// Reads the target from a line such as "## Target position 15 mm, both directions", after the
+  /// text of the option.
   bool take_heading(std::string_view line) {
     const std::size_t at = map_.heading.empty() ? line.npos : line.find(map_.heading);
     if (at == line.npos) return false;
@@ -210,7 +211,7 @@ class TableReader {
     return {};
   }
 
-  /// A number of a target stands for one target: else a column was taken for another.
+  /// Error if one number has two targets, because the column mapping is then wrong.
   Expected<void> same_target(const Row& row) {
     if (row.pos == 0) return {};
     const auto [known, fresh] = by_pos_.try_emplace(row.pos, row);
@@ -227,14 +228,14 @@ class TableReader {
   Numbers numbers_;
   std::map<std::uint32_t, Row> by_pos_;
   std::vector<Row> rows_;
-  std::size_t table_ = 0;                                   ///< of the last row
-  std::map<Way, std::uint32_t> runs_{}, runs_before_{};     ///< of each way, and before this table
+  std::size_t table_ = 0;                                   ///< number of the last row's table
+  std::map<Way, std::uint32_t> runs_{}, runs_before_{};     ///< per direction
   std::map<std::pair<Way, double>, std::uint32_t> visits_;  ///< in this table
-  std::optional<double> heading_target_{};                  ///< of the last heading, as in the file
-  double plus_ = 0.0, minus_ = 0.0;                         ///< of this row
+  std::optional<double> heading_target_{};                  ///< target of the last heading
+  double plus_ = 0.0, minus_ = 0.0;                         ///< values of the current row
 };
 
-/// How the first run that went forward lists its targets; 0 if it is not known.
+/// Direction of the targets in the first forward run, +1 or -1; 0 if unknown.
 int listed_in(const std::vector<Row>& rows) {
   const auto first =
       std::find_if(rows.begin(), rows.end(), [](const Row& r) { return r.way == Way::forward; });
@@ -279,7 +280,7 @@ Reader reader() {
        {"heading", std::string(), "",
         "One table for each target: the words before the target in the line above a table."}}};
   for (Option& option : table_map_options()) r.info.options.push_back(std::move(option));
-  // It could not be distinguished from any other table.
+  // A table of any form cannot be recognized.
   r.recognises = [](std::string_view) { return false; };
   r.reads = [](std::string_view kind) { return kind == "axis"; };
   r.read = [](const ReadInput& input) { return read_of_axis(input, read_file); };

@@ -5,7 +5,7 @@
 
 namespace nonio::long_table {
 
-/// A row for each target, a column for each run and direction, as the user maps them.
+/// Reads tables with one row per reading; the user maps the columns.
 Reader reader();
 
 }  // namespace nonio::long_table

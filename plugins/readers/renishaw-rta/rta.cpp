@@ -10,14 +10,14 @@ using namespace readers;
 
 namespace {
 
-/// rad in one unit of the file's values
+/// Angle in rad per unit of the file.
 const std::map<std::string, double, std::less<>>& value_units() {
   static const std::map<std::string, double, std::less<>> units{
       {"mrad", 1e-3}, {"urad", 1e-6}, {"arcsec", 1.0 / arcsec_per_rad}, {"deg", 1.0 / deg_per_rad}};
   return units;
 }
 
-/// What only the user can state; the format is known from a single reader of such files.
+/// Units confirmed by the user, because no specification of the format is known. Error: not stated.
 Expected<Units> confirmed(const Settings& options, bool rotary) {
   const auto unit = value_units().find(options.text("unit"));
   if (unit == value_units().end())

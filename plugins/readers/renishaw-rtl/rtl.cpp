@@ -12,7 +12,7 @@ using namespace readers;
 
 namespace {
 
-/// Air as the file's environment gives it.
+/// Air parameters of the file.
 struct Air {
   double temperature = 0.0;  ///< degC
   double pressure = 0.0;     ///< Pa
@@ -24,7 +24,7 @@ struct Air {
 ///   lambda_vac / 2n,  lambda_vac = 632.990577 nm (the value that explains two files to 0.1 ppm)
 ///   (n-1)_s 1e8 = 8342.54 + 2406147/(130 - s^2) + 15998/(38.9 - s^2), s = 1/lambda_vac, 1/um
 ///   (n-1)_tp    = p (n-1)_s / 96095.43 (1 + 1e-8 (0.601 - 0.00972 t) p) / (1 + 0.0036610 t)
-///   n           = 1 + (n-1)_tp - f (3.7345 - 0.0401 s^2) 1e-10, f: pressure of water vapour, Pa
+///   n           = 1 + (n-1)_tp - f (3.7345 - 0.0401 s^2) 1e-10, f: pressure of water vapor, Pa
 ///
 /// Birch and Downs, Metrologia 30 (1993) 155 and 31 (1994) 315; f from the relative humidity by
 /// Magnus' formula, 611.2 Pa exp(17.62 t / (243.12 + t)).
@@ -40,7 +40,7 @@ double half_wavelength(const Air& air) {
   return 1e-6 * lambda / (2.0 * n);
 }
 
-constexpr double sure = 1e-6;  ///< two real files agree to 0.1e-6
+constexpr double sure = 1e-6;  ///< relative; two real files agree within 0.1e-6
 
 double mean_material(const Environment& e, bool at_end) {
   double sum = 0.0;
@@ -48,9 +48,8 @@ double mean_material(const Environment& e, bool at_end) {
   return sum / static_cast<double>(e.material.size());
 }
 
-/// Env factor = (half wavelength in air)(1 - alpha (T - 20)) states whether the deviations have
-/// been brought to 20 degC with alpha: +1 yes, -1 no, 0 not determinable. NaN fails every
-/// comparison.
+/// Whether the deviations are corrected to 20 degC: 1 yes, -1 no, 0 not determinable (also for
+/// NaN). Env factor = (half wavelength in air)(1 - alpha (T - 20)) if they are.
 int normalised(const Environment& e, bool at_end) {
   const auto at = [&](const Environment::Pair& p) { return at_end ? p.end : p.start; };
   const Air air{at(e.air), 1e3 * at(e.pressure), at(e.humidity)};
@@ -65,7 +64,7 @@ int normalised(const Environment& e, bool at_end) {
   return with && !without ? 1 : without && !with ? -1 : 0;
 }
 
-/// At the first and the last reading: the file has no value between its start and its end.
+/// Sets the first and last element; the file has no values between them.
 void put_ends(std::vector<double>& column, std::size_t n, double start, double end) {
   if (!std::isfinite(start) || !std::isfinite(end) || n < 2) return;
   column.assign(n, std::numeric_limits<double>::quiet_NaN());
@@ -92,8 +91,8 @@ void add_environment(const Environment& e, const Axis& axis, Observations& obs) 
     obs.notes.push_back(
         {at_start > 0 ? "renishaw.normalised" : "renishaw.not-normalised", {alpha}});
   if (!axis.expansion) return;
-  // What tables give for one material differs by less. A coefficient of 0, or one that was not
-  // counted with, has not spoilt the deviations.
+  // Tables differ by less for one material. A coefficient of 0, or one that was not applied, does
+  // not affect the deviations.
   constexpr double other_material = 1e-6, same = 0.05e-6;
   const double apart = std::fabs(*axis.expansion - alpha.value);
   const Number stated{"manifest", *axis.expansion, Quantity::expansion};
@@ -126,7 +125,7 @@ Expected<Observations> read_rtl(const ReadInput& input) {
   return obs;
 }
 
-/// Every file of this family but rta, to refuse the others with a word for them.
+/// Recognizes all types of this family except rta, so that the error can name the type.
 bool recognises(std::string_view head) {
   head = without_mark(head);
   return trimmed(head.substr(0, head.find_first_of("\r\n"))) == "HEADER::" && !is_type(head, "rta");

@@ -5,7 +5,7 @@
 
 namespace nonio::renishaw {
 
-/// Linear measurements of a laser interferometer, as its program stores them (.rtl).
+/// Reads linear measurements (.rtl) of a laser interferometer.
 Reader rtl_reader();
 
 }  // namespace nonio::renishaw

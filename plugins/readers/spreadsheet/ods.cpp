@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view type_of_ods = "application/vnd.oasis.opendocument.spreadsheet";
 
-/// "PT08H30M00S" -> "08:30:00"
+/// Converts "PT08H30M00S" to "08:30:00".
 std::string duration_text(const std::string& iso) {
   double hours = 0.0;
   std::size_t i = 0;

@@ -12,14 +12,14 @@ namespace nonio::spreadsheet {
 inline constexpr std::size_t most_cells = 20'000'000, most_columns = 1000;
 inline constexpr std::size_t all_rows = static_cast<std::size_t>(-1);
 
-/// The cells of one sheet as text: numbers as they are stored, with a point; dates as 2026-11-03T08:30:00,
-/// durations as 08:30:00; errors (#N/A) as they are shown; cells below a merged one blank.
+/// The cells of a sheet as text: stored numbers with a decimal point, dates as 2026-11-03T08:30:00,
+/// durations as 08:30:00, errors such as #N/A. Only the first cell of merged cells has text.
 class Sheet {
  public:
   std::string name;
-  std::size_t most_rows = all_rows;  ///< what comes after them is left out
+  std::size_t most_rows = all_rows;  ///< later rows are omitted
   const std::vector<std::vector<std::string>>& rows() const { return rows_; }
-  /// Row and column from 0. An error beyond the limits.
+  /// Row and column count from 0. Error: limits exceeded.
   Expected<void> put(std::size_t row, std::size_t column, std::string text);
 
  private:
@@ -27,16 +27,16 @@ class Sheet {
   std::size_t cells_ = 0;
 };
 
-/// Days since 1899-12-30 as a date, or, if the format shows no day, as a duration.
+/// Text of a number of days since 1899-12-30: a date, or without `has_day` a duration.
 std::string date_text(double days, bool has_day);
 
-/// The sheets of a workbook, in its order.
+/// The sheets of a workbook, in file order.
 struct Book {
   std::vector<Sheet> sheets;
 };
 
 bool is_ods(std::string_view archive);
-/// Of each sheet up to `most_rows` rows.
+/// Each reads up to `most_rows` rows per sheet.
 Expected<Book> read_xlsx(std::string_view archive, std::size_t most_rows = all_rows);
 Expected<Book> read_ods(std::string_view archive, std::size_t most_rows = all_rows);
 

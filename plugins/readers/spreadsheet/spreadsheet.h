@@ -10,11 +10,11 @@ namespace nonio::spreadsheet {
 /// Whether the first bytes are those of a ZIP archive.
 bool recognises(std::string_view head);
 
-/// The table of a sheet, read as the reader csv reads it: the first row with known column names begins
-/// it, a blank row ends it. Lines of errors and readings are rows of the sheet. Options: `sheet`, the
-/// name of a sheet (default: the only one with such a row). Errors as of csv; a workbook that is damaged
-/// or encrypted; two sheets with readings.
-/// The first rows of the longest sheet, from the one with most cells on.
+/// The first rows of the longest sheet, starting at its fullest row.
+/// Reads the table of a sheet like the reader csv, from the first row with known column names to
+/// the next blank row. Error lines are rows of the sheet. Option `sheet`: its name (default: the
+/// only one with such a row). Errors: those of csv, a damaged or encrypted workbook, two sheets
+/// with readings.
 Expected<std::vector<std::vector<std::string>>> first_rows(std::string_view bytes,
                                                            std::size_t most);
 Expected<Observations> read(const ReadInput& input);

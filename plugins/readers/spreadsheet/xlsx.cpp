@@ -38,7 +38,7 @@ Expected<std::vector<Listed>> listed_sheets(std::string_view archive, bool& from
   return out;
 }
 
-/// Id of a sheet -> its file.
+/// File name of each sheet by its relationship id.
 Expected<std::map<std::string, std::string>> targets(std::string_view archive) {
   NONIO_TRY(const auto xml, needed(archive, "xl/_rels/workbook.xml.rels"));
   std::map<std::string, std::string> out;
@@ -75,7 +75,7 @@ Expected<std::vector<std::string>> shared_strings(std::string_view archive) {
 
 enum class Shown { number, date, duration };
 
-/// What a number format shows: letters of days and years outside of quotes and brackets.
+/// What a number format displays, by its date letters outside of quotes and brackets.
 Shown shown_by(const std::string& format) {
   bool quoted = false, bracketed = false, day = false, time = false;
   for (std::size_t i = 0; i < format.size(); ++i) {
@@ -107,7 +107,7 @@ Shown shown_by(int id, const std::map<int, std::string>& own) {
   return Shown::number;
 }
 
-/// Of each style of a cell what it shows.
+/// What each cell style displays.
 Expected<std::vector<Shown>> styles(std::string_view archive) {
   std::vector<Shown> out;
   NONIO_TRY(const auto xml, member(archive, "xl/styles.xml"));
@@ -128,7 +128,7 @@ Expected<std::vector<Shown>> styles(std::string_view archive) {
   return out;
 }
 
-/// "BC12" -> 54, 11; nothing if it is no reference.
+/// Row 11 and column 54 from "BC12" (both from 0); false if invalid.
 bool place_of(const std::string& reference, std::size_t& row, std::size_t& column) {
   std::size_t i = 0, letters = 0, number = 0;
   for (; i < reference.size() && reference[i] >= 'A' && reference[i] <= 'Z' && i < 4; ++i)
@@ -150,7 +150,7 @@ struct Common {
 class SheetReader {
  public:
   SheetReader(Sheet& sheet, const Common& common) : sheet_(sheet), common_(common) {}
-  /// The one that is read, from 1.
+  /// Current row, from 1.
   std::size_t row() const { return row_; }
 
   Expected<void> take(const Node& node) {
@@ -229,7 +229,7 @@ Expected<Book> read_xlsx(std::string_view archive, std::size_t most_rows) {
     const auto file = files.find(one.id);
     if (file == files.end()) continue;
     NONIO_TRY(const auto xml, member(archive, file->second));
-    if (!xml) continue;  // a chart sheet without cells
+    if (!xml) continue;  // a chart sheet has no cells
     Sheet sheet;
     sheet.name = one.name;
     sheet.most_rows = most_rows;

@@ -19,22 +19,22 @@ using namespace readers;
 
 namespace {
 
-/// What the user states about one column.
+/// Meaning of a column from the options.
 struct Column {
   enum class Role : std::uint8_t { ignore, target, reading, mean, two_sigma, both, dead_zone };
   Role role = Role::ignore;
   Way way = Way::none;
-  std::uint32_t run = 0;  ///< of a reading
+  std::uint32_t run = 0;  ///< number of the run, from 1
 };
 
 using Role = Column::Role;
 
-/// What a table does not state itself and what is not guessed.
+/// Mapping of a table from the options.
 struct Map : TableMap {
   std::vector<Column> columns;
 
   bool means() const;
-  /// Of one of the tables: columns that state a run only have the way of the table.
+  /// The map for one table; its direction applies to columns that only state a run.
   Map of(const RowRange& table) const;
 };
 
@@ -95,7 +95,7 @@ Expected<std::vector<Column>> columns_of(const std::vector<std::string>& texts) 
   return columns;
 }
 
-/// Each run has its way, of its column or of its table, and not of both.
+/// Error unless each run has a direction from either its column or its table.
 Expected<void> check_ways(const Map& map) {
   for (const Column& c : map.columns)
     for (const RowRange& table : map.tables)
@@ -136,12 +136,12 @@ Expected<Map> map_of(const Settings& options, bool rotary) {
   return map;
 }
 
-/// The numbers of the table unchanged; NaN where there is none.
+/// Numbers in units of the file; NaN if missing.
 struct Table {
   std::vector<std::vector<double>> rows;
   std::vector<std::uint64_t> lines;
   std::vector<double> targets;
-  int decimals = 0;  ///< most digits behind the decimal mark
+  int decimals = 0;  ///< most digits after the decimal mark
 };
 
 int decimals_of(std::string_view number) {
@@ -151,7 +151,7 @@ int decimals_of(std::string_view number) {
 
 class TableReader {
  public:
-  /// The decimal mark is the same in all tables of the file.
+  /// All tables of a file share `numbers`, because the decimal mark must be the same.
   TableReader(const Map& map, Numbers& numbers) : map_(map), numbers_(numbers) {}
 
   Expected<Table> read(std::string_view bytes) {
@@ -208,7 +208,7 @@ class TableReader {
   Table table_;
 };
 
-/// Column of that role that goes that way; npos if there is none.
+/// Index of the first column with this role and direction (0: any); npos: none.
 std::size_t column(const Map& map, Role role, int way, int listed) {
   for (std::size_t k = 0; k < map.columns.size(); ++k)
     if (const Column& c = map.columns[k];
@@ -217,7 +217,7 @@ std::size_t column(const Map& map, Role role, int way, int listed) {
   return std::string::npos;
 }
 
-/// A column of averages next to the runs, taken for one more run, would make every scatter smaller.
+/// Error if a column is the mean of the other runs, because it would reduce the scatter.
 Expected<void> no_average(const Map& map, const Table& table, int listed) {
   if (table.rows.size() < 3) return {};
   for (std::size_t k = 0; k < map.columns.size(); ++k) {
@@ -247,14 +247,14 @@ Expected<void> no_average(const Map& map, const Table& table, int listed) {
   return {};
 }
 
-/// A print shows its own signs: the mean of both ways, and Dead Zone = reverse - forward.
+/// Checks mean and Dead Zone = reverse - forward of a print against its columns.
 Expected<void> check_print(const Map& map, const Table& table, int listed) {
   const std::size_t forward = column(map, Role::mean, listed, listed),
                     reverse = column(map, Role::mean, -listed, listed);
   if (forward == std::string::npos || reverse == std::string::npos) return {};
   const std::size_t both = column(map, Role::both, 0, listed),
                     dead = column(map, Role::dead_zone, 0, listed);
-  const double rounding = 1.6 * std::pow(10.0, -table.decimals);  // of three numbers, half each
+  const double rounding = 1.6 * std::pow(10.0, -table.decimals);  // rounding of three values
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const auto& row = table.rows[i];
     const double f = row[forward], r = row[reverse];
@@ -304,7 +304,7 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
   if (!all) return fail(all.error());
   Numbers numbers(all->separator != ',');
   Runs runs(input, axis, axis.rotary);
-  int listed = 0;  // of the first table: "forward" means one direction in the whole file
+  int listed = 0;  // of the first table, for the whole file
   Table last;
   for (const RowRange& rows : all->tables) {
     const Map map = all->of(rows);
@@ -337,7 +337,7 @@ Reader reader() {
         "What each column is, in order: target, ignore, \"1 +\", \"1 -\", \"1 forward\", \"1\", "
         "\"mean +\", \"2s +\", mean, \"dead zone\"."}}};
   for (Option& option : table_map_options()) r.info.options.push_back(std::move(option));
-  // It could not be distinguished from any other table.
+  // A table of any form cannot be recognized.
   r.recognises = [](std::string_view) { return false; };
   r.reads = [](std::string_view kind) { return kind == "axis"; };
   r.read = [](const ReadInput& input) { return read_of_axis(input, read_file); };

@@ -5,7 +5,8 @@
 
 namespace nonio::wide_table {
 
-/// A row for each target, a column for each run and direction, as the user maps them.
+/// Reads tables with one row per target and one column per run and direction; the user maps the
+/// columns.
 Reader reader();
 
 }  // namespace nonio::wide_table

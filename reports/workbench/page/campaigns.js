@@ -7,7 +7,7 @@ const campaigns = (() => {
   const hrefOf = (folder) => "#to=" + encodeURIComponent("campaign/" + folder);
   const nameOf = (c) => c.machine || c.model || c.id || c.folder;
 
-  /// State and verdict: in words, and by a mark that is readable without colour.
+  /// State and verdict: in words, and by a mark that is readable without color.
   const marks = {new: "\u25CB", failed: "\u2716", attention: "!", ok: "\u2714", "does not conform": "\u2716", conforms: "\u2714"};
   function badge(state) {
     return state ? el("span", {class: "badge " + state.replace(/ /g, "-")}, `${marks[state] || "?"} ${wordOf(state)}`) : null;

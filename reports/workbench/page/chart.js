@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The chart of every page: axes, lines, readings; values under the pointer or a key, a range that is chosen, zoom, and
-// the chart as a file (save.js).
+// The chart of every page: axes, lines, readings; tooltips by pointer or key, range selection,
+// zoom, and export (save.js).
 "use strict";
 /// Smallest and largest finite number of a list.
 function nonioExtremes(list) {
@@ -12,10 +12,10 @@ function nonioExtremes(list) {
     }
   return [low, high];
 }
-/// tip: what shows values; words(): those of the page, "chart.in" and so on; number(v, digits): as the page prints it;
-/// zoomed(k, range): chart k is to be drawn with a part of its axis, or again with all of it. Where a caller wants them:
-/// about(row): what is shown of a reading, pick(row) and brushed(rows) when a reading or a range is chosen, said(lines)
-/// when a key moves to a reading. Without brushed() a range that is drawn with the pointer is enlarged.
+/// tip: element of the tooltip; words(): texts of the page such as "chart.in"; number(v, digits):
+/// formats a number; zoomed(k, range): redraws chart k for a part of its axis (null: all).
+/// Optional: about(row): tooltip of a reading; pick(row), brushed(rows): a reading or range was
+/// selected; said(lines): a key moved to a reading. Without brushed(), selecting a range zooms in.
 function nonioCharts({tip, words, number, zoomed, about, pick, brushed, said}) {
   const finite = Number.isFinite, r1 = (v) => Math.round(v * 10) / 10, zooms = new Map();
   let frames = [], marked = -1, spot = null, by_key = false, chosen = new Set(), clips = 0;
@@ -29,9 +29,10 @@ function nonioCharts({tip, words, number, zoomed, about, pick, brushed, said}) {
   }
 
   class Frame {
-    /// k: its name among the charts; xs: what its axis holds; said: {x, y, degrees}, the names of the axes; range: low and
-    /// high; from, to, all: of the height, where several are in one picture; bare: without a name below; floor: half of
-    /// the band about 0; lanes: names of what is next to each other; where(x): [lane, x] of a place in them.
+    /// k: name of the chart; xs: values on its axis; said: {x, y, degrees}, axis titles; range:
+    /// [low, high] of y; from, to, all: heights if several frames share a figure; bare: no x title;
+    /// floor: half width of the band about 0; lanes: names of lanes side by side; where(x): [lane,
+    /// x] of a position.
     constructor(svg, k, xs, {width, range, said, kind = said.degrees ? "turn" : "", from = 0, to = 230, all = to, bare = false, floor, lanes, where, empty = "", own = {}}) {
       if (from === 0) {
         svg.replaceChildren();
@@ -43,7 +44,8 @@ function nonioCharts({tip, words, number, zoomed, about, pick, brushed, said}) {
       let [low, high] = nonioExtremes(xs);
       this.empty = !(low <= high);
       if (this.empty) [low, high] = [0, 1];
-      // Values that differ by rounding alone are one value: no step would be small enough for ticks between them.
+      // Values that differ only by rounding are treated as equal, because no tick step would be
+      // small enough.
       if (high - low < 1e-9 * Math.max(Math.abs(low), Math.abs(high))) high = low;
       const side = 0.025 * (high - low) || 0.5;
       this.whole = this.whole || (lanes ? [0, lanes.length] : [low - side, high + side]);
@@ -97,18 +99,19 @@ function nonioCharts({tip, words, number, zoomed, about, pick, brushed, said}) {
       };
       if (all.length) put(this.drawn, "path", {class: "line " + look, d: all.map(one).join("")});
     }
-    /// Between two lines.
+    /// The area between two lines.
     area(xs, low, high) {
       const at = (ys) => xs.map((v, j) => [v, ys[j]]).filter((p) => finite(p[0]) && finite(p[1])).map((p) => r1(this.px(p[0])) + " " + r1(this.py(p[1])));
       const there = at(high);
       if (there.length) put(this.drawn, "path", {class: "band", d: "M" + there.concat(at(low).reverse()).join("L") + "z"});
     }
-    /// A place with values of its own, which belong to no single reading.
+    /// A point with its own tooltip that is not a reading.
     point(x, y, lines) {
       if (x >= this.left && x <= this.right) this.points.push([this.px(x), this.py(y), -1, lines]);
     }
-    /// Readings by direction; suspects that are outside are drawn at the edge.
-    /// On paper they are drawn: sharp at any size. On the screen very many are painted, which takes a tenth of the time.
+    /// Readings by direction; suspects outside of the range are drawn at the edge. When printing
+    /// they are SVG, sharp at any size. On screen very many are painted on a canvas, which is ten
+    /// times faster.
     scatter(rows, xs, ys, {direction = [], wrong = new Map(), painted = false, about: own}) {
       const path = {plus: "", minus: "", other: ""}, many = rows.length > 1200, dots = {plus: [], minus: [], other: []};
       const inset = 0.03 * (this.high - this.low), rings = [];
@@ -146,7 +149,7 @@ function nonioCharts({tip, words, number, zoomed, about, pick, brushed, said}) {
       put(this.drawn, "foreignObject", {class: "dots", x, y, width: w, height: h, "pointer-events": "none"}).append(shown);
     }
   }
-  /// What was drawn, or another drawing with points; it has tools below it.
+  /// Registers a frame, and adds the tools below its figure.
   function add(frame) {
     frames = frames.filter((f) => f !== frame && (f.svg !== frame.svg || frame.zoomable)).concat(frame);
     const {svg} = frame, word = words(), old = svg.parentNode.querySelector(":scope > .chart-tools");
@@ -167,7 +170,7 @@ function nonioCharts({tip, words, number, zoomed, about, pick, brushed, said}) {
     box.append(summary, group);
     svg.after(box);
   }
-  /// What is drawn in a picture, as a table.
+  /// The data of a figure as a table.
   function numbers(svg) {
     const rows = [];
     for (const f of frames.filter((one) => one.svg === svg))
@@ -176,7 +179,7 @@ function nonioCharts({tip, words, number, zoomed, about, pick, brushed, said}) {
     return [["axis", "series", "line", frames.find((f) => f.svg === svg).said.x, "value"], ...rows];
   }
 
-  // ---- a part of the axis ----
+  // ---- zoom of the horizontal axis ----
   function zoom({k, whole}, from, to) {
     const all = !(to > from) || (from <= whole[0] && to >= whole[1]);
     const range = all ? null : [Math.max(from, whole[0]), Math.min(to, whole[1])];
@@ -196,7 +199,7 @@ function nonioCharts({tip, words, number, zoomed, about, pick, brushed, said}) {
     else if (by) zoom(frame, left + by, right + by);
   }
 
-  // ---- one reading, in every chart ----
+  // ---- marking of one reading in all charts ----
   function mark(i) {
     marked = i;
     for (const frame of frames) {
@@ -206,7 +209,7 @@ function nonioCharts({tip, words, number, zoomed, about, pick, brushed, said}) {
       if (point) put(frame.g, "circle", {class: "chosen", cx: r1(point[0]), cy: r1(point[1]), r: 5});
     }
   }
-  /// The same readings in every chart; the others step back.
+  /// Selects the same readings in all charts; the others are dimmed.
   function select(rows) {
     chosen = new Set(rows);
     for (const frame of frames) {
@@ -258,7 +261,7 @@ function nonioCharts({tip, words, number, zoomed, about, pick, brushed, said}) {
     else hide();
   }
 
-  // ---- a range: drawn with the pointer; with Shift, or where no readings can be chosen, it is enlarged ----
+  // ---- range selection with the pointer; it zooms with Shift or if nothing can be selected ----
   let drag = null;
   function down(event) {
     hover(event);
@@ -297,7 +300,7 @@ function nonioCharts({tip, words, number, zoomed, about, pick, brushed, said}) {
     }
   }
 
-  // ---- the same with keys: a cursor that goes from value to value, in the chart that has the focus ----
+  // ---- keyboard: a cursor moves between the values of the focused chart ----
   function key(event) {
     const svg = svg_of(event), frame = svg && frames.find((f) => f.svg === svg);
     if (!frame || event.ctrlKey || event.altKey || event.metaKey) return;
@@ -328,20 +331,20 @@ function nonioCharts({tip, words, number, zoomed, about, pick, brushed, said}) {
     if (drag && drag.box) drag.box.remove();
     drag = null;
   });
-  // What a key has marked stays marked when the page moves under it.
+  // A reading marked by a key stays marked while scrolling.
   document.addEventListener("scroll", () => (by_key ? (tip.hidden = true) : hide()), {passive: true, capture: true});
   document.addEventListener("keydown", key);
   if (!said) tip.setAttribute("aria-live", "polite");
 
   return {Frame, put, add, mark, select, hide, r1,
-    /// Only the charts for which that holds are still there.
+    /// Keeps only the frames that satisfy `holds`.
     keep(holds) { frames = frames.filter(holds); },
-    /// Marks are drawn again, after charts were.
+    /// Redraws marks after charts were redrawn.
     again() {
       mark(marked);
       select(chosen);
     },
-    /// Other data: nothing is marked or enlarged.
+    /// Resets marks and zoom for other data.
     forget() {
       hide();
       [marked, chosen] = [-1, new Set()];

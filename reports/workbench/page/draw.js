@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The readings with their model, and the nine pictures of residuals: the page from disk (model-html) and the live one
-// draw with this code. The caller brings the data, from the page itself or from the server, and says what is hidden and what is done with a reading.
+// The figure of readings with their model, and the nine figures of residuals, for stored pages
+// (model-html) and the live page. The caller supplies the data, the hidden readings, and actions
+// for a reading.
 "use strict";
-/// figure(k): the element of picture k, "fit" of that with the model; tip: what shows a reading; hidden: {d: directions, r: runs}, sets.
-/// Where a caller wants them: elsewhere(k) where it draws picture k itself, pick(row) and brushed(rows) when a reading or
-/// a region is chosen, said(lines) when a key moves to a reading, enlarged(k, range) when a part of a picture of its own
-/// is wanted, drawn(k, frame) after each picture, inTurn() after all of them; with it those in view come first. Circles have two pictures more, "polar" and "rest" (polar.js).
+/// figure(k): element of figure k, "fit" for the model; tip: element of the tooltip; hidden: {d:
+/// directions, r: runs}, sets. Optional: elsewhere(k): true if the caller draws figure k;
+/// pick(row), brushed(rows): a reading or region was selected; said(lines): a key moved to a
+/// reading; enlarged(k, range): zoom of a figure drawn by the caller; drawn(k, frame): called after
+/// each figure; inTurn(): called after all figures, and enables drawing visible ones first. Circles
+/// have two more figures, "polar" and "rest" (polar.js).
 function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, said, drawn, enlarged}) {
   let data, words, n, wrong, residual, place, ends_of_lane, lines, ghost = null, named = "";
   let shown = [], range = [0, 1], printing = false, turns = 0, looks = false;
@@ -40,7 +43,8 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
   const charts = nonioCharts({tip, words: () => words, number, about, pick, brushed, said,
     zoomed: (k, of_axis) => (enlarged && elsewhere(k) ? enlarged(k, of_axis) : draw())});
   const {put, r1} = charts;
-  /// options.in: the picture, if it is not that of number k; own_band: the noise floor is drawn otherwise; lanes: lines are next to each other.
+  /// options.in: name of the figure if it is not number k; own_band: the caller draws the noise
+  /// floor; lanes: lines are side by side.
   function frame_of(k, xs, options) {
     const holder = figure(options.in || k), said_ = options.said || data.pictures[k], own_axis = named && !options.in && said_.y === data.pictures[0].y;
     const width = printing ? (options.in ? 740 : 240) : Math.max(220, Math.round(holder.clientWidth) || 320);
@@ -50,20 +54,20 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
   }
   const dots = (frame, rows, xs, ys) => frame.scatter(rows, xs, ys, {direction: data.direction, wrong, painted: !printing});
 
-  // ---- places: lines in space are side by side, each in a lane of width 1 ----
+  // ---- positions: lines in space are side by side, each in a lane of width 1 ----
   function place_of(m, target) {
     if (!data.lanes) return target;
     const [low, high] = ends_of_lane[m], room = 0.08;
     return m + room + (1 - 2 * room) * (low < high ? (target - low) / (high - low) : 0.5);
   }
-  /// A place in its lane: the line and the position on it.
+  /// Line and position on it for a horizontal position in lanes.
   function of_place(x) {
     const m = Math.min(Math.floor(x), data.lanes.length - 1), [low, high] = ends_of_lane[m], room = 0.08;
     return [data.lanes[m], low + ((x - m - room) / (1 - 2 * room)) * (high - low)];
   }
   const of_line = (rows, m) => rows.filter((i) => data.measurement[i] === m);
 
-  /// Of each value of the key, ascending: [key, readings that count, their mean].
+  /// For each value of the key in ascending order: [key, number of counted readings, their mean].
   function grouped(rows, key, values) {
     const map = new Map();
     for (const i of rows)
@@ -112,13 +116,13 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     return frame;
   }
 
-  // ---- readings of each pass with the model, and below what it leaves ----
+  // ---- readings of each pass with the model, and residuals below ----
   function with_model() {
     const xs = shown.map((i) => place[i]), left = (i) => (named ? data.residual[i] : residual[i]), most_lines = 60;
     const model = data.deviation.map((v, i) => v - left(i));
     const [low, high] = nonioExtremes([0, ...nonioExtremes(shown.map((i) => data.deviation[i])), ...(looks ? [] : nonioExtremes(shown.map((i) => model[i])))]);
     const edge = 0.06 * (high - low) || 1;
-    // All of it is seen on a low screen, too.
+    // Reduced heights fit a low screen.
     const is_low = !printing && window.innerHeight < 800, all_high = is_low ? 340 : 400, middle = is_low ? 190 : 232;
     const units = [...new Set((data.channels || []).map((c) => c.unit))], each = is_low ? 72 : 96;
     const both = {in: "fit", all: all_high + each * units.length, lanes: true};
@@ -149,7 +153,8 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     return [above, below, ...units.map((unit, k) => channels_of(unit, xs, {...both, from: all_high + each * k, to: all_high + each * (k + 1) + (k + 1 === units.length ? 0 : -6), bare: k + 1 < units.length}))];
   }
 
-  /// Temperatures, speeds or loads during the readings: those of the model by name, the others grey.
+  /// Temperatures, speeds or loads during the readings: those of the model are named, the others
+  /// gray.
   function channels_of(unit, xs, options) {
     const of = data.channels.filter((c) => c.unit === unit), used = of.filter((c) => c.used);
     const [low, high] = nonioExtremes(of.flatMap((c) => shown.map((i) => c.values[i]))), edge = 0.06 * (high - low) || 1;
@@ -169,7 +174,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     const edge = 0.06 * (high - low) || 1;
     const frame = frame_of(1, all("xs"), {range: [low - edge, high + edge], lanes: true});
     if (lines.length > 1 && data.floor) {
-      // One belt for all lines: bands would darken each other.
+      // One belt for all lines, because overlapping bands would become darker.
       const widest = Math.max(0, ...all("half"));
       put(frame.drawn, "rect", {class: "band", x: frame.x, y: r1(frame.py(widest)), width: frame.w,
                               height: r1(frame.py(-widest) - frame.py(widest))});
@@ -178,8 +183,8 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     return frame;
   }
 
-  /// mean(+) less mean(-) at each target of one measurement, and twice its standard deviation by the
-  /// floor.
+  /// Difference of the means in + and - direction at each target of one measurement, and twice its
+  /// standard deviation from the noise floor.
   function reversal_of(m) {
     const rows = of_line(shown, m);
     const minus = by_key_of(grouped(rows.filter((i) => data.direction[i] < 0), data.target, residual));
@@ -239,7 +244,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     return frame;
   }
 
-  // ---- what an effect would remove, over what remains: means, as a thin line ----
+  // ---- means of what an effect would explain, as a thin line over the residuals ----
   function ghost_line(frame, xs, group) {
     const sums = new Map();
     shown.forEach((i, j) => {
@@ -278,7 +283,8 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     }
   }
 
-  /// `values`: what is drawn, if not the residuals of the data; `name`: the title of its axis.
+  /// `values`: data to be drawn instead of the residuals; `name`: title of their axis; `only`:
+  /// readings without a model.
   function draw(values, name, only) {
     if (values) [residual, looks, named] = [values, only === true, name || ""];
     shown = [];
@@ -299,7 +305,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
       if (drawn) drawn(k, frame);
     };
     const all = drawers.map((_, k) => k).filter((k) => !data.pictures[k].none && !(elsewhere && elsewhere(k)));
-    // Of many readings what is in view comes first.
+    // With many readings, visible figures are drawn first.
     const later = inTurn && n > 2000 && !printing ? all.filter((k) => !in_view(k)) : [];
     all.filter((k) => !later.includes(k)).forEach(one);
     const turn = ++turns;
@@ -322,7 +328,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     return box.bottom > 0 && box.top < window.innerHeight;
   }
 
-  // ---- one reading, in every picture ----
+  // ---- tooltip of one reading, equal in all figures ----
   const position = (v) => data.axis + " " + number(v, 4).replace(/[.,]?0+$/, "") + " " + data.position_unit;
   function about(i) {
     const signed = (v) => (v > 0 ? "+" : "") + number(v, 2) + " " + data.unit;
@@ -345,7 +351,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     clearTimeout(pending);
     pending = setTimeout(() => data && draw(), 100);
   });
-  // What is painted has no colours that follow a theme.
+  // Canvas colors do not follow a theme change.
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => data && draw());
   for (const [event, now] of [["beforeprint", true], ["afterprint", false]])
     window.addEventListener(event, () => {
@@ -354,7 +360,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     });
 
   return {
-    /// What the page has of a part: model-html embeds it, GET /api/parts/X/fit sends it.
+    /// Sets the data of a part: embedded by model-html, or from GET /api/parts/X/fit.
     set(page) {
       const other = !data || data.residual.length !== page.residual.length || data.axis !== page.axis;
       data = page;
@@ -369,17 +375,18 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
       place = data.target.map((v, i) => place_of(data.measurement[i], v));
       lines = Array.from({length: Math.max(1, data.measurements)}, (_, m) => m);
     },
-    /// What an effect says of each reading, or nothing.
+    /// Sets the values of an effect to be drawn as a thin line; none: removes it.
     ghost(column) {
       const means = new Map();
       (column || []).forEach((v, i) => {
         const m = means.get(data.measurement[i]) || [0, 0];
         if (finite(v)) means.set(data.measurement[i], [m[0] + data.weight[i], m[1] + data.weight[i] * v]);
       });
-      // Each measurement has a zero of its own, which takes the mean.
+      // The mean of each measurement is absorbed by its zero.
       ghost = column && column.map((v, i) => v - means.get(data.measurement[i])[1] / means.get(data.measurement[i])[0]);
     },
-    /// Of more readings than the page has: smallest and largest of each place, of the whole axis or a part of it.
+    /// Draws minimum and maximum per position if there are more readings than on the page, for the
+    /// whole axis or a part.
     between(k, {xs, low, high, x, y, whole, about: lines_of}) {
       const [least, most] = nonioExtremes([...low, ...high]), edge = 0.06 * (most - least) || 1, svg = figure(k).querySelector("svg");
       const frame = new charts.Frame(svg, k, xs, {width: Math.max(240, Math.round(figure(k).clientWidth)), range: [least - edge, most + edge], said: {x, y}, own: {whole, only_axis: true}});

@@ -3,7 +3,8 @@ const effects = (() => {
   const cardOf = (state, effect) => (state.catalogue || []).find((c) => c.effect === nameOf(effect)) || {effect, card: {}};
   const ofPart = (state, shown) => (state.catalogue || []).filter((c) => c.part === shown.part && !c.library).map((c) => c.effect);
 
-  /// "squareness:XY = 12.3 arcsec" is an effect of fixed size, "heat:t4/x1+x2" one of the displacements x1 and x2 only.
+  /// "squareness:XY = 12.3 arcsec" is an effect of fixed size; "heat:t4/x1+x2" applies to the
+  /// displacements x1 and x2 only.
   const nameOf = (entry) => entry.split(" = ")[0].split("/")[0];
   const isOf = (entry, part) => !entry.includes("/") || entry.split("/")[1].split("+").includes(part.split("/")[1]);
   const writtenOf = (state, shown, effect) => ((state.catalogue || []).find((c) => c.part === shown.part && c.effect === effect) || {}).written || effect;
@@ -21,7 +22,7 @@ const effects = (() => {
     return {inModel, help, none, unseen, rest, descriptions: explain.descriptions || []};
   }
 
-  /// A small picture of what an effect would explain of each reading, in the order of the readings.
+  /// A small plot of what an effect would explain of each reading, in their order.
   function spark(says, direction) {
     const width = 84, height = 26, values = says.filter(finite);
     const picture = svg("svg", {class: "spark", viewBox: `0 0 ${width} ${height}`, "aria-hidden": "true"});
@@ -79,7 +80,8 @@ const effects = (() => {
 
   /// The picture of an effect: its value at each reading over the column that orders these values best.
   function fingerprint(shown, all) {
-    // The picture is small: of many readings a pseudo-random sample is enough, which no period of the readings can bias.
+    // A pseudo-random sample is enough for the small plot, and has no fixed phase to periods of the
+    // readings.
     const most = 1500, share = most / all.length, keep = (_, i) => share >= 1 || ((i * 2654435761) >>> 0) / 4294967296 < share;
     const thin = (column) => column && column.filter(keep), whole = shown.fit.page, says = thin(all);
     const data = {...whole, target: thin(whole.target), time: thin(whole.time), run: thin(whole.run), temperature: thin(whole.temperature), direction: thin(whole.direction)}, columns = [["position", data.target, data.position_unit], ["time", data.time, data.time_unit], ["run", data.run, ""], ["temperature", data.temperature, "\u00B0C"]].filter((c) => c[1]);

@@ -1,4 +1,4 @@
-// ---- entries of people: acknowledgements and events; each has a command for the terminal ----
+// ---- user entries: acknowledgments and events; each has a command for the terminal ----
 const entries = (() => {
   const day = (days) => {
     const d = new Date(Date.now() + 864e5 * days);
@@ -7,10 +7,10 @@ const entries = (() => {
   /// Text of an untrusted file: characters that are invisible or change the direction of writing are shown by their number.
   const visible = (text) => text.replace(/[\u0000-\u001F\u007F-\u009F\u00AD\u061C\u180E\u200B-\u200F\u2028-\u202E\u2060-\u2069\uFEFF\uFFF9-\uFFFB]/g,
     (c) => (c === "\n" ? c : "\\u" + c.charCodeAt(0).toString(16).padStart(4, "0")));
-  let account = ""; // the name of the user who is signed in: all entries are made under it
+  let account = ""; // name of the signed-in user, who makes all entries
   const me = () => account || localStorage.getItem("nonio-by") || "";
   const remember = (by_) => account || localStorage.setItem("nonio-by", by_);
-  let confirming = ""; // how an approval is confirmed: by the password, or by the name
+  let confirming = ""; // how approvals are confirmed: by password or by name
   const as = (name, confirms) => ([account, confirming] = [name, confirms]);
   const confirms = () => confirming;
   const mine = () => ({value: me(), readonly: account !== ""});

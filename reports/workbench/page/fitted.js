@@ -1,7 +1,7 @@
-// ---- the model of a campaign and its readings on the page of the site: the picture of the workbench, read-only ----
+// ---- the model of a campaign and its readings on the site page (read-only figure) ----
 const fitted = (() => {
   let pictures = null, turn = 0;
-  const chosen = new Map(); // campaign: its part
+  const chosen = new Map(); // selected part by campaign
   const places = (folder) => el("section", {id: "fitted", "data-folder": folder, "aria-labelledby": "fitted-title", hidden: true}, el("h2", {id: "fitted-title"}, say("one.fitted")), el("div", {id: "fitted-parts", class: "acts wide"}),
     el("div", {id: "picture-fit"}, el("figure", {}, svg("svg", {role: "img", "aria-labelledby": "fitted-title", "aria-describedby": "fitted-says"}), el("figcaption", {}, el("p", {id: "fitted-says", class: "muted"})))), el("div", {id: "fitted-errors"}));
   /// Repeats the request until the answer is ready; null if the page meanwhile shows something else.

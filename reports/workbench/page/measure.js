@@ -66,7 +66,7 @@ const measure = (() => {
     return zone;
   }
 
-  // ---- its curve ----
+  // ---- the curve ----
   const number = (v, digits) => local(v.toFixed(digits));
   let charts = null, redraw = null;
   /// Deviation over position, one line for each run and direction.
@@ -92,7 +92,7 @@ const measure = (() => {
     return figure;
   }
 
-  // ---- columns that were not recognised ----
+  // ---- columns that were not recognized ----
   const nameIn = (one) => one.slice(0, one.lastIndexOf("=")).trim();
   /// The key of a column: its name, or its number if the name is empty or not unique.
   const keysOf = (names) => names.map((n, k) => (n !== "" && !/^#\d+$/.test(n) && names.indexOf(n) === names.lastIndexOf(n) ? n : `#${k + 1}`));
@@ -151,7 +151,7 @@ const measure = (() => {
     const date = /(?:^|\D)(20\d\d)-?([01]\d)-?([0-3]\d)(?:\D|$)/.exec(file.name), axis = /(?:^|[_ .-])([XYZUVWABCxyzuvwabc])(?=[_ .-])/.exec(file.name);
     return {date: date ? `${date[1]}-${date[2]}-${date[3]}` : "", axis: axis ? axis[1].toUpperCase() : ""};
   }
-  /// Values from the operator's text in a laser's file: "Machine:Test bed; Serial No:17".
+  /// Values from the operator's text in a laser file: "Machine:Test bed; Serial No:17".
   function fromText() {
     const of = new Map((preview.text || "").split("; ").map((one) => [one.slice(0, one.indexOf(":")).trim().toLowerCase(), one.slice(one.indexOf(":") + 1).trim()]));
     const day = /^20\d\d-[01]\d-[0-3]\d/.exec(of.get("date") || "");

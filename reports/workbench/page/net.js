@@ -1,5 +1,5 @@
-// ---- the server: every request has the token, which is never in an address or a cookie, or, on a server with users,
-// the session of a user ----
+// ---- the server: every request has the token (not in its URL, nor in a cookie) or, on a server
+// with users, the session of a user ----
 const net = (() => {
   const at = /(?:^|[#&])t=([0-9a-f]{32})(?:&|$)/.exec(location.hash);
   if (at) {

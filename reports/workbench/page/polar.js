@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Circles as a ball bar draws them: readings and model enlarged about a ring, and what remains about another; each
-// plane by itself, one below the other. The page from disk and the live one draw with this code.
+// Circles as with a ball bar: readings and model, magnified on one ring, and residuals on another;
+// one plot per plane. Used by stored pages and the live page.
 "use strict";
-/// figure(name): "polar" or "rest", or nothing; charts: those of the page (chart.js); value(i): what remains of reading i, NaN where
-/// there is no model yet; rows: the readings that are shown.
+/// figure(name): element of "polar" or "rest", may be null; charts: those of the page (chart.js);
+/// value(i): residual of reading i, NaN without a model; rows: visible readings.
 function nonioPolar({figure, data, rows, charts, value, number, text}) {
   const finite = Number.isFinite, {put, r1} = charts;
   const radius = data.circles || [], of_circle = rows.filter((i) => radius[data.measurement[i]]);
   for (const name of ["polar", "rest"]) if (figure(name)) figure(name).hidden = of_circle.length === 0;
   if (of_circle.length === 0) return;
 
-  /// Each run in each direction has its own centre and zero: what a circle through its readings says.
+  /// Each run in each direction has its own center and zero, from a circle through its readings.
   const paths = new Map();
   for (const i of of_circle) {
     const key = [data.measurement[i], data.run[i], data.direction[i]].join(" ");
@@ -50,7 +50,7 @@ function nonioPolar({figure, data, rows, charts, value, number, text}) {
   if (!modelled) curves.model = curves.rest = [];
   const planes = [...new Set([...paths.values()].map((path) => path.plane))];
 
-  /// um of a ring: three rings hold the largest of them.
+  /// Size of a ring division, um: three divisions contain the largest value.
   function division(all) {
     let largest = 0;
     for (const c of all) for (const v of c.r) if (finite(v)) largest = Math.max(largest, Math.abs(v));

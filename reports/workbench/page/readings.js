@@ -1,11 +1,11 @@
-// ---- single readings: where each comes from, regions of them, leaving one out with a reason ----
+// ---- single readings: their source, regions of readings, exclusion with a reason ----
 const readings = (() => {
   let first = 0, columns = null;
-  /// The row of a reading as the files have it, of its place on the page.
+  /// Row in the files of reading i of the page.
   const rowOf = (shown, i) => (shown.fit.page.row ? shown.fit.page.row[i] : i);
   const excludedIn = (state, shown) => (state.excluded || []).filter((e) => e.part === shown.part);
 
-  /// Form that leaves readings out: nothing goes without a reason.
+  /// Form that excludes readings; a reason is required.
   function form(count, send) {
     const why = el("input", {"data-key": "why", maxlength: 200, autocomplete: "off", required: true, "aria-label": say("exclude.why")});
     const problem = el("p", {class: "flag", role: "alert"});
@@ -15,14 +15,14 @@ const readings = (() => {
       else send(why.value.trim());
     }}, el("label", {}, say("exclude.why") + " ", why), el("button", {type: "submit", class: "exclude-do"}, say("exclude.do", {n: count})), problem);
   }
-  /// The reading that was touched: file, line, values.
+  /// Dialog of the selected reading: file, line, values.
   function openOne(shown, pictures, i, act) {
     const data = shown.fit.page, lines = pictures.about(i);
     view.dialog(say("reading.title"), el("ul", {class: "plain"}, ...lines.map((t) => el("li", {}, t))), form(1, (why) => act.exclude([rowOf(shown, i)], why)),
       el("div", {class: "buttons"}, el("button", {type: "button", onclick: () => by("dialog").close()}, say("dialog.close"))));
   }
 
-  /// A region by its ends, for those who cannot drag.
+  /// Form that selects a region by its ends, as alternative to dragging.
   function regionForm(shown, choose) {
     const names = {position: "target", time: "time", run: "run", temperature: "temperature", residual: "residual"};
     const kinds = Object.keys(names).filter((k) => shown.fit.page[names[k]]);
@@ -46,7 +46,7 @@ const readings = (() => {
       form(rows.length, (why) => act.exclude(rows.map((i) => rowOf(shown, i)), why)), el("button", {type: "button", id: "region-clear", onclick: () => act.select([])}, say("region.clear"))));
   }
 
-  /// Every reading in a table, 25 a page, and those that were left out.
+  /// All readings in a table, 25 per page, and the excluded ones.
   function drawTable(state, shown, act) {
     const box = by("readings-list");
     if (!shown.fit || shown.looks) return fill(box);
@@ -75,7 +75,7 @@ const readings = (() => {
     navigator.clipboard.writeText(["file,line,run,direction,target,deviation,residual", ...lines].join("\n")).then(() => (button.textContent = say("command.copied")));
   }
 
-  // ---- more readings than a page holds: the server sends least and greatest of each column of pixels ----
+  // ---- more readings than on a page: minimum and maximum per pixel column from the server ----
   const big = new Map();
   const axes = {0: "target", 2: "time", 3: "run", 4: "phase", 5: "temperature", 6: "model"};
   const isBig = (shown, k) => shown.thinned && axes[k] !== undefined && !(shown.looks && axes[k] === "model");
@@ -85,7 +85,7 @@ const readings = (() => {
     const times = shown.drawnTimes, series = await net.ask(`/api/parts/${encodeURIComponent(shown.part)}/series?${query}`);
     if (times !== shown.drawnTimes || series.x.length === 0) return;
     const data = shown.fit.page, xs = series.x, [low, high] = [series.min, series.max], ends = [Math.min(...low.filter(finite)), Math.max(...high.filter(finite))];
-    // The server's time is in seconds, whatever the sample's picture shows.
+    // The server sends the time in s, in any unit of the figure.
     const {whole} = pictures.between(k, {xs, low, high, whole: range && (big.get(k) || {}).whole, x: series.x_unit ? `${data.pictures[k].x.split(" / ")[0]} / ${shownUnit(series.x_unit)}` : data.pictures[k].x,
       y: shown.looks ? `${data.words.deviation} / ${data.unit}` : data.pictures[k].y, about: (j) => [`${local(String(Number(xs[j].toPrecision(6))))}: ${short(low[j])} \u2026 ${short(high[j])} ${shown.unit}`]});
     big.set(k, {whole, range});
@@ -93,7 +93,7 @@ const readings = (() => {
     requestAnimationFrame(() => setTimeout(() => performance.mark("zoomed")));
   }
   const drawAgain = (...of) => drawBig(...of).catch((e) => e.status === 409 || view.alarm(e.message));
-  /// Where one was enlarged it stays so, whatever the model is.
+  /// A zoomed figure stays zoomed if the model changes.
   function drawAllBig(shown, pictures) {
     const all = [];
     for (let k = 0; k < 9; k++)

@@ -3,7 +3,7 @@
 "use strict";
 const nonioSave = (() => {
   const kept = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-opacity", "stroke-dasharray", "stroke-linecap", "stroke-linejoin", "opacity", "font-family", "font-size", "font-weight"];
-  /// The drawing by itself, with the style that the page gives it; what is painted becomes an image.
+  /// The drawing as a standalone SVG with its computed style; painted canvases become images.
   function alone(svg) {
     const copy = svg.cloneNode(true), {width, height} = svg.viewBox.baseVal;
     const copies = copy.querySelectorAll("*"), make = (name) => document.createElementNS(svg.namespaceURI, name);
@@ -52,7 +52,7 @@ const nonioSave = (() => {
     const by = document.getElementById(svg.getAttribute("aria-labelledby"));
     return (by ? by.textContent : svg.getAttribute("aria-label") || "").trim() || document.title;
   }
-  /// Buttons that hand the chart over as a file; rows(): its numbers under a line of names, or nothing.
+  /// Buttons that export the chart; rows(): table with header for CSV, optional.
   function buttons(svg, rows) {
     const files = {PNG: () => png(svg), SVG: () => new Blob([alone(svg)], {type: "image/svg+xml"}),
       CSV: () => new Blob([rows().map((row) => row.map(cell).join(",") + "\n").join("")], {type: "text/csv"})};

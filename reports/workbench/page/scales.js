@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers for the pictures of draw.js: ticks of a scale, quantiles of the normal distribution.
+// Numbers for the figures of draw.js: ticks of a scale, quantiles of the normal distribution.
 "use strict";
 /// About `count` ticks at round numbers from low to high, each with number(value, digits) as the label. kind: "turn" for
 /// degrees of a turn, "whole" for integers.

@@ -1,13 +1,13 @@
-// ---- the page of a site: the worklist of the last run, and the actions of people ----
+// ---- the page of a site: the worklist of the last run, and user actions ----
 (() => {
   let state = null, lines = [], known = [], gone = null, filters = "", drawn = "", asking = false, again = false, stale = true, dismissed = "", shown = "", released = null;
   const own = ["campaigns", "machines", "instruments", "certificates", "entries", "settings"];
   const isOwn = (name) => own.includes(name) || (name === "new" && (!state || state.edit)) || name.startsWith("campaign/");
   const isPage = (name) => /^(index|due|compare|instruments)\.html$|^machines\/[^/]+\.html$/.test(name);
-  let pages = new Map(); // name: its text
+  let pages = new Map(); // text by name
   let links = []; // to the static pages of the last run, with their titles
 
-  // ---- the view that is shown: it is in the address, as are the filters of the lines ----
+  // ---- the current view: stored in the URL, like the filters of the lines ----
   function view() {
     const to = new URLSearchParams(location.hash.slice(1)).get("to");
     return to && (isOwn(to) || isPage(to)) ? to : state && (!state.out || !state.night.last) ? "campaigns" : "index.html";
@@ -21,7 +21,7 @@
   }
 
   // ---- requests to the server ----
-  let denied = false; // the server refused this user's role: the address is right
+  let denied = false; // the server refused the role of this user, although the URL is valid
   /// Replaces the whole page.
   function only(name, ...content) {
     by("app").replaceChildren(el("main", {class: "lost"}, ...content));
@@ -125,7 +125,8 @@
 
   // ---- the actions of a line of the worklist ----
   const campaignOf = (line) => line.campaign || (line.link ? line.link.split("/").slice(-2)[0] : "");
-  /// Only judgements of a machine's history can be acknowledged; a lost or failed campaign is a fact.
+  /// Only judgments of a machine's history can be acknowledged; a lost or failed campaign is a
+  /// fact.
   const canBeKnown = (line) => line.machine && line.state === "new" && ["out", "changed", "soon", "overdue", "withheld", "undecided", "information"].includes(line.kind);
   async function openCampaign(campaign) {
     try {

@@ -1,4 +1,4 @@
-// ---- in space: the volume, its lines and diagonals coloured by residual, deviations exaggerated by a slider ----
+// ---- the volume: lines and diagonals colored by residual, with magnified deviations ----
 const space = (() => {
   let turn = 35, lift = 25, times = 0;
   function colour(v, most) {
@@ -24,7 +24,7 @@ const space = (() => {
   }
   const cornersOf = (b) => [0, 1, 2, 3, 4, 5, 6, 7].map((k) => [b[k & 1 ? 1 : 0], b[k & 2 ? 3 : 2], b[k & 4 ? 5 : 4]]);
   const faces = [[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]];
-  /// The place with the largest mean residual of a target, where the tool is drawn.
+  /// The position with the largest mean residual of a target, where the tool is drawn.
   function worstPlace(lines, data) {
     let worst = null, most = -1;
     lines.forEach((line) => {

@@ -1,8 +1,8 @@
-// ---- words, numbers and elements. The page contains texts only as text nodes: nothing is ever parsed as markup. ----
+// ---- texts, numbers, elements. Texts are text nodes only; nothing is parsed as markup. ----
 const words = JSON.parse(document.getElementById("words").textContent);
 const language = document.documentElement.lang;
 
-/// A word of templates/words/<language>/workbench.toml with its {places} filled in.
+/// A text of templates/words/<language>/workbench.toml with its {places} filled in.
 function say(key, places = {}) {
   const template = words[key] === undefined ? key : words[key];
   return template.replace(/\{(\w+)\}/g, (all, name) => (name in places ? String(places[name]) : all));
@@ -17,7 +17,7 @@ function short(v) {
   const digits = Math.max(0, 2 - Math.floor(Math.log10(Math.abs(Number(v.toPrecision(3))))));
   return local(digits > 9 ? v.toExponential(1) : v.toFixed(Math.min(digits, 9)));
 }
-/// A value and its expanded uncertainty U = 2 u, both to the second digit of U.
+/// A value and U = 2 u, both rounded to the second digit of U.
 function withU(value, u) {
   if (!finite(u) || u <= 0) return [short(value), ""];
   const digits = Math.min(9, Math.max(0, 1 - Math.floor(Math.log10(2 * u))));

@@ -2,7 +2,7 @@
 (() => {
   view.build();
   let state = null, busy = 0, job = null, again = false, asking = false;
-  /// What is shown: one part, its fit, and the result of explain.
+  /// The data that are shown: one part, its fit, and the result of explain.
   const shown = {part: sessionStorage.getItem("nonio-part"), effect: null, drawing: "residual", version: 0, fitted: [], unit: "", column: "residual", etags: {}, of: {},
     /// Effects that were not separable from an effect when it was added: also with the verdict "complete" they may be the cause.
     aliases: JSON.parse(sessionStorage.getItem("nonio-aliases") || "{}")};
@@ -11,7 +11,7 @@
     inTurn: () => performance.mark("all"), elsewhere: (k) => readings.isBig(shown, k), enlarged: (k, range) => readings.drawAgain(shown, pictures, k, range),
     pick: (i) => readings.openOne(shown, pictures, i, act), brushed: (rows) => region(rows), said: (lines) => view.speak(lines.join(", "))});
   const part = () => state.parts.find((p) => p.name === shown.part);
-  /// What a fit depends on: numbers of another trial are never shown as those of this one.
+  /// All inputs of a fit, because results of another trial must not be shown for this one.
   const trial = () => JSON.stringify([state.campaign.read_at, state.model, (state.excluded || []).map((e) => [e.part, e.row]), state.period_mm]);
   const path = (what) => `/api/parts/${encodeURIComponent(shown.part)}/${what}`;
 
@@ -139,7 +139,8 @@
     if (shown.fit.partial) piece("fit", takeRest, "?page=0").catch(complain);
     else others();
   }
-  /// The rest of the fit, with the places where it fails; for many readings it arrives after the picture.
+  /// The rest of the fit, with the positions where it fails; for many readings it arrives after the
+  /// figure.
   function takeRest(rest) {
     if (!rest) return;
     shown.fit = {...rest, page: shown.fit.page};
@@ -248,7 +249,7 @@
     });
     fill(by("places-list"), shown.learning ? el("p", {class: "muted"}, say("learn.look")) : items.length ? el("ul", {class: "plain"}, ...items) : el("p", {class: "muted"}, compare ? say("places.nowhere") : say("verdict.fitting")));
   }
-  /// Goes to the picture of a place that fails and selects the readings of that place.
+  /// Shows the figure of a position where the fit fails, and selects its readings.
   function goPlace(f, k) {
     const data = shown.fit.page, figure = by("picture-" + k);
     let rows = [];
@@ -359,7 +360,7 @@
     document.body.dataset.ready = shown.none ? "none" : shown.fit && !shown.fitIsOld && !shown.fit.partial ? (explained ? "explained" : "fitted") : "";
   }
 
-  // ---- actions of a person ----
+  // ---- user actions ----
   const steps = {go: (n) => post("goto", {n}), name: (n, name) => post("name", {n, name})};
   let later = 0;
   const act = {

@@ -17,7 +17,7 @@ namespace {
 struct Bounds {
   double slope = 0.02;   ///< largest slope of the deviation over the travel, m/m or rad/rad
   double share = 0.002;  ///< largest range as a share of the travel, for ranges above `size`
-  double size, most;     ///< least range that `share` limits; largest plausible range; m or rad
+  double size, most;     ///< range above which `share` applies, and largest allowed range, m or rad
   double small_share = 0.05;  ///< largest share of a short travel, for ranges above `small_size`
   double small_size;          ///< range that is plausible on any short travel, m or rad
   double scatter;             ///< largest standard deviation of repeated readings, m or rad
@@ -158,8 +158,8 @@ class Size {
            .attention = true,
            .evidence = {{"readings", static_cast<double>(o_.size()), Quantity::count},
                         {"value", o_.deviation.front(), deviation_}}});
-    // In a straightness measurement the slope is set-up and removed, and the stated U of the laser
-    // does not apply to straightness optics.
+    // In a straightness measurement the slope results from the set-up and is removed, and the
+    // stated U of the laser does not apply to straightness optics.
     const bool straightness = measurement_.kind == "straightness";
     if (straightness && range_of_rest_ < 0.4 * bounds_.least && scatter_ < 0.4 * bounds_.least &&
         travel_ >= bounds_.least_travel && means_.size() > 2)
@@ -209,8 +209,8 @@ class Size {
   }
 
   /// Returns the expanded uncertainty of the instrument (k = 2, 0 if not stated), and the smallest
-  /// range of deviations that it can plausibly show. The length-dependent part counts less, because
-  /// it cancels if the axis was adjusted with the same instrument.
+  /// range of deviations that it can plausibly show. The length-dependent part has a smaller
+  /// weight, because it cancels if the axis was adjusted with the same instrument.
   std::pair<double, double> uncertainty() const {
     constexpr double of_fixed = 0.5, of_length = 0.15;
     const Instrument& i = campaign_.instrument;
@@ -296,8 +296,7 @@ void implausible_span(const Campaign& campaign, const Measurement& m, const Obse
          .evidence = {{"span", span, position}, {"pitch", *axis->screw_pitch, Quantity::length}}});
 }
 
-/// Reports targets outside the travel: the travel and the targets are then counted from different
-/// zeros.
+/// Reports targets outside the travel: travel and targets then refer to different zeros.
 void beyond_travel(const Campaign& campaign, const Observations& o, std::vector<Finding>& out) {
   constexpr double spare_share = 0.02;
   for (const auto& column : o.axes) {

@@ -9,7 +9,7 @@
 namespace nonio::reading {
 namespace {
 
-/// Mean and range of the values of a column; `known` is false if it has none.
+/// Mean and range of the values of a column; `known` is false if the column has no value.
 struct Climate {
   double mean = 0.0, range = 0.0;
   bool known = false;
@@ -127,8 +127,8 @@ double apart(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/// Returns the unit normal of the plane that the first centre and the best pair of others span; 0
-/// if all centres are on a line.
+/// Returns the unit normal of the plane through the first centre and the pair of other centres that
+/// span the largest area; 0 if all centres are on a line.
 std::array<double, 3> normal_of(const std::vector<std::array<double, 3>>& centres) {
   std::array<double, 3> best{};
   double size = 0.0;
@@ -173,7 +173,7 @@ void implausible_centres(const Measurement& m, const Observations& o, std::vecto
   const std::size_t named = m.axis.empty() ? std::string::npos : std::string("ABC").find(m.axis[0]);
   if (named == std::string::npos || !math::other_turning_axis(o).empty()) return;
   const double cosine = std::fabs(normal_of(centres)[named]);
-  constexpr double least = 0.5;  // cosine of 60 deg; swivelling axes are mounted at 45 deg
+  constexpr double least = 0.5;  // cosine of 60 deg; swiveling axes are mounted at 45 deg
   if (cosine < least)
     out.push_back({.id = "plausibility.axis-direction",
                    .attention = true,

@@ -42,7 +42,7 @@ class Copies {
       const auto n = static_cast<double>(std::get<2>(what).size());
       const auto [low, high] =
           std::minmax_element(std::get<2>(what).begin(), std::get<2>(what).end());
-      if (*low == *high) continue;  // all readings are equal: another finding reports it
+      if (*low == *high) continue;  // another finding reports equal readings
       const double least = scatter_known_ ? least_scatter_ / 3.0 : least_scatter_;
       const double one = step_ / (std::max(pair_scatter, least) * 3.5449);
       const auto pairs = static_cast<double>(strokes_.size() * strokes_.size()) / 2.0;
@@ -258,8 +258,8 @@ Cells cells_by_run(const std::vector<Stroke>& strokes) {
 
 /// Returns the number of readings that both measurements have at the same run, direction and
 /// target; none if they are too few or chance explains them. The probability that two readings are
-/// equal is estimated, so that digits coarser than the machine's scatter give no finding. Zeros are
-/// ignored, because instruments are zeroed at a target.
+/// equal is estimated, so that digits coarser than the machine's scatter cause no finding. Zeros
+/// are ignored, because instruments are zeroed at a target.
 std::optional<double> shared_readings(const Cells& one, const Cells& other) {
   constexpr double chance = 1e-7, of_all = 0.15;
   constexpr std::size_t fewest = 8, fewest_values = 6;

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double micrometre = 1e-6, arc_second = 1.0 / arcsec_per_rad;
 
-/// A stated value with the usual range of such values. A value of 0 is never reported. Confidence
-/// of the bounds: inferred; see docs/dev/wrong-inputs.md.
+/// A stated value with the usual range of such values. A value of 0 is never reported. The bounds
+/// are inferred (docs/dev/wrong-inputs.md).
 struct Statement {
   std::string key;
   std::optional<double> value;
@@ -25,7 +25,7 @@ void axis_statements(const Axis& a, std::vector<Statement>& all) {
   constexpr double mm = 1e-3, degree = 1.0 / deg_per_rad;
   all.push_back({key + "expansion_um_per_m_K", a.expansion, 3e-6, 3e-5, Quantity::expansion});
   // The backlash value of a new table is based on the active one: an active value in um instead of
-  // mm would move a motor by millimetres.
+  // mm would move a motor by millimeters.
   if (a.rotary)
     all.push_back({key + "active_backlash_deg", a.active_backlash, -0.5 * degree, 0.5 * degree,
                    Quantity::angle});
@@ -160,7 +160,7 @@ void exchanged_names(const Campaign& c, std::vector<Finding>& out) {
     for (std::size_t k = i + 1; k < c.measurements.size(); ++k) {
       const Measurement& other = c.measurements[k];
       const std::string its = short_name(other.file);
-      // a straightness may be named after its direction
+      // a straightness measurement may be named after its lateral direction
       if (file != its && m.lateral.empty() && other.lateral.empty() && called(m, its) &&
           called(other, file) && !called(m, file) && !called(other, its))
         push_name(m.file, short_name(m.file), m.id, out);

@@ -10,9 +10,9 @@
 namespace nonio::reading {
 namespace {
 
-/// Reports strokes with rising targets and direction -, or with falling targets and direction +. It
-/// gives no finding if strokes are mixed or all go one way (a file sorted by target), or if all
-/// targets were approached from one side.
+/// Reports strokes with rising targets and direction -, or with falling targets and direction +.
+/// Strokes whose rows are mixed with others are ignored. There is no finding if all strokes go one
+/// way (a file sorted by target), or if all targets were approached from one side.
 void against_order(const std::vector<Stroke>& strokes, std::vector<Finding>& out) {
   bool up = false, down = false, plus = false, minus = false;
   std::size_t judged = 0;

@@ -20,7 +20,8 @@ std::vector<std::size_t> order_in_file(const Observations& o) {
   return order;
 }
 
-/// Returns the rows in the order of measurement: by time if all have one, otherwise as in the file.
+/// Returns the rows in the order of measurement: by time if every row has a time, otherwise as in
+/// the file.
 std::vector<std::size_t> order_in_time(const Observations& o) {
   auto order = order_in_file(o);
   const auto known = [](double t) { return std::isfinite(t); };

@@ -20,7 +20,7 @@ struct Stroke {
   std::size_t first = 0, last = 0;  ///< first and last row, in the order of measurement
   int sense = 0;                    ///< +1: targets rise, -1: they fall; 0: neither
   std::size_t backwards = 0;        ///< number of steps against the direction of most steps
-  double turns_at = 0.0;            ///< lower target of the first of these steps, m or rad
+  double turns_at = 0.0;            ///< lower target of the first backward step, m or rad
   bool alone = false;  ///< no row of another stroke is between its rows in the order of measurement
   bool alone_in_file = false;  ///< no row of another stroke is between its rows in the file
 };
@@ -42,7 +42,8 @@ std::string name_of(const Stroke& s);
 /// Subtracts the least-squares line through the values at these positions.
 void take_line_out(const std::vector<double>& at, std::vector<double>& values);
 
-/// Reports runs or targets of which one part seems to be from another machine than the rest.
+/// Reports a measurement if a part of its runs or targets seems to be from another machine than the
+/// rest.
 void implausible_halves(const Passes& passes, bool angular, std::vector<Finding>& out);
 
 /// Reports a value that marks a missing reading, a reading far from the others, a pass that equals
@@ -60,7 +61,7 @@ void implausible_passes(const Passes& passes, const Observations& o, bool with_d
 void turned_passes(const Passes& passes, bool rotary, std::vector<Finding>& out);
 
 /// Reports a pass that was copied one row too high or too low: it agrees with the others only if
-/// each reading belongs to the next target. At least two other passes of its direction are
+/// each reading is assigned to the adjacent target. At least two other passes of its direction are
 /// required.
 void shifted_rows(const Passes& passes, Quantity deviation, std::vector<Finding>& out);
 
@@ -73,7 +74,8 @@ std::vector<Finding> passes_of_another_measurement(const Campaign& campaign,
                                                    const std::vector<Observations>& all,
                                                    const std::vector<Passes>& passes);
 
-/// Reports implausible temperatures, pressures and humidities, and with `with_times` times.
+/// Reports implausible temperatures, pressures and humidities, and, if `with_times`, implausible
+/// times.
 void implausible_columns(const Measurement& m, const Passes& passes, const Observations& o,
                          bool with_times, std::vector<Finding>& out);
 

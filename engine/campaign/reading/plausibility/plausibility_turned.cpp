@@ -10,7 +10,8 @@
 //                 contains the pitch error. A wrong sign exchanges u and v; reverse order
 //                 exchanges their odd parts. So u must exceed the scatter and three times v (its
 //                 odd part 2.2 times that of v), whichever of the shapes is subtracted.
-// If only these shapes show it, wind-up may be the cause: then the finding is information.
+// If the directions are opposed only with these shapes, wind-up may be the cause, and the finding
+// is information.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -99,7 +100,7 @@ class Curve {
   Sums all_;
 };
 
-/// How `one` must be turned to agree with `other`: not at all, by its order, or by its sign.
+/// How a curve must be turned to agree with another: not at all, in its order, or in its sign.
 enum class Turned { not_at_all, order, sign };
 
 /// Sums of squares of the difference between two curves: unchanged, in reverse order, with the
@@ -226,9 +227,9 @@ std::vector<double> without(std::vector<double> values, std::vector<std::vector<
 
 using Shapes = std::vector<std::vector<double>>;
 
-/// Returns the shapes that elastic wind-up of a drive gives the reversal along the axis: of a screw
-/// held at one end (a line) or at both ends (a parabola), of a load that turns with the table or
-/// returns once along the travel (a wave).
+/// Returns the shapes of the reversal along the axis that elastic wind-up of a drive causes: of a
+/// screw held at one end (a line) or at both ends (a parabola), of a load that turns with the table
+/// or returns once along the travel (a wave).
 std::vector<Shapes> elastic_shapes(const std::vector<double>& at, bool rotary) {
   const double length = at.back() - at.front();
   Shapes powers(3), wave(3);

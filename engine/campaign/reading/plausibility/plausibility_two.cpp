@@ -22,7 +22,7 @@ struct Grid {
   std::vector<std::vector<double>> reversal;
 };
 
-/// Returns the last reading of a pass at each of these targets, all of which the pass must contain.
+/// Returns the last reading of a pass at each of these targets. The pass must contain every target.
 std::vector<double> values_at(const Stroke& s, const std::vector<double>& targets) {
   std::vector<double> out;
   out.reserve(targets.size());

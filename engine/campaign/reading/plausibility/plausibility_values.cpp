@@ -20,8 +20,8 @@ double middle_value(std::vector<double> values) {
 }
 
 /// Mean of the other passes of a direction at the targets of one pass, and the scatter of their
-/// readings about it after subtraction of a shift of each pass. Empty if fewer than two have the
-/// same targets.
+/// readings about it after subtraction of a shift of each pass. `mean` is empty if fewer than two
+/// passes have the same targets.
 struct Others {
   std::vector<double> mean;
   double count = 0.0, scatter = 0.0;
@@ -108,7 +108,7 @@ ByTargets alike_of(const std::vector<Stroke>& strokes) {
 
 /// Reports a pass that equals the mean of all others of its direction in every digit, such as the
 /// last block of a spreadsheet. By chance a reading equals the mean with probability step / (s
-/// sqrt(2 pi (1 + 1/k))).
+/// sqrt(2 pi (1 + 1/k))), where s is the scatter of the k other passes.
 void pass_of_means(const std::vector<Stroke>& strokes, double step, Quantity deviation,
                    std::vector<Finding>& out) {
   constexpr double chance = 1e-7, at_most = 1.0 + 1e-6;
@@ -122,7 +122,7 @@ void pass_of_means(const std::vector<Stroke>& strokes, double step, Quantity dev
   for (const Stroke& own : strokes) {
     const std::size_t n = own.target.size();
     if (n < fewest) continue;
-    // computed directly only if the sums do not exclude it
+    // computed directly only if the sums do not exclude such a pass
     const Alike& all = alike.at({own.line, own.direction, own.target});
     if (!all.may_be_mean(own, at_most * 0.51 * step) ||
         by_chance(at_most * all.scatter_without(own), all.count() - 1.0, n) > chance)
@@ -143,8 +143,8 @@ void pass_of_means(const std::vector<Stroke>& strokes, double step, Quantity dev
   }
 }
 
-/// Reports a value that occurs at several targets, far from all other readings there: 0 or 999 in
-/// place of a missing reading.
+/// Reports a value that occurs at several targets, far from the other readings of these targets,
+/// such as 0 or 999 in place of a missing reading.
 void marks(const std::vector<Stroke>& strokes, double step, Quantity deviation,
            std::vector<Finding>& out) {
   constexpr double sigmas = 10.0, steps = 5.0, mostly = 0.8;
@@ -222,7 +222,7 @@ void far_off(const Observations& o, std::vector<Finding>& out) {
   }
 }
 
-/// Reports exchanged targets: passes in which one pair of neighbouring targets contradicts the
+/// Reports exchanged targets: passes in which one pair of adjacent targets contradicts the
 /// direction of all other steps, if the pair is the same in all such passes.
 void targets_against_order(const std::vector<Stroke>& strokes, Quantity position,
                            std::vector<Finding>& out) {

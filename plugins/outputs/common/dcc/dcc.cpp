@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// PTB's schema 3.3.0; the order of elements is the schema's. Words of the templates carry their
-// language; names, symbols and what the manifest states carry none.
+// PTB's schema 3.3.0, including its order of elements. Template texts have a language; names,
+// symbols and texts of the manifest do not.
 #include "dcc.h"
 
 #include <algorithm>
@@ -17,7 +17,8 @@
 namespace nonio::dcc {
 namespace {
 
-/// Of every U that Nonio states: that of k = 2 for a normal distribution, as certificates print it.
+/// Coverage probability of every U, for k = 2 and a normal distribution, as printed in
+/// certificates.
 constexpr const char* coverage_probability = "0.95";
 
 std::string number_text(double si, Quantity q) {
@@ -26,7 +27,7 @@ std::string number_text(double si, Quantity q) {
   return {buffer.data(), end.ptr};
 }
 
-/// As printed: to the digits that U allows.
+/// The value and U rounded as printed; without U, the shortest exact number.
 RoundedResult result_text(double si, std::optional<double> U, Quantity q) {
   if (U)
     if (const auto rounded = rounded_result(printed(si, q), printed(*U, q))) return *rounded;
@@ -201,7 +202,7 @@ class Writer {
     xml_.close();
   }
 
-  /// Conformity in the words of the rule by which was decided; what that leaves open has no status.
+  /// Decisions with the text of the decision rule. Indeterminate decisions have no status.
   void statements() {
     if (about_.decided.empty() && about_.statements.empty()) return;
     xml_.open("dcc:statements");
@@ -361,12 +362,12 @@ class Writer {
     xml_.close();
   }
 
-  /// One quantity of a list: the same rows of each.
+  /// One column of a list; all columns have the same rows.
   struct Column {
     std::string name, ref_type;
     Quantity quantity;
     std::vector<double> values;
-    std::vector<double> U;  ///< of each; empty: none
+    std::vector<double> U;  ///< one per value; empty: none
     double k = 2.0;
   };
 
@@ -409,7 +410,7 @@ class Writer {
     xml_.close();
   }
 
-  /// Where every value is, in one list; a column with gaps has one of its own, without them.
+  /// Complete columns share one list; a column with gaps gets a separate list of its existing rows.
   void table(const PointTable& points) {
     std::vector<Column> whole;
     std::vector<std::vector<Column>> parts;
@@ -444,7 +445,7 @@ class Writer {
     return out;
   }
 
-  /// A curve over an axis, with U at each place.
+  /// Writes a curve over an axis, with U at each position.
   void series(const Series& s) {
     if (about_.only_with_U && s.U.size() != s.value.size()) return;
     Column place{s.over, "basic_nominalValue", s.position_quantity, s.position, {}, 2.0};

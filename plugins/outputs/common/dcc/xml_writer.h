@@ -11,8 +11,8 @@
 
 namespace nonio::dcc {
 
-/// Writes XML sequentially, elements indented by one blank per level. Text is escaped; characters
-/// that XML does not allow are omitted.
+/// Writes XML sequentially, elements indented by one blank per level. Text is escaped, and
+/// characters that XML does not allow are omitted.
 class XmlWriter {
  public:
   XmlWriter() : out_("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n") {}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The uncertainty budget of a measurement: what goes in, and what it makes in each result.
+// The uncertainty budget of a measurement: inputs and their contributions to each result.
 #include <algorithm>
 #include <cmath>
 
@@ -14,14 +14,13 @@ using namespace reports;
 
 namespace {
 
-/// Two significant digits.
+/// U with two significant digits; "0" unless u > 0.
 std::string small(const Source& source, double u, Quantity q) {
   if (!(u > 0.0)) return "0";
   return printed_result(u, u, q, source.language()).U;
 }
 
-/// Uncertainties in a unit in which they are short: that of the deviations, of a pure number its
-/// millionth part.
+/// Unit for short uncertainties: that of deviations; for a pure number, 10^-6.
 struct ShortUnit {
   Quantity quantity;
   double factor = 1.0;
@@ -35,14 +34,14 @@ ShortUnit short_unit(Quantity q) {
   return {q, 1.0, unit_text(q)};
 }
 
-/// What makes less than a millionth of the variance is negligible.
+/// A contribution below 1e-6 of the variance is printed as "0".
 std::string part(const Source& source, double u, double whole, const ShortUnit& unit) {
   constexpr double nothing = 1e-3;
   if (!(u > nothing * whole)) return "0";
   return small(source, unit.factor * u, unit.quantity);
 }
 
-/// Keys of the manifest in words, each once: a customer reads "data of the machine", not
+/// The source in words for customers, without repetition: "data of the machine", not
 /// "machine.axes.X.expansion_um_per_m_K".
 std::string source_text(const Source& source, const Contribution& c) {
   const Wording& w = source.words;
@@ -58,7 +57,7 @@ std::string source_text(const Source& source, const Contribution& c) {
     else if (is_key && dot != part.npos)
       part = w.get_or("budget.source_of." + part.substr(0, dot), w.get("budget.source_of.options"));
     else if (is_key)
-      continue;  // "certificate of plate 400, U_um"
+      continue;  // other keys are omitted
     if (std::find(parts.begin(), parts.end(), part) == parts.end()) parts.push_back(part);
   }
   std::string all;
@@ -104,7 +103,7 @@ Table inputs(const Source& source, const Results::Analysed& a, const Uncertainty
   return table;
 }
 
-/// Results with the same uncertainties share a row: "A, A↑, A↓".
+/// A table row; results with equal uncertainties share it: "A, A↑, A↓".
 struct Row {
   std::string names;
   const UncertaintyBudget::Result* result;

@@ -24,7 +24,7 @@ std::vector<double> in_print(const std::vector<double>& si, Quantity q) {
   return out;
 }
 
-/// The points of a measurement by column, out of the first analysis that has all of them.
+/// Columns of the first analysis that contains all required ones.
 class Points {
  public:
   Points(const Measured& m, std::initializer_list<std::string_view> wanted) {
@@ -40,12 +40,12 @@ class Points {
     }
   }
   explicit operator bool() const { return table_ != nullptr; }
-  /// In the unit that is printed.
+  /// The column in printed units; empty if missing.
   std::vector<double> operator[](std::string_view name) const {
     const auto* c = table_ != nullptr ? table_->column(name) : nullptr;
     return c != nullptr ? in_print(c->values, c->quantity) : std::vector<double>();
   }
-  /// Whether their analysis gives a result of this name; a figure shows no other.
+  /// Whether this analysis has a result with this name; figures only show such results.
   bool result(std::string_view name) const {
     return values_ != nullptr && std::any_of(values_->begin(), values_->end(),
                                              [&](const Value& v) { return v.name == name; });
@@ -67,14 +67,14 @@ std::vector<double> combine(const std::vector<double>& a, const std::vector<doub
   return out;
 }
 
-/// A word of the plot's title, without the name of a standard whose plan was not followed.
+/// Title of a plot; the variant "_own" without a standard's name if its plan was not followed.
 std::string title_of(const Source& source, const Measured& m, const std::string& key,
                      Wording::Places places = {}) {
   const bool named =
       std::all_of(m.analyses.begin(), m.analyses.end(),
                   [&](const Results::Analysed* a) { return follows_plan(source.in, *a); }) &&
       std::none_of(m.analyses.begin(), m.analyses.end(), [](const Results::Analysed* a) {
-        return rules_of(*a) != nullptr;  // points of several rules are those of no standard
+        return rules_of(*a) != nullptr;  // points of several rules belong to no standard
       });
   return source.words.get(named ? key : key + "_own", places);
 }
@@ -88,7 +88,7 @@ bool along_diagonal(const Measured& m) {
   return m.measurement.kind == "diagonal" && m.observations.axes.size() > 1;
 }
 
-/// A diagonal has none of its own: that of its first column.
+/// The axis of the measurement; for a diagonal, that of its first column.
 std::string axis_of(const Measured& m) {
   const auto& axes = m.observations.axes;
   return m.measurement.axis.empty() && !axes.empty() ? axes.front().axis : m.measurement.axis;
@@ -109,7 +109,7 @@ Plot empty_plot(const Source& source, const Measured& m, std::string title) {
   return plot;
 }
 
-/// Lowest and highest of some lines, as a dimension of the figure.
+/// Adds the range of some lines as a dimension of the figure.
 void add_span(Plot& plot, const char* name, std::initializer_list<std::vector<double>> lines) {
   double low = INFINITY, high = -INFINITY;
   for (const auto& line : lines)
@@ -133,7 +133,7 @@ Curve mean_curve(const Source& source, std::vector<double> x, std::vector<double
 
 using Run = std::vector<std::pair<double, double>>;
 
-/// The readings by direction and run, by position; along a diagonal from its begin on.
+/// Readings by direction and run, sorted by position; along a diagonal from its start.
 std::map<std::pair<bool, std::uint32_t>, Run> runs_of(const Measured& m) {
   std::map<std::pair<bool, std::uint32_t>, Run> runs;
   const Observations& o = m.observations;
@@ -156,7 +156,8 @@ std::map<std::pair<bool, std::uint32_t>, Run> runs_of(const Measured& m) {
   return runs;
 }
 
-/// Of very many runs the range only: single lines would be a blot of many megabytes.
+/// Draws bands instead of lines for very many runs, because single lines would merge and make the
+/// file several megabytes large.
 void add_ranges(const Source& source, const Measured& m, Plot& plot) {
   std::map<std::pair<bool, double>, std::pair<double, double>> ranges;
   for (const auto& [key, run] : runs_of(m))
@@ -181,8 +182,8 @@ void add_ranges(const Source& source, const Measured& m, Plot& plot) {
   }
 }
 
-/// From the first run to the last along colours that get lighter evenly, so that a drift is seen
-/// as an order, with any colour vision and in grey.
+/// Color of a run, from dark to light, so that a drift is visible as an order, also with color
+/// blindness and in grayscale.
 Colour colour_of_run(std::size_t place, std::size_t count) {
   constexpr Colour scale[] = {{0.27F, 0.00F, 0.33F},
                               {0.23F, 0.32F, 0.55F},
@@ -240,7 +241,7 @@ std::optional<Plot> runs_plot(const Source& source, const Measured& m) {
   return plot;
 }
 
-/// The coverage factor of the edition, as R+ = 2 k s+ shows it; 0 where there is no scatter.
+/// The coverage factor of the edition from R+ = 2 k s+; 0 if there is no scatter.
 double coverage_factor(const Points& points) {
   for (const auto& [R, s] : {std::pair("R+", "s+"), std::pair("R-", "s-")}) {
     const auto range = points[R], scatter = points[s];
@@ -371,7 +372,7 @@ void series_plots(const Source& source, const Measured& m, std::vector<Plot>& pl
   for (const auto* a : m.analyses)
     for (const Series& s : a->evaluation.series) {
       if (source.certificate && s.U.size() != s.value.size()) continue;
-      // "line 1", as the column of the table is called.
+      // The name "line 1", as in the table.
       const bool numbered = s.name.starts_with("line_");
       const std::string name =
           numbered ? source.words.get("column.line") + " " + s.name.substr(5) : symbol(s.name);
@@ -425,7 +426,7 @@ void add_plots(const Source& source, const Measured& m, Blocks& blocks) {
   if (m.measurement.kind == "circle") return add_path(source, m, blocks);
   if (is_heat(m.measurement)) return add_heat(source, m, blocks);
   std::vector<Plot> plots;
-  const bool circle = m.measurement.kind == "ball-centres";  // coordinates, not deviations
+  const bool circle = m.measurement.kind == "ball-centres";  // has coordinates, not deviations
   const auto add = [&](std::optional<Plot> plot) {
     if (plot) plots.push_back(std::move(*plot));
   };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Thermal tests over time, with temperatures below; error motions of a spindle over rings; length
-// errors between their limits.
+// Figures of thermal tests over time with temperatures, spindle error motions on polar rings, and
+// length errors between their limits.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -25,7 +25,7 @@ const Results::Analysed* heat_of(const Measured& m) {
   return nullptr;
 }
 
-/// Colours that follow each other in a picture; dashes repeat with the second round.
+/// Sets color and dash of curve `number` in a figure.
 void style_of(const Source& source, std::size_t number, Curve& c) {
   const Style& s = source.look.style;
   const Colour colours[] = {s.plus, s.minus, s.accent, s.muted};
@@ -35,7 +35,7 @@ void style_of(const Source& source, std::size_t number, Curve& c) {
   c.width = 1.1;
 }
 
-/// At most so many points of a curve: each a reading.
+/// Maximum number of points of a curve; each is a reading.
 constexpr std::size_t most_points = 1500;
 
 Plot over_time(const Source& source, const char* title, const std::string& y_title) {
@@ -53,7 +53,7 @@ double first_time(const Observations& o) {
   return first;
 }
 
-/// Of each sensor or target and side: the change since its first reading.
+/// Change of each sensor, or of each target and direction, since its first reading.
 Plot changes(const Source& source, const Measured& m) {
   const Observations& o = m.observations;
   Plot plot =
@@ -89,7 +89,7 @@ Plot changes(const Source& source, const Measured& m) {
   return plot;
 }
 
-/// Curves that the analysis gives over time in one unit: growth, and what was fitted to it.
+/// Curves over time: growth and its fit, added to `into` if their unit is that of deviations.
 std::optional<Plot> fits(const Source& source, const Results::Analysed& a, Plot* into) {
   Plot own = over_time(
       source, "plot.growth",
@@ -142,7 +142,7 @@ std::optional<Plot> temperatures_plot(const Source& source, const Observations& 
   return plot;
 }
 
-/// All turns of a sensor about their centre (as the analysis has it), and the synchronous motion.
+/// All turns of a sensor about the center used by the analysis, and the synchronous motion.
 Plot motion(const Source& source, const Measured& m, const Series& sync) {
   const Observations& o = m.observations;
   const std::string name = sync.name.substr(sync.name.find('_') + 1);
@@ -160,7 +160,7 @@ Plot motion(const Source& source, const Measured& m, const Series& sync) {
       points.emplace_back(t, r);
     }
     mid /= n, a /= n, b /= n;
-    if (name == "Z") a = b = 0.0;  // once a turn is an error there
+    if (name == "Z") a = b = 0.0;  // axial motion once per turn is an error
     for (auto& [t, r] : points) {
       r -= mid + a * std::cos(t) + b * std::sin(t);
       largest = std::max(largest, std::fabs(r));
@@ -202,7 +202,7 @@ std::vector<Plot> motions(const Source& source, const Measured& m) {
   return out;
 }
 
-/// Errors over the length, between the limits.
+/// Length errors over length, between their limits.
 std::optional<Plot> lengths_plot(const Source& source, const Measured& m) {
   const Observations& o = m.observations;
   const PointTable& points = heat_of(m)->evaluation.points;

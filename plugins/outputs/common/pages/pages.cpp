@@ -23,7 +23,7 @@ std::string symbol(std::string_view name) {
   }
   if (const std::size_t at = out.find("+-"); at != std::string::npos) out.replace(at, 2, "±");
   std::replace(out.begin(), out.end(), '_', ' ');
-  // The standard's U is a span, and no uncertainty.
+  // U of the standard VDI/DGQ 3441 is a range, not an uncertainty.
   if (out == "U max" || out == "U mean" || out == "U") out.insert(1, "(VDI)");
   return out;
 }
@@ -55,7 +55,7 @@ std::string instrument_U(const Source& source) {
   return text;
 }
 
-/// Parts of a line that are not known leave no gap: "worn-screw · " becomes "worn-screw".
+/// Removes separators of empty parts of a line: "worn-screw · " becomes "worn-screw".
 std::string without_gaps(std::string line) {
   constexpr std::string_view between = " · ";
   const std::string twice = std::string(between) + std::string(between);
@@ -67,7 +67,8 @@ std::string without_gaps(std::string line) {
 
 namespace {
 
-/// What two analyses find is stated once, what one finds of two axes is two. Attention comes first.
+/// Findings, warnings first. The same id from two analyses is listed once; several findings of one
+/// analysis with the same id are kept.
 std::vector<const Finding*> findings_of(const std::vector<const Results::Analysed*>& analyses) {
   std::vector<const Finding*> out;
   for (const auto* analysed : analyses) {
@@ -85,7 +86,7 @@ std::vector<const Finding*> findings_of(const std::vector<const Results::Analyse
   return out;
 }
 
-/// "Material 19.8 to 20.3 °C.", or nothing.
+/// Text such as " Material 19.8 to 20.3 °C."; empty without readings.
 std::string temperatures(const Source& source, const char* key, const std::vector<double>& values) {
   double low = 1e9, high = -1e9;
   for (const double v : values)
@@ -97,7 +98,7 @@ std::string temperatures(const Source& source, const char* key, const std::vecto
   return " " + source.words.get(key, {{"from", text(low)}, {"to", text(high)}});
 }
 
-/// " Evaluated: 8 of 9 targets.", where some were left out.
+/// Text such as " Evaluated: 8 of 9 targets."; empty if none was omitted.
 std::string evaluated(const Source& source, const Measured& m) {
   double targets = 0, left_out = 0;
   for (const Results::Analysed* a : m.analyses) {
@@ -119,7 +120,7 @@ std::string evaluated(const Source& source, const Measured& m) {
 
 }  // namespace
 
-/// "XY": first and second axis of a circle.
+/// First and second axis of a circle, such as "XY".
 std::string plane_of(const Measurement& m) {
   std::string first, second;
   for (const auto& [axis, from] : m.from) {
@@ -129,7 +130,7 @@ std::string plane_of(const Measurement& m) {
   return first + second;
 }
 
-/// How a circle was run.
+/// Description of a circular test.
 std::string circle_test(const Source& source, const Measured& m) {
   const Observations& o = m.observations;
   bool plus = false, minus = false;
@@ -217,13 +218,13 @@ std::vector<double> along_line(const Measured& m) {
       const double way = axis.position[i] - (from == m.measurement.from.end() ? 0.0 : from->second);
       along[i] = std::hypot(along[i], way);
     }
-    // The file has 0.0001 mm; components along the axes were computed from it.
+    // Rounded to the resolution of files, from which the components along the axes were computed.
     along[i] = std::round(along[i] / grid_tolerance) * grid_tolerance;
   }
   return along;
 }
 
-/// How the test was made, as the readings show it.
+/// Description of the test as the readings show it.
 std::string test_of(const Source& source, const Measured& m) {
   const Observations& o = m.observations;
   if (o.size() == 0 || (o.axes.empty() && !is_heat(m.measurement)))
@@ -359,7 +360,7 @@ Expected<void> check_texts(const Campaign& c, const Fonts& fonts) {
 }
 
 namespace {
-/// The places of a text, "{name}", each once, in order.
+/// The set of placeholders "{name}" of a text.
 std::set<std::string> places_of(const std::string& text) {
   std::set<std::string> out;
   for (std::size_t open = text.find('{'); open != std::string::npos;
@@ -369,7 +370,7 @@ std::set<std::string> places_of(const std::string& text) {
   return out;
 }
 
-/// Of one file in one language against the same in English.
+/// Compares one file of a language with the same file in English.
 void check_file(const Settings& words, const Settings& english, const Fonts& fonts,
                 const std::string& file, std::vector<Error>& errors) {
   for (const auto& [key, value] : english.values)

@@ -115,7 +115,7 @@ void add_volume(const Source&, const Measured&, std::vector<reports::Plot>&);
 /// Returns the factor by which errors are exaggerated: 1, 2 or 5 times a power of ten, at most `v`
 /// > 0.
 double round_factor(double v);
-/// Adds a plot of the circle of ball centres with exaggerated residuals, and one of the residuals
+/// Adds a plot of the circle of ball centers with exaggerated residuals, and one of the residuals
 /// over the angle.
 void add_circle(const Source&, const Measured&, std::vector<reports::Plot>&);
 /// Adds plots of the residuals of two rotary axes as one chain, over the angle of each.
@@ -124,7 +124,7 @@ void add_chain(const Source&, const Measured&, std::vector<reports::Plot>&);
 /// causes, sorted by size.
 std::optional<reports::Plot> path_plot(const Source&, const Measured&);
 void add_path(const Source&, const Measured&, Blocks&);
-/// `rings` returns an empty polar plot: the mean is four divisions from the centre, and curves are
+/// `rings` returns an empty polar plot: the mean is four divisions from the center, and curves are
 /// at most three divisions from it. `division_of` returns that division for deviations of up to
 /// `largest`.
 reports::Plot rings(const Source&, std::string title, std::string caption);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The path of a circular test as a ball bar draws it: radial deviations enlarged over rings, both
-// directions, about the least-squares centre; and the causes, each by what it makes alone.
+// Polar plot of a circular test: radial deviations of both directions, enlarged, about the
+// least-squares center; and a chart of the causes by their individual effect.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -20,7 +20,8 @@ namespace {
 
 constexpr double per_um = 1e6;
 
-/// One run in one direction, by the angle in the plane; um about the centre and the mean radius.
+/// One run in one direction: (angle in the plane in rad, deviation in um about center and mean
+/// radius).
 struct Path {
   bool plus = true;
   std::vector<std::pair<double, double>> points;
@@ -134,7 +135,7 @@ Plot polar(const Source& source, const Paths& paths) {
     for (std::size_t i = 0; i < path.points.size(); i += step) {
       const auto& [angle, r] = path.points[i];
       const double radius = 4.0 + r / division;
-      // Where a part of the turn is missing nothing is drawn.
+      // A gap in the readings interrupts the line.
       if (std::isfinite(last) && angle - last > 0.2) c.x.push_back(NAN), c.y.push_back(NAN);
       last = angle;
       c.x.push_back(radius * std::cos(angle)), c.y.push_back(radius * std::sin(angle));
@@ -164,7 +165,7 @@ const Number* number_of(const Finding& f, std::string_view name) {
   return it == f.evidence.end() ? nullptr : &*it;
 }
 
-/// Of a certificate, which may be in two languages: by the symbols of the table above it.
+/// Label of a cause. A certificate may have two languages, so it uses the symbols of its table.
 std::string label_of(const Source& source, const Finding& f, std::string_view cause) {
   if (!source.certificate)
     return source.words.get("cause." + std::string(cause), {{"axis", text_of(f, "axis")}});
@@ -181,7 +182,7 @@ std::optional<BarChart> causes(const Source& source, const Results::Analysed& a)
     if (!f.id.starts_with(prefix) || alone == nullptr) continue;
     const double um = alone->value * per_um;
     std::string text = localised(fixed_text(um, um < 10.0 ? 1 : 0), source.language());
-    // The sum of all causes is without spikes, as the sentence below states.
+    // The total excludes spikes, as stated in the sentence below the chart.
     if (share != nullptr && f.id != "circle.spikes")
       text += "  (" + fixed_text(100.0 * share->value, 0) + " %)";
     rows.emplace_back(um, BarChart::Row{label_of(source, f, f.id.substr(prefix.size())),

@@ -13,7 +13,8 @@ bool has(const Results::Analysed& a, std::string_view id) {
                      [&](const Finding& f) { return f.id == id; });
 }
 
-/// Another plan than the standard's; of a long axis the whole travel alone is not all of it.
+/// Whether the test departs from the plan of the standard. The second test of a long axis is
+/// checked by `has_short_test`.
 bool departs(const Results::Analysed& a) {
   const auto& findings = a.evaluation.findings;
   return std::any_of(findings.begin(), findings.end(), [](const Finding& f) {
@@ -28,7 +29,8 @@ const Measurement* measurement_of(const OutputInput& in, const Results::Analysed
   return nullptr;
 }
 
-/// The part of the travel that is measured more often, in a measurement of its own.
+/// Whether a separate measurement is the second test of a long axis: a part of its travel with more
+/// runs.
 bool has_short_test(const OutputInput& in, const Results::Analysed& whole) {
   const Measurement* m = measurement_of(in, whole);
   if (m == nullptr) return false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The ball centres of a rotary axis: their circle with exaggerated residuals, and the residuals
-// over the angle.
+// Figures of ball centers of a rotary axis: their circle with exaggerated residuals, and the
+// residuals over the angle.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,7 +23,7 @@ struct Centres {
   double radius = 0.0;
 };
 
-/// Of the first analysis that has them; none if there is none.
+/// The centers from the first analysis that contains them; empty if none does.
 Centres centres_of(const Measured& m) {
   for (const auto* a : m.analyses) {
     const PointTable& p = a->evaluation.points;
@@ -38,7 +38,7 @@ Centres centres_of(const Measured& m) {
   return {};
 }
 
-/// So that the largest residual is about a quarter of the radius.
+/// Factor (at least 1) that makes the largest residual about a quarter of the radius.
 double exaggeration(const Centres& c) {
   double largest = 0.0;
   for (const double r : c.radial) largest = std::max(largest, std::fabs(r));
@@ -113,7 +113,7 @@ Plot residuals(const Source& source, const Measured& m, const Centres& c, double
   return plot;
 }
 
-/// Of a chain: residuals of all centres over the angle of one axis, a curve for each coordinate.
+/// Residuals of a chain over the angle of one axis, one curve per coordinate.
 Plot chain_residuals(const Source& source, const PointTable& p, const std::string& axis,
                      double height) {
   const Style& style = source.look.style;

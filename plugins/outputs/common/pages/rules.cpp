@@ -21,7 +21,7 @@ struct Named {
   const Value* value;
 };
 
-/// One rule, or several that give the same values.
+/// One rule, or several rules with equal values.
 struct RuleColumn {
   std::vector<std::string> titles;
   std::vector<Named> values;
@@ -40,7 +40,7 @@ struct RuleColumn {
   }
 };
 
-/// Columns with the same symbols, or with some of them.
+/// Columns with equal symbols, or with a subset of the table's symbols.
 struct RuleTable {
   std::vector<std::string> symbols;
   std::vector<RuleColumn> columns;
@@ -58,7 +58,7 @@ std::vector<std::string> symbols_of(const RuleColumn& c) {
   return out;
 }
 
-/// In the order in which they were requested.
+/// One column per rule, in the order of the option `rules`.
 std::vector<RuleColumn> columns_of(const Source& source, const Results::Analysed& a) {
   std::vector<RuleColumn> out;
   for (const auto& [name, title] : rules_of(a)->texts) {
@@ -95,7 +95,7 @@ std::vector<RuleTable> tables_of(std::vector<RuleColumn> columns) {
   return out;
 }
 
-/// A title is not broken at its spaces.
+/// The titles, separated by commas, with no-break spaces within each title.
 std::string titles_in_line(const std::vector<std::string>& titles) {
   std::string out;
   for (const std::string& title : titles) {
@@ -109,7 +109,7 @@ std::string titles_in_line(const std::vector<std::string>& titles) {
   return out;
 }
 
-/// Of the columns from `first` to `last`.
+/// The table of the columns [first, last).
 Table table_of(const Source& source, const RuleTable& t, std::size_t first, std::size_t last) {
   const Wording& w = source.words;
   Table table;
@@ -139,7 +139,7 @@ Table table_of(const Source& source, const RuleTable& t, std::size_t first, std:
   return table;
 }
 
-/// Limits of the manifest on values of a rule; a certificate has them in a part of its own.
+/// Decisions on values of a rule. A certificate has them in a separate part.
 void add_decisions(const Source& source, const Results::Analysed& a, Blocks& blocks) {
   const Wording& w = source.words;
   Table table;
@@ -162,7 +162,7 @@ void add_decisions(const Source& source, const Results::Analysed& a, Blocks& blo
   if (!table.rows.empty()) blocks.push_back({std::move(table), "decisions on rules"});
 }
 
-/// How sure a formula is.
+/// Whether the note states how reliable a formula is.
 bool is_sureness(const Remark& note) {
   return note.id == "rules.known" || note.id.ends_with("inferred");
 }
@@ -199,10 +199,10 @@ void add_rule_notes(const Source& source, const Results::Analysed& a, Blocks& bl
   const std::string field = "results of " + a.plugin + ", measurement " + a.measurement;
   if (!source.certificate) add_decisions(source, a, blocks);
   std::vector<std::string> paragraphs;
-  bool differ = false;  // the reasons why they differ are printed together
+  bool differ = false;  // reasons for differences share one paragraph
   for (const Remark& note : a.evaluation.notes) {
     if (note.id == "rules.evaluated" || (source.certificate && is_sureness(note)))
-      continue;  // the table states it, or the method
+      continue;  // stated by the table or the method
     const std::string text = rule_note(source, note);
     const bool reason = note.id.starts_with("rules.differ");
     if (reason && std::exchange(differ, true))

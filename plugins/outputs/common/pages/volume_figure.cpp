@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The volume as a box of wire, as it should be and as the machine draws it, its errors exaggerated:
-// from the curves of step diagonals, or from a map of the error at the nodes of a lattice.
+// Wire frame of the volume, nominal and with exaggerated errors, from the curves of step diagonals
+// or from an error map on a grid.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -41,19 +41,19 @@ class Volume {
     if (!known()) take_map(e);
   }
 
-  /// Of three axes with their squarenesses, or a map.
+  /// Whether there is a map, or curves of all axes and the three squareness errors.
   bool known() const {
     if (mapped()) return true;
     return C0Y_ && B0Z_ && A0Z_ && std::all_of(axes_.begin(), axes_.end(), [](const auto& a) {
              return !a.position.empty();
            });
   }
-  /// Errors are those of a map, less that in the middle of the volume.
+  /// Whether the errors are from a map, relative to the center of the volume.
   bool mapped() const { return !map_[0].empty(); }
   const std::string& name(std::size_t axis) const { return axes_[axis].name; }
   std::size_t last(std::size_t axis) const { return axes_[axis].position.size() - 1; }
   double position(std::size_t axis, std::size_t i) const { return axes_[axis].position[i]; }
-  /// Positionings whose scale is not known, which are not drawn.
+  /// Names of positioning errors without a known scale, which are not drawn.
   std::string left_out() const {
     std::string out;
     for (std::size_t k = 0; k < 3 && !mapped(); ++k)
@@ -65,8 +65,8 @@ class Volume {
   Vector nominal(const Place& p) const {
     return {position(0, p[0]), position(1, p[1]), position(2, p[2])};
   }
-  /// Of the tool, less that at the corner (ISO 230-1: C0Y turns +Y towards -X, B0Z +Z towards +X,
-  /// A0Z +Z towards -Y).
+  /// Error of the tool at a node relative to the corner (ISO 230-1: C0Y turns +Y towards -X, B0Z +Z
+  /// towards +X, A0Z +Z towards -Y), m.
   Vector error(const Place& p) const {
     Vector e{};
     if (mapped()) {
@@ -93,7 +93,7 @@ class Volume {
   static std::size_t coordinate(const std::string& name, std::size_t letter) {
     return name.size() > letter ? std::string_view("XYZ").find(name[letter]) : 3;
   }
-  /// Rows X Y Z e_x e_y e_z, X slowest, Z fastest, of every node of a lattice.
+  /// Reads rows X Y Z e_x e_y e_z of all grid nodes; X varies slowest, Z fastest.
   void take_map(const Evaluation& e) {
     static constexpr std::array<const char*, 3> places{"X", "Y", "Z"}, errors{"e_x", "e_y", "e_z"};
     std::array<std::vector<double>, 3> nodes;
@@ -121,7 +121,7 @@ class Volume {
   std::optional<double> C0Y_, B0Z_, A0Z_;
 };
 
-/// From the front, the right and above: X to the right, Y away, Z up.
+/// Projection from the front right and above: X to the right, Y into the page, Z up.
 std::pair<double, double> seen(const Vector& p) {
   constexpr double turn = 32.0 * std::numbers::pi / 180, above = 22.0 * std::numbers::pi / 180;
   return {
@@ -129,7 +129,7 @@ std::pair<double, double> seen(const Vector& p) {
       (p[1] * std::cos(turn) - p[0] * std::sin(turn)) * std::sin(above) + p[2] * std::cos(above)};
 }
 
-/// The largest error at the nodes of a lattice over the volume, and where.
+/// The largest error at the nodes of a grid in the volume, and its node.
 struct Largest {
   double size = 0.0;
   Place at{};
@@ -152,8 +152,8 @@ Largest largest(const Volume& v) {
 
 enum class Wires { seen, hidden, faces };
 
-/// Edges that are seen, edges that the box hides, or the middle lines of the faces that are seen.
-/// From where we look those are the faces of the largest X, the smallest Y and the largest Z.
+/// Selects visible edges, hidden edges, or center lines of visible faces, which are those of the
+/// largest X, the smallest Y and the largest Z.
 bool drawn(Wires what, std::size_t axis, const Place& half) {
   constexpr Place face{2, 0, 2};
   std::size_t in_front = 0, middle = 0;
@@ -166,7 +166,7 @@ bool drawn(Wires what, std::size_t axis, const Place& half) {
   return middle == 0 && (in_front > 0) == (what == Wires::seen);
 }
 
-/// Lines along each axis at both ends and in the middle of the other two.
+/// Lines along each axis at both ends and in the middle of the other two axes.
 std::vector<Curve> wires(const Volume& v, double factor, Wires what, Colour colour, double width) {
   std::vector<Curve> out;
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -197,7 +197,7 @@ std::string millimetres(const Source& source, double si) {
                         source.language());
 }
 
-/// Names of the axes at the middle of edges that nothing hides.
+/// Names of the axes at the middle of visible edges.
 std::vector<Plot::Label> edge_labels(const Volume& v) {
   std::vector<Plot::Label> labels;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -209,7 +209,7 @@ std::vector<Plot::Label> edge_labels(const Volume& v) {
   return labels;
 }
 
-/// "X 0 – 800, Y 0 – 600, Z 0 – 600 mm."
+/// Text such as "X 0 – 800, Y 0 – 600, Z 0 – 600 mm."
 std::string extent(const Source& source, const Volume& v) {
   std::string out;
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -233,7 +233,7 @@ Plot volume_plot(const Source& source, const Volume& v) {
   plot.x_title = extent(source, v) + " " +
                  source.words.get(v.mapped() ? "plot.volume_scale_middle" : "plot.volume_scale",
                                   {{"factor", times}});
-  if (!source.certificate)  // it has no U
+  if (!source.certificate)  // the largest error has no U
     plot.x_title +=
         " " +
         source.words.get(

@@ -72,7 +72,7 @@ bool is_other_axis(const Machine& machine, const Measurement& m, std::string_vie
   if (name.empty() || name == own || (name == m.axis && m.side != "slave")) return false;
   for (const Axis& axis : machine.axes)
     if ((name == axis.name && axis.name != m.axis) || name == axis.slave) return true;
-  // If the sides of a gantry are distinguished by a number, X1 is not X2.
+  // With numbered gantry sides, X1 and X2 differ.
   return m.side == "slave" && name.size() == own.size() && name.size() > 1 &&
          name.substr(0, name.size() - 1) == own.substr(0, own.size() - 1) && name.back() >= '0' &&
          name.back() <= '9';

@@ -81,7 +81,7 @@ class Runs {
 
  private:
   std::map<std::tuple<std::uint32_t, std::int8_t, double>, std::uint64_t> lines_;
-  std::vector<std::uint64_t> not_taken_{};  ///< their lines in the file
+  std::vector<std::uint64_t> not_taken_{};  ///< line numbers of missing readings
   Observations obs_;
 };
 

@@ -19,8 +19,8 @@ constexpr std::size_t user_lines = 7;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 struct Block {
-  std::uint64_t line = 0;       ///< of its name
-  std::vector<FileLine> lines;  ///< without blank ones
+  std::uint64_t line = 0;       ///< line number of the block name
+  std::vector<FileLine> lines;  ///< nonblank lines
 };
 using Blocks = std::map<std::string, Block, std::less<>>;
 
@@ -38,7 +38,7 @@ bool same_letters(std::string_view a, std::string_view b) {
                     [&](char x, char y) { return lower(x) == lower(y); });
 }
 
-/// "TARGET DATA" of the line "TARGET DATA::"; empty if it is no such line.
+/// "TARGET DATA" for the line "TARGET DATA::"; empty for any other line.
 std::string_view block_name(std::string_view line) {
   line = trimmed(line);
   if (line.size() < 3 || !line.ends_with("::")) return {};
@@ -49,8 +49,7 @@ std::string_view block_name(std::string_view line) {
   return std::all_of(line.begin(), line.end(), allowed) ? line : std::string_view{};
 }
 
-/// What the file states about itself, before anything behind it is looked at: some types hold raw
-/// bytes.
+/// The file type in HEADER. Only this is read first, because some types contain binary data.
 std::string_view type_of(std::string_view head) {
   Lines lines(head);
   std::string_view line;

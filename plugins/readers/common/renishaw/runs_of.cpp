@@ -14,12 +14,12 @@ using namespace readers;
 
 namespace {
 
-/// The rows of one run, in the order of the file.
+/// The rows of one run in file order.
 struct Pass {
   std::vector<const RunFile::Row*> rows;
   std::int8_t direction = 0;
-  bool taken = false;  ///< at least one value
-  bool zero = true;    ///< every value is 0
+  bool taken = false;  ///< whether at least one value was taken
+  bool zero = true;    ///< whether all values are 0
 };
 
 Expected<std::vector<Pass>> passes_of(const RunFile& file) {
@@ -42,7 +42,7 @@ Expected<std::vector<Pass>> passes_of(const RunFile& file) {
   return passes;
 }
 
-/// Runs go to and fro, or all one way; anything else is not a known test.
+/// Whether runs alternate in direction; false if all have one direction. Error: other sequences.
 Expected<bool> bidirectional(const std::vector<Pass>& passes) {
   bool same = true, alternate = true;
   for (std::size_t i = 1; i < passes.size(); ++i) {
@@ -56,7 +56,7 @@ Expected<bool> bidirectional(const std::vector<Pass>& passes) {
 
 Remark run_note(const char* id, std::size_t run) { return {id, {counted("run", run)}}; }
 
-/// The days of "2014-10-08 10:53:29"; of any other form nothing, since 10/02 may be two days.
+/// The date in "2014-10-08 10:53:29"; nullopt for other formats, because 10/02 is ambiguous.
 std::optional<std::chrono::sys_days> day_of(std::string_view text) {
   int part[3] = {};
   constexpr std::size_t at[] = {0, 5, 8}, digits[] = {4, 2, 2};
@@ -72,7 +72,8 @@ std::optional<std::chrono::sys_days> day_of(std::string_view text) {
   return day.ok() ? std::optional(std::chrono::sys_days(day)) : std::nullopt;
 }
 
-/// Letters and figures alone, without zeros in front: as people type serial numbers.
+/// Letters and digits in upper case without leading zeros, because users type serial numbers
+/// differently.
 std::string bare(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -83,7 +84,7 @@ std::string bare(std::string_view text) {
   return out;
 }
 
-/// What the operator typed into the file, each against what the manifest states.
+/// Compares texts that the operator typed into the file with the manifest.
 struct Typed {
   const ReadInput& input;
   std::vector<Finding>& doubts;
@@ -96,7 +97,7 @@ struct Typed {
                                 {"expected", std::move(expected)}}});
   }
 
-  /// The second line; some type the instrument's there, or more than the number.
+  /// Second line: serial number. Operators may enter that of the instrument, or additional text.
   void serial(std::uint64_t line, std::string_view text) const {
     const Machine& machine = input.campaign.machine;
     const std::string found = bare(text);
@@ -109,7 +110,7 @@ struct Typed {
     add("plausibility.other-serial", line, text, machine.serial);
   }
 
-  /// The third line. A campaign of some weeks has one date.
+  /// Third line: date. A month of tolerance is allowed, because a campaign may take weeks.
   void day(std::uint64_t line, std::string_view text) const {
     constexpr std::chrono::days spare{31};
     const Campaign& c = input.campaign;
@@ -145,7 +146,7 @@ Expected<void> add_runs(const RunFile& file, const Units& units, Runs& runs) {
       if (auto ok = runs.add(reading); !ok) return ok;
     }
   }
-  // 0: to and fro, 1: one way. Seen in one real file and one imitator's, so it is only a warning.
+  // 0: alternating, 1: one direction. Only a warning, because few files with this flag are known.
   if (file.flags.size() > 1 && passes->size() > 1 && (file.flags[1] == 0) != both)
     notes.push_back({"renishaw.flag-disagrees"});
   return {};
@@ -177,7 +178,7 @@ Expected<void> add_user_text(const RunFile& file, const ReadInput& input, Observ
       return fail(at_line(file.user[i].number,
                           "the file states axis " + value + ", the manifest " + own +
                               "; if the file is wrong: ignore_axis = true among the options"));
-    // An axis that the manifest does not name is another one by its letter.
+    // An axis that is not in the manifest is recognized by its letter.
     if (is_other_letter(own, value))
       typed.add("plausibility.name-of-another", file.user[i].number, value, own);
   }

@@ -11,8 +11,8 @@
 #include "nonio/reports/font.h"
 #include "nonio/sdk/error.h"
 
-/// A document as a value: blocks from top to bottom, and how they look. Texts are UTF-8 in NFC;
-/// `field` states where a text came from, for the message when it cannot be printed. Lengths in pt.
+/// A document as data: blocks from top to bottom, and their style. Texts are UTF-8 in NFC. `field`
+/// states the source of a text, for messages about unprintable text. Lengths in pt.
 namespace nonio::reports {
 
 struct Colour {
@@ -29,13 +29,13 @@ enum class Marker : std::uint8_t {
   ring,
   around,
   square
-};  // around: leaves its middle
+};  // `around` has an empty center
 
 struct Style {
   double page_width = 595.28, page_height = 841.89;  // ISO 216 A4
   double left = 51, right = 51, top = 43, bottom = 43;
   double title = 18, heading = 12, subheading = 9.5, body = 8.5, small = 7.5;
-  double plot_height = 150, rule_width = 0.25;  ///< of plots
+  double plot_height = 150, rule_width = 0.25;  ///< default height of a plot; width of its rules
   double see_through = 0.25;
   Colour text, muted, rule, shade, accent, attention, failed, good, plus, minus;
 };
@@ -44,17 +44,17 @@ enum class Level : std::uint8_t { good, attention, failed, info };
 
 struct Heading {
   std::string text;
-  int level = 1;  ///< 0: the document's title, 1: with a rule, 2: of a table or a list
+  int level = 1;  ///< 0: title of the document, 1: with a rule, 2: of a table or list
 };
 
 struct Paragraph {
   enum class Look : std::uint8_t { body, bold, small, muted };
   std::string text;
   Look look = Look::body;
-  bool with_next = false;  ///< not the last thing on a page
+  bool with_next = false;  ///< kept on one page with the next block
 };
 
-/// Labels with their values; a value that is empty has no row.
+/// Labels with values; rows with an empty value are omitted.
 struct Grid {
   struct Row {
     std::string label, value, field;
@@ -66,142 +66,141 @@ struct Grid {
 struct Table {
   struct Column {
     std::string title, unit;
-    bool number = false;  ///< to the right
+    bool number = false;  ///< right-aligned
   };
   struct Cell {
     std::string text;
     bool bold = false;
-    Level level = Level::info;  ///< attention and failed are marked
+    Level level = Level::info;  ///< marked if attention or failed
   };
   std::string title;
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows;
 };
 
-/// Lines, bands and markers over one horizontal axis, in the units that are printed.
+/// Lines, bands and markers over a horizontal axis, in printed units.
 struct Plot {
   struct Curve {
     enum class Kind : std::uint8_t { line, band, bars, points };
-    Kind kind = Kind::line;  ///< points: of many in one place one is drawn, extremes always
+    Kind kind = Kind::line;  ///< points: overlapping ones are omitted, except extremes
     std::vector<double> x, y;
-    std::vector<double> y2{};  ///< of a band, its other side; bars go from y to y2
+    std::vector<double> y2{};  ///< other side of a band; bars extend from y to y2
     Colour colour{};
     double width = 0.8;
     Dash dash = Dash::solid;
     Marker marker = Marker::none;
     double marker_size = 2.2;
-    std::string legend{};  ///< empty: not in the legend
-    /// Of points, where a page is drawn: what is stated about each when it is pointed at, and where
-    /// it leads; one title alone is of the whole curve.
+    std::string legend{};  ///< text in the legend; empty: no entry
+    /// On a page in a browser: tooltip and link of each point; a single title applies to the whole
+    /// curve.
     std::vector<std::string> titles{}, links{};
   };
-  /// A band across the whole width, behind everything.
+  /// A band over the full width, behind everything else.
   struct Belt {
     double from, to;
     Colour colour{};
   };
-  /// A span of the vertical axis, drawn as a dimension line at the right.
+  /// A range of the vertical axis, drawn as a dimension line on the right.
   struct Span {
     double from, to;
     std::string text;
   };
-  /// A limit across the whole width.
+  /// A limit line over the full width.
   struct Limit {
     double at;
     Colour colour{};
   };
-  /// Something that happened at a place of the horizontal axis, with a short text at its top.
+  /// An event at a position of the horizontal axis, with a short text at the top.
   struct Event {
     double at;
     std::string text, title;
   };
-  /// A word in the picture, next to its place as seen from the middle.
+  /// A label at a position, offset away from the center.
   struct Label {
     double x, y;
     std::string text;
   };
   std::string title, x_title, y_title;
-  std::string language{};  ///< of the numbers
+  std::string language{};  ///< for number formats
   std::vector<Curve> curves;
-  std::vector<Label> labels{};  ///< of a picture without scales
+  std::vector<Label> labels{};  ///< for a figure without scales
   std::vector<Span> spans{};
   std::vector<Belt> belts{};
   std::vector<Limit> limits{};
   std::vector<Event> events{};
-  std::optional<std::pair<double, double>> range{};    ///< of the vertical axis; else what is drawn
-  std::optional<std::pair<double, double>> x_range{};  ///< the same of the horizontal axis
-  /// Of the horizontal axis, where it has no numbers: days, names.
+  std::optional<std::pair<double, double>> range{};    ///< of the vertical axis; nullopt: from data
+  std::optional<std::pair<double, double>> x_range{};  ///< as `range`, for the other axis
+  /// Ticks of a horizontal axis with texts (days, names).
   std::vector<std::pair<double, std::string>> ticks{};
-  bool degrees = false;  ///< the horizontal axis is an angle: ticks at parts of a turn
-  bool whole = false;    ///< the horizontal axis counts: ticks at whole numbers
-  /// The horizontal axis has a lane of width 1 for each name, from 0 on.
+  bool degrees = false;  ///< horizontal angle axis with ticks at fractions of a turn
+  bool whole = false;    ///< horizontal axis with whole-number ticks
+  /// Names of lanes of width 1 on the horizontal axis, from 0.
   std::vector<std::string> lanes{};
   bool zero_line = true;
-  bool same_scale = false;   ///< a length is as long across as up: a picture of something
-  bool scales = true;        ///< false: nothing but the picture, and x_title as its caption
-  bool only_legend = false;  ///< of plots that follow: neither title nor picture
-  double height = 0;         ///< with title and legend; 0: the style's
-  double top = 0;            ///< least height of title and legend: plots side by side are in line
-  double number_room = 0;    ///< least width of the numbers at the left: plots one below the other
-  std::string empty_text{};  ///< what is stated where there is nothing to draw
+  bool same_scale = false;   ///< equal scales of both axes
+  bool scales = true;        ///< false: only the figure, with x_title as caption
+  bool only_legend = false;  ///< common legend of the following plots, without title and figure
+  double height = 0;         ///< including title and legend; 0: default of the style
+  double top = 0;            ///< minimum height of title and legend, to align plots
+  double number_room = 0;    ///< minimum width of the numbers on the left, to align plots
+  std::string empty_text{};  ///< text shown if there is nothing to draw
 };
 
-/// Horizontal bars over one scale that begins at 0, in rows of one bar or more, and a line with
-/// which they are compared.
+/// Horizontal bars on a scale from 0, one or more per row, and a reference line.
 struct BarChart {
   struct Series {
-    std::string legend;  ///< empty: of one series the title of the axis states it
+    std::string legend;  ///< may be empty if there is one series
     Colour colour{};
   };
   struct Bar {
-    double value = 0.0;  ///< in the unit that is printed; not finite: there is none
-    std::string text;    ///< next to it
+    double value = 0.0;  ///< in printed units; not finite: no bar
+    std::string text;    ///< text next to the bar
   };
   struct Row {
     std::string label;
-    std::vector<Bar> bars;  ///< one for each series
+    std::vector<Bar> bars;  ///< one per series
   };
   struct Line {
-    double at = 0.0, half = 0.0;  ///< half: of the band about it
+    double at = 0.0, half = 0.0;  ///< position; half the width of the band about it
     std::string legend;
   };
   std::string title, x_title;
-  std::string language{};  ///< of the numbers
+  std::string language{};  ///< for number formats
   std::vector<Series> series;
   std::vector<Row> rows;
   std::optional<Line> line{};
 };
 
-/// Something that the reader must know: a mark, a title, what it states, what to do.
+/// Important information: severity, title, statement, advice.
 struct Note {
   Level level = Level::info;
   std::string title, says, advice;
 };
 
-/// The line that is read first.
+/// The status of the document, shown first.
 struct Status {
   Level level = Level::good;
   std::string text;
   std::vector<std::string> lines{};
 };
 
-/// A logo or a mark: a PNG or JPEG file (picture.h).
+/// A logo or mark from a PNG or JPEG file (picture.h).
 struct Image {
   std::string bytes;
-  std::string name;    ///< of the file, for messages
-  double height = 40;  ///< less where it would be wider than its place
-  double align = 0;    ///< 0 left, 0.5 centre, 1 right
+  std::string name;    ///< file name for messages
+  double height = 40;  ///< reduced if the image would be too wide
+  double align = 0;    ///< 0 left, 0.5 center, 1 right
 };
 
-/// A QR code (ISO/IEC 18004) of a short text, with a line below it.
+/// A QR code (ISO/IEC 18004) of a short text, with a caption.
 struct Code {
   std::string text;     ///< up to 500 bytes
   std::string caption;  ///< may be empty
-  double size = 62;     ///< of its side, with the quiet zone
+  double size = 62;     ///< side length including the quiet zone
 };
 
-/// A frame in which the file's electronic signature is shown; there is one at most. Its position is
-/// noted in the page (`pdf::signature_key`), for the program that signs.
+/// The frame of the electronic signature, at most one. The page contains its position
+/// (`pdf::signature_key`) for the signing program.
 struct SignatureBox {
   std::string title;
   std::vector<std::string> lines;
@@ -210,15 +209,15 @@ struct Spacer {
   double height = 6;
 };
 
-/// What follows begins on a new page.
+/// The next block begins on a new page.
 struct PageBreak {};
 
 struct Block;
 
-/// Parts side by side; too high for a page they come one below the other.
+/// Parts side by side; if too high for a page, below each other.
 struct Columns {
   std::vector<std::vector<Block>> parts;
-  std::vector<double> shares{};  ///< of the width; empty: equal
+  std::vector<double> shares{};  ///< fractions of the width; empty: equal
 };
 
 struct Block {
@@ -230,25 +229,24 @@ struct Block {
 
 struct Document {
   std::string title, author, subject, language;
-  std::string date;  ///< YYYY-MM-DD, for the file's properties; may be empty
-  std::string head;  ///< at the top of the second page and those that follow
-  std::string foot;  ///< at the bottom of every page
+  std::string date;  ///< YYYY-MM-DD, for the file properties; may be empty
+  std::string head;  ///< header from the second page on
+  std::string foot;  ///< footer of every page
   std::string page_of = "{page}/{pages}";
-  std::string mark{};  ///< across every page, above everything: DRAFT
-  /// An ICC profile of sRGB: the file is to be kept for long, and states its colours, its
-  /// properties also as XMP, and an identifier.
+  std::string mark{};  ///< diagonal text over every page: DRAFT
+  /// An ICC profile of sRGB for archiving; colors, XMP properties and an identifier are then
+  /// stored. Empty: none.
   std::string profile{};
   Style style;
   std::vector<Block> blocks;
-  /// At the foot of the first page, whatever is above it: its space is reserved. It takes up to
-  /// half of a page.
+  /// Blocks at the bottom of the first page, up to half of the page; their space is reserved.
   std::vector<Block> first_foot{};
 };
 
-/// The height that blocks can have on one page.
+/// Available height for blocks on one page.
 double page_room(const Style&);
 
-/// The same document and fonts give the same bytes.
+/// The PDF; equal documents and fonts give equal bytes.
 Expected<std::string> pdf_bytes(const Document&, const Fonts&);
 
 }  // namespace nonio::reports

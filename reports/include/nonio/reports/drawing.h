@@ -6,24 +6,24 @@
 
 #include "nonio/reports/document.h"
 
-/// Plots for pages of a browser, by the code that draws them in documents.
+/// Plots for web pages, drawn by the code that is used for documents.
 namespace nonio::reports {
 
-/// A colour that is a property of the page's style, which a dark screen changes: {colour, "accent"}
-/// is written as var(--accent).
+/// A color that is a property of the page style, so that a dark mode can change it: {colour,
+/// "accent"} is written as var(--accent).
 struct NamedColour {
   Colour colour;
   const char* name;
 };
 
-/// Elements of an SVG whose origin is its upper left corner. Texts are escaped.
+/// SVG elements with the origin in the upper left corner; texts are escaped.
 struct Drawing {
   double height = 0.0;
   std::string elements;
   bool has_links = false;
 };
 
-/// `width` and the lengths of the style in px. Colours without a name are written as they are.
+/// `width` and lengths of the style are in px. Colors without a name are written as values.
 Drawing drawing_of(const Plot&, double width, const Style&, const Fonts&,
                    std::span<const NamedColour>);
 

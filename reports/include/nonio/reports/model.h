@@ -7,35 +7,36 @@
 #include "nonio/reports/wording.h"
 #include "nonio/sdk/results.h"
 
-/// What every document states about a model in words and numbers; its pictures are in residuals.h.
+/// Texts and numbers about a model that all documents share; residuals.h has the figures.
 namespace nonio::reports {
 
-/// The host's analysis whose values are printed with the model, not with the measurement.
+/// Analysis of the host whose values are printed with the model.
 inline constexpr std::string_view model_analysis = "model-fit";
 
 struct ParameterRow {
-  std::string effect;   ///< empty below the first one of its effect
-  std::string name;     ///< "b"
-  std::string meaning;  ///< of effects that have words; a formula's has none
+  std::string effect;   ///< effect name; empty if equal to the row above
+  std::string name;     ///< symbol, such as "b"
+  std::string meaning;  ///< empty for effects without texts (formulas)
   std::string value, U, unit;
 };
 std::vector<ParameterRow> parameter_rows(const ModelFit&, const Templates&,
                                          const std::string& language);
 
-/// "backlash:X b and periodic:X a (-0.95); ...": what the readings hardly separate; or nothing.
+/// Text about barely separable parameters such as "backlash:X b and periodic:X a (-0.95); ...";
+/// empty: none.
 std::string correlated_parameters(const ModelFit&, const Wording&);
 
-/// An effect that is not in the model, in words and printed numbers.
+/// Texts and numbers of an effect that is not in the model.
 struct CandidateRow {
   std::string effect, evidence, rms, cv_rms, smallest;
   bool certain = false;
 };
 std::vector<CandidateRow> candidate_rows(const ModelFit&, const std::string& language);
 
-/// Those without evidence in one sentence, with the size from which each would be seen; or nothing.
+/// A sentence on effects without evidence, with their detection limits; empty: none.
 std::string no_sign(const ModelFit&, const Templates&, const std::string& language);
 
-/// Readings, redundancy, largest residual, in sentences.
+/// Sentences about readings, redundancy and largest residual.
 std::string fit_in_words(const ModelFit&, const Results&, const Wording&);
 
 }  // namespace nonio::reports

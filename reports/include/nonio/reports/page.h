@@ -12,22 +12,22 @@
 
 #include "nonio/reports/wording.h"
 
-/// Pages for a browser from files of templates/pages.
+/// Web pages from templates/pages.
 namespace nonio::reports {
 
-/// Markup that is put into a page as it is. All other text is escaped.
+/// Markup that is inserted unchanged; all other text is escaped.
 struct Html {
   std::string text;
 };
 Html html_of(std::string_view text);
 
-/// What a page shows: values by name, and lists of views. Names are literals.
+/// Content of a page: values by name, and lists of views. Names must be string literals.
 class View {
  public:
   View& set(const char* name, std::string text);
   View& set(const char* name, Html);
   View& flag(const char* name, bool on) { return on ? set(name, std::string("yes")) : *this; }
-  /// One more view of a list.
+  /// Appends a view to a list.
   View& add(const char* name);
 
  private:
@@ -38,7 +38,7 @@ class View {
 };
 
 using PageFiles = std::map<std::string, std::string_view, std::less<>>;
-/// The files of templates/pages, which are part of the program: "site/index".
+/// Files of templates/pages in the program, by names such as "site/index".
 const PageFiles& page_files();
 
 /// The page `name` with its values:

@@ -9,43 +9,43 @@
 
 namespace nonio::reports {
 
-/// Name of a quantity that is followed over the campaigns: "Scale", "Straightness Z, bow"; its
-/// symbol where it has no words. `site`: the words of site.toml.
+/// Name of a followed quantity, such as "Scale" or "Straightness Z, bow"; its symbol if it has no
+/// text. `site`: texts of site.toml.
 std::string followed_quantity(const Wording& site, const std::string& quantity);
 
-/// Whether a quantity that is followed is the logarithm of a scatter ("ln_s",
-/// "straightness:Z.ln_s"; s in um or arcsec). People read the scatter, and its changes as factors.
+/// Whether the quantity is the logarithm of a scatter ("ln_s", "straightness:Z.ln_s"; s in um or
+/// arcsec). Users see the scatter, and its changes as factors.
 bool is_log_of_scatter(const std::string& quantity);
 
-/// "0.48 (0.35 to 0.66)" um or arcsec, both ends with k = 2; `u` is that of the logarithm.
+/// Text such as "0.48 (0.35 to 0.66)", in um or arcsec, for k = 2; `u` is that of the logarithm.
 std::string scatter_text(const Wording& site, double log_of_scatter, double u);
-/// "1.37", e to the power of a difference of logarithms.
+/// Text such as "1.37": exp(difference of logarithms).
 std::string factor_text(const Wording& site, double difference);
-/// "a factor of 1.37 (1.22 to 1.53)", both ends with k = 2.
+/// Text such as "a factor of 1.37 (1.22 to 1.53)", for k = 2.
 std::string factor_text(const Wording& site, double difference, double u);
 
-/// The numbers of one quantity that is followed, as they are printed, U with k = 2. What they are
-/// given is SI or, of a scatter, its logarithm.
+/// Formats the values of one followed quantity, U with k = 2. Arguments are SI, or logarithms of a
+/// scatter.
 class FollowedNumbers {
  public:
-  /// `of_angles`: whether the deviations along the axis are angles.
+  /// `of_angles`: deviations along the axis are angles.
   FollowedNumbers(const std::string& quantity, Quantity unit, bool of_angles, const Wording& site);
-  /// `of_machine`: all series of the machine.
+  /// `of_machine`: all series of this machine.
   FollowedNumbers(const HistorySeries& series, const std::vector<HistorySeries>& of_machine,
                   const Wording& site);
 
-  /// What the printed unit is of: of a scatter the deviations along its axis.
+  /// Quantity of the printed unit; for a scatter, deviations along its axis.
   Quantity quantity() const { return quantity_; }
   bool is_scatter() const { return is_scatter_; }
-  /// In the unit of `quantity()`.
+  /// The value in the printed unit.
   double in_unit(double value) const;
-  /// "-4.35 ± 0.27", "0.48 (0.35 to 0.66)": without the unit. Without U where `u` is 0.
+  /// "-4.35 ± 0.27" or "0.48 (0.35 to 0.66)", without unit; without U if `u` is 0.
   std::string number(double value, double u) const;
-  /// With the unit.
+  /// Like `number`, with the unit.
   std::string value(double value, double u) const;
-  /// Of a scatter a factor with its interval, otherwise with U and unit.
+  /// A factor with interval for a scatter; otherwise the value with U and unit.
   std::string difference(double size, double u) const;
-  /// The same without U, to three digits: a detection limit.
+  /// Like `difference` without U, three digits, for detection limits.
   std::string size(double size) const;
 
  private:
@@ -54,7 +54,7 @@ class FollowedNumbers {
   const Wording& site_;
 };
 
-/// "crash: tool hit the vice", as a change of a series has it, with the kind in words.
+/// Text such as "crash: tool hit the vice", with the kind of event in the language of `site`.
 std::string event_text(const Wording& site, const std::string& event);
 
 }  // namespace nonio::reports

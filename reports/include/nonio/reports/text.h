@@ -8,11 +8,11 @@
 
 namespace nonio::reports {
 
-/// Whether both fonts can print the text; else the error that names the character and the field.
+/// Error with character and `field` if the fonts cannot print the text.
 Expected<void> check_text(std::string_view text, const Fonts&, std::string_view field);
 
-/// The text with every character that cannot be printed written as <U+6821>, and what is not UTF-8
-/// as <0xFF>: for messages that quote from broken files.
+/// The text with unprintable characters as <U+6821> and invalid bytes as <0xFF>, for messages that
+/// quote damaged files.
 std::string visible_text(std::string_view text, const Fonts&);
 
 }  // namespace nonio::reports

@@ -12,9 +12,8 @@
 
 namespace nonio::reports {
 
-/// The words of templates/words/<language>/<file>.toml, of the first of some files that has them. A
-/// word that is missing, or that has a place without a value, is recorded, and the document then
-/// fails.
+/// Texts of templates/words/<language>/<file>.toml, from the first file that has the key. A missing
+/// text, or a placeholder without a value, is recorded and makes `complete` fail.
 class Wording {
  public:
   using Places = std::initializer_list<std::pair<std::string_view, std::string_view>>;
@@ -23,9 +22,9 @@ class Wording {
 
   const std::string& language() const { return language_; }
   std::string get(std::string_view key) const;
-  /// With `{name}` replaced.
+  /// The text with `{name}` replaced.
   std::string get(std::string_view key, Places places) const;
-  /// `otherwise` where there is no word: for names that other plugins make.
+  /// The text, or `otherwise` if it is missing, for names made by other plugins.
   std::string get_or(std::string_view key, std::string otherwise) const;
 
   Expected<void> complete() const;
@@ -33,16 +32,16 @@ class Wording {
  private:
   const std::string* find(std::string_view key) const;
   std::vector<const Settings*> settings_;
-  std::string language_, file_;  ///< of the last file, where a missing word is searched
-  std::string absent_;           ///< a file that is missing
+  std::string language_, file_;  ///< of the last file, named in messages
+  std::string absent_;           ///< name of the first missing file
   mutable std::string complaint_;
 };
 
-/// Units and signs of a plugin's sentence as they are printed: "-8.1 um" becomes "−8.1 µm"; text
-/// between backquotes (commands, keys) gets quotation marks.
+/// Typographic units and signs: "-8.1 um" becomes "−8.1 µm"; text in backquotes (commands, keys)
+/// gets quotation marks.
 std::string typeset(std::string_view sentence);
 
-/// The same as HTML: text between backquotes is code.
+/// Like `typeset`, as HTML; text in backquotes is code.
 std::string typeset_html(std::string_view sentence);
 
 }  // namespace nonio::reports

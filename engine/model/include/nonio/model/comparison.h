@@ -69,7 +69,8 @@ struct Place {
   /// number of places tested
   double p = 1.0;
   double rms = 0.0;  ///< rms of this structure, m or rad
-  /// The position, if it occurs mainly at one: a target (m or rad), a run, an instant (s).
+  /// Main position of the structure: a target (m or rad), the number of a run, or an instant (s);
+  /// none without a main position.
   std::optional<double> at{};
   Quantity at_quantity = Quantity::number;
   /// in space: name of the line along which the position is counted; for the factor `channel`: name
@@ -84,7 +85,7 @@ struct Place {
 struct Suspect {
   std::size_t row = 0;  ///< row in the part's table
   double residual = 0.0;
-  double t = 0.0;  ///< residual divided by its standard deviation (studentised)
+  double t = 0.0;  ///< studentized residual
   /// smallest error of this reading that would be detected, m or rad
   double minimal_detectable = 0.0;
 };
@@ -106,18 +107,17 @@ struct Comparison {
   /// If the model fails: the smallest set of at most three places that contains the residuals. The
   /// share of each place is in addition to the shares of those before it, and is at least 2 %.
   std::vector<Place> seats{};
-  std::size_t means = 0;  ///< for long tables: number of means on which places were tested; else 0
+  std::size_t means = 0;  ///< number of means on which places were tested; 0 for short tables
   std::vector<Suspect> suspects{};
   bool fails() const;  ///< whether a significant structure remains in some place
 };
 
-/// A model fails in a place with p below this.
-/// docs/dev/constants.md, M1.
+/// A model does not fit in a place whose p is below this value; docs/dev/constants.md, M1.
 inline constexpr double place_p = 0.01;
 
 /// Properties of the readings that do not depend on a model: which readings repeat each other,
-/// which are suspect, and the correlation of their noise. Reused if many models are compared with
-/// the same readings.
+/// which are suspect, and the correlation of their noise. They are computed once if many models are
+/// compared with the same readings.
 class Groundwork {
  public:
   /// Only the set-up terms of `model` are used.
@@ -135,9 +135,9 @@ class Groundwork {
 /// tested.
 using Fitted = std::function<void(const Comparison&)>;
 
-/// Fits a model and compares it with the readings. Error: there are no readings, or `fit` fails,
-/// for example because the readings do not separate some parameters. `known`: the groundwork of
-/// this part, if it already exists. `fitted`: called for a long table only.
+/// Fits a model and compares it with the readings. An error if there are no readings, or if `fit`
+/// fails, for example because the readings do not separate some parameters. `known`: the groundwork
+/// of this part, if it already exists. `fitted`: called for a long table only.
 Expected<Comparison> compare(const Part& part, const std::vector<Term>& model,
                              const Groundwork* known = nullptr, const Fitted& fitted = {});
 

@@ -11,14 +11,15 @@
 #include "nonio/model/comparison.h"
 
 /// Explanation of the measurements by a model: how well it fits, where it does not, and which
-/// effect is missing. docs/model.md describes the statistics. All values are SI, and there are no
-/// texts: templates/words contains the sentences for the user.
+/// effect is missing. docs/model.md describes the statistics. All values are SI; the texts for the
+/// user are in templates/words.
 namespace nonio::model {
 
 /// Number of blocks of time into which a course is divided for cross-validation.
 inline constexpr int course_blocks = 6;
 
-/// Largest plausible gain, that of two metres of aluminium, m/K; docs/dev/constants.md, M40.
+/// Largest plausible displacement per kelvin of a channel, that of two meters of aluminum, m/K;
+/// docs/dev/constants.md, M40.
 inline constexpr double most_per_kelvin = 50e-6;
 
 struct Candidate {
@@ -27,28 +28,28 @@ struct Candidate {
   /// reason if not visible: "not-shown" by these readings, "aliased" with the model or the targets,
   /// or the id that the effect states, such as "no-temperature"
   std::string why;
-  double rms = 0.0;  ///< rms of the residuals with it added to the model, m or rad
+  double rms = 0.0;  ///< rms of the residuals with the effect added to the model, m or rad
   std::optional<double> cv_rms{};
   double p = 1.0;  ///< probability that noise alone gives such a candidate anywhere in this search
-  /// 2 ln of the evidence for it; <= 0: none. Candidates are ranked by it. If there is evidence
-  /// both alone and within the best set, the score is that alone, so that an effect that leaves
-  /// smaller residuals comes first.
+  /// 2 ln of the evidence for the effect, by which candidates are ranked; <= 0: no evidence. If
+  /// there is evidence both alone and within the best set, it is `alone` (for a course the larger
+  /// one), so that an effect that leaves smaller residuals comes first.
   double score = 0.0;
   double alone = 0.0;  ///< 2 ln of the evidence as the only addition to the model
-  /// 2 ln of the evidence: for a member of the best set, that lost without it; for another effect,
-  /// that gained by adding it to the best set or by replacing a member
+  /// 2 ln of the evidence that is lost without this member of the best set, or that another effect
+  /// gains when it is added to the best set or replaces a member
   double within = 0.0;
   std::vector<Parameter> parameters;
-  std::vector<std::string> aliases;  ///< effects that these readings do not separate from it
+  std::vector<std::string> aliases;  ///< effects that these readings do not separate from this one
   /// RMS of the smallest effect that would be detected with probability 0.9, m or rad; NaN for a
   /// course.
   double minimal_detectable = 0.0;
   /// Mean ratio of found to true size for an effect near the limit of detection, which is found
   /// only if noise enlarges it. 1 if there is no such bias.
   double bias = 1.0;
-  std::vector<std::uint32_t> rows{};  ///< if not visible: rows of the part's table that prevent it
-  /// Names of the descriptions of position that were in the model when its evidence was found;
-  /// empty: the evidence was found with the model alone.
+  std::vector<std::uint32_t> rows{};  ///< rows of the part's table that are the reason `why`
+  /// Names of the descriptions of position that were in the model when the evidence for the effect
+  /// was found; empty: the evidence was found with the model alone.
   std::vector<std::string> with_descriptions{};
 };
 
@@ -68,8 +69,8 @@ struct Plan {
   double power = 0.0;        ///< distance of the two explanations in standard deviations
   std::string one, other;    ///< names of the two effects
   std::string of{};          ///< axes of the plan, or what is measured ("EYX"), in space
-  /// Time at the pace of the present readings, with the pause before it, s; absent if these have no
-  /// times.
+  /// Duration at the pace of the present readings, including the pause before the measurement, s;
+  /// none if the present readings have no times, and for other parts than an axis.
   std::optional<double> duration{};
 };
 
@@ -108,14 +109,14 @@ struct Verdict {
 struct Description {
   enum class What { value_at_targets, reversal_at_targets, course };
   Term term;         ///< the description with the shapes found
-  double rms = 0.0;  ///< rms of the residuals with it, m or rad
+  double rms = 0.0;  ///< rms of the residuals with the description in the model, m or rad
   What what = What::course;
   /// Smallest and largest value minus the mean (for reversals: the values themselves), and the
   /// mean, m or rad: over targets, or for a course over readings.
   double low = 0.0, high = 0.0, mean = 0.0;
 };
 
-/// A statement that holds whatever error repeats at each target from each side.
+/// A statement that is true for any error that repeats at each target from each side.
 struct Statement {
   enum class What {
     drift,    ///< drift of the zero over the test, as a straight line
@@ -159,7 +160,7 @@ struct Explanation {
                                       ///< first
   std::vector<std::string> together;  ///< effects that the best explanation adds to the model
   /// for the verdict `missing`: whether the best explanation leaves no significant structure and no
-  /// lack of fit; else, and for a course, false
+  /// lack of fit; false for other verdicts and for a course
   bool explains_all = false;
   double best_rms = 0.0;  ///< rms of the residuals of the best explanation, m or rad
   /// Effects that are significant whatever causes the residuals: those of `together`, and then, if
@@ -175,7 +176,7 @@ struct Explanation {
   double significant_rms = 0.0;
   /// if the verdict is `unknown`: descriptions of the residuals that the significant effects leave
   std::vector<Description> descriptions;
-  /// if the verdict on an axis is `unknown`: statements that are true whatever error repeats at
+  /// if the verdict on an axis is `unknown`: statements that are true for any error that repeats at
   /// each target
   std::vector<Statement> statements;
   /// places of the structure in the residuals of the model; for `unknown` the smallest set of
@@ -203,8 +204,8 @@ Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
                               const Groundwork* known = nullptr);
 
 /// Predicts the effect of one more run of an axis, for each order of directions. Empty for other
-/// parts, and if no prediction is possible: no uncertainty, effects whose columns depend on all
-/// readings, too many readings.
+/// parts, without uncertainties, for more than 20,000 readings, and if more readings change the
+/// columns of an effect for the present ones.
 std::vector<Foresight> foresee(const Part& part, const Explanation& e);
 
 }  // namespace nonio::model

@@ -38,16 +38,16 @@ struct Term {
   /// If set, the linear parameters exist once per group, in the order of the groups; null: they are
   /// the same for all lines.
   std::shared_ptr<const Grouping> grouping{};
-  /// True if the parameters are differences: one for each group except the first, in addition to
+  /// Whether the parameters are differences: one for each group except the first, in addition to
   /// the same effect without groups.
   bool differences = false;
-  /// 2 ln of the prior odds against it: rare causes need more evidence.
+  /// 2 ln of the prior odds against the effect: rare causes need more evidence.
   double price = 0.0;
-  /// Its parameters are given: they are not unknowns, and its prediction is subtracted from the
-  /// readings.
+  /// Whether the parameters are given. They are then not unknowns, and the prediction of the term
+  /// is subtracted from the readings.
   bool held = false;
-  /// It belongs to a large library, so it is a candidate only within the best set, or as a
-  /// replacement of one of its effects.
+  /// Whether the effect belongs to a large library. It is then a candidate only within the best
+  /// set, or as a replacement of an effect of this set.
   bool library = false;
 
   /// Returns the name without groups: "backlash:X".
@@ -95,7 +95,7 @@ struct Noise {
   /// it affects only u
   double zero_size = 0.0;
   double zero_found = 0.0;  ///< most likely value of `zero_size`
-  bool zero_open = false;   ///< the readings do not bound the size of the zero
+  bool zero_open = false;   ///< whether the readings do not bound the size of the zero from above
   double digit = 0.0;       ///< step of the last digit of the readings, m or rad; 0: none was found
   std::optional<Stretch> stretch{};
   std::vector<double> rough{};  ///< standard deviation of each reading relative to s; empty: 1
@@ -128,11 +128,11 @@ struct Fit {
 /// Fits the terms by weighted least squares: deviation = zero of its line + sum of columns *
 /// parameters + e, by QR with pivoting on columns of unit length. Shapes that are not given are
 /// searched on their grids, one after the other (at most four rounds), and continuous ones then
-/// between grid values; their uncertainty is that of the linearised problem. `weight` (0..1 per
-/// reading, or empty) is for suspect readings. Error: too few readings, or names of parameters that
-/// the readings do not separate; there is no minimum-norm solution. If repeats show correlated
-/// noise, all rows are whitened first (generalised least squares); the scatter `rough` is contained
-/// in the weights; a random zero, and a correlation that only the residuals show, affect only u.
+/// between grid values; their uncertainty is that of the linearized problem. `weight` (0..1 per
+/// reading, or empty) is for suspect readings. An error if there are too few readings, or with the
+/// names of parameters that the readings do not separate. If repeats show correlated noise, all
+/// rows are whitened first (generalized least squares); the scatter `rough` is contained in the
+/// weights; a random zero, and a correlation that only the residuals show, affect only u.
 /// `thin`: means of adjacent readings of a long table, if they already exist. Source: GUM-6:2020 9
 /// for the covariance.
 Expected<Fit> fit(const Observations& observations, std::vector<Term> terms,

@@ -38,8 +38,8 @@ struct JointEffect {
   std::vector<std::vector<Parameter>> groups{};
   double evidence = 0.0;  ///< decrease of -2 ln likelihood minus the cost of parameters and names
   double p = 1.0;         ///< p-value of the effect; for named effects corrected for the search
-  /// rms of the residuals with this effect added to the models, for named effects with all of them,
-  /// m or rad
+  /// rms of the residuals with this effect added to the models, for a named effect with all named
+  /// effects added, m or rad
   double rms = 0.0;
   double size = 0.0;  ///< rms of the part of the readings that this effect explains, m or rad
   /// effects that explain the readings equally well in its place
@@ -48,7 +48,7 @@ struct JointEffect {
 
 /// A further measurement of the machine of one campaign that would separate two effects.
 struct JointPlan {
-  std::size_t campaign = 0;  ///< index of the campaign that it extends
+  std::size_t campaign = 0;  ///< index of the campaign whose readings the plan extends
   Plan plan;
 };
 
@@ -62,25 +62,26 @@ struct JointExplanation {
   };
   std::vector<Campaign> campaigns;
   std::vector<JointEffect> candidates;  ///< each as the only addition, the best first
-  std::vector<JointEffect> effects;     ///< named effects, in the order in which they were found
-  /// For each named effect with aliases: the further measurement that separates it from them with
-  /// the fewest readings, over all campaigns, else the one with the largest power. The power is
-  /// that with the readings of the one campaign alone, so it is a lower limit.
+  std::vector<JointEffect> effects;     ///< named, that is, significant effects, in the order in
+                                        ///< which they were found
+  /// For each named effect with aliases: of the plans for at most eight campaigns, the one with
+  /// enough power and the fewest readings, otherwise the one with the largest power. The power is
+  /// computed with the readings of one campaign alone, so it is a lower limit.
   std::vector<JointPlan> plans{};
   /// RMS with the models, with the named effects in addition, and of the noise; all readings, m or
   /// rad
   double rms = 0.0, rms_after = 0.0, noise = 0.0;
   Verdict::Kind verdict = Verdict::Kind::nothing;
-  bool explains_all = true;  ///< for `missing`: the named effects leave only noise
+  bool explains_all = true;  ///< whether the named effects leave only noise
   double p_left = 1.0;       ///< p-value of the residuals after the named effects
   double trials = 1.0;       ///< number of independent tests that the search is equivalent to
 };
 
 /// Explains the readings of all members together by least squares; each reading is weighted by the
 /// noise floor of its campaign or, if this has fewer than 8 degrees of freedom, by the residuals of
-/// its model. Error: there are fewer than two members, or the readings of a member do not scatter
-/// or do not determine its model. Evidence and p-values are determined as in `explain`: the signs
-/// of stretches and of whole passes of the residuals are flipped, 200 times in all. Source:
+/// its model. An error if there are fewer than two members, or if the readings of a member do not
+/// scatter or do not determine its model. Evidence and p-values are determined as in `explain`: the
+/// signs of stretches and of whole passes of the residuals are flipped, 200 times in all. Source:
 /// docs/dev/model-evidence.md, several campaigns.
 Expected<JointExplanation> explain_together(const std::vector<Member>& members, std::uint64_t seed);
 

@@ -38,10 +38,10 @@ struct Part {
   enum class Kind {
     axis,   ///< runs of one axis, sensed along it
     space,  ///< several linear axes: their runs, straightness, diagonals, step diagonals
-    balls,  ///< centres of a ball that turns with a rotary axis: radial and axial, m
+    balls,  ///< centers of a ball that turns with a rotary axis: radial and axial, m
     course  ///< a displacement over time, with recorded channels
   };
-  std::string name;                       ///< "X", "XY", "EYX", "C centres", "warm/x1"
+  std::string name;                       ///< for example "X", "XY", "EYX", "warm/x1"
   std::vector<std::string> measurements;  ///< ids of the measurements
   /// axes of the part: one for `axis` and `balls`, the linear axes for `space`; for `course` one
   /// axis that has only the name of the displacement
@@ -59,8 +59,8 @@ struct Part {
   /// Measurements of an axis for which the cycle of ISO 230-2 is assumed, because the order of the
   /// file is impossible.
   std::vector<std::string> order_assumed{};
-  std::vector<TimeConstant> time_constants{};  ///< time constants of the growth of its axes, from
-                                               ///< thermal tests
+  std::vector<TimeConstant> time_constants{};  ///< time constants of the growth of the part's axes,
+                                               ///< from thermal tests
   /// Groupings of the lines of an axis; empty for a single measurement.
   std::vector<std::shared_ptr<const Grouping>> groupings{};
 
@@ -89,7 +89,7 @@ inline bool has_unstated_position(const Part& part) {
 }
 
 /// Returns the parts of a campaign, in the order of their first measurements: runs of one axis;
-/// measurements in space; ball centres of a rotary axis; displacements over time. If the campaign
+/// measurements in space; ball centers of a rotary axis; displacements over time. If the campaign
 /// has diagonals, each state of the machine has one part in space, which contains the runs of its
 /// axes; otherwise there is one part for each axis and direction of sensing. Other measurements are
 /// omitted, and so are measurements whose readings `check` (sdk/check.h) rejects.
@@ -111,9 +111,9 @@ std::string written_for(const Part& part, const std::string& effect);
 bool is_for(const Part& part, const std::string& effect);
 
 /// Returns the terms of the effects that a model names, then the nuisances, then the model's
-/// descriptions. Error: an unknown kind, axis or grouping, or an effect that does not apply to the
-/// readings. Effects that cannot occur in this part are omitted, and so is an effect that the model
-/// also has with groups, because these include it.
+/// descriptions. An error for an unknown kind, axis or grouping, or for an effect that does not
+/// apply to the readings. Effects that cannot occur in this part are omitted, and so is an effect
+/// that the model also has with groups, because the groups include it.
 Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
                                      const std::vector<std::string>& names,
                                      const std::vector<Effect>& effects);

@@ -31,10 +31,10 @@ struct Prediction {
 Expected<Prediction> predict(const Part& seen, const std::vector<Term>& model, const Part& unseen,
                              bool zero_kept);
 
-/// Predicts readings at positions (an axis, lines in space): the zeros of the lines and the terms
-/// `set_up` of the unseen readings (nuisances) are new unknowns. The uncertainty contains the
-/// parameters, the new unknowns and one reading, from the residuals of the fit. Error: an axis of
-/// the seen part is missing in the unseen one; one part has lengths, the other angles; the seen
+/// Predicts readings of an axis or of lines in space. The zeros of the lines and the nuisances
+/// `set_up` of the unseen readings are new unknowns. The uncertainty contains the parameters, the
+/// new unknowns and one reading, from the residuals of the fit. An error if an axis of the seen
+/// part is missing in the unseen part, if one part has lengths and the other angles, or if the seen
 /// readings do not determine the model.
 Expected<Prediction> predict_places(const Part& seen, const std::vector<Term>& model,
                                     const Part& unseen, const std::vector<Term>& set_up);

@@ -26,7 +26,6 @@ inline std::string deflated(std::string_view bytes, int level) { return Deflater
 /// Returns the SHA-256 digest of the bytes, 32 bytes.
 std::string sha256(std::string_view bytes);
 
-/// Appends an integer to `out` in decimal digits.
 void append_int(std::string& out, long long value);
 
 /// Appends a number to `out` as an operand of a PDF, with at most two decimals, and then the

@@ -22,8 +22,8 @@ class Lexer {
   void skip(std::size_t n) { at_ += n; }
   void skip_space();
   bool take(std::string_view word);
-  /// Reads a number of 1 to `most` digits without superfluous leading zeros; false if there is
-  /// none.
+  /// Reads a number of 1 to `most` digits without superfluous leading zeros; returns false if there
+  /// is no such number.
   bool take_number(std::size_t& number, std::size_t most);
   /// Reads a number of exactly `count` digits; returns false if there are fewer.
   bool take_digits(std::size_t& number, std::size_t count);

@@ -39,14 +39,14 @@ struct PdfSignature {
   std::string_view before, after;  ///< signed bytes before and after the signature
   std::size_t gap = 0;             ///< position of the signature's "<" in the file, bytes
   std::string_view contents;       ///< hexadecimal digits of the signature
-  Time time = 0;                   ///< time of signing, stated by the signer alone
+  Time time = 0;  ///< time of signing as the signer states it, without proof by a time stamp
 
   std::size_t room() const { return contents.size() / 2; }
 };
 
 /// Returns the signature near the end of a file, which is found by the form that `reserve` writes;
-/// an error if there is none. The rest of the file is not parsed, because that is done only after
-/// the signature has been verified.
+/// an error if no signature is found. The rest of the file is not parsed, because that is done only
+/// after the signature has been verified.
 Expected<PdfSignature> signature_at_end(std::string_view bytes);
 /// Returns the time of signing that a signed PDF states (/M); an error if the PDF does not state it
 /// in the form that `reserve` writes.

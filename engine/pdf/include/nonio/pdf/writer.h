@@ -27,8 +27,8 @@ struct Font {
   /// Font data, which must outlive the call of `write`. Only that of /F3 may be null: the document
   /// then does not have this font.
   const EmbeddedFont* embedded = nullptr;
-  /// Bounding box of all glyphs (left, bottom, right, top), and then the heights above and below
-  /// the base line, all in 1/1000 of the font size.
+  /// Bounding box of all glyphs (left, bottom, right, top), then ascent, descent and height of
+  /// capital letters, all in 1/1000 of the font size.
   std::array<int, 4> box{};
   int ascent = 0, descent = 0, cap_height = 0;
   int stem = 80;  ///< thickness of vertical strokes, 1/1000 of the font size
@@ -38,15 +38,16 @@ struct Font {
 /// copied to each document.
 struct Picture {
   unsigned width = 0, height = 0;  ///< pixels
-  bool grey = false;               ///< true: grey; false: red, green, blue; 8 bits each
-  bool jpeg = false;               ///< whether `colours` is a JPEG file; else compressed rows
+  /// whether pixels have one gray value instead of red, green and blue; 8 bits each
+  bool grey = false;
+  bool jpeg = false;  ///< whether `colours` is a JPEG file; else compressed rows
   std::string colours;
   /// Compressed rows of 8-bit opacity values; empty if the whole image is opaque.
   std::string opacity;
 };
 
-/// The frame in which a signature is shown: index of the page, and edges in pt. The frame is
-/// written to the dictionary of the page (`signature_key`), where `reserve` finds it.
+/// The frame in which a signature is shown: index of the page, from 0, and edges in pt. The frame
+/// is written to the dictionary of the page (`signature_key`), where `reserve` finds it.
 struct SignaturePlace {
   std::size_t page = 0;
   double left = 0.0, low = 0.0, right = 0.0, high = 0.0;
@@ -65,8 +66,8 @@ struct NewFile {
   std::array<Font, 3> fonts{};
   std::vector<std::shared_ptr<const Picture>> pictures;
   std::vector<std::string> pages;
-  /// ICC profile of sRGB, for a PDF that is to be archived. If it is given, the PDF contains the
-  /// profile, its properties also as XMP, and an identifier.
+  /// ICC profile of sRGB, for a PDF that is to be archived. If it is not empty, the PDF contains
+  /// the profile, the properties of the document as XMP, and an identifier.
   std::string profile{};
   std::optional<SignaturePlace> signature{};
 };

@@ -57,9 +57,10 @@ struct AxisReadings {
 namespace detail {
 
 /// `fill_times` fills `t`, `timed` and `duration`; `fill_temperatures` fills `K`, `temperature` and
-/// `interpolated`. A gap of temperatures is interpolated if it is at most a quarter of its line
-/// long; a missing end takes the nearest temperature if that is at most an eighth of the line away.
-/// Otherwise, and if a line with gaps has fewer than three temperatures, `temperature` is false.
+/// `interpolated`. A gap of temperatures is interpolated if it lasts at most a quarter of its line.
+/// At the ends of a line, the nearest temperature is used if it is at most an eighth of the line
+/// away. Otherwise `temperature` is false, and also if a line with gaps has fewer than three
+/// temperatures.
 void fill_times(const Observations& o, AxisReadings& r);
 void fill_temperatures(const Observations& o, AxisReadings& r);
 
@@ -69,14 +70,14 @@ void fill_temperatures(const Observations& o, AxisReadings& r);
 /// direction of approach. Positions must be finite; times and temperatures may be NaN.
 Expected<AxisReadings> readings_of(const Observations& o, const Axis& axis);
 
-/// Whether some positions were reached from below and some from above.
+/// Returns whether some positions were reached from below and some from above.
 bool from_both_directions(const AxisReadings& r);
 
 /// Returns candidate positions of the fixed point of a screw or scale, in m from the middle of the
-/// measured stretch (rad for a rotary axis). If the manifest states one for a linear axis, only
-/// that; otherwise only the middle for a rotary axis or several axes, and for a single linear axis
-/// seven positions up to 1.5 times the length of the stretch from its middle. Empty if the readings
-/// do not move the axis.
+/// measured stretch (rad for a rotary axis): for a linear axis, the position that the manifest
+/// states, if any. Otherwise it returns only the middle for a rotary axis or for readings of
+/// several axes, and for a single linear axis seven positions up to 1.5 times the length of the
+/// stretch from its middle. Empty if the readings do not move the axis.
 std::vector<double> fixed_points(const Observations& o, const Axis& axis);
 
 Effect::Shape fixed_point_shape();
@@ -94,7 +95,7 @@ WhyNot one_direction(const Observations& o, const Axis& axis);
 std::vector<double> targets_of(const AxisReadings& r);
 
 /// Computes one column for each function in `values`, called as value(readings, row) for the rows
-/// in which the axis moved; other rows are 0. Error: as of `readings_of`.
+/// in which the axis moved; other rows are 0. Error: `readings_of` returns an error.
 template <class... Values>
 Expected<Effect::Columns> columns_of(const Observations& o, const Axis& axis, Values... values) {
   const auto r = readings_of(o, axis);

@@ -27,7 +27,8 @@ struct Contribution {
   std::string id;  ///< name of its text, `budget.<id>` of templates/words
   double u = 0.0;  ///< largest standard uncertainty that it causes in a reading; SI
   Quantity quantity = Quantity::deviation;
-  bool with_length = false;  ///< proportional to the length; `u` is then that of the longest length
+  /// whether it is proportional to length; `u` is then its value at the longest length
+  bool with_length = false;
   Distribution distribution = Distribution::normal;
   Correlation correlation = Correlation::readings;
   std::optional<double> dof{};  ///< degrees of freedom; none: `u` is taken as exactly known

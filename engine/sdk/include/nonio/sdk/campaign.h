@@ -24,8 +24,9 @@ struct Axis {
   std::optional<double> expansion{};    ///< expansion coefficient of screw or scale, 1/K
   /// Position at which screw or scale is fixed, so that it does not move when the part expands, m.
   std::optional<double> fixed_point{};
-  std::map<std::string, double> tolerance{};  ///< upper limit of a result, by its name: m or rad
-  std::string slave{};  ///< for a gantry: name of the control's axis that drives the second side
+  std::map<std::string, double> tolerance{};  ///< upper limits by the name of the result, m or rad
+  /// for a gantry: name of the control's axis that drives the second side; otherwise empty
+  std::string slave{};
   /// `active_table` and `active_backlash` state the compensation that was active in the control
   /// while the axis was measured; without a value it is not stated. `active_table` contains the
   /// files of the active table, and is empty if no table was active.
@@ -63,7 +64,7 @@ struct Instrument {
   /// and the full ranges of its temperature, K, and of that coefficient, 1/K. None: its length does
   /// not depend on temperature, or U_per_length includes this.
   std::optional<double> expansion{}, temperature_range{}, expansion_range{};
-  /// issuer of its certificate; last day on which it is valid
+  /// issuer of the calibration certificate; last day on which the certificate is valid
   std::string issuer{}, valid_until{};
 };
 
@@ -81,8 +82,8 @@ struct Square {
   std::optional<double> U{};  ///< expanded uncertainty (k = 2) of `error`, rad
 };
 
-/// What the uncertainty budget needs in addition to the instrument (ISO/TR 230-9:2005 Annex C), and
-/// other test conditions. Ranges are full ranges of the quantity.
+/// Test conditions, most of which are inputs of the uncertainty budget (ISO/TR 230-9:2005 Annex C).
+/// Ranges are full ranges of the quantity.
 struct Environment {
   /// misalignment of beam and axis, as lateral distance over the travel, m
   std::optional<double> misalignment;
@@ -116,8 +117,9 @@ struct Laboratory {
 /// Texts that a certificate contains in addition to the results (ISO/IEC 17025:2017, 7.8). They
 /// come from site.toml, unless the campaign states them.
 struct CertificateTexts {
-  std::vector<std::string> languages;        ///< one or two languages of templates/words
-  std::map<std::string, std::string> title;  ///< title by language; none: that of templates/words
+  std::vector<std::string> languages;  ///< one or two languages of templates/words
+  /// title by language; if absent, the title in templates/words
+  std::map<std::string, std::string> title;
   std::string form;        ///< layout: name of a file in templates/, without .toml
   std::string location;    ///< place of calibration, as a DCC names it: customer, laboratory, ...
   std::string procedure;   ///< the laboratory's own procedure, in addition to the standards
@@ -129,7 +131,7 @@ struct CertificateTexts {
   std::vector<std::string> customer_data;  ///< keys of the manifest that the customer stated
   /// person who states that the method was not changed in any other way
   std::string no_other_deviations_by{};
-  std::string decision_rule{};  ///< name of the rule: iso14253-1, ilac-g8-simple, ilac-g8-guarded
+  std::string decision_rule{};  ///< iso14253-1, iso14253-1:2013, ilac-g8-simple or ilac-g8-guarded
 };
 
 /// An upper tolerance limit of the magnitude of one result.
@@ -151,7 +153,8 @@ struct Measurement {
   std::string id;
   std::string kind;  ///< what was measured: name of the method, or its `Method::observed_as`
   std::string axis;
-  /// direction of a straightness; for an angle, the axis about which it turns (`about`)
+  /// for a straightness, the direction of the deviation; for an angle, the axis of rotation
+  /// (`about`)
   std::string lateral;
   std::string file;
   std::string reader;  ///< name of the reader plugin; empty: chosen by the file's content
@@ -174,7 +177,7 @@ struct Measurement {
 
   /// Test conditions that ISO 230-2 requires in the report; empty members were not stated.
   std::optional<double> feed{};                 ///< feed rate, m/s or rad/s
-  std::optional<double> dwell{};                ///< time at rest at a target before it is read, s
+  std::optional<double> dwell{};                ///< time at rest at a target before the reading, s
   std::optional<double> over_travel{};          ///< distance moved beyond the last target, m or rad
   std::map<std::string, double> tool_offset{};  ///< vector from the spindle nose to the probe, m
   /// vector from the table to the measured point, m
@@ -182,7 +185,7 @@ struct Measurement {
   std::string compensation{};  ///< "on" or "off": whether the control's tables were active
   std::string side{};          ///< for a gantry axis: "master" or "slave"; empty: not stated
   std::optional<std::string>
-      state{};  ///< state of the machine as the manifest gives it; see `state_of`
+      state{};  ///< state of the machine as the manifest states it; see `state_of`
   /// For a straightness: id of the measurement of the same line before the straightedge was turned
   /// over.
   std::string reversal_of{};
@@ -196,12 +199,12 @@ struct Measurement {
   /// Values of the keys that the method declares, in the unit of the manifest; defaults are filled
   /// in.
   Settings settings{};
-  std::string method{};  ///< name of the method, the key `kind`; empty: it is `kind`
+  std::string method{};  ///< name of the method (manifest key `kind`); if empty, `kind` is the name
   /// Motion of the machine during the measurement. It decides which readings repeat at targets, and
   /// whether effects of a model apply.
   enum class Motion {
     targets,     ///< motion with stops at targets, which the runs share
-    path,        ///< motion without stops over an angle: a circle
+    path,        ///< motion without stops over an angle, such as a circle
     time,        ///< readings over time, at rest or while an axis is exercised
     placements,  ///< readings of features of an artefact in several placements
     none         ///< no axis of the machine moved
@@ -213,9 +216,9 @@ inline const std::string& method_name(const Measurement& m) {
   return m.method.empty() ? m.kind : m.method;
 }
 
-/// Returns the state of the machine in which a measurement was made: "final". Empty: valid for
-/// every state. Without the key `state` it is the text after the first space of the id ("D1
-/// final").
+/// Returns the state of the machine in which a measurement was made, such as "final"; empty if the
+/// measurement is valid for every state. Without the key `state`, it is the text after the first
+/// space of the id ("D1 final").
 inline std::string state_of(const Measurement& m) {
   if (m.state) return *m.state;
   const std::size_t space = m.id.find(' ');
@@ -235,7 +238,7 @@ struct Formula {
     std::string name;
     Quantity quantity = Quantity::number;
     double start = 0.0;  ///< initial value of the fit, SI
-    /// range that is searched, SI; absent: the parameter is linear
+    /// range that is searched, SI; if absent, the parameter is linear
     std::optional<std::pair<double, double>> range{};
   };
   std::string name, axis, expression;

@@ -16,9 +16,9 @@ namespace nonio {
 std::vector<double> lagged(const Observations::Channel& channel, double tau,
                            const std::vector<double>& time);
 
-/// Returns the time constants, s, that readings at these times can identify: 0, and values up to
-/// 1/12 of the duration in steps of a factor sqrt(2), none below four mean sampling intervals; at
-/// most 18. Empty if there are fewer than 12 different times.
+/// Returns the time constants, s, that readings at these times can identify, ascending: 0, and
+/// values up to 1/12 of the duration in steps of a factor sqrt(2), none below four mean sampling
+/// intervals; at most 18. Empty if there are fewer than 12 different times.
 std::vector<double> time_constants_for(const std::vector<double>& time);
 
 }  // namespace nonio

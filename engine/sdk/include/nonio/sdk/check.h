@@ -7,15 +7,15 @@
 #include "nonio/sdk/observations.h"
 #include "nonio/sdk/results.h"
 
-/// Checks of what plugins return, so that every later stage can rely on it. Called by the nightly
-/// run, `nonio import`, the model and `nonio plugin check`. The error states what was found:
-/// "columns of different lengths".
+/// Checks of what plugins return, so that every later stage can rely on it. They are called by
+/// `nonio run`, `nonio import`, the model and `nonio plugin check`. The error states what was
+/// found, such as "columns of different lengths".
 namespace nonio {
 
-/// Checks readings: columns have one length; deviations, positions and directions of sensing are
-/// finite; approaches are -1, 0 or +1; uncertainties are above 0; each channel has finite values at
-/// ascending times; each reading belongs to an existing line; `doubts` are findings
-/// `plausibility.*` with attention set.
+/// Checks readings: columns have one length or are empty; deviations, positions and directions of
+/// sensing are finite; approaches are -1, 0 or +1; uncertainties are above 0; each channel has
+/// finite values at ascending times; each reading belongs to an existing line; `doubts` are
+/// findings `plausibility.*` with attention set.
 Expected<void> check(const Observations& o);
 
 /// Checks results: values, uncertainties, coverage factors and evidence are finite, the columns of

@@ -22,7 +22,7 @@ inline Error of_option(std::string_view option, std::string message) {
   return error;
 }
 
-/// Direction of travel of the rows. `plus` is towards larger coordinates; `forward` is the order in
+/// Direction of travel of the rows. `plus` is toward larger coordinates; `forward` is the order in
 /// which the targets are listed.
 enum class Way : std::uint8_t { none, plus, minus, forward, reverse };
 
@@ -103,9 +103,9 @@ inline std::optional<RowRange> row_range_of(std::string_view text) {
 struct TableMap {
   char separator = ' ';
   double target_unit = 0.0, value_unit = 0.0;  ///< SI value of 1 in the file: m or rad
-  bool positions = false;                      ///< values are actual positions, else deviations
-  double sign = 1.0;                           ///< sign of the deviations: +1 or -1
-  double factor = 1.0, offset = 0.0;  ///< value = factor * number + offset; the offset in SI
+  bool positions = false;  ///< whether the values are actual positions instead of deviations
+  double sign = 1.0;       ///< sign of the deviations: +1 or -1
+  double factor = 1.0, offset = 0.0;  ///< value = factor * number in SI + offset; offset in SI
   std::vector<RowRange> tables;       ///< lines of each table, in the order of the file; at least
                                       ///< one range
 
@@ -186,7 +186,7 @@ inline Expected<std::vector<RowRange>> tables_of(const Settings& options) {
   return tables;
 }
 
-/// Parses the options. The error names an option that is empty or invalid.
+/// Parses the options of `table_map_options`. The error names the option that is empty or invalid.
 inline Expected<TableMap> table_map_of(const Settings& options, bool rotary) {
   TableMap map;
   for (const auto& [name, unit] :

@@ -35,7 +35,7 @@ struct ControlTable {
     double of(bool is_rotary) const { return is_rotary ? rotary : linear; }
   };
   /// Source of a statement: the maker's manual or source code; a run of the control itself; a
-  /// conclusion from these; general knowledge of the trade.
+  /// conclusion from these; general knowledge of the field.
   enum class Confidence { documented, run, inferred, unsure };
   struct Fact {
     /// name of the property, "sign"; if it is not documented, tables have a note <plugin>.<id>
@@ -63,7 +63,7 @@ struct ControlTable {
   /// whether it supports tables over the positions of several axes, or all errors in one file
   bool volumetric = false;
   bool runs_gcode = true;  ///< whether the control runs part programs in G-code
-  /// the parameter for the backlash value; empty: none exists with these tables
+  /// name of the control's parameter for the backlash value; empty: it has none with these tables
   std::string backlash;
   std::vector<Fact> facts{};
 };
@@ -75,18 +75,18 @@ struct LoadedTable {
   std::string output;  ///< compensated axis; the name in the file if the axis is not known
   std::vector<std::string> input;             ///< one or two axes whose positions select the value
   std::vector<std::vector<double>> position;  ///< grid positions of each input, ascending, m or rad
-  /// c for motion towards plus, at the grid points, m or rad; for two inputs the last one varies
+  /// c for motion toward plus, at the grid points, m or rad; for two inputs the last one varies
   /// fastest
   std::vector<double> plus;
-  std::vector<double> minus;  ///< c for motion towards minus, m or rad; empty: as `plus`
+  std::vector<double> minus;  ///< c for motion toward minus, m or rad; empty: as `plus`
   Outside outside = Outside::holds;
   /// backlash value that the file sets, m or rad; lost motion is positive
   std::optional<double> backlash{};
   bool rotary = false;  ///< whether the output axis is rotary
 };
 
-/// The files of one table, and the known facts about the machine: the axes of the campaign and
-/// their numbers in the options identify the axes in the files.
+/// The files of one table, and what is known about the machine: the axes of the campaign, and their
+/// numbers in the options, identify the axes in the files.
 struct TableInput {
   const std::vector<Artifact>& files;
   const Campaign& campaign;

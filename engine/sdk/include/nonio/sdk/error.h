@@ -9,7 +9,7 @@
 namespace nonio {
 
 /// An error, in words for the user: what was expected, what was found. Each function adds the part
-/// of the place (file, line, column) that it knows, from the innermost outward.
+/// of the location (file, line, column) that is available to it, from the innermost outward.
 struct Error {
   std::string message;
   /// path of the file, relative to the campaign's directory; empty if the error is not in a file

@@ -24,10 +24,11 @@ enum class DecimalMark : std::uint8_t { none, point, comma };
 
 struct Field {
   enum class Kind : std::uint8_t {
-    taken,      ///< a finite number below 1e19 in size
-    not_taken,  ///< blank, nan, n/a, #N/A (#N/D, #NV), "over range" and the like, infinite, or at
-                ///< least 1e19 in size
-    bad,        ///< any other text
+    taken,  ///< a finite number below 1e19 in absolute value
+    /// blank, nan, n/a, #N/A (#N/D, #NV), "over range" and similar texts, infinite, or at least
+    /// 1e19 in absolute value
+    not_taken,
+    bad,  ///< any other text
   };
   Kind kind = Kind::bad;
   DecimalMark mark = DecimalMark::none;
@@ -81,7 +82,7 @@ inline const char* take_digits(const char* p, const char* end, std::uint64_t& di
 }
 
 /// Parses an exponent [eE][+-]digits at `p`, which must extend to the end, and adds it to
-/// `d.exponent`. True also if there is no text at `p`; false if there is other text.
+/// `d.exponent`. Returns true also if `p` is at the end, and false if any other text follows.
 inline bool take_exponent(const char* p, const char* end, Decimal& d) {
   if (p == end) return true;
   if (*p != 'e' && *p != 'E') return false;
@@ -165,7 +166,7 @@ inline Field parse_number(std::string_view text, bool comma_allowed) {
   }
   const auto kind =
       std::fabs(value) < detail::sentinel ? Field::Kind::taken : Field::Kind::not_taken;
-  return {kind, d.mark, value + 0.0};  // + 0.0: no negative zero
+  return {kind, d.mark, value + 0.0};  // + 0.0 converts -0.0 to 0.0
 }
 
 /// Parses a number of a run, 1 to 4294967295, digits only; 0 if the text is anything else.

@@ -49,7 +49,7 @@ int place_of_second_digit(double size);
 /// Writes the value rounded to a multiple of 10^place.
 std::string rounded_text(double value, int place);
 
-/// A result in the printed unit, with a decimal point.
+/// The texts of a value and its U in the printed unit, with a decimal point.
 struct RoundedResult {
   std::string value, U;
 };
@@ -58,8 +58,8 @@ struct RoundedResult {
 /// at most 9 places after the point. Nothing if U is not above 0, or if either is not finite.
 std::optional<RoundedResult> rounded_result(double value, double U);
 
-/// Writes a number with about `significant` digits, without an exponent from 1e-4 to 1e9. Empty if
-/// it is not finite.
+/// Writes a number with about `significant` digits; with an exponent only if its size is below 1e-4
+/// (except 0), or 1e9 and above. Empty if the number is not finite.
 std::string short_text(double value, int significant = 3);
 /// Writes positions of axes, given in m, in mm: "X=400 Y=300".
 std::string positions_text(const std::map<std::string, double>& at);
@@ -79,7 +79,7 @@ std::optional<Decimal> shortest_decimal(double size);
 /// Appends the shortest text that parses to the same double, as std::to_chars writes it.
 void append_shortest(std::string& out, double value);
 
-/// Replaces the decimal point by a comma for languages that use one.
+/// Replaces the decimal point by a comma for languages that use a comma (de, it, es).
 std::string localised(std::string number, std::string_view language);
 
 /// Returns a text of templates/words/<language>/*.toml by its flattened name; empty if there is

@@ -47,22 +47,23 @@ struct HistoryForecast {
   std::string date;
   double value = 0.0, u = 0.0;
   double p_out = 0.0;
-  std::string leaves{};  ///< day on which the 95 % bound meets the limit; empty: never
-  std::string answer;    ///< recommendation: keep, watch, act, overdue, cannot-say
+  /// day on which the 95 % bound meets the limit; empty: not within 20 years, or without a limit
+  std::string leaves{};
+  std::string answer;  ///< recommendation: keep, watch, act, overdue, cannot-say
 };
 
 struct HistorySeries {
   std::string axis, quantity;
   Quantity unit = Quantity::deviation;
   std::vector<HistoryPoint> points;
-  /// model of the series: none, level, drift, step or walk; empty for a largest deviation
+  /// none, level, drift, step or walk (random walk); empty for a largest deviation
   std::string model;
   std::vector<HistorySegment> segments{};
   std::vector<HistoryChange> changes{};
   std::optional<double> smallest_change{}, limit{};
   std::optional<HistoryForecast> forecast{};
-  bool ended = false;  ///< whether later campaigns use another method and therefore form another
-                       ///< series
+  /// whether later campaigns use another method and therefore form a new series
+  bool ended = false;
   /// Range of the axis over which the model compares campaigns with different targets; the points
   /// themselves are evaluated at their own targets. None: points are compared directly.
   struct Over {
@@ -89,17 +90,18 @@ struct HistoryStep {
 /// The history of a machine up to the day of a campaign, for that campaign's documents. It does not
 /// depend on later campaigns, on other machines or on the run.
 struct HistorySoFar {
-  std::string machine;               ///< name of the machine; empty: the campaign states none
-  std::string day;                   ///< day of the campaign; empty: not stated
-  std::vector<std::string> aliases;  ///< other names of the machine
+  std::string machine;  ///< name of the machine; empty: the campaign states none
+  std::string day;      ///< day of the campaign; empty: not stated
+  std::vector<std::string> aliases;
   /// Id of each other campaign used, by day, with the digest of its results that the history uses.
   std::vector<std::pair<std::string, std::string>> campaigns;
   std::string sha256;  ///< digest of all inputs of this history
   std::vector<MachineEvent> events;
   std::vector<HistorySeries> series;  ///< series that contain a point of the campaign
   std::vector<HistoryStep> steps;     ///< steps to the campaign's own points
-  std::string due;  ///< day of the next calibration by a rule; empty: there is no rule
-  int months = 0;   ///< interval of that rule in months
+  /// day of the next calibration according to the laboratory's rule; empty without a rule
+  std::string due;
+  int months = 0;  ///< interval of that rule in months
 };
 
 }  // namespace nonio

@@ -14,9 +14,9 @@ namespace nonio {
 /// number that is not finite becomes null.
 class JsonWriter {
  public:
-  /// lines: one line per value, indented by one blank, so that two files can be compared line by
-  /// line. one_line: everything on one line. in_script: one line that may be embedded in a <script>
-  /// of a page, because no text in it can end the element.
+  /// lines: one line per value, indented by one blank per level, so that two files can be compared
+  /// line by line. one_line: everything on one line. in_script: one line that may be embedded in a
+  /// <script> of a page, because no text in it can end the element.
   enum class Layout { lines, one_line, in_script };
   explicit JsonWriter(Layout layout = Layout::lines) : layout_(layout) {}
 
@@ -34,7 +34,7 @@ class JsonWriter {
   void value(bool yes);
   void value(const std::vector<std::string>& texts);
   void null() { item("null"); }
-  void raw(std::string_view json) { item(json); }  ///< writes a value that is JSON already
+  void raw(std::string_view json) { item(json); }  ///< writes a value that is already JSON
   template <class T>
   void member(std::string_view name, const T& of) {
     key(name);
@@ -61,7 +61,7 @@ class JsonWriter {
     });
   }
 
-  /// Returns what was written; with Layout::lines it ends with a newline.
+  /// Returns the written text, and clears it; with Layout::lines it ends with a newline.
   std::string take();
 
  private:

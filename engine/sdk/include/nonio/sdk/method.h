@@ -12,8 +12,9 @@ namespace nonio {
 /// Returns the name of a column in a file, including its unit: "target_mm".
 std::string name_in_file(const Method::Column& column);
 
-/// Checks that the declaration is complete and consistent: names, quantities that match the roles;
-/// without `observe` exactly one deviation, and with a position column the required key `axis`.
+/// Checks that the declaration is complete and consistent: names, and quantities that match the
+/// roles. Without `observe`, one column must be a deviation, every required column has a role, and
+/// a position column requires the key `axis`.
 Expected<void> check(const Method& method);
 
 /// Converts readings to observations, by the method's own function or by the roles of its columns.

@@ -11,15 +11,15 @@
 
 namespace nonio {
 
-/// Returns the index of the coordinate along which a linear axis moves: 0, 1, 2 for X, Y, Z (and
-/// X1, Y2, ...); 3 if the name does not state it.
+/// Returns the index of the coordinate along which a linear axis moves: 0, 1, 2 for names that
+/// start with X, Y, Z; 3 for all other names.
 inline std::size_t coordinate_of(std::string_view axis) {
   const std::size_t at =
       axis.empty() ? std::string_view::npos : std::string_view("XYZ").find(axis[0]);
   return at == std::string_view::npos ? 3 : at;
 }
 
-/// Commanded positions closer than this are one target: 0.0001 mm, 0.02 arcsec. m or rad.
+/// Commanded positions closer than this, m or rad, are one target: 0.0001 mm, 0.02 arcsec.
 inline constexpr double grid_tolerance = 1e-7;
 
 /// The table to which all measurements are converted: one row per reading that was taken. Columns
@@ -63,7 +63,7 @@ struct Observations {
   };
 
   std::string measurement;  ///< id of the measurement in the manifest
-  bool angular = false;     ///< deviation is an angle (rad), else a length (m)
+  bool angular = false;     ///< whether deviations are angles (rad) instead of lengths (m)
   std::vector<AxisColumn> axes;
   std::vector<Line> lines;
 
@@ -106,7 +106,8 @@ struct Observations {
       if (a.axis == name) return &a;
     return nullptr;
   }
-  /// Return the value of a reading, or its default if the file does not contain the column.
+  /// Return the value of a reading. If the file does not contain the column: line 0, run 1, source
+  /// line 0, or the direction of the line.
   std::uint32_t line_of(std::size_t i) const { return line.empty() ? 0 : line[i]; }
   std::uint32_t run_of(std::size_t i) const { return run.empty() ? 1 : run[i]; }
   std::uint32_t source_line_of(std::size_t i) const {
@@ -150,7 +151,7 @@ void for_each_column(Table& o, F f) {
 
 /// Appends the readings of `more` to those of `to`: the deviations and the columns measured with
 /// them. If only one of both has a column, the rows of the other are NaN, run 1, or source line 0.
-/// The caller appends axes, lines and channels.
+/// The caller appends the other members (axes, lines, indices of lines, senses, channels).
 void append_measured(Observations& to, const Observations& more);
 /// Keeps the rows i with kept[i] != 0, in their order, and removes all others.
 void keep_rows(Observations& o, const std::vector<char>& kept);

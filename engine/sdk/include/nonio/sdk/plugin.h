@@ -16,8 +16,8 @@
 #include "nonio/sdk/settings.h"
 #include "nonio/sdk/units.h"
 
-/// A plugin is a shared library with one exported symbol. It registers values of the six kinds
-/// below, which are pure functions from a value to a value or an error. Only the host accesses
+/// A plugin is a shared library with one exported symbol. It registers objects of the six types
+/// below, whose functions are pure: they depend only on their arguments. Only the host accesses
 /// disk, clock, log, locale, threads, processes and configuration.
 ///
 ///     NONIO_PLUGIN(registry) { registry.add(nonio::Analysis{...}); }
@@ -25,14 +25,13 @@ namespace nonio {
 
 struct HistorySoFar;
 
-/// One option of a plugin, or one key that a method adds to [[measurement]]. The host checks kind,
-/// range and choices and fills in the default.
+/// One option of a plugin, or one key that a method adds to [[measurement]]. The host checks the
+/// type, the range and the choices, and fills in the default.
 struct Option {
   std::string name;
-  Setting default_value;               ///< value if the option is not stated; its type is the type
-                                       ///< of the option
-  std::string unit;                    ///< "" if none
-  std::string help;                    ///< one sentence of help
+  Setting default_value;  ///< used if the option is not stated; its type is that of the option
+  std::string unit;       ///< unit of a number; empty if it has none
+  std::string help;       ///< one sentence that describes the option
   std::vector<std::string> choices{};  ///< allowed values of a text option; empty: any
   /// For a number: the allowed range, ends included. For a text that a method declares, `max`
   /// limits its length in bytes.
@@ -40,7 +39,7 @@ struct Option {
 
   // The members below apply to keys that a method declares.
   bool required = false;
-  /// text that the message names if the key is missing: "the plane of the circle, \"XY\""
+  /// text of the message if the key is missing, such as "the plane of the circle, \"XY\""
   std::string missing{};
   std::string expected{};   ///< message if the value is invalid: "expected a length above 0"
   std::string forbidden{};  ///< characters that a text must not contain
@@ -65,8 +64,8 @@ struct Info {
   std::string version;
   std::string summary;  ///< one sentence, for `nonio plugin list`
   std::vector<Option> options{};
-  /// For an analysis or output: it does not run by default, only if `[run]` names it or the
-  /// campaign has its `[options.<name>]`.
+  /// For an analysis or output: whether it runs only if `[run]` lists it or the campaign contains
+  /// the table `[options.<name>]`.
   bool opt_in = false;
 };
 
@@ -77,36 +76,36 @@ struct ReadInput {
   const Campaign& campaign;
   const Measurement& measurement;
   const Settings& options;
-  /// Call it repeatedly with the offset before which the bytes are no longer needed, so that a file
-  /// of a gigabyte is not kept in memory together with its readings. May be empty.
+  /// Optional. The reader calls it with the offset before which it no longer needs the bytes, so
+  /// that a file of a gigabyte is not kept in memory together with its readings.
   std::function<void(std::size_t)> done_with{};
-  /// The method of the measurement; null if none is loaded.
+  /// The method of the measurement; null if no plugin with this method is loaded.
   const Method* method = nullptr;
 };
 
 /// Converts the bytes of a file to observations.
 struct Reader {
   Info info;
-  /// Whether the first bytes of a file match this reader's format.
+  /// Returns whether the first bytes of a file match the format of this reader.
   bool (*recognises)(std::string_view head) = nullptr;
-  /// Whether it can read a measurement of this kind.
+  /// Returns whether the reader supports measurements of this kind.
   bool (*reads)(std::string_view measurement_kind) = nullptr;
   Expected<Observations> (*read)(const ReadInput&) = nullptr;
   /// Whether the reader also reads the columns that a method declares (`ReadInput::method`), for
   /// any kind.
   bool reads_columns = false;
-  /// Optional: returns the first rows of a table as text, the names of its columns first, for a
-  /// person who assigns the columns (option `columns`). At most `most` rows.
+  /// Optional: returns at most `most` rows of a table as text, starting with the names of its
+  /// columns, for a person who assigns the columns (option `columns`).
   Expected<std::vector<std::vector<std::string>>> (*first_rows)(std::string_view bytes,
                                                                 std::size_t most) = nullptr;
 };
 
-/// The content of a file of readings, by the columns that a method declares. SI; NaN for a blank
-/// value; a direction is +1, -1, or 0 for blank.
+/// The readings of a file, by the columns that a method declares. Values are SI, and NaN if a field
+/// is blank. A direction is +1 or -1, or 0 if it is blank.
 struct Readings {
   /// keys are `Method::Column::name`
   std::map<std::string, std::vector<double>, std::less<>> columns;
-  std::vector<std::uint32_t> source_line;  ///< line of the file, 1-based
+  std::vector<std::uint32_t> source_line;  ///< line of the file for each reading, 1-based
 
   std::size_t size() const { return source_line.size(); }
   /// Returns the column; null if the file does not contain it.
@@ -125,17 +124,18 @@ struct MethodInput {
 struct SimulationInput {
   const Campaign& campaign;
   const Measurement& measurement;
-  const Observations& observations;  ///< observations that `observe` must return for the readings
+  /// observations that `observe` must return for the simulated readings
+  const Observations& observations;
 };
 
-/// A measuring method: the keys of [[measurement]], the columns of a file of readings, and the
-/// observations that the readings give. The functions in sdk/method.h apply it.
+/// A measuring method: the keys that it adds to [[measurement]], the columns of its files, and the
+/// conversion of their readings to observations. The functions in sdk/method.h apply it.
 struct Method {
   struct Column {
-    /// How the default of `observe` uses the column.
+    /// How observations use the column if the method has no function `observe`.
     enum class Role {
       none,      ///< used only by the method's own `observe`
-      position,  ///< position of the measurement's axis
+      position,  ///< commanded position of the measurement's axis
       deviation,
       run,        ///< number of the run, an integer from 1
       direction,  ///< direction of approach, + or -
@@ -149,39 +149,38 @@ struct Method {
     Quantity quantity = Quantity::number;
     Role role = Role::none;
     std::string help;      ///< one sentence that describes the column
-    bool required = true;  ///< if false, a file may omit it, and fields may be blank
+    bool required = true;  ///< if false, a file may omit the column, and its fields may be blank
   };
-  /// name: the `kind` of [[measurement]]. options: the keys that the method adds to it, next to
-  /// those of all methods. The host fills `Measurement::axis`, `lateral`, `from` and `to` from keys
-  /// of these names.
+  /// `name` is the `kind` of [[measurement]]. `options` are the keys that the method adds to those
+  /// of all methods. The host copies the keys `axis`, `lateral`, `from` and `to` to the members of
+  /// `Measurement` with these names.
   Info info;
-  /// Optional: the kind of measurement that its observations are equivalent to, such as "axis". All
-  /// analyses, checks, tables and histories of that kind then apply to this one. Empty: a kind of
-  /// its own.
+  /// Optional: the kind of measurement, such as "axis", to which the observations are equivalent.
+  /// All analyses, checks, tables and histories of that kind then apply. Empty: a kind of its own.
   std::string observed_as{};
   /// Motion during the measurement, for a method whose `observed_as` is empty.
   Measurement::Motion motion = Measurement::Motion::targets;
-  std::vector<Column> columns{};  ///< columns of its files; empty: its files are read by readers
-                                  ///< made for it
-  /// Optional: converts readings to observations. Without it, the roles of the columns determine
-  /// them (`observe` in sdk/method.h).
+  /// columns of its files; if empty, its files are read by readers made for this method
+  std::vector<Column> columns{};
+  /// Optional: converts readings to observations. Without this function, the roles of the columns
+  /// determine the observations (`observe` in sdk/method.h).
   Expected<Observations> (*observe)(const MethodInput&) = nullptr;
   /// Optional, required with `observe`: converts observations back to readings, for `nonio
   /// simulate` and `nonio plugin check`.
   Expected<Readings> (*simulate)(const SimulationInput&) = nullptr;
 };
 
-/// Reason why an effect is no candidate for these readings: the name of a text ("unseen.<id>";
-/// empty if the effect does not concern this axis at all), and the rows of the readings that cause
-/// it.
+/// Reason why an effect is no candidate for these readings. `id` is the name of its text,
+/// "unseen.<id>", and is empty if the effect does not concern this axis. `rows` are the readings
+/// that cause it.
 struct WhyNot {
   std::string id;
   std::vector<std::uint32_t> rows{};
 };
 
-/// One physical cause of deviations: converts observations to one column for each linear parameter.
-/// Rows in which the axis did not move are 0 (`readings_of` in sdk/axis_readings.h returns the
-/// inputs of a column).
+/// One physical cause of deviations. It converts observations to one column for each linear
+/// parameter. Rows in which the axis did not move are 0 (`readings_of` in sdk/axis_readings.h
+/// returns the inputs of a column).
 struct Effect {
   using Columns = std::vector<std::vector<double>>;
   struct Parameter {
@@ -194,19 +193,19 @@ struct Effect {
   /// knots.
   struct Shape {
     Parameter parameter;
-    /// Returns the values to try, ascending, in SI; one value if it is known (a period in the
-    /// manifest). Empty if the parameter is not identifiable from these readings.
+    /// Returns the values to try, ascending, in SI: one value if it is known (a period in the
+    /// manifest), none if the readings do not identify the parameter.
     std::function<std::vector<double>(const Observations&, const Axis&)> grid;
-    bool continuous = true;  ///< the best value may be between values of the grid
-    /// Default value, used unless the readings contradict it (a fixed point in the middle): unlike
-    /// other values of the grid, it needs no evidence.
+    bool continuous = true;  ///< whether the best value may be between values of the grid
+    /// Default value, such as a fixed point in the middle of the stretch. Unlike other values of
+    /// the grid, it needs no evidence from the readings.
     std::optional<double> usual{};
   };
   Info info;                      ///< name: the kind without the axis, such as "backlash"
-  std::vector<Parameter> linear;  ///< for a curve: one, which describes all of its columns
+  std::vector<Parameter> linear;  ///< for a curve: one parameter that describes all of its columns
   std::vector<Shape> shapes;
-  bool curve = false;        ///< whether it is a smooth curve, whose first shape is the number of
-                             ///< its columns
+  /// whether the effect is a smooth curve; its first shape is then the number of its columns
+  bool curve = false;
   bool compensable = false;  ///< whether a table in the controller can compensate it
   std::function<bool(const Observations&, const Axis&)> applies;
   /// Returns columns of length observations.size(), in the unit of the deviation divided by that of
@@ -220,15 +219,16 @@ struct Effect {
   /// empty, the effect exists once per axis, its columns are the error along the axis, and the
   /// engine computes the component along the direction of sensing.
   std::function<std::vector<std::string>(const Observations&)> instances{};
-  /// An unknown of the set-up (the orientation of a mirror): part of every model that it applies
-  /// to, never a candidate.
+  /// Whether the effect is an unknown of the set-up, such as the orientation of a mirror. It is
+  /// part of every model to which it applies, and never a candidate.
   bool is_nuisance = false;
-  /// A curve that describes the residual without a cause ("a reversal for each target"): never a
-  /// candidate; it is offered if no effect explains the residual. In a model with other effects it
-  /// describes only what they do not.
+  /// Whether the effect is a curve that describes the residual without a cause ("a reversal for
+  /// each target"). It is never a candidate, but is offered if no effect explains the residual. In
+  /// a model with other effects it describes only what they do not.
   bool description = false;
-  /// Its instances are recorded channels (`Observations::channels`). It can occur in displacements
-  /// over time, in which no other effect occurs, and in axis tests with recorded channels.
+  /// Whether its instances are recorded channels (`Observations::channels`). It can occur in
+  /// displacements over time, in which no other effect occurs, and in axis tests with recorded
+  /// channels.
   bool of_channels = false;
   /// Optional: returns the reason why the effect does not apply.
   std::function<WhyNot(const Observations&, const Axis&)> why_not{};
@@ -239,8 +239,8 @@ struct AnalysisInput {
   const Measurement& measurement;
   const Observations& observations;
   const Settings& options;
-  /// One entry for each measurement of the campaign, in its order; empty if it could not be read.
-  /// An analysis that uses other measurements lists their ids in Evaluation::uses.
+  /// One entry for each measurement, in the order of the manifest; empty if its file could not be
+  /// read. An analysis that uses other measurements lists their ids in Evaluation::uses.
   const std::vector<Observations>* all = nullptr;
   /// The table format of the machine's control, as its plugin declares it; null if no plugin of
   /// that name is loaded.
@@ -249,7 +249,8 @@ struct AnalysisInput {
 
 struct CampaignInput {
   const Campaign& campaign;
-  /// One entry for each measurement, in their order; empty if it could not be read.
+  /// One entry for each measurement, in the order of the manifest; empty if its file could not be
+  /// read.
   const std::vector<Observations>& observations;
   const Settings& options;
 };
@@ -262,15 +263,16 @@ struct Analysis {
   /// Replaces `applies` and `analyse`: called once for the campaign as a whole (a plan needs no
   /// measurement).
   Expected<Evaluation> (*analyse_campaign)(const CampaignInput&) = nullptr;
-  /// Whether its values state what the history follows over the years (`Value::followed`). If not,
-  /// each value whose uncertainty is in the budget is followed, as "<plugin>:<value>" of the
-  /// measurement's axis.
+  /// Whether the analysis states which of its values the history follows over the years
+  /// (`Value::followed`). If not, the history follows each value whose uncertainty is in the
+  /// budget, as "<plugin>:<value>" of the measurement's axis.
   bool states_followed = false;
 };
 
 struct OutputInput {
   const Campaign& campaign;
-  /// One entry for each measurement of the campaign, in its order; empty if it could not be read.
+  /// One entry for each measurement, in the order of the manifest; empty if its file could not be
+  /// read.
   const std::vector<Observations>& observations;
   const Results& results;
   const Settings& options;
@@ -302,33 +304,35 @@ struct Output {
   void (*prepare)(const Templates&) = nullptr;
   /// Optional: returns the errors in the templates and words that this output uses.
   std::vector<Error> (*check_templates)(const Templates&) = nullptr;
-  std::optional<Certificate> certificate{};  ///< none: the document is not issued under a number
-  /// Optional: whether it shows the machine's history with these options. It is then written again
-  /// when the history changes.
+  /// absent if the document is not issued under a number
+  std::optional<Certificate> certificate{};
+  /// Optional: returns whether the document shows the machine's history with these options. The
+  /// document is then written again when the history changes.
   bool (*wants_history)(const Settings&) = nullptr;
   Role role = Role::other;
 };
 
 struct ControllerInput {
   const Campaign& campaign;
-  /// One entry for each measurement of the campaign, in its order; empty if it could not be read.
+  /// One entry for each measurement, in the order of the manifest; empty if its file could not be
+  /// read.
   const std::vector<Observations>& observations;
   const Results& results;
   const Settings& options;
-  /// The measured readings if `observations` contains the predictions of the campaign's model
-  /// (manifest, compensate = "model"); else null.
+  /// The measured readings, if `observations` contains the predictions of the campaign's model
+  /// instead (manifest, compensate = "model"); otherwise null.
   const std::vector<Observations>* measured = nullptr;
 };
 
 /// Writes the tables of one control from readings and results, and parses them. `[run] outputs`
 /// lists it among the outputs, so no output may have the same name.
 struct Controller {
-  /// If it has an option `axes` of tables, the host fills in the known values of each axis of the
-  /// machine: number, reference_mm, from_mm, to_mm, resolution_um, largest_um, slope_um_per_m, and
-  /// the same for rotary axes (_deg, _arcsec, slope_arcsec_per_deg). Values that the control does
-  /// not use are ignored.
+  /// If the controller has an option `axes` of tables, the host fills in the known values of each
+  /// axis of the machine: number, reference_mm, from_mm, to_mm, resolution_um, largest_um,
+  /// slope_um_per_m, and the same for rotary axes (_deg, _arcsec, slope_arcsec_per_deg). Values
+  /// that the control does not use are ignored.
   Info info;
-  ControlTable table;  ///< format of the control's tables
+  ControlTable table;
   bool (*applies)(const Campaign&) = nullptr;
   Expected<OutputResult> (*write)(const ControllerInput&) = nullptr;
   /// Parses files of the control, and returns the tables as the control applies them.

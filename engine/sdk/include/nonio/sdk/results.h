@@ -37,7 +37,8 @@ struct Value {
   Quantity quantity = Quantity::number;
   std::optional<double> U{};  ///< expanded uncertainty with coverage factor `k`, SI
   double k = 2.0;             ///< coverage factor of `U` or of `repeatability`
-  /// Replaces U if a contribution was not stated: the expanded scatter of the fit alone, SI.
+  /// Expanded uncertainty from the scatter of the fit alone, SI. Replaces `U` if a contribution to
+  /// the budget was not stated.
   std::optional<double> repeatability{};
   /// Set if the history follows the value and the budget contains its uncertainty; see
   /// Analysis::states_followed.
@@ -89,9 +90,9 @@ struct Series {
   Quantity position_quantity = Quantity::length;
   Quantity quantity = Quantity::deviation;
   std::vector<double> position, value, U;
-  double k = 2.0;                       ///< coverage factor of U or of `repeatability`
-  std::vector<double> repeatability{};  ///< expanded scatter of the fit alone, SI, which replaces U
-                                        ///< as in Value
+  double k = 2.0;  ///< coverage factor of U or of `repeatability`
+  /// expanded uncertainty from the scatter of the fit alone, SI; replaces `U` as in Value
+  std::vector<double> repeatability{};
 };
 
 /// The results of an analysis for one measurement or for the campaign.
@@ -120,8 +121,8 @@ struct Artifact {
   bool sign = false;  ///< a PDF or an XML file that the host signs before publication
 };
 
-/// The files and predictions that an output returns for a campaign. A refusal is a finding, not an
-/// error.
+/// The files and predictions that an output returns for a campaign. If the output refuses to write
+/// a file, it returns a finding, not an error.
 struct OutputResult {
   std::vector<Artifact> artifacts;
   std::vector<Prediction> predictions;
@@ -131,11 +132,11 @@ struct OutputResult {
 };
 
 /// One difference between two versions of a file: a key of a TOML file or a line of readings.
-/// `before` is absent if it was added, `after` if it was removed.
+/// `before` is absent if the key or line was added, and `after` if it was removed.
 struct Change {
   std::string key;  ///< key of a TOML file, "machine.axes.X.tolerance_um.B"; empty for a line of
                     ///< readings
-  /// 1-based line in the present file; of a removed entry: in the former file
+  /// 1-based line in the present file, or in the former file if the entry was removed
   std::uint64_t line = 0;
   std::optional<std::string> before{}, after{};
 };
@@ -160,9 +161,9 @@ struct Issue {
                                     ///< if it has one
   std::string replaces_sha256{};    ///< digest of the file `replaces_file`
   std::string why{};                ///< reason for the replacement
-  /// person who approved it; empty: the laboratory's rules for automatic approval
+  /// person who approved the document; empty if it was approved by the laboratory's automatic rules
   std::string released_by{};
-  std::string author{};  ///< person who approved it earlier, if different
+  std::string author{};  ///< person who gave the first of two approvals, if two are required
   /// Reason for issuing it despite a finding that a certificate states, such as an expired
   /// calibration.
   struct Reason {
@@ -181,9 +182,9 @@ inline std::string identifier_of(std::string_view number, std::string_view readi
   return std::string(number) + "." + std::string(readings_sha256);
 }
 
-/// Conformity of a result y with expanded uncertainty U to an upper limit T, by the rule of the
-/// certificate. ISO 14253-1: conforms if y <= T - U, does not conform if y > T + U, otherwise
-/// indeterminate (docs/howto-certificate.md has the other rules).
+/// Conformity of a result y with expanded uncertainty U to an upper limit T, by the decision rule
+/// of the certificate. ISO 14253-1 with a guard band g: conforms if y <= T - g, does not conform if
+/// y > T + g, otherwise indeterminate (math/decision.h defines g and the other rules).
 enum class Decision { conforms, does_not_conform, cannot_be_decided };
 
 /// One tolerance of the manifest compared with one result.
@@ -200,11 +201,11 @@ struct Conformity {
 /// and tables of documents. All values are SI. Columns have one entry per reading, or none if the
 /// files do not contain them; the prediction is deviation - residual.
 struct ModelFit {
-  /// Size of a curve, m or rad: its rms, smallest and largest value, and the places of these (m or
-  /// rad along their line).
+  /// Size of a curve: its rms, smallest and largest value, m or rad, and the positions of these
+  /// two, m or rad along the line.
   struct Curve {
     double rms = 0.0, low = 0.0, high = 0.0;
-    /// places of `low` and `high`; absent if it has none
+    /// positions of `low` and `high`; absent in space, or if several positions have this value
     std::optional<double> low_at{}, high_at{};
   };
   struct Parameter {
@@ -212,12 +213,12 @@ struct ModelFit {
     double value = 0.0;
     std::optional<double> u{};  ///< standard uncertainty, SI; absent if it is not known
     Quantity quantity = Quantity::number;
-    /// a nonlinear parameter found by search: period, time constant, instant
+    /// whether a search found the value of this nonlinear parameter: period, time constant, instant
     bool searched = false;
   };
   struct Effect {
     std::string name;                  ///< name of the effect: "backlash:X"
-    bool compensable = false;          ///< a table in the controller can compensate it
+    bool compensable = false;          ///< whether a table in the controller can compensate it
     std::vector<double> contribution;  ///< predicted contribution to each reading; m or rad
     std::optional<Curve> curve{};      ///< for an effect that is a curve: its size
   };
@@ -231,16 +232,17 @@ struct ModelFit {
   /// An effect that is not in the model but is supported by the readings; m or rad.
   struct Candidate {
     std::string effect;
-    double score = 0.0;  ///< twice the natural logarithm of the evidence for it
-    double rms = 0.0;    ///< rms of the residuals with it in the model
+    double score = 0.0;  ///< twice the natural logarithm of the evidence for this effect
+    double rms = 0.0;    ///< rms of the residuals with this effect in the model
     std::optional<double> cv_rms{};
     double p = 1.0;
     double smallest = 0.0;  ///< rms of an effect that would be detected with probability 0.9
-    std::vector<std::string> aliases;  ///< effects that these readings do not separate from it
-    bool certain = false;              ///< significant, whatever causes the remaining residuals
+    /// effects that these readings do not separate from this effect
+    std::vector<std::string> aliases;
+    bool certain = false;  ///< whether it is significant, whatever causes the remaining residuals
   };
-  /// One step of building the model: the first step has no effect, and each further one adds the
-  /// most effective of the remaining effects.
+  /// One step of building the model. The first step has no effect, and each further step adds the
+  /// most effective of the remaining effects (above 20000 readings, the next one of the model).
   struct Step {
     std::string effect;  ///< the effect added in this step; empty for the first
     double rms = 0.0;
@@ -257,8 +259,8 @@ struct ModelFit {
     double minimal_detectable = 0.0;  ///< smallest error that would be detected, m or rad
   };
 
-  std::string part;                       ///< name of the part, which is usable in a file name: "X"
-  std::vector<std::string> measurements;  ///< ids of the measurements
+  std::string part;  ///< name of the part, which is usable in a file name: "X"
+  std::vector<std::string> measurements;
   std::string axis;
   bool rotary = false;   ///< whether positions are angles, in rad
   bool angular = false;  ///< whether deviations are angles, in rad
@@ -273,8 +275,9 @@ struct ModelFit {
   std::vector<double> time;            ///< time of each reading, s; NaN where blank
   std::vector<double> temperature;     ///< material temperature, degC; NaN where blank
   std::vector<double> deviation, residual;
-  std::vector<double> weight;  ///< weight of each reading, 0..1: small for a suspect reading
-  /// residual when its run is predicted from the other runs; none with one run
+  /// weight of each reading, 0..1; a suspect reading has a small weight
+  std::vector<double> weight;
+  /// residual of each reading if its run is predicted from the other runs; empty with one run
   std::vector<double> cv_residual;
 
   std::vector<Effect> effects;  ///< effects of the model, in its order
@@ -304,11 +307,12 @@ struct Results {
   struct Analysed {
     std::string plugin, version, measurement;  ///< measurement: empty if it evaluates the campaign
     Evaluation evaluation;
-    std::string part{};  ///< part of the model: "warm/z"; empty if the measurement states it
+    /// name of the part of the model, such as "warm/z"; empty if `measurement` identifies it
+    std::string part{};
   };
   struct Written {
     std::string plugin, version;
-    OutputResult result;  ///< artifacts with names and bytes
+    OutputResult result;  ///< what the output returned, including the bytes of its artifacts
   };
   std::vector<Error> errors;
   std::vector<Analysed> analyses;

@@ -47,7 +47,7 @@ struct SpaceReadings {
 /// readings; NaN for a coordinate that is not stated.
 SpaceReadings space_of(const Observations& o);
 
-/// Returns whether the readings are the centres of a ball that turns with a rotary axis: they are
+/// Returns whether the readings are the centers of a ball that turns with a rotary axis: they are
 /// lengths, measured over an angle.
 bool of_ball_centres(const Observations& o);
 
@@ -66,13 +66,13 @@ std::vector<double> places_of(const SpaceReadings& s, std::size_t k);
 /// 8 places.
 std::vector<double> knots_over(const std::vector<double>& places);
 
-/// The readings of one line in space, except those that state the positions of other axes than the
-/// first reading does.
+/// The readings of one line in space. Readings for which other coordinates are stated than for the
+/// first reading are omitted.
 struct SpaceLine {
   using Vector = std::array<double, 3>;
   std::vector<std::size_t> rows;
   std::vector<Vector> way;  ///< vector from the first row to each row, m
-  /// direction of sensing of the first row; the longest vector of `way`, m
+  /// direction of sensing of the first row; longest vector in `way`, m
   Vector sense{}, farthest{};
   double length = 0.0;  ///< length of `farthest`, m
   /// whether all points are on one straight line, up to the rounding of files
@@ -92,7 +92,6 @@ struct SpaceLine {
 /// Returns the line with index `line` into Observations::lines.
 SpaceLine space_line(const Observations& o, const SpaceReadings& s, std::size_t line);
 
-/// Replaces values that are not finite by 0.
 std::vector<double> finite_or_zero(std::vector<double> x);
 
 /// Convert a coordinate index to its letter, and a letter to its index (3 if it is no coordinate).

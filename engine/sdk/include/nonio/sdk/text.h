@@ -20,7 +20,7 @@ inline std::string_view without_mark(std::string_view text) {
   return text;
 }
 
-/// Whether the bytes are well-formed UTF-8 (RFC 3629).
+/// Returns whether the bytes are well-formed UTF-8 (RFC 3629).
 inline bool is_utf8(std::string_view text) {
   const auto at = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   for (std::size_t i = 0; i < text.size();) {

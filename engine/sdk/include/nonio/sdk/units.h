@@ -36,7 +36,7 @@ enum class Quantity {
   angle_per_reading,           ///< rad, printed in arcsec/reading
   growth_per_reading,          ///< m/m, printed in um/(m reading)
   angular_growth_per_reading,  ///< rad/rad, printed in arcsec/(deg reading)
-  // Quantities of a zero that moves with temperature.
+  // Quantities of a zero point that drifts with temperature.
   deviation_per_kelvin,  ///< m/K, printed in um/K
   angle_per_kelvin,      ///< rad/K, printed in arcsec/K
 };

@@ -5,8 +5,8 @@
 
 namespace nonio {
 
-/// Whether a finding states that an analysis gives no result: "diagonals.refused-place",
-/// "-yaw-needed".
+/// Returns whether a finding states that an analysis gives no result, such as
+/// "diagonals.refused-place" or an id that ends with "-needed".
 inline bool is_refusal(std::string_view finding) {
   return finding.find(".refused") != std::string_view::npos || finding.ends_with("-needed");
 }

@@ -20,8 +20,8 @@ struct DccValue {
   double k = 2.0;  ///< coverage factor of U
 };
 
-/// Reads the single values of a DCC 3.3.0 as Nonio writes it. In addition to the schema, it checks
-/// that every unit is one of the used D-SI units, and that all lists of a table have the same
+/// Reads the single values of a DCC 3.3.0 as Nonio writes it. Returns an error if there is none, if
+/// a unit is not one of the D-SI units that Nonio uses, or if the lists of a table differ in
 /// length.
 Expected<std::vector<DccValue>> read_dcc(std::string_view xml);
 

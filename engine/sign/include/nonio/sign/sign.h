@@ -11,16 +11,16 @@
 #include "nonio/pdf/signature_field.h"
 #include "nonio/sdk/error.h"
 
-/// Signs certificates: a finished PDF and its attachments go in, a signed PDF comes out.
+/// Signs calibration certificates: makes a signed PDF from a finished PDF and its attachments.
 ///
 ///   pdf::reserve(pdf, attachments, time)  adds the attachments and an empty signature to the PDF,
 ///                                         in its single revision; needs no key
-///   Key::sign(bytes, stamp)               fills in the signature; is called in the process that
+///   Key::sign(bytes, now, stamping)       fills in the signature; is called in the process that
 ///                                         has opened the key
 ///
 /// The PDF must have one revision with a plain cross-reference table (as made by reports::pdf), no
-/// form and no attachments of its own. An XML document is signed as it is; its signature becomes
-/// the last child of the root element.
+/// form and no attachments of its own. An XML document is signed in its canonical form; its
+/// signature becomes the last child of the root element.
 namespace nonio::sign {
 
 /// Seconds since 1970-01-01 UTC. Signatures and their checks get the time as an argument; only a
@@ -49,11 +49,12 @@ struct Identity {
 /// An RFC 3161 time-stamp server; none if the address is empty.
 struct TimeStamping {
   std::string url{};     ///< address of the server: http://host[:port]/path
-  bool required = true;  ///< true: without an answer nothing is signed; false: signed without time
-                         ///< stamp
+  bool required = true;  ///< whether signing fails if the server gives no valid time stamp; if
+                         ///< false, the document is then signed without one
   int seconds = 10;      ///< time limit for an answer, s
   std::string trust{};   ///< PEM of the trusted roots of the server's certificate
-  /// Why the server did not answer; it is then not contacted again. Empty until then; may be null.
+  /// Why the server did not answer, after which it is not contacted again; empty if it answered.
+  /// Null: failures are not remembered.
   std::shared_ptr<std::string> away{};
 };
 
@@ -64,7 +65,7 @@ struct Signed {
   std::string no_time_stamp{};
 };
 
-/// A private key and its certificate, opened once. It never leaves the process that opened it.
+/// A private key and its certificate. The key never leaves the process that opened it.
 class Key {
  public:
   /// Opens the key. An error states what is wrong with key, certificate or password, never the

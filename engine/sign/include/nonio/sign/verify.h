@@ -12,7 +12,7 @@
 /// given as an argument.
 namespace nonio::sign {
 
-/// Largest size of a signed file in bytes; larger files are refused unread, and are not signed.
+/// Largest size of a signed file in bytes; larger files are rejected unread, and are not signed.
 inline constexpr std::size_t max_bytes = pdf::max_file;
 
 struct Check {
@@ -25,7 +25,7 @@ struct Check {
   bool essential = true;
 };
 
-/// A signer who is accepted, and the period for which the signer is accepted.
+/// A signer, and the period in which it is accepted.
 struct ExpectedSigner {
   std::string who;               ///< subject of the certificate, or its SHA-256
   Time from = 0;                 ///< beginning of the period; 0: that of the certificate's validity
@@ -38,11 +38,12 @@ struct Verifier {
   std::string signer_roots{}, time_stamp_roots{};
   std::optional<std::string> revocation{};  ///< revocation lists in PEM
   std::vector<ExpectedSigner> signers{};
-  /// Statement that a register contains this very file as issued; empty: none does. With it, the
+  /// Text that states that a register contains this very file as issued. If it is not empty, the
   /// signer need not be among `signers`.
   std::string issued_by{};
   Time now = 0;
-  /// For a file inside another one with time stamps: `Verified::existed` of the outer file.
+  /// For a file inside another one with time stamps: `Verified::existed` of the outer file;
+  /// otherwise 0.
   Time existed = 0;
 };
 
@@ -52,7 +53,8 @@ struct Verified {
   std::string subject;
   /// Time of the signature as proved by a time stamp; without one, `Verifier::now`.
   Time at = 0;
-  /// Time at which a time stamp over the complete file proves that it existed; 0 without one.
+  /// Time of the oldest time stamp over the complete file, when the signed part existed; 0 without
+  /// such a time stamp.
   Time existed = 0;
   /// Size of the signed part of a PDF in bytes; updates for long-term validation follow.
   std::size_t issued = 0;
@@ -79,8 +81,8 @@ Expected<std::vector<pdf::Attachment>> unverified_attachments(std::string_view p
 std::string_view issued_part(std::string_view file);
 Expected<Identity> unverified_signer(std::string_view signed_pdf);
 /// Verifies an XML document as written by `Key::sign`: in its canonical form, with one enveloped
-/// signature over all of it. `certificate` (DER): only this signer is accepted, and its chain is
-/// not checked again.
+/// signature over all of it. `certificate`: DER of the only accepted signer, whose chain is not
+/// checked again; empty: the signer is checked as for a PDF.
 Verified verify_xml(std::string_view bytes, const Verifier& verifier,
                     std::string_view certificate = {});
 /// Checks that a signed document without its signature has the canonical form of `written`.

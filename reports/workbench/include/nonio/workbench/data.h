@@ -11,11 +11,10 @@
 #include "nonio/sdk/campaign.h"
 #include "nonio/sdk/results.h"
 
-/// What the pictures of a browser's page are drawn from (page/draw.js), as JSON.
+/// Data of the figures of a web page (page/draw.js) as JSON.
 namespace nonio::workbench {
 
-/// A part's model, and what is stated about it. The words are those of
-/// templates/words/<language>/pictures.toml.
+/// The model of a part with its texts from templates/words/<language>/pictures.toml.
 struct Drawn {
   const Campaign& campaign;
   const ModelFit& fit;
@@ -23,27 +22,27 @@ struct Drawn {
   std::array<reports::PictureWords, 9> pictures;
 };
 
-/// Whether the part has circles, which have pictures of their own (page/polar.js).
+/// Whether the part has circles, which have separate figures (page/polar.js).
 bool has_circles(const Campaign&, const ModelFit&);
 
-/// Names of the words that page/chart.js uses.
+/// Names of the texts that page/chart.js uses.
 inline constexpr std::array<const char*, 6> chart_words = {
     "chart.in", "chart.out", "chart.left", "chart.right", "chart.all", "chart.tools"};
 
 inline constexpr std::size_t most_readings = 20000;
 
-/// The readings that a page holds: all, or of many a sample, and with it those with the largest
-/// values, which are drawn but do not count in RMS and means.
+/// The readings on a page: all, or a sample of many plus those with the largest values. The latter
+/// are drawn but excluded from RMS and means.
 struct Kept {
   std::vector<std::size_t> rows;
   std::vector<char> counted;
-  /// Of each reading of the fit its row in the files, where that is another one; else empty.
+  /// row of each reading in the files, if different; otherwise empty
   std::vector<std::size_t> row_in_files{};
 };
 Kept kept_readings(const std::vector<double>& values, std::size_t most = most_readings);
 
-/// The data as JSON, in the units that are printed (um, mm; arcsec, deg). `titles`: with title and
-/// sentence of each picture, which a page from disk has in its text.
+/// The data as JSON in printed units (um, mm; arcsec, deg). `titles`: include title and caption of
+/// each figure, which a stored page has in its HTML.
 std::string data_of(const Drawn& drawn, const Kept& kept, bool titles = true);
 
 }  // namespace nonio::workbench

@@ -11,20 +11,19 @@
 /// The page of `nonio serve`, as bytes.
 namespace nonio::workbench {
 
-/// Of which page.
+/// The page of a campaign or of the site.
 enum class Shell { campaign, site };
 
-/// The shell without data: language, words and the addresses of the rest. The words are those of
-/// templates/words/<language>/workbench.toml and workbench-site.toml; an error states which of the
-/// shell are missing.
+/// The HTML without data: language, texts and URLs of the other resources. Texts are in
+/// templates/words/<language>/workbench.toml and workbench-site.toml. Error: missing texts.
 Expected<std::string> shell_html(const Templates& templates, const std::string& language, Shell of);
-/// The same words, "refused.token" and so on.
+/// The texts of the shell, with keys such as "refused.token".
 std::map<std::string, std::string> words(const Templates& templates, const std::string& language);
 
-/// The drawing code and the script of a campaign's page, and its style.
+/// Script (with drawing code) and style of a campaign page.
 std::string_view app_js();
 std::string_view app_css();
-/// Script and style of a site's page.
+/// Script and style of a site page.
 std::string_view site_js();
 std::string_view site_css();
 

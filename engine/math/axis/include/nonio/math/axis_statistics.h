@@ -25,7 +25,7 @@ struct AxisStatistics {
     double mean, s;
     double low, high;
     double first;           ///< deviation in the earliest run
-    std::uint32_t run = 0;  ///< number of that run
+    std::uint32_t run = 0;  ///< number of the earliest run
   };
   struct Target {
     double target;
@@ -38,8 +38,8 @@ struct AxisStatistics {
 
 AxisStatistics axis_statistics(const AxisTest&);
 
-/// Tracks the largest and smallest of the values put in. The results are NaN if one of the values
-/// is NaN, or if there are none.
+/// Range, largest and smallest of the values passed to `put`; NaN without values, or if one of them
+/// is NaN.
 class Extent {
  public:
   void put(double value);

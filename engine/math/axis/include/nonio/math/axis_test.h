@@ -35,7 +35,8 @@ class AxisTest {
   bool has_plus() const { return has_plus_; }
   bool has_minus() const { return has_minus_; }
   bool bidirectional() const { return has_plus_ && has_minus_; }
-  /// Whether every target has readings from every direction that occurs.
+  /// Returns whether every target has readings from every direction that occurs; false without
+  /// targets.
   bool complete() const;
   /// Return the smallest and the largest number of readings at one target from one direction, over
   /// all directions that occur. The smallest is 0 if a target was not approached from one of them.

@@ -23,11 +23,13 @@ struct Drift {
   struct Part {
     bool known = false;
     double per_run = 0.0, total = 0.0;  ///< change per run; total: from the first run to the last
-    double u = 0.0;          ///< standard uncertainty of per_run: larger of readings and passes
-    double p_scatter = 1.0;  ///< p of per_run, from the scatter within the passes
-    double p_passes = 1.0;   ///< p of the slope of the line through the single passes
-    double p_runs = 1.0;    ///< p of the slope of the line through the runs; 1 for fewer than three
-    bool monotone = false;  ///< whether the runs change in one direction only
+    /// standard uncertainty of per_run, the larger one of two: from the scatter of readings or of
+    /// passes
+    double u = 0.0;
+    double p_scatter = 1.0;  ///< p-value of per_run, from the scatter within the passes
+    double p_passes = 1.0;   ///< p-value of the slope of the line through the single passes
+    double p_runs = 1.0;     ///< p-value of the slope through the runs; 1 for fewer than three runs
+    bool monotone = false;   ///< whether all changes from run to run have the same sign
     /// whether both directions, fitted separately, drift with the same sign; true if only one
     /// direction has a drift
     bool agree = true;
@@ -36,10 +38,10 @@ struct Drift {
   double scatter = 0.0;     ///< standard deviation of a reading within its pass
   double middle = 0.0;      ///< position to which the offset of a pass refers
   std::size_t runs = 0;     ///< number of runs with readings
-  std::vector<double> lag;  ///< lag_i of each target; empty if measured from one direction
+  std::vector<double> lag;  ///< lag_i of each target, in runs; empty if measured from one direction
 
   /// Fraction of the variation of the reversal along the axis predicted by b_i that is observed,
-  /// and p of the test that it is 0.
+  /// and p-value of the test that this fraction is 0.
   double seen_in_reversal = 0.0, p_reversal = 1.0;
 
   double per_run_at(double x) const { return offset.per_run + slope.per_run * (x - middle); }
@@ -47,11 +49,11 @@ struct Drift {
 };
 Drift estimate_drift(const AxisTest&);
 
-/// Possible contributions of drift, as far as the readings do not exclude it, and of repetition to
-/// the results of a test; expanded (k = 2), m or rad. The estimated drift is not subtracted from
-/// the results, so it is included in full.
+/// Possible contributions of drift and repetition to the results of a test, as far as the readings
+/// do not exclude them; expanded (k = 2), m or rad. The estimated drift is not subtracted from the
+/// results, so it is included in full.
 struct DriftShare {
-  double B = 0.0;       ///< contribution to the reversal of the worst target
+  double B = 0.0;       ///< contribution to the largest reversal B_i
   double B_mean = 0.0;  ///< contribution to the mean reversal
   double s = 0.0;  ///< contribution to the largest standard deviation of a target and direction
 };

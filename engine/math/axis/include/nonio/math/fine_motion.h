@@ -32,14 +32,15 @@ struct PeriodicError {
   enum class Answer { given, no_pass, too_short, too_coarse };
   struct Harmonic {
     double amplitude = 0.0;  ///< amplitude c_k, m or rad
-    double phase = 0.0;      ///< rad, 0..2 pi: the first maximum is at phase p/(2 pi k)
-    double u = 0.0;          ///< standard uncertainty of the amplitude
+    /// phase, 0..2 pi rad: the first maximum is at the position phase p/(2 pi k)
+    double phase = 0.0;
+    double u = 0.0;  ///< standard uncertainty of the amplitude
   };
   Answer answer = Answer::no_pass;
   double periods = 0.0;  ///< number of periods in the shortest pass
   double step = 0.0;     ///< widest step of all passes, m or rad
   std::array<Harmonic, 2> harmonics{};
-  /// folded means over one period, m or rad; phases without readings omitted
+  /// means over the readings of one phase, m or rad; phases without readings are omitted
   std::vector<double> folded;
   double range = 0.0;
   double s = 0.0;  ///< standard deviation of a reading about the folded mean; NaN with dof 0
@@ -66,9 +67,9 @@ struct SmallSteps {
     double error = 0.0;  ///< deviation of the step, m: positive if it is too long
     bool first = false;  ///< whether it is the first step after a reversal
     std::uint32_t run = 0;
-    double position = 0.0;        ///< position at its end, m
+    double position = 0.0;        ///< position at the end of the step, m
     int direction = 0;            ///< direction of motion: 1, -1
-    double from = 0.0, to = 0.0;  ///< deviations at its start and end, m
+    double from = 0.0, to = 0.0;  ///< deviations at the start and at the end of the step, m
   };
   Answer answer = Answer::too_few;
   double commanded = 0.0;  ///< commanded size of a step, m

@@ -25,7 +25,7 @@ enum class RuleForm {
 
 /// Confidence in the formula (H, M, L of docs/formulas.md).
 enum class Confidence {
-  proved,    ///< it reproduces the numbers of public reports, or a public text states it
+  proved,    ///< the formula reproduces the numbers of public reports, or a public text states it
   known,     ///< common knowledge of the field, consistent between sources
   inferred,  ///< an interpretation made for this program
 };
@@ -35,8 +35,8 @@ struct PositioningRule {
   std::string_view title;  ///< title with the edition: "ISO 230-2:1988"
   RuleForm form = RuleForm::iso;
   double k = 0.0;  ///< number of standard deviations on each side of a mean; 0: none are used
-  bool systematic = true;       ///< iso: whether the edition has E and M
-  bool without_offset = false;  ///< nmtba: a constant is subtracted first
+  bool systematic = true;       ///< for `iso`: whether the edition defines E and M
+  bool without_offset = false;  ///< for `nmtba`: whether a constant is subtracted from the means
   /// readings required at each target from each direction; 0: not known
   std::size_t approaches = 0;
   Confidence confidence = Confidence::inferred;
@@ -47,19 +47,19 @@ std::span<const PositioningRule> positioning_rules();
 /// Returns the rule of this name; null if there is none.
 const PositioningRule* positioning_rule(std::string_view name);
 
-/// The constant that rules "without offset" subtract: mean of the bidirectional means, that of the
-/// first target, or the middle between the largest and the smallest of them.
+/// The constant that rules "without offset" subtract: mean of the bidirectional means, the mean of
+/// the first target, or the middle between the largest and the smallest mean.
 enum class Offset { mean_of_all, first_target, mid_range };
-/// Returns this constant, m or rad. If only one direction was measured, its means replace the
-/// bidirectional ones. NaN if a target that contributes lacks such a mean, or if there are no
-/// targets.
+/// Returns the constant that rules "without offset" subtract, m or rad. If only one direction was
+/// measured, its means replace the bidirectional ones. NaN if a target that contributes lacks such
+/// a mean, or without targets.
 double offset_of(const AxisStatistics&, Offset);
 
 /// Composition of the uncertainty of a value: U^2 = S^2 (if systematic) + means U_EVE^2/n +
 /// (scatter U_EVE)^2 + band E_VE^2 + (B D_B)^2 + (B_mean D_mean)^2, in the symbols of
 /// uncertainty.h. Unless `systematic`, (2 scatter D_s)^2 is added.
 struct RuleShare {
-  bool systematic = false;  ///< includes the contributions that do not average out
+  bool systematic = false;  ///< whether the contributions that do not average out are included
   double means = 0.0;       ///< coefficient of the variance of a mean of n readings
   double scatter = 0.0;     ///< half of the number of standard deviations in the value
   double band = 0.0;        ///< coefficient of the squared range of the environment
@@ -79,8 +79,8 @@ struct RuleValue {
 std::vector<RuleValue> evaluate_rule(const PositioningRule&, const AxisStatistics&,
                                      Offset = Offset::mean_of_all);
 
-/// Returns the value of R+ or R-, which are 2 k s, for k_to instead of k_from standard deviations.
-/// Nothing if one of these numbers is not above 0, and for all other values, because they contain
+/// Converts a value of R+ or R-, which are 2 k s, from k_from to k_to standard deviations. Returns
+/// nothing if one of these numbers is not above 0, and for all other values, because they contain
 /// means and cannot be converted without the readings.
 std::optional<double> converted(std::string_view name, double value, double k_from, double k_to);
 

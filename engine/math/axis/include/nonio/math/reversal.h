@@ -17,7 +17,7 @@ namespace nonio::math {
 /// docs/dev/constants.md A3 to A5).
 struct Reversal {
   enum class Kind {
-    unknown,      ///< not both directions at every target, or one run does not allow a decision
+    unknown,      ///< a target lacks one direction, or one run does not allow a decision
     none,         ///< not distinguishable from zero
     lost_motion,  ///< negative, and constant or at least halved by compensation with one value
     /// positive, and constant or at least halved by one value, whatever the cause
@@ -31,8 +31,9 @@ struct Reversal {
   double u_mean = 0.0;
   double largest = 0.0;       ///< largest reversal, max |B_i|
   double largest_left = 0.0;  ///< max |B_i - B_mean|: remains after compensation by a single value
-  double p_varies = 1.0;      ///< p of the F test whether B_i differ more than the scatter explains
-  double p_mean = 1.0;        ///< p of the t test whether B_mean differs from zero
+  /// p-value of the F test whether the B_i differ more than the scatter explains
+  double p_varies = 1.0;
+  double p_mean = 1.0;  ///< p-value of the t test whether B_mean differs from zero
 
   /// Sinusoids over the angle of a rotary axis. The amplitudes are NaN for a linear axis, or if the
   /// targets do not cover the turn.
@@ -44,7 +45,8 @@ struct Reversal {
 };
 
 /// Assesses the reversal. Range: both directions at every target, otherwise `kind` is unknown and
-/// the lengths are NaN; sinusoids of rotary axes need 5 angles and no gap above 120 deg. No errors.
+/// the deviations (`mean`, `u_mean`, `largest`, `largest_left`) are NaN; sinusoids of rotary axes
+/// need 5 angles and no gap above 120 deg. No errors.
 Reversal assess_reversal(const AxisTest& test);
 
 }  // namespace nonio::math

@@ -26,7 +26,8 @@ struct VdiPoint {
 ///
 ///     P    max(xs_j + (U_j + Ps_j)/2) - min(xs_j - (U_j + Ps_j)/2)
 ///     Pa   max xs_j - min xs_j                               M of ISO 230-2
-///     P+   max(xm_j+ + 3 S_j+) - min(xm_j+ - 3 S_j+)    Pa+ = max xm_j+ - min xm_j+; likewise -
+///     P+   max(xm_j+ + 3 S_j+) - min(xm_j+ - 3 S_j+)             P- in the same way
+///     Pa+  max xm_j+ - min xm_j+                                     Pa- in the same way
 struct VdiResult {
   std::vector<VdiPoint> points;
   double P, Pa, Ps_max, Ps_mean, U_max, U_mean;

@@ -12,15 +12,15 @@
 
 #include "nonio/sdk/error.h"
 
-/// Circular paths (ISO 230-4): their deviations, and the causes of them.
+/// Deviations of circular paths (ISO 230-4), and their causes.
 ///
-/// t: angle from the first axis of the plane towards the second (X, Y; Y, Z; Z, X), rad; r(t):
+/// t: angle from the first axis of the plane toward the second (X, Y; Y, Z; Z, X), rad; r(t):
 /// radial deviation from the commanded radius R, m; d = +1 counter-clockwise, -1 clockwise. Causes,
 /// to first order (u: first axis, v: second):
 ///
 ///     a cos t + b sin t + r0                              set-up, radius
 ///     + (eu - ev) R/2 cos 2t                              scale mismatch
-///     - g R/2 sin 2t                                      squareness: g > 0 turns +v towards -u
+///     - g R/2 sin 2t                                      squareness: g > 0 turns +v toward -u
 ///     + d w/2 sin 2t                                      servo mismatch, w = F (1/Kvu - 1/Kvv)
 ///     - d Bu/2 sgn(sin t) cos t + d Bv/2 sgn(cos t) sin t reversal (B < 0: lost motion)
 ///     - d Lu/2 sgn(sin t) sin t + d Lv/2 sgn(cos t) cos t lateral play: v moves when u reverses
@@ -39,14 +39,14 @@ struct CircleReading {
   std::uint32_t run = 1;
 };
 
-/// Distances of the readings of a path from one centre, m. The centre is relative to the commanded
+/// Distances of the readings of a path from one center, m. The center is relative to the commanded
 /// one.
 struct PathCircle {
   std::array<double, 2> centre{};
-  /// Mean distance from the centre, minus R. For the least-squares circle, it is the deviation of
+  /// Mean distance from the center, minus R. For the least-squares circle, it is the deviation of
   /// its radius.
   double radius = 0.0;
-  double inner = 0.0, outer = 0.0;  ///< smallest and largest distance from the centre, minus R
+  double inner = 0.0, outer = 0.0;  ///< smallest and largest distance from the center, minus R
   std::size_t innermost = 0, outermost = 0;  ///< indices of the nearest and the farthest reading
   double width() const { return outer - inner; }
 };
@@ -56,12 +56,12 @@ PathCircle least_squares_circle(std::span<const CircleReading>, double R);
 /// Returns the pair of concentric circles with the smallest radial distance that contains the path;
 /// for fewer than four readings, the least-squares circle.
 PathCircle minimum_zone(std::span<const CircleReading>, double R);
-/// Returns the mean, smallest and largest distance of the path from a given centre.
+/// Returns the mean, smallest and largest distance of the path from a given center.
 PathCircle about(std::span<const CircleReading>, double R, std::array<double, 2> centre);
 
-/// H, m: largest difference between the radii of the two directions at one angle, and this angle,
-/// rad. `circular_hysteresis` returns nothing if no angle has radii of both directions. It
-/// interpolates between readings that are at most `step`, rad, apart.
+/// Circular hysteresis H, m: largest difference between the radii of the two directions at one
+/// angle, and this angle, rad. `circular_hysteresis` returns nothing if no angle has radii of both
+/// directions. It interpolates between readings that are at most `step`, rad, apart.
 struct Hysteresis {
   double H = 0.0, angle = 0.0;
 };
@@ -92,13 +92,13 @@ constexpr std::size_t cause_count = static_cast<std::size_t>(Cause::count);
 
 struct CircleModel {
   double R = 0.0;                          ///< commanded radius, m
-  std::array<double, 2> centre{};          ///< centre in machine coordinates, m
+  std::array<double, 2> centre{};          ///< center in machine coordinates, m
   std::array<double, 2> pitch{};           ///< pitches of the drives, m; 0: not known
   std::array<bool, cause_count> wanted{};  ///< causes to be fitted; set by `all_causes`
   /// readings within this angle on both sides of a reversal are omitted, rad
   double leave_out = 0.0;
-  bool correlated = true;  ///< false: noise at adjacent angles is treated as independent
-  /// Whether a reading at this angle is too close to a reversal for the fit.
+  bool correlated = true;  ///< if false, noise at adjacent angles is treated as independent
+  /// Returns whether a reading at this angle is too close to a reversal for the fit.
   bool leaves_out(double angle) const;
 };
 /// Sets `wanted` to all causes except those that the readings cannot determine: zero change and
@@ -170,7 +170,8 @@ class CircleNoise {
 
  private:
   struct From {
-    std::size_t first = 0, count = 0, place = 0;  ///< range of residuals_, index in this range
+    /// range of residuals_: start and length; index within this range
+    std::size_t first = 0, count = 0, place = 0;
   };
   std::vector<CircleReading> truth_;
   std::vector<From> from_;  ///< where `residuals_` contains the residual of each reading
@@ -183,7 +184,7 @@ class CircleNoise {
 struct Spike {
   double at = 0.0;  ///< angle of the reversal, rad
   int direction = 1;
-  bool of_v = false;                 ///< whether the second axis reverses there
+  bool of_v = false;                 ///< whether the second axis reverses at this angle
   double height = 0.0, width = 0.0;  ///< height, m; width at half height, rad
   double u = 0.0;                    ///< standard uncertainty of the height
 };

@@ -29,7 +29,8 @@ struct ErrorCurve {
   /// Returns the mean of plus - minus over the positions; 0 if only one direction was measured.
   double mean_reversal() const;
 
-  /// Interpolates linearly between the points; outside, the end value is used.
+  /// Interpolates linearly between the points, and returns the end value outside. NaN without
+  /// points.
   static double at(const std::vector<double>& position, const std::vector<double>& value, double x);
 };
 
@@ -53,10 +54,10 @@ struct Grid {
 
 /// The requirements of a control for equidistant points.
 struct GridRule {
-  double unit = 1e-7;           ///< m or rad; first and step must be integer multiples of it
+  double unit = 1e-7;           ///< m or rad; first and step must be integer multiples of this unit
   std::size_t most = 200;       ///< largest number of points that the control accepts
-  double step = 0.0;            ///< step requested by the user; 0: chosen here
-  std::optional<double> first;  ///< first point requested by the user; else the start of the curve
+  double step = 0.0;            ///< step requested by the user; 0: `choose_grid` chooses it
+  std::optional<double> first;  ///< first point requested by the user; absent: start of the curve
   /// position that must be a point of the grid (a reference position)
   std::optional<double> anchor;
   bool turn = false;          ///< whether the curve is a closed turn, which the step must divide
@@ -65,9 +66,10 @@ struct GridRule {
   std::string axis;           ///< for error messages: name of the axis
 };
 
-/// Returns the grid of the requested step. Without one, it is the coarsest grid that contains every
-/// position of the curve, unless that is much finer than they are; else a grid of about half their
-/// smallest distance, on which the curve is interpolated. Errors name the axis: fewer than 2
+/// Returns the grid of the requested step. If no step is requested, it is the grid of the targets
+/// if they are evenly spaced; otherwise the coarsest grid that contains every position of the
+/// curve, unless its step is less than 1/8 of their mean distance; otherwise a grid of about half
+/// their smallest distance, on which the curve is interpolated. Errors name the axis: fewer than 2
 /// targets or points; a first point after the last target; a requested step that is not an integer
 /// multiple of `unit`, does not divide the turn or is not a power of two; more points than the
 /// control accepts, with a suggestion.
@@ -76,12 +78,12 @@ Expected<Grid> choose_grid(const std::vector<double>& position, const GridRule& 
 /// Rounds each value to an integer number of `unit` (half away from zero, to 12 digits: 2.5 um is a
 /// tie). unit > 0; quotients within the range of std::int64_t.
 std::vector<std::int64_t> quantised(std::span<const double> value, double unit);
-/// Returns q[i] - q[i-1], one less than there are values. Rounding the absolute curve first keeps
+/// Returns q[i] - q[i-1], one value fewer than `absolute`. Rounding the absolute curve first keeps
 /// the sum of the increments within half a unit of the curve at every point.
 std::vector<std::int64_t> increments(std::span<const std::int64_t> absolute);
 
-/// Function that returns what a control adds to position `x`, approached in `direction` (+1, -1); m
-/// or rad.
+/// Function that returns what a control adds to position `x` if it is approached in `direction`
+/// (+1, -1); m or rad.
 using Correction = std::function<double(double x, int direction)>;
 
 /// Mean deviations at the positions of a curve, and their values according to ISO 230-2.

@@ -14,25 +14,25 @@
 /// Effect of tables that a control has loaded.
 namespace nonio::math {
 
-/// Returns c(x): what the table adds at position `at` of its inputs, moving towards `direction`
+/// Returns c(x): what the table adds at position `at` of its inputs, moving toward `direction`
 /// (+1, -1), m or rad. Between points k and k + 1 of one input
 ///
 ///     c(x) = c_k + (c_(k+1) - c_k) (x - x_k)/(x_(k+1) - x_k)
 ///
-/// with two inputs likewise in each of them; outside of the points as the table states (`outside`).
-/// Source: the control's manual or code, with its confidence in plugins/controllers/*/README.md.
-/// Range: what `validate_table` accepts.
+/// With two inputs, c is linear in each of them. Outside of the points, `LoadedTable::outside`
+/// applies. Source: the control's manual or code, with its confidence in
+/// plugins/controllers/*/README.md. Range: tables that `validate_table` accepts.
 double added(const LoadedTable& table, std::span<const double> at, int direction);
 
 /// Returns the sum that all tables add to `output` if the axes are at `at`; a table with an input
-/// that is not in `at` adds nothing. An axis that is not in `direction` moves towards +.
+/// that is not in `at` adds nothing. An axis that is not in `direction` moves toward +.
 double added(const std::vector<LoadedTable>& tables, std::string_view output,
              const std::map<std::string, double>& at, const std::map<std::string, int>& direction);
 
 /// Returns the correction of one axis as a function of its own position: the sum of the tables
 /// whose only input is this axis, plus half of the backlash value for motion in direction +, minus
-/// half of it for motion in direction -. `present`: backlash value in the control if no table sets
-/// it. Nothing if there is no such table.
+/// half of it for motion in direction -. `present`: backlash value in the control, which applies if
+/// no table sets one. Nothing if no such table exists.
 std::optional<Correction> correction_of(const std::vector<LoadedTable>& tables,
                                         std::string_view axis, double present = 0.0);
 

@@ -19,8 +19,8 @@ struct AxisAnalysis {
   std::string axis;
   AxisTest test;
   std::optional<Budget> budget;
-  std::size_t approaches = 0;     ///< smallest number of readings in a mean
-  std::vector<Finding> findings;  ///< findings common to all standards
+  std::size_t approaches = 0;  ///< smallest number of readings in a mean
+  std::vector<Finding> findings;
   Quantity deviation = Quantity::deviation, position = Quantity::length;
 };
 
@@ -32,8 +32,8 @@ Expected<AxisAnalysis> begin_axis_analysis(const AnalysisInput&);
 /// in a difference.
 enum class Made { of_all, of_environment };
 
-/// Adds a value, with U if the budget is known and U is above 0; its composition is then recorded
-/// in the budget. A value that is not finite is omitted.
+/// Adds a value, with U if the budget is known and U is above 0. The contributions to U are then
+/// recorded in the budget. A value that is not finite is omitted.
 void add_value(Evaluation&, const AxisAnalysis&, std::string name, double value, double U, Made);
 
 }  // namespace nonio::math

@@ -42,11 +42,13 @@ void plan_findings(const AxisTest&, const Observations&, const Axis* axis, std::
 /// A is not determined). It is also relevant if neither is determined.
 bool matters(const AxisTest&, double size);
 
-/// Whether the expanded uncertainty U is less than half of the mean reversal. Only then does a
-/// backlash value derived from it improve the machine more than its error can impair it.
+/// Returns whether the expanded uncertainty U is less than half of the mean reversal. Only then
+/// does a backlash value derived from the mean improve the machine more than its error can impair
+/// it.
 bool is_reversal_known(double mean, double U);
 
-/// Whether the scatter of the two directions differs significantly (see repeatability.asymmetric).
+/// Returns whether the scatter of the two directions differs significantly, by the test of the
+/// finding repeatability.asymmetric.
 bool scatter_is_asymmetric(const AxisTest&);
 
 /// Indices of targets that do not contribute to every value. `unpaired`: not approached from every
@@ -59,15 +61,15 @@ struct Incomplete {
 Incomplete incomplete_targets(const AxisTest&);
 
 /// Returns the test to be evaluated. It contains all targets, or if `leave_out`, only those that
-/// contribute to every value, provided that at least two of them exist. If there are others,
-/// findings are added that list them and state their treatment.
+/// contribute to every value, provided that at least two of them exist. If some targets do not
+/// contribute to every value, findings list them and state their treatment.
 AxisTest choose_targets(const AxisTest&, bool leave_out, std::vector<Finding>&);
 
 /// Returns the finding `uncertainty.budget` (`uncertainty.budget-angle` for a rotary axis) with the
 /// contributions, or if there is no budget, `uncertainty.no-data` with the missing keys.
 Finding budget_finding(const BudgetOrGap&, bool rotary);
 
-/// Returns the positions of these targets, of at most the first 12, as text: "100; 250 mm".
+/// Returns the positions of these targets, at most the first 12, as text: "100; 250 mm".
 std::string target_list(const AxisTest&, const std::vector<std::size_t>& targets);
 
 }  // namespace nonio::math

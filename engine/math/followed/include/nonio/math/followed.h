@@ -87,7 +87,7 @@ struct OtherTargets {
 
 struct FollowedAxis {
   std::vector<Followed> quantities;
-  /// Covariance of the `u` of quantities i and j at i * n + j; SI.
+  /// Covariance of the errors of quantities i and j (see `Followed::u`), at i * n + j; SI.
   std::vector<double> covariance;
   /// Manifest keys that are not stated, so that `u` of scale lacks their contributions.
   std::vector<std::string> not_stated;

@@ -27,14 +27,15 @@ struct Difference {
   Quantity quantity = Quantity::deviation;
   /// standard uncertainty by repetition; dof 0: not known, so U is not given
   double u = 0.0, dof = INFINITY;
-  double from = 0.0, to = 0.0;  ///< the two deviations whose difference is the value, m
-  double scale = 0.0;   ///< ratio of the value to that difference; 0: the gain does not affect it
-  double length = 0.0;  ///< length measured by a beam, m
-  bool with_ball = false;  ///< the value contains the form error of the ball
+  double from = 0.0, to = 0.0;  ///< the two deviations from which the value is computed, m
+  double scale = 0.0;           ///< value/(to - from); 0: the gain does not affect it
+  double length = 0.0;          ///< length measured by a beam, m
+  bool with_ball = false;       ///< whether the value contains the form error of the ball
 };
 
 /// Adds the values with U, the budget, and a finding about missing data. A value that contains the
-/// form error of a ball which is not stated (instrument.sphere_um) gets its repeatability only.
+/// form error of a ball has only a repeatability if this error is not stated
+/// (instrument.sphere_um).
 void put_differences(const Campaign&, const std::vector<Difference>&, Evaluation& out);
 
 }  // namespace nonio::math

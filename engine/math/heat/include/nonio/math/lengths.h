@@ -16,7 +16,7 @@
 ///     E = measured - calibrated length, with its sign  E0 without, EL with an offset of the stylus
 ///     MPE(L) = min(A + L/K, B)                         L the calibrated length
 ///     R0 = largest range of the repeats of one length
-///     P = largest - smallest radial distance of the points from the centre of the least-squares
+///     P = largest - smallest radial distance of the points from the center of the least-squares
 ///         sphere
 ///
 /// Decision (decision.h) for each error with its U(L), guard band g of the rule (ISO 14253-1:2017:
@@ -72,7 +72,7 @@ std::optional<RepeatRange> repeat_range(const std::vector<LengthError>& all);
 /// Number of positions, lengths and repeats of a test, compared with the required seven, five and
 /// three.
 struct LengthPlan {
-  /// lengths and repeats: smallest number of any position
+  /// for lengths and repeats: smallest number at any position
   std::size_t positions = 0, lengths = 0, repeats = 0;
   bool whole() const { return positions >= 7 && lengths >= 5 && repeats >= 3; }
 };

@@ -21,7 +21,7 @@
 ///
 /// Donaldson reversal: T1 is read before and T2 after ball and sensor are turned by half a turn.
 /// The error of the spindle is S = (T1 - T2)/2 and that of the ball P = (T1 + T2)/2; a reading is
-/// positive if the surface of the ball moves towards the sensor. Multi-step: the ball is turned to
+/// positive if the surface of the ball moves toward the sensor. Multi-step: the ball is turned to
 /// K positions k 360/K while the sensor is at rest, and S is the mean of the readings T_k;
 /// components of the ball with K, 2K, ... waves per turn remain in S.
 ///
@@ -39,7 +39,8 @@ struct SpindleTrack {
 struct Turns {
   std::size_t n = 0, N = 0;
   std::vector<double> r;
-  bool resampled = false;  ///< interpolated by a cubic through the four nearest readings
+  /// whether r is interpolated, by a cubic through the four nearest readings
+  bool resampled = false;
   double angle(std::size_t i) const;
 };
 
@@ -48,7 +49,7 @@ struct Turns {
 std::optional<Turns> turns_of(const SpindleTrack&);
 
 /// Returns r = X cos t + Y sin t, if t grows from X to Y; for `sense` -1, t grows from X to -Y, r =
-/// X cos t - Y sin t. None if the turns of both differ.
+/// X cos t - Y sin t. Returns nothing if X and Y differ in the number of turns or of angles.
 std::optional<Turns> rotating(const Turns& X, const Turns& Y, int sense = 1);
 
 struct ErrorMotion {

@@ -45,8 +45,8 @@ std::optional<RangeOf> first_range(const Track&, double w);
 std::optional<RangeOf> largest_range(const Track&, double w);
 
 /// Standard deviation of a reading from second differences, s^2 = sum (d_(i-1) - 2 d_i +
-/// d_(i+1))^2/(6 (n - 2)): a course that is smooth over three readings cancels. Uneven time steps
-/// are taken into account.
+/// d_(i+1))^2/(6 (n - 2)): a displacement that is linear over three readings cancels. Uneven time
+/// steps are taken into account.
 struct ReadingNoise {
   double s = 0.0;
   double dof = 0.0;  ///< 18/35 (n - 2), for the variance of second differences; 0: too few
@@ -65,7 +65,7 @@ struct TimeConstants {
     too_few,     ///< fewer than twelve readings, or intervals with readings
     none,        ///< the displacement is not exponential: c is not significant
     too_short,   ///< a time constant is above half of the test
-    unresolved,  ///< u of a time constant is above a quarter of it
+    unresolved,  ///< the standard uncertainty of a time constant is above a quarter of its value
   };
   struct Part {
     double c = 0.0, tau = 0.0, u_c = 0.0, u_tau = 0.0;
@@ -93,7 +93,7 @@ struct TimeConstants {
   Time settled(double limit) const;
 };
 
-/// Fits time constants; times count from the first reading. The correlation of the noise is
+/// Fits time constants; times are relative to the first reading. The correlation of the noise is
 /// estimated together with the curve (REML).
 TimeConstants time_constants(const Track&);
 
@@ -113,7 +113,7 @@ struct InTime {
 InTime in_time(const Observations&, std::vector<std::size_t> rows);
 
 /// Returns the readings of an axis that moves in cycles, for each target and side, ascending; times
-/// count from the first reading. Targets that were read only once are omitted.
+/// are relative to the first reading. Targets that were read only once are omitted.
 std::vector<Visits> visits_of(const Observations&);
 
 /// Returns the growth over time, m/m: for each cycle that contains every target, the slope over the

@@ -13,8 +13,8 @@ namespace nonio::math {
 
 struct MeasuringMove {
   std::vector<double> to;  ///< target position of each axis of the path
-  double dwell = 0.0;  ///< time at rest, s, in which the instrument reads; 0: a point of reversal
-  bool stop = false;   ///< whether the program then waits for the operator
+  double dwell = 0.0;      ///< time at rest for the reading, s; 0 for a point of reversal
+  bool stop = false;       ///< whether the program then waits for the operator
 };
 
 struct MeasuringPath {
@@ -31,7 +31,7 @@ struct MeasuringRequest {
   /// the direction of each pass
   double over_travel = 0.0;
   bool both_directions = true;
-  double resolution = 1e-6;  ///< the over-travel is an integer multiple of it
+  double resolution = 1e-6;  ///< the over-travel is an integer multiple of `resolution`, m or rad
 };
 
 /// Targets of an axis test: P_i = first + (i - 1) p + r_i for `points` targets, with p the even
@@ -53,9 +53,9 @@ struct AxisTargets {
 };
 Expected<std::vector<double>> axis_targets(const AxisTargets& wish);
 
-/// Returns the number of targets that ISO 230-2 requires for a linear axis: five per metre up to 2
-/// m and at least five, above 2 m one every 250 mm. length: m, above 0. Source: its test plan
-/// (docs/formulas.md, M).
+/// Returns the number of targets that ISO 230-2 requires for a linear axis: five per meter up to 2
+/// m and at least five, above 2 m one every 250 mm. length: m, above 0. Source: test plan of the
+/// standard (docs/formulas.md, confidence M).
 int axis_points(double length);
 /// Returns the number of targets that ISO 230-2 requires for a rotary axis: 3, 5, 8 for up to 90,
 /// 180, 360 deg; 8 per turn above. angle: rad.
@@ -64,8 +64,8 @@ int rotary_points(double angle);
 /// of the range, rad.
 std::vector<double> cardinal_angles(double first, double last);
 
-/// Returns the path of an axis test; each run: all targets upwards, and downwards if both
-/// directions are requested.
+/// Returns the path of an axis test. Each run contains all targets upwards, and then downwards if
+/// both directions are requested.
 MeasuringPath axis_path(const std::string& axis, bool rotary, const std::vector<double>& targets,
                         const MeasuringRequest& wish);
 
@@ -87,9 +87,9 @@ std::vector<MeasuringPath> diagonal_paths(const Rectangle& r, const MeasuringReq
 /// along X. `r.n` must be even.
 MeasuringPath half_diagonal_path(const Rectangle& r, const MeasuringRequest& wish);
 
-/// Step diagonals PPP NPP PNP PPN (P: the axis moves upwards, N: downwards): step in X, then Y,
-/// then Z, a reading after each, n times. Three axes in the order of the steps. Readings are taken
-/// only from the start to the end of a diagonal, not on the way back.
+/// Step diagonals PPP NPP PNP PPN (P: the axis moves upwards, N: downwards): a step in X, one in Y
+/// and one in Z, with a reading after each, n times. `axes`: in the order of the steps. Readings
+/// are taken only from the start to the end of a diagonal, not on the way back.
 struct Volume {
   std::vector<std::string> axes;
   std::vector<double> from, step;

@@ -51,16 +51,16 @@ enum class EvenSteps : std::uint8_t {
 struct TripleRequest {
   double x = 0.0, y = 0.0;   ///< travel of each axis, m
   double over_travel = 0.0;  ///< reserve at each end of both axes, m
-  double resolution = 1e-3;  ///< r, m; steps are whole multiples of it
-  /// Resolution of the steps of each axis, m; 0: `resolution`, which otherwise applies to the
+  double resolution = 1e-3;  ///< r, m; steps are integer multiples of r
+  /// Resolution of the steps of each axis, m; 0: `resolution`, which always applies to the
   /// diagonal.
   double resolution_x = 0.0, resolution_y = 0.0;
   double largest_step = 0.0;  ///< largest step of either axis, m; 0: no limit
   std::int64_t max_points = 1500;
-  /// periods of screw, rack, scale, m: no step may be a multiple of them
+  /// periods of screw, rack or scale, m; no step may be a multiple of a period
   std::vector<double> pitch_x{}, pitch_y{};
-  /// Require the sampling of ISO 230-2: five targets per metre on an axis of up to 2 m, above at
-  /// most 250 mm between targets.
+  /// Whether the sampling of ISO 230-2 is required: five targets per meter on an axis of up to 2 m,
+  /// otherwise at most 250 mm between targets.
   bool density = false;
   EvenSteps even = EvenSteps::any;
   std::int64_t hypotenuse = 5000;
@@ -68,7 +68,7 @@ struct TripleRequest {
 };
 
 enum class TripleReason : std::uint8_t {
-  best,           ///< largest coverage of the worse axis; then area, fewest stops, smallest c
+  best,           ///< largest coverage of the worse axis; if equal, area, number of stops, c
   area,           ///< the largest measured rectangle
   even,           ///< the best plan with an even number of steps
   dense,          ///< the best plan with the sampling of ISO 230-2
@@ -98,12 +98,12 @@ struct TriplePlan {
   double gain_EXY() const { return length_d / (2.0 * length_x); }
   double gain_EYX_even() const;
   double gain_EXY_even() const;
-  /// Whether a straightness would have more than three times the scatter of a reading.
+  /// Returns whether a straightness would have more than three times the scatter of a reading.
   bool flat() const { return gain_EYX() > 3.0 || gain_EXY() > 3.0; }
 };
 
 enum class TripleLimit : std::uint8_t {
-  travel,  ///< the travel is shorter than five points of the smallest triple
+  travel,  ///< the travel is too short for four steps of the smallest triple
   largest_step,
   max_points,
   pitch,
@@ -114,9 +114,9 @@ enum class TripleLimit : std::uint8_t {
 
 struct TriplePlans {
   std::vector<TriplePlan> plans;  ///< the best first; empty if no plan fits
-  /// Reason if no plan fits: each limit whose removal alone would allow a plan, or `travel` if no
-  /// plan fits even without all limits. Otherwise `together` contains all limits of the request,
-  /// because only their combination excludes every plan.
+  /// Reason if no plan fits: each limit whose removal alone (for max_points and hypotenuse: a
+  /// factor of 20) would allow a plan, or `travel` if no plan fits even without all limits. If only
+  /// their combination excludes every plan, `together` contains all limits of the request.
   std::vector<TripleLimit> blocked_by, together;
   std::int64_t tried = 0;  ///< number of plans that were examined
 };
@@ -135,16 +135,17 @@ struct MeasuringCost {
 /// Returns the duration of measuring X, Y and both diagonals, forward and back in each run, s.
 double measuring_time(const TriplePlan&, const MeasuringCost&);
 
-/// Returns, for each triple and order of its legs, the cheapest plan that covers at least
-/// `least_cover` of both axes; for each number of steps the largest step that fits is tried. Empty
-/// if there is none. Error: the request is invalid, or there are more than `most_tried` plans.
+/// Returns, for each triple and order of its legs, the plan with the shortest `measuring_time` that
+/// covers at least `least_cover` of both axes. For each number of steps, only the largest step that
+/// fits is tried. Empty if no plan fits. Error: the request is invalid, or there are more than
+/// `most_tried` plans.
 Expected<std::vector<TriplePlan>> cheapest_plans(const TripleRequest& wish, double least_cover,
                                                  const MeasuringCost&);
 
 /// Returns a table with one row per plan, with the documented column names and the noise gains.
 PointTable triple_table(const std::vector<TriplePlan>& plans);
 
-/// Whether `one` ranks before `other` in the order of preference.
+/// Returns whether `one` ranks before `other` in the order of preference.
 bool comes_before(const TriplePlan& one, const TriplePlan& other, EvenSteps even);
 
 }  // namespace nonio::math

@@ -9,7 +9,7 @@
 #include "nonio/math/rotary.h"
 #include "nonio/sdk/error.h"
 
-/// The rotary axes of one machine as one chain, from centres of a ball at several positions of all
+/// The rotary axes of one machine as one chain, from centers of a ball at several positions of all
 /// axes: one least-squares fit with exact rotations.
 ///
 ///     M = T(q) - H(t)          reading of the linear axes with the probe on the ball
@@ -64,7 +64,7 @@ enum class ChainRefusal {
   /// a number of a reading is not finite, a coordinate is beyond 1e6 m, a weight is not above 0, or
   /// a count of angles or an index of a ball or tool does not match the chain
   not_finite,
-  too_few,         ///< there is no axis, or no degree of freedom
+  too_few,         ///< fewer than two readings, no axis, or no degree of freedom
   not_converging,  ///< no start converges
   ambiguous,       ///< two chains with different directions fit equally well
 };
@@ -73,7 +73,7 @@ struct ChainFit {
   ChainState state;
   std::vector<Vector3> residual;
   double s = 0.0;
-  int dof = 0;  ///< three for each reading, minus the rank
+  int dof = 0;  ///< degrees of freedom: three for each reading, minus the rank
   std::size_t unknowns = 0, rank = 0;
   /// singular values of all unknowns, relative to the largest, in descending order
   std::vector<double> singular;

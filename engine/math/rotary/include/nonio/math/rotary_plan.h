@@ -9,13 +9,13 @@
 
 /// Predicted uncertainties of a rotary axis for a plan of ball positions, before the measurement.
 ///
-/// N equal steps over an arc of radius R; every coordinate of a centre has the independent standard
+/// N equal steps over an arc of radius R; every coordinate of a center has the independent standard
 /// uncertainty sigma. For a full turn, from the covariance of the fit:
 ///
 ///     across the axis, each   sigma sqrt(2/N)     along it   sigma/sqrt N    (both without R)
 ///     tilt, each              sigma sqrt(2/N)/R
 ///
-/// Two positions half a turn apart determine the centre with sigma/sqrt 2 in each coordinate, and
+/// Two positions half a turn apart determine the center with sigma/sqrt 2 in each coordinate, and
 /// no direction. Derived, docs/formulas.md; tests contain reference values for R = 500, 50 and N =
 /// 3, 4, 5, 10.
 namespace nonio::math {
@@ -30,11 +30,12 @@ struct RotaryPlan {
 
 /// Uncertainty of the fitted axis relative to the true one; m, rad.
 struct RotaryPlanU {
-  double across = 0.0;         ///< standard uncertainty of the worse coordinate across the axis
+  /// largest standard uncertainty perpendicular to the axis, over all directions
+  double across = 0.0;
   double along = 0.0;          ///< standard uncertainty of the coordinate along the axis
-  double centre_rms = 0.0;     ///< root mean square distance between fitted and true centre
-  double centre_mean = 0.0;    ///< mean distance between fitted and true centre
-  double tilt = 0.0;           ///< standard uncertainty of the worse tilt
+  double centre_rms = 0.0;     ///< root mean square distance between fitted and true center
+  double centre_mean = 0.0;    ///< mean distance between fitted and true center
+  double tilt = 0.0;           ///< largest standard uncertainty of the tilt, over all directions
   double direction_rms = 0.0;  ///< root mean square angle between fitted and true axis
   double direction_mean = 0.0;
 };
@@ -47,7 +48,7 @@ Expected<RotaryPlanU> simulated(const RotaryPlan&, std::size_t trials, std::uint
 /// direction_mean, which are 0. Errors: as `simulated`, except for the trials.
 Expected<RotaryPlanU> expected_of(const RotaryPlan&);
 
-/// Returns the smallest number of balls with which 2 u of the centre (across) and of the direction
+/// Returns the smallest number of balls with which 2 u of the center (across) and of the direction
 /// (tilt) do not exceed these limits, m and rad (0: no limit). Errors: `most` balls are not
 /// sufficient, or `expected_of` reports an error.
 Expected<std::size_t> cheapest(RotaryPlan, double U_centre, double U_direction,

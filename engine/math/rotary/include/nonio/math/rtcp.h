@@ -8,7 +8,7 @@
 #include "nonio/math/rotary.h"
 #include "nonio/sdk/error.h"
 
-/// Errors of a control's rotary axis, from readings while it turns with tool centre point control
+/// Errors of a control's rotary axis, from readings while it turns with tool center point control
 /// active (RTCP, TRAORI, M128): position of the tool relative to the workpiece, minus the commanded
 /// one.
 ///
@@ -34,7 +34,7 @@ struct RtcpReading {
   Vector3 sense{};     ///< direction of sensing, unit vector
   double deviation = 0.0;
   std::size_t line = 0;   ///< index of the line; readings of one line share a zero
-  bool has_zero = false;  ///< the zero is known: a probe
+  bool has_zero = false;  ///< whether the zero is known, as that of a probe
 };
 
 enum class RtcpRefusal {
@@ -50,8 +50,8 @@ inline constexpr double rtcp_circle = 20e-6;
 
 /// Assumptions of the evaluation.
 struct RtcpWish {
-  bool head = false;        ///< the axis carries the tool
-  bool ball_known = false;  ///< d is 0, within its stated uncertainty
+  bool head = false;        ///< whether the axis carries the tool
+  bool ball_known = false;  ///< whether d is 0, within its stated uncertainty
 };
 
 struct RtcpFit {
@@ -60,7 +60,8 @@ struct RtcpFit {
   std::array<double, 4> value{};            ///< a, b: m; p, q: rad
   std::array<bool, 4> identifiable{};
   std::array<bool, 4>
-      identifiable_with_ball{};  ///< would be identifiable if the position of the ball were known
+      /// whether each would be identifiable if the position of the ball were known
+      identifiable_with_ball{};
   /// Derivatives of a, b, p, q by the readings.
   std::array<std::vector<double>, 4> by{};
   std::vector<double> residual;

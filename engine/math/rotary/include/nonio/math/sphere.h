@@ -8,14 +8,14 @@
 
 #include "nonio/sdk/error.h"
 
-/// The centre of a ball from points touched by a probe.
+/// The center of a ball from points touched by a probe.
 ///
 ///     start   2 c.P + (r^2 - |c|^2) = |P|^2, linear least squares in c and the bracket
 ///     fit     Gauss-Newton on e_i = |P_i - c| - r with J = [-(P_i - c)/|P_i - c|, -1]; with a
 ///             stated radius without the last column
 ///     cov     s^2 (J'J)^-1, s^2 = sum e^2 / dof, dof = N - 4, or N - 3 with a stated radius
 ///
-/// Symbols: P_i touched point (centre of the stylus), c centre, m; r radius of ball and stylus
+/// Symbols: P_i touched point (center of the stylus), c center, m; r radius of ball and stylus
 /// together, m. Source: A. B. Forbes, Least-squares best-fit geometric elements, NPL Report DITC
 /// 140/89 (1991). Range: coordinates up to 1e6 m; points of equal accuracy, scatter much smaller
 /// than the radius.
@@ -24,7 +24,7 @@ namespace nonio::math {
 struct SphereFit {
   std::array<double, 3> centre{};
   double radius = 0.0;
-  std::array<double, 3> cofactor{};  ///< variance of each coordinate of the centre for s = 1 m
+  std::array<double, 3> cofactor{};  ///< variance of each coordinate of the center for s = 1 m
   double rss = 0.0;                  ///< residual sum of squares, m^2
   int dof = 0;
   std::vector<double> residual;  ///< residual of each point, m

@@ -5,8 +5,8 @@
 
 namespace nonio::math {
 
-/// Returns xm = sum x_i/n plus the mean of x_i - xm: in two steps, so that a large common offset
-/// does not cost digits. In the unit of x. NaN for an empty list.
+/// Returns the arithmetic mean, in the unit of x; NaN for an empty list. It is computed in two
+/// steps, so that a large common offset causes no loss of precision.
 double mean(std::span<const double> x);
 /// Returns sqrt(sum (x_i - xm)^2/(n - 1)), in the unit of x; NaN for fewer than two values.
 double standard_deviation(std::span<const double> x);

@@ -18,12 +18,13 @@ namespace nonio::math {
 std::vector<std::string> moving_axes(const Measurement&);
 /// Returns the components of the unit vector from `from` to `to`, in the order of `moving_axes`.
 std::vector<double> direction_along(const Measurement&);
-/// Converts the readings to those of one axis along the diagonal; + is from its first corner to its
-/// second.
+/// Converts the readings to those of one axis along the diagonal. Its positive direction is from
+/// corner `from` to corner `to`.
 Observations along_diagonal(const Observations&, const Measurement&);
 
-/// Computes the uncertainty budget of positioning along the diagonal, or the missing keys. The
-/// machine expands along it as its axes do: sum of c^2 alpha, c: components of its direction.
+/// Computes the uncertainty budget of positioning along the diagonal, or returns the missing keys.
+/// The machine expands along it by the sum of c^2 alpha over the axes, c: components of the
+/// direction.
 BudgetOrGap budget_along(const Campaign&, const Environment&, const Measurement&, const AxisTest&);
 
 }  // namespace nonio::math

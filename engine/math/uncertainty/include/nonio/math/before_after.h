@@ -7,8 +7,8 @@
 
 #include "nonio/math/budget.h"
 
-/// Tests whether a compensation had the intended effect: one line before and after, at the same
-/// stops.
+/// Tests whether a compensation had the intended effect: one line is measured before and after, at
+/// the same stops.
 ///
 /// b_i, a_i: means before and after, each relative to its first stop. A table that compensates the
 /// errors leaves a = f b with f = 0; one that is not active f = 1; one with the wrong sign f = 2.
@@ -17,7 +17,7 @@
 /// from all readings and inputs:
 ///
 ///     chi2 = r' V^-1 r, F = chi2/m with m and nu degrees of freedom
-///     f by generalised least squares: b' V^-1 a/(b' V^-1 b), u^2 = 1/(b' V^-1 b)
+///     f by generalized least squares: b' V^-1 a/(b' V^-1 b), u^2 = 1/(b' V^-1 b)
 ///
 /// A table is not identical to b. It has entries with a step q at points of its own, and is linear
 /// between them; outside it keeps its last value. If a stop is between two points at a distance h,

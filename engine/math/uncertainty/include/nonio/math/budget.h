@@ -12,8 +12,8 @@
 #include "nonio/sdk/observations.h"
 #include "nonio/sdk/results.h"
 
-/// The uncertainty of any result that is fitted to readings: every analysis of several lines fills
-/// its budget here.
+/// Uncertainty budget of results that are fitted to readings; used by every analysis of several
+/// lines.
 ///
 /// A result f depends on the readings y_i with J_i = df/dy_i. An input quantity of standard
 /// uncertainty u causes errors in the readings, and thereby the error of f:
@@ -24,11 +24,11 @@
 ///     common to the instrument   u_f^2 = u^2 (sum_i J_i)^2,            or with J_i d_i
 ///
 /// d_i: distance of reading i from the zero of its line, if the error grows with the length; m:
-/// readings of a line (for means of several visits the random walk follows the visits). This is J V
-/// J' with the covariance V of the readings; an error that the instrument has in common for all of
-/// them (its scale) cancels in results that do not depend on the scale. If it is not known whether
-/// lines share an error (a sensor that stays in place, a shop with the same temperature for all
-/// lines) the larger value applies: independent per line, or common to all.
+/// readings of a line (for means of several visits the random walk follows the visits). The sum of
+/// all contributions is J V J' with the covariance V of the readings. An error that is common to
+/// the instrument (its scale) cancels in results that do not depend on the scale. If it is not
+/// known whether lines share an error (a sensor that stays in place, a shop with the same
+/// temperature for all lines), the larger value applies: independent per line, or common to all.
 ///
 /// Expanded: U = k u. k: the factor for 95.45 % of a sum of a normal and one rectangular part with
 /// the excess -1.2 sum c^4/u^4 of all rectangular parts c (2 without them, 1.65 for one alone),
@@ -55,9 +55,9 @@ struct BudgetLine {
   std::optional<double> expansion{};  ///< expansion coefficient of the machine along the line, 1/K
   std::string expansion_keys{};       ///< manifest key that is missing for `expansion`
   std::size_t group = 0;  ///< lines of one measurement share errors that are common to a line
-  /// For a fit whose residuals give the repetition: whether this line's readings are among them.
+  /// For a fit whose residuals give the repetition: whether they include those of this line.
   bool in_residuals = true;
-  /// Repetition of one reading, and its degrees of freedom, if they differ between lines.
+  /// Standard uncertainty of a reading by repetition, and its degrees of freedom, if lines differ.
   double u = 0.0, dof = INFINITY;
   /// For readings that are means: one stop of the machine that contributes to a reading.
   struct Visit {
@@ -66,8 +66,8 @@ struct BudgetLine {
     double weight = 1.0;      ///< weight in the mean of that reading
   };
   std::vector<Visit> visits{};  ///< sorted by time; empty: each reading once, one after the other
-  /// Contribution to the variance of one reading of a random walk with variance 1 along the line,
-  /// in the readings from which the repetition was estimated.
+  /// Variance that a random walk with variance 1 along the line contributes to one reading, in the
+  /// readings from which the repetition was estimated.
   double walk_seen = 0.0;
 };
 
@@ -91,7 +91,7 @@ struct ReadingModel {
     Contribution is;
     std::vector<double> of_line;  ///< standard uncertainty by line: m or rad, or per m of length
     /// For an input that is common to a line: the fraction of its variance that is common to all
-    /// lines; absent if it is not known.
+    /// lines; absent if the fraction is not known.
     std::optional<double> together = 0.0;
     /// Standard uncertainty of one reading that this input contributes to the residuals of a fit
     /// (see_residuals).
@@ -117,15 +117,16 @@ struct ReadingModel {
   void see_residuals(std::span<const std::vector<double>> rows, double dof);
 };
 
-/// Returns when each reading was taken, 0 to 1 over all of them: by their times, or if there are
-/// none, run by run, up and then down. The order of the rows is ignored.
+/// Returns when each reading was taken, from 0 to 1 over all of them: by their times, or without
+/// complete times run by run, up and then down. The order of the rows is ignored.
 std::vector<double> reading_times(const Observations&);
 
 /// Returns the inputs that the manifest states. Nothing is assumed for missing keys.
 ReadingModel reading_model(const Campaign&, const Environment&, std::vector<BudgetLine>);
 
-/// Sets the expansion coefficient of the machine along a direction: sum of c^2 alpha over the axes.
-/// If it is not stated for an axis, only `expansion_keys` is set, to the missing key.
+/// Sets the expansion coefficient of the machine along a direction: sum of c^2 alpha over the axes,
+/// c: components of `direction`. If an axis has no stated coefficient, only `expansion_keys` is
+/// set, to the first missing key.
 void put_expansion(BudgetLine&, const Campaign&, std::span<const std::string> axes,
                    std::span<const double> direction);
 
@@ -169,8 +170,8 @@ class BudgetOf {
   std::vector<double> counted(double u_repetition, const Shares&) const;
 
   UncertaintyBudget budget_;
-  std::vector<double> factor_;  ///< for each input: the fraction that the residuals do not contain
-  std::vector<bool> counts_;    ///< for each input: whether it contributes
+  std::vector<double> factor_;  ///< for each input: fraction of u that the residuals do not contain
+  std::vector<bool> counts_;    ///< for each input: whether it is in the budget
   std::vector<bool> each_;      ///< for each input: whether it is independent per reading
   /// fraction of the repetition's variance that inputs independent per reading do not explain
   double unexplained_ = 0.0;

@@ -23,8 +23,8 @@ CompensatedUncertainty compensated_uncertainty(const Campaign&, const Measuremen
 /// m; 0: not known.
 double compensated_uncertainty_along(const Campaign&, const Measurement&, const Observations&);
 
-/// Returns the deviation after compensation to be stated: errors that are not known are not
-/// compensated, so it is at least min(U, before).
+/// Returns the deviation to be stated after compensation: `after`, but at least min(U, before),
+/// because errors below U are not known and therefore not compensated.
 double predicted_after(double before, double after, double U);
 
 }  // namespace nonio::math

@@ -7,11 +7,11 @@
 
 namespace nonio::math {
 
-/// Decides conformity to an upper limit. Default rule, ISO 14253-1:2017: a probability of at least
-/// 95 %, guard band 1.65 u = 0.825 U (k = 2) on both sides; "iso14253-1:2013": guard band U on both
-/// sides; ILAC-G8:09/2019: simple acceptance (4.2.1) and guard band w = U (4.2.2). An empty rule is
-/// the default one. Without a finite value and U, the result is indeterminate. Confidence in the
-/// interpretation: medium.
+/// Decides conformity to an upper limit. The default rule, also if `rule` is empty, is ISO
+/// 14253-1:2017 with a probability of at least 95 %: guard band 1.65 u = 0.825 U (k = 2) on both
+/// sides. "iso14253-1:2013" has a guard band U on both sides. ILAC-G8:09/2019 has simple acceptance
+/// (4.2.1) and a guard band w = U (4.2.2). Without a finite value and U, the result is
+/// indeterminate. Confidence in the interpretation: medium.
 Decision decide(double value, double U, double tolerance, std::string_view rule = "iso14253-1");
 
 }  // namespace nonio::math

@@ -11,14 +11,14 @@
 
 namespace nonio::math {
 
-/// Stops closer than this are one stop, m: far above a control's resolution; with a slope of 10
-/// um/m it corresponds to 1 nm.
+/// Stops closer than this are one stop, m. It is far above a control's resolution, and with a slope
+/// of 10 um/m it corresponds to only 1 nm.
 inline constexpr double same_stop = 1e-4;
 
 /// Readings grouped by stop and direction of the axis in one column of the observations.
 struct MeasuredLine {
   struct Stop {
-    /// position of the axis, and of the second axis if there is one
+    /// position of the axis, and of the second axis of the observations if they have two
     double position = 0.0, across = 0.0;
     double plus = 0.0, minus = 0.0;  ///< means of each direction
     std::size_t n_plus = 0, n_minus = 0;
@@ -37,10 +37,10 @@ struct MeasuredLine {
   std::size_t dof = 0;      ///< degrees of freedom of s
   bool zeroed = false;      ///< whether every reading at the first stop is 0
 
-  /// Whether every stop was read from this direction, or if `direction` is 0, from both directions.
+  /// Returns whether every stop was read from this direction, or if `direction` is 0, from both.
   bool has(int direction) const;
   /// Returns 0 if every stop was read from both directions, else the direction from which every
-  /// stop was read; nothing if there is none.
+  /// stop was read; nothing if no such direction exists.
   std::optional<int> direction() const;
   /// Returns the standard uncertainty of the mean from this direction, or if `direction` is 0, of
   /// the mean of both directions, at the stop with the fewest readings; 0 if it is not known.
@@ -50,7 +50,7 @@ struct MeasuredLine {
   /// to the means of both directions, sorted by time. The first stop has no visits if the line is
   /// `zeroed`.
   std::vector<BudgetLine::Visit> visits(int direction) const;
-  /// Returns the index of the stop at this position; the number of stops if there is none.
+  /// Returns the index of the stop at this position; the number of stops if no stop is at it.
   std::size_t find(double position) const;
 };
 

@@ -8,15 +8,15 @@
 
 #include "nonio/math/budget.h"
 
-/// Positions in space that the linear axes of a machine measure: centres of a ball under a probe.
+/// Positions in space that the linear axes of a machine measure: centers of a ball under a probe.
 namespace nonio::math {
 
 struct ProbedPlaces {
   std::vector<std::array<double, 3>> at;  ///< positions, m, in the order in which they were read
   std::array<double, 3> middle{};         ///< point from which squareness and scale errors grow
   double radius = 0.0;                    ///< largest distance of a place from `middle`, m
-  /// Bound of the squareness and scale differences of the linear axes, rad, if it is known; its
-  /// manifest key.
+  /// Bound of the squareness and scale differences of the linear axes, rad, absent if not stated;
+  /// and the manifest key that states it.
   std::optional<double> linear_axes{};
   std::string linear_axes_key{};
 };

@@ -11,9 +11,9 @@
 
 /// Squareness of two axes from two lines of straightness measured against the faces of one square.
 ///
-/// Axis 1 moves along one face, and b1 is the least-squares slope of its deviations towards axis 2;
-/// b2 is that of axis 2 towards axis 1. The faces enclose 90 degrees + g in the quadrant between
-/// both positive directions. Then b1 + b2 = t + g with the sum t of the slopes of both axes towards
+/// Axis 1 moves along one face, and b1 is the least-squares slope of its deviations toward axis 2;
+/// b2 is that of axis 2 toward axis 1. The faces enclose 90 degrees + g in the quadrant between
+/// both positive directions. Then b1 + b2 = t + g with the sum t of the slopes of both axes toward
 /// each other; the set-up of the square changes b1 and b2 by opposite amounts and cancels:
 ///
 ///     C0Y = -t     B0Z = +t     A0Z = -t
@@ -42,19 +42,21 @@ struct SquareLines {
 std::vector<SquareLines> squares_of(const Campaign&);
 
 struct Squareness {
-  double value = 0.0;                 ///< squareness of the machine, rad
-  std::optional<double> of_square{};  ///< g, if it was turned over; its u is that of `value`
-  double u = 0.0;  ///< standard uncertainty by repetition; 0: a line has no repetition
+  double value = 0.0;  ///< squareness of the machine, rad
+  /// g, if the square was turned over; its u by repetition is `u`
+  std::optional<double> of_square{};
+  double u = 0.0;  ///< standard uncertainty by repetition; 0 if a line has no repetition
   Shares shares;
   ReadingModel model;
-  /// largest standard uncertainty of a reading, and its degrees of freedom, for the budget
+  /// for the budget: largest standard uncertainty of a stop, smallest degrees of freedom of a line
   double largest_u = 0.0, dof = 0.0;
   std::vector<Finding> findings;  ///< limits of the manifest that the readings exceed
 };
 
-/// Reason why there is no squareness: `one-line`, `unknown` (neither turned over nor its error
-/// stated), `too-few` or `incomplete`. `which` is the name of the square for the first two reasons,
-/// else the id of the measurement. `all` (below): observations of all measurements of the campaign.
+/// Reason why no squareness is given: `one-line`, `unknown` (the square was not turned over, and
+/// its error is not stated), `too-few` or `incomplete`. `which` is the name of the square for the
+/// first two reasons, else the id of the measurement. `all` (below): observations of all
+/// measurements of the campaign.
 struct NoSquareness {
   std::string why;
   std::string which;

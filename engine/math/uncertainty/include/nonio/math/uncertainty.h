@@ -69,13 +69,13 @@ std::size_t approaches_per_mean(const AxisTest&);
 ///
 ///     U(B)^2 = 2 U_EVE^2/n + D_B^2          U(R+)^2 = U(R-)^2 = (k U_EVE)^2 + (2 k D_s)^2
 ///     U(B_mean)^2 = 2 U_EVE^2/n + D_mean^2  U(R)^2 = U(R+)^2 + U(B)^2
-///     U(M) = sqrt(S^2 + U_EVE^2/n)          U(A) = sqrt(U(E)^2 + (k U_EVE)^2); + and - alike
-///     U(E) = sqrt(S^2 + 2 U_EVE^2/n)
+///     U(M) = sqrt(S^2 + U_EVE^2/n)          U(A) = U(A+) = U(A-) = sqrt(U(E)^2 + (k U_EVE)^2)
+///     U(E) = U(E+) = U(E-) = sqrt(S^2 + 2 U_EVE^2/n)
 ///
 /// D_B, D_mean, D_s: contributions of drift that the readings do not exclude (drift.h).
 ///
-/// Derived by the GUM (docs/uncertainty.md, L): compare with the standard before claiming
-/// conformity to it.
+/// Derived according to the GUM (docs/uncertainty.md, confidence L): compare with the standard
+/// before claiming conformity to it.
 struct Iso230Uncertainty {
   double A, A_plus, A_minus, E, E_plus, E_minus, M, R, R_plus, R_minus, B, B_mean;
 };

@@ -12,7 +12,7 @@
 ///
 /// Symbols (ISO 230-1; lengths in m, angles in rad). Travels Lx, Ly; L = hypot(Lx, Ly); c = Lx/L, s
 /// = Ly/L; n equal steps, x_i = i Lx/n, y_i = i Ly/n. f_i = EYX(x_i), g_i = EXY(y_i), both 0 at
-/// both ends (end-point gauge; their slopes are then part of k), k = C0Y, positive turns +Y towards
+/// both ends (end-point gauge; their slopes are then part of k), k = C0Y, positive turns +Y toward
 /// -X. Ex(x, y): positioning error of X on the line y, EXX(x) - (y - y0) ECX(x). A line of
 /// measurement has stops (x_a, y_b) on the grid and a direction (cx, cy); its reading, relative to
 /// its first stop, is
@@ -36,8 +36,8 @@ struct MeanCurve {
   std::vector<double> mean;
   double u = 0.0;         ///< standard uncertainty of each mean; 0: not known
   double dof = INFINITY;  ///< degrees of freedom of u
-  /// Whether the mean at the first stop is 0 by definition, because it was not read, or the
-  /// instrument was set to zero there each time.
+  /// Whether the mean at the first stop is 0 by definition, because it was not read, or because the
+  /// instrument was set to zero at this stop each time.
   bool zeroed = true;
   int direction = 0;  ///< direction of approach: +1, -1; 0: mean of both
   /// visits that contribute to the means, sorted by time; may be empty
@@ -86,8 +86,8 @@ struct DiagonalReadings {
   std::optional<DirectStraightness> EYX, EXY;
 };
 
-/// A curve over n + 1 points, with its standard uncertainty at each by repetition, and the shares
-/// of the inputs of a ReadingModel, if there was one.
+/// A curve over n + 1 points, with the standard uncertainty of each by repetition, and the shares
+/// of the inputs of a ReadingModel (empty without a model).
 struct KnownCurve {
   std::vector<double> value, u;
   std::vector<Shares> shares;
@@ -124,7 +124,8 @@ struct Agreement {
 };
 
 struct DiagonalResult {
-  double C0Y = 0.0, u_C0Y = 0.0, gain_C0Y = 0.0;  ///< squareness, rad, end-point gauge; gain, 1/m
+  /// squareness and its u, rad, in the end-point gauge; u for noise of 1 m, 1/m
+  double C0Y = 0.0, u_C0Y = 0.0, gain_C0Y = 0.0;
   Shares shares_C0Y;
   std::size_t unknowns = 0, rank = 0;
   std::size_t nullity() const { return unknowns - rank; }
@@ -133,7 +134,7 @@ struct DiagonalResult {
   KnownCurve EYX_even, EXY_even, q_odd;  ///< parts that are always determined; q = c EXY + s EYX
   LsqGauge lsq;
   std::vector<double> d1, d2;  ///< readings of the diagonals minus positioning and yaw
-  KnownCurve ECX;              ///< yaw that was subtracted; empty if there was none
+  KnownCurve ECX;              ///< yaw that was subtracted; empty if none was subtracted
   /// shift of the second line's zero that removes C0Y, m; only with two lines
   std::optional<double> slave_shift;
   /// Range of the difference between the second and the first line of X, m: the variation of the
@@ -152,7 +153,7 @@ struct DiagonalResult {
   /// uncertainty.
   double residual_u = 0.0;
   std::size_t dof = 0;
-  /// every u was given; if not, those of all lengths are taken as equal, with the value residual_u
+  /// whether every u was given; if not, the u of all lengths are taken as equal to residual_u
   bool noise_known = false;
 };
 

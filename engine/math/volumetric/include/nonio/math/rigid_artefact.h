@@ -32,7 +32,7 @@ namespace nonio::math {
 struct ArtefactBall {
   std::string name;
   std::optional<Corner> stated{};  ///< coordinates of the certificate, in the frame of the artefact
-  double u = 0.0;                  ///< standard uncertainty of each of its coordinates
+  double u = 0.0;                  ///< standard uncertainty of each stated coordinate, m
 };
 
 struct ArtefactLength {
@@ -84,8 +84,8 @@ struct ArtefactRefusal {
   double distance = 0.0;  ///< distance of the ball from that position, or error of the length, m
 };
 
-/// Largest plausible distance, m, of a ball from its expected position; beyond it, it is another
-/// ball, or another artefact. docs/dev/constants.md, A22.
+/// Largest plausible distance, m, of a ball from its expected position. A larger distance means
+/// that another ball or another artefact was probed. docs/dev/constants.md, A22.
 inline constexpr double artefact_limit = 0.3e-3;
 
 /// Returns the lines of an artefact for the fit of all errors. `first`: index of its first shared

@@ -34,9 +34,8 @@
 /// the position of an artefact and of its balls (rigid_artefact.h), the set-up and the error of a
 /// square.
 ///
-/// A value of such an unknown in a certificate is treated as a reading of the set-up alone, with
-/// the stated standard uncertainty: it has the corresponding weight, and its uncertainty is part of
-/// U.
+/// A value of such an unknown in a certificate is treated as a reading of the set-up alone. Its
+/// weight follows from the stated standard uncertainty, which is also part of U.
 ///
 /// Columns are scaled so that a coefficient of 1 causes at most 1 in the volume, unknowns of the
 /// set-up are eliminated, and readings are divided by the scatter of their group. Singular values
@@ -76,7 +75,7 @@ struct RigidLine {
     std::vector<double> of_reading;
   };
   std::vector<Shared> shared{};
-  bool own_slope = true;  ///< for a line across its travel: its slope is an unknown
+  bool own_slope = true;  ///< for a line across its travel: whether its slope is an unknown
 };
 
 /// Polynomial degrees that are tried if none is requested.

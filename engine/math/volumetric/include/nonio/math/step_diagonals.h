@@ -106,8 +106,8 @@ struct StepCurve {
   std::vector<Shares> shares;
 };
 
-/// Difference between an axis series and the positioning from the diagonals alone, both minus a
-/// line.
+/// Difference between an axis series and the positioning from the diagonals alone, minus its
+/// least-squares line.
 struct ShapeContrast {
   std::size_t axis = 0;
   double rms = 0.0, largest = 0.0, at = 0.0;  ///< rms and largest value, and its position, m
@@ -120,8 +120,8 @@ struct StepSolution {
   /// Number of unknowns, which are function values and, if the set-up is not known, set-up angles
   /// (9n + 8 for n steps along each axis and four passes), and their rank.
   std::size_t unknowns = 0, rank = 0;
-  double u_reading = 0.0;  ///< standard uncertainty of a reading that was used, m
-  double dof = 0.0;        ///< degrees of freedom of u_reading, if from the residuals
+  double u_reading = 0.0;  ///< standard uncertainty of a reading, stated or estimated, m
+  double dof = 0.0;        ///< degrees of freedom of an estimated u_reading
   /// Set-up angle of each pass, rad; empty if the set-up is known, or if the angles are not
   /// separable from the scales.
   std::vector<double> set_up;
@@ -139,11 +139,12 @@ Expected<StepSolution> solve_step_diagonals(const StepDiagonals&, const std::vec
 Expected<StepSolution> average_step_diagonals(const StepDiagonals&, const StepChoices&,
                                               const ReadingModel* = nullptr);
 
-/// Tests whether the check sums (`check` above) are 0 and do not change over the steps.
+/// Tests whether the check sums (`check` at the head of this file) are 0 and do not change over the
+/// steps.
 struct StepChecks {
   std::array<double, 3> constant{};  ///< mean check sum of the moves of X, Y, Z, m
-  double p_constant = 1.0;           ///< p of the most significant constant, times 3, at most 1
-  double trend = 0.0;                ///< change of the check sums per step, m
+  double p_constant = 1.0;  ///< p-value of the most significant constant, times 3, at most 1
+  double trend = 0.0;       ///< change of the check sums per step, m
   double p_trend = 1.0;
   /// standard deviation of a reading, from the scatter of the check sums, m
   double u_reading = 0.0;

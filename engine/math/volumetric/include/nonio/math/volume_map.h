@@ -25,7 +25,7 @@ struct VolumeNode {
 };
 
 struct VolumeMap {
-  /// nodes with X slowest and Z fastest; empty: not determined everywhere
+  /// nodes with X slowest and Z fastest; empty if the error is not determined everywhere
   std::vector<VolumeNode> nodes;
   std::size_t parts = 0;    ///< number of intervals of each axis that moves
   std::size_t largest = 0;  ///< index of the node with the largest error
@@ -34,7 +34,7 @@ struct VolumeMap {
   bool known() const { return !nodes.empty(); }
 };
 
-/// Returns the nodes of the lattice; an axis that does not move has one.
+/// Returns the nodes of the lattice, with one position along an axis that does not move.
 std::vector<Corner> lattice(const Corner& low, const Corner& high, std::size_t parts);
 
 /// Interpolates the error between the nodes of a map, linearly in each coordinate, as controls do.

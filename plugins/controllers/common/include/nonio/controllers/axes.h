@@ -39,11 +39,10 @@ tl::unexpected<Error> wrong_axes(std::string message, const std::string& key = {
 
 /// Returns the axes of the manifest with their settings.
 Expected<std::vector<KnownAxis>> known_axes(const TableInput&);
-/// Returns the axis with this number; a linear axis named by the number if it is not known.
+/// Returns the axis with this number. An unknown number gives a linear axis named by it.
 KnownAxis axis_numbered(const std::vector<KnownAxis>&, std::size_t number);
-/// `axis_of_file` finds the axis by the name of its file after a prefix: "linuxcnc-X-before.comp";
-/// if the file has another name, it returns the only axis of the machine. `axis_named` finds it by
-/// its name.
+/// `axis_of_file` finds the axis by a file name with prefix, such as "linuxcnc-X-before.comp"; for
+/// any other name it returns the only axis of the machine. `axis_named` finds it by its name.
 KnownAxis axis_of_file(const std::vector<KnownAxis>&, std::string_view file,
                        std::string_view prefix);
 KnownAxis axis_named(const std::vector<KnownAxis>&, std::string_view name);

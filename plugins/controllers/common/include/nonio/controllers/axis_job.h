@@ -137,9 +137,9 @@ std::string reversal_words(const AxisJob& job, Columns columns);
 /// control is not stated, so that the written value would replace one that should be reduced.
 void doubt_backlash(const AxisJob& job, OutputResult& result);
 
-/// Adds the predictions of E, B and M before and after compensation, with `correction` as read back
-/// from the bytes written. It contains everything that the control adds; the present backlash value
-/// is subtracted here. Adds a finding if the table makes the mean deviations worse.
+/// Adds the predictions of E, B and M before and after compensation. `correction` is read back from
+/// the bytes written and contains everything that the control adds; the present backlash value is
+/// subtracted here. Adds a finding if the table makes the mean deviations worse.
 void predict(const AxisJob& job, const math::Correction& correction, OutputResult& result);
 
 /// Returns the position at which the entry of the table must be zero: the axis' setting

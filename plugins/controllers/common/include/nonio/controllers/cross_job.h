@@ -81,7 +81,8 @@ struct CrossJob {
 /// each side has its curve; if it has not, a finding states why there is no table.
 std::vector<CrossJob> cross_jobs(const ControllerInput&, SecondSide, OutputResult& result);
 
-/// Adds a finding: no such table on a gantry, because the motion of the second side is not known.
+/// Adds a finding that no cross table is written for a gantry, because the motion of its second
+/// side is not known.
 void refuse_second_side(const Axis&, const std::string& measurement, OutputResult& result);
 
 /// Returns option squareness, which selects how the squareness of a gantry is compensated.

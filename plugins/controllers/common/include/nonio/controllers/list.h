@@ -7,8 +7,8 @@
 /// entered by hand, one point per line, text after '#'.
 namespace nonio::controllers {
 
-/// Returns the list "NAME-X.txt": number of the point, its position, the entry, and the one towards
-/// minus if there are columns of both directions (0 without a table for each direction).
+/// Returns the list "NAME-X.txt" with columns: point number, position, entry. With columns for both
+/// directions, the entry towards minus follows (0 if there are no direction tables).
 std::vector<Artifact> list_file(const Sheet&, std::string_view name,
                                 Columns columns = Columns::mean);
 

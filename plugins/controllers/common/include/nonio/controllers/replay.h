@@ -8,8 +8,7 @@
 
 #include "nonio/controllers/cross_job.h"
 
-/// Joint effect of the tables of a run on the machine: those of every axis, on both sides of a
-/// gantry, read back from the text that was written.
+/// Joint effect of all tables of a run on the machine, parsed from the files that were written.
 namespace nonio::controllers {
 
 /// The beam of a gantry, which is rigid: a motion of one side is distributed along it.
@@ -30,8 +29,8 @@ struct Beam {
 /// Returns a beam for each axis with a slave.
 std::vector<Beam> beams_of(const Campaign&);
 
-/// Adds yaw to the squareness: C0Y is that at the first stop, but the pitch tables of both sides
-/// leave the beam as it is where they are zero. The yaw between both positions is added to the
+/// Adds yaw to the squareness. C0Y refers to the first stop, but the pitch tables of both sides
+/// leave the beam unchanged where they are zero. The yaw between both positions is added to the
 /// cross table.
 void turn_to_reference(const ControllerInput&, CrossJob&, const NumberTables& settings);
 
@@ -40,7 +39,7 @@ void turn_to_reference(const ControllerInput&, CrossJob&, const NumberTables& se
 /// positions of its sides are not stated (`at`).
 bool shift_slave(const ControllerInput&, CrossJob&, double C0Y, const NumberTables& settings);
 
-/// Tables in the control, and what they replace.
+/// New tables of the control, and the compensation that they replace.
 struct Replay {
   std::vector<LoadedTable> tables;
   std::vector<Beam> beams{};                 ///< beams of a control whose tables move one side each

@@ -5,8 +5,7 @@
 
 #include "nonio/controllers/kit.h"
 
-/// Squareness expressed by two diagonals and a side of each plane, as firmware of 3D printers
-/// requires it.
+/// Squareness of planes by two diagonals and a side, as required by firmware of 3D printers.
 namespace nonio::controllers {
 
 /// A plane of two axes: diagonal AC from the corner where both axes begin, BD the other diagonal,

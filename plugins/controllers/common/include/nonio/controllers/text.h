@@ -19,16 +19,16 @@ std::vector<std::string_view> lines_of(std::string_view text);
 /// Error if the last line has no end, which means that the file was truncated and its last number
 /// may be wrong.
 Expected<void> ends_whole(std::string_view name, std::string_view text);
-/// Returns an error in a file that was recognised as one of this control; its line marks this, so
-/// that the message is shown instead of "no known control".
+/// Returns an error in a file that was recognized as one of this control. The line number marks it,
+/// so that the message is shown instead of "no known control".
 tl::unexpected<Error> fail_at(std::string_view name, std::size_t line, const std::string& message);
 /// Splits a line at any of these characters.
 std::vector<std::string_view> words_of(std::string_view line,
                                        std::string_view separators = " \t\r");
 std::string_view trimmed(std::string_view text);
 /// Replaces lines of the text by `lines`, at the place of the first one replaced. If there is none,
-/// inserts them before byte `otherwise`; nothing if that is not given. `is_own` selects the lines
-/// to replace, in order, without their ends; the new lines get the line ends of the text.
+/// inserts them before byte `otherwise`, or returns nullopt without it. `is_own` selects the lines
+/// to replace, in order, without their ends. The new lines get the line ends of the text.
 std::optional<std::string> with_lines(const std::string& text,
                                       const std::function<bool(std::string_view)>& is_own,
                                       const std::string& lines,
