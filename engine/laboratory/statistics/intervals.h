@@ -28,9 +28,9 @@ enum class Found { conforms, undecided, fails };
 
 /// Halves the interval after a failure, and extends it after a success so that both balance at the
 /// target R: (1 + a)^R (1/2)^(1-R) = 1, so 1 + a = 2^((1-R)/R) (a = 3.7 % at R = 95 %), at most 2.
-/// An indeterminate result leaves the interval unchanged. `why` is the id of
-/// the reason. No interval is proposed if `months` is not above 0 ("no-interval"), or if `target` is not
-/// between 0 and 1 ("no-target").
+/// An indeterminate result leaves the interval unchanged. `why` is the id of the reason. No interval
+/// is proposed if `months` is not above 0 ("no-interval"), or if `target` is not between 0 and 1
+/// ("no-target").
 Proposal staircase(double months, Found, double target = 0.95);
 
 /// Proposes the time in months from the last campaign until the one-sided 95 % bound of the
