@@ -94,8 +94,10 @@ void print_parameter(std::ostream& out, const Json& p, const TerminalWords& say)
   }
   const double value = p.value("value", NAN);
   const bool is_count = p.contains("value") && p.at("value").is_number_integer();
-  out << say.number(is_count ? fixed_text(value, 0) : short_text(value, 4));
-  if (p.contains("u")) out << ", u = " << say.number(short_text(p.at("u").get<double>(), 2));
+  if (const auto both = rounded_result(value, p.value("u", NAN)); both && !is_count)
+    out << say.number(both->value) << ", u = " << say.number(both->U);
+  else
+    out << say.number(is_count ? fixed_text(value, 0) : short_text(value, 4));
   const std::string unit = p.at("unit");
   out << (unit.empty() ? "" : " ") << unit;
   if (p.contains("searched")) out << "  " << say(p.contains("stated") ? "stated" : "searched");
