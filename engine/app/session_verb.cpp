@@ -218,9 +218,10 @@ class Session {
     return std::nullopt;
   }
 
-  /// Adds the sign probe and writes its part program. The probe is only a recommendation: if the
-  /// error of the axis is too small for it, the session continues without it. Returns false if the
-  /// session ends at this step.
+  /// Adds the step that recommends a sign probe: moves between two positions, at which an
+  /// instrument shows whether the table has the wrong sign. Writes its part program unless a table
+  /// was loaded already. If there is no such probe, or the error of the axis is too small for it,
+  /// the session continues without it. Returns false if the session ends at this step.
   bool probe() {
     const auto raw = raw_readings(*open_, axis_);
     if (!raw) return refused("probe", raw.error());

@@ -425,7 +425,7 @@ class Page {
 
   config::TerminalWords say_;
   bool all_;
-  std::string folder_;  ///< folder of the results; empty: they are not stored
+  std::string folder_;  ///< folder of the results; empty: they are not stored, or in a pack
   std::ostream& out_;
   std::size_t width_;
   std::vector<Grouped> findings_{};

@@ -207,7 +207,8 @@ bool Numbers::held_up(const evaluation::Evaluated& evaluated) const {
   return certificate && !certificate->issued && !certificate->draft && !may_issue(evaluated);
 }
 
-/// Returns an error if the draft has changed since the person who approves it has read it.
+/// Returns an error if a draft is approved and the present inputs `now` differ from those from
+/// which it was made.
 Expected<void> Numbers::check_release(const reading::Inputs& now) const {
   if (releasing_ == nullptr) return {};
   std::string other;

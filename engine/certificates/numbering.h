@@ -47,8 +47,8 @@ class Numbers {
   /// Has to be called after signing. Enters the certificate into the register and replaces the
   /// campaign's files by those of the register; does nothing without a certificate or if the
   /// evaluation failed. Adds a finding if an earlier certificate's values would be different now,
-  /// or if a file has no time stamp. A draft is entered as waiting for the approval of `folder`
-  /// (relative to the site).
+  /// or if a file has no time stamp. A draft is entered as waiting for approval. `folder`: folder
+  /// of the campaign, relative to the site.
   Expected<void> issue(evaluation::Evaluated& evaluated, const std::string& folder) const;
   /// Removes files that were to be signed if there is no certificate and the rules of the site do
   /// not allow to issue, and adds a finding for each output that has lost files. Nothing is removed

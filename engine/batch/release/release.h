@@ -29,7 +29,7 @@ struct ReleaseRequest {
 
 struct Released {
   enum class State {
-    refused,   ///< the request is invalid, as `why` states
+    refused,   ///< a condition for approval is not met, as `why` states; nothing was changed
     lacking,   ///< the findings listed in `without_reason` have severity warning and need a reason
     approved,  ///< approved by the author; an authoriser is still required
     failed,    ///< not issued, as `why` states; the draft is kept

@@ -144,9 +144,10 @@ std::string effects_of(const ModelFit& fit) {
   return out;
 }
 
-/// Whether a parameter of a model is compared between campaigns. Excluded are searched parameters,
-/// parameters of curves, because their knots differ between campaigns, and scales, because the
-/// quantity `scale` contains them with the contributions of instrument and temperature.
+/// Whether a parameter of a model is compared between campaigns. Excluded are nonlinear parameters
+/// whose value was found by a search, parameters of curves, because their knots differ between
+/// campaigns, and all parameters in m/m, because the quantity `scale` contains the scale of a
+/// linear axis with the contributions of instrument and temperature.
 bool is_followed(const ModelFit& fit, const ModelFit::Parameter& p) {
   const auto effect = std::find_if(fit.effects.begin(), fit.effects.end(),
                                    [&](const ModelFit::Effect& e) { return e.name == p.effect; });

@@ -120,7 +120,9 @@ Expected<model::Comparison> compare_part(const PartModel& part,
 /// Returns the terms for causes of the library that these readings can show. `keeps` receives the
 /// owner of their effects.
 std::vector<model::Term> library_of(const PartModel& part, std::shared_ptr<const void>& keeps);
-/// Explains a part. If `with_library`, a second stage of the search includes causes of the library.
+/// Searches for effects that explain what the model of a part leaves in its residuals, and states a
+/// verdict. If `with_library`, a second stage of the search includes causes of the library.
+/// `known`: see model/explain.h.
 Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed,
                                           const model::Groundwork* known = nullptr,
                                           bool with_library = true);

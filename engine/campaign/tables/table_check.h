@@ -62,8 +62,9 @@ struct Underlay {
   Settings options;  ///< options of the controller with the backlash values of these tables
   std::vector<Observations> readings;  ///< readings as they would be without these tables
 };
-/// Returns the campaign with only this measurement. The axis of the control replaces a side of a
-/// gantry, because a caller that processes one axis after another processes both sides.
+/// Returns the campaign with only this measurement. For a side of a gantry, the measurement gets
+/// the axis of the control that belongs to this side, and no side. Slave axes are removed from the
+/// machine, because a caller that processes one axis after another processes both sides.
 Campaign with_one(Campaign campaign, Measurement m);
 
 /// Returns the tables that were active according to manifest and record; none if there was no

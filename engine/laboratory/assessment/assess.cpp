@@ -225,9 +225,9 @@ class Assessment::State {
     return {};
   }
 
-  /// Collects names of machines that no campaign states, from events, valid acknowledgements and
-  /// calibration intervals. Machines with records are left out, because records may precede the
-  /// campaigns.
+  /// Collects names of machines that no campaign states, from events, acknowledgements that have
+  /// not expired, and calibration intervals. Events of machines that have records with events are
+  /// left out, because records may precede the campaigns.
   void note_unknown(const std::vector<store::MachineState>& states, const MachineEvents& events) {
     std::set<std::string> names;
     for (const store::MachineState& state : states) names.insert(state.machine.name);

@@ -24,8 +24,8 @@ std::vector<reports::InstrumentUse> instruments_of(const AssessedMachine& machin
 std::vector<reports::InstrumentUse> joined(
     const std::vector<const std::vector<reports::InstrumentUse>*>& of_machines);
 
-/// Last value of a quantity that was not measured as left, for the comparison with other machines
-/// of the model.
+/// Last value of a quantity among those with another state than as-left, for the comparison with
+/// other machines of the same model.
 struct ComparedValue {
   std::string axis, quantity;
   Quantity unit = Quantity::deviation;

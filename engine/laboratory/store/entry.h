@@ -61,7 +61,8 @@ struct LimitRow {
   double tolerance = 0.0;
 };
 
-/// The control's tables as a measurement of an axis states them.
+/// Mean errors of one measurement of an axis, with the tables of the control that were active,
+/// written and recorded.
 struct ControlTableRow {
   std::string measurement, axis;
   std::string state;  ///< JSON: the member `control_tables` of results.json

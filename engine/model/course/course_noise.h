@@ -18,9 +18,10 @@ struct CourseNoise {
 CourseNoise noise_of_fit(const CourseData& data);
 
 /// Whitens columns for generalized least squares: the noise of the result is independent from bin
-/// to bin, and the result contains no unknown zero. The result has the unit of the column and is
-/// scaled so that the correlated part of the noise has variance 1. Source: Kalman 1960; Harvey,
-/// Forecasting, structural time series models and the Kalman filter, 3.4.
+/// to bin, and an unknown constant (zero) in a column is eliminated. The result has the unit of the
+/// column, and its noise has the same variance as the correlated part of the noise of the column.
+/// Source: Kalman 1960; Harvey, Forecasting, structural time series models and the Kalman filter,
+/// 3.4.
 class CourseWhitening {
  public:
   CourseWhitening(const CourseData& data, const CourseNoise& noise);

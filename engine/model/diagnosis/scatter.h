@@ -5,7 +5,7 @@
 #include "data/repeats.h"
 #include "nonio/model/comparison.h"
 
-/// Tests of the scatter of the residuals of an explanation that no effect can cause.
+/// Tests of residuals of a model for kinds of scatter that no effect of the model can cause.
 namespace nonio::model {
 
 /// Returns whether the readings at single targets fall into two groups with a gap between them,

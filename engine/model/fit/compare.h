@@ -72,8 +72,9 @@ class PlacesLeft {
   PlaceTests tests_;
 };
 
-/// Returns at most three places that together contain the residuals of a fit (`seats_of`), without
-/// those with a share below 2 %.
+/// Returns at most three factors, or products of two factors, with which the residuals of the fit
+/// of `comparison` vary (`seats_of`), without those with less than 2 % of the residual sum of
+/// squares.
 std::vector<Place> seats_in(const Part& part, const Repeats& repeats, const Comparison& comparison);
 
 /// Returns the residual of each reading when its run is predicted from the others with the given

@@ -399,8 +399,10 @@ Workbench::Directions Workbench::directions(const std::vector<std::size_t>& bloc
   return out;
 }
 
-/// Returns the decrease of squares by a block; rows from `row` of `p.products` are the products of
-/// its columns with the directions of the state.
+/// Returns the decrease of the residual sum of squares if a block is added to a state; NaN if its
+/// columns are dependent, unless dependent combinations of them may be removed. The rows from `row`
+/// of `p.products` are the scalar products of its columns with orthonormal directions that span the
+/// columns of the state. Sets `rank` to the number of independent columns that it adds.
 double Workbench::fall_of_block(const Projection& p, Index row, const Block& block,
                                 Index& rank) const {
   rank = block.count;

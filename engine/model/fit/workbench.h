@@ -56,10 +56,11 @@ class Workbench {
   /// Columns by term and shape as the effect returned them, reused for other weights.
   using Made = std::map<std::pair<std::size_t, std::vector<double>>, Expected<MatrixXd>>;
 
-  /// `target`: target of each reading; sets whose position columns approach one free value per
-  /// target are rejected (empty: no set is rejected). The first `stated` terms belong to the model,
-  /// and their curves may follow the targets more closely. `scatter`: standard deviation of a
-  /// reading; if it is not 0, curves in space have a prior of their usual size (ridge).
+  /// `target`: index of the target of each reading; a block is not added to a state if the columns
+  /// that depend only on the target would then have nearly one free value per target (empty: no
+  /// limit). The first `stated` terms belong to the model, and their curves may follow the targets
+  /// more closely. `scatter`: standard deviation of a reading; if it is not 0, curves in space have
+  /// a prior of their usual size (ridge).
   Workbench(const Observations& o, const std::vector<Term>& terms,
             const std::vector<double>& weight, const std::vector<std::uint32_t>& target = {},
             std::size_t stated = 0, Made* made = nullptr, const Noise& noise = {},

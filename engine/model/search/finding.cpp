@@ -201,7 +201,7 @@ class Finder {
     return in_order(f_.bench->settled(std::move(start)));
   }
 
-  /// Sorts blocks by the order of the model.
+  /// Sorts the blocks of a state by the indices of their effects in `f_.terms`.
   State in_order(State state) const {
     std::sort(state.blocks.begin(), state.blocks.end(), [&](std::size_t a, std::size_t b) {
       return f_.bench->effect_of(a) < f_.bench->effect_of(b);

@@ -42,7 +42,7 @@ struct Candidate {
   std::vector<Parameter> parameters;
   std::vector<std::string> aliases;  ///< effects that these readings do not separate from this one
   /// RMS of the smallest effect that would be detected with probability 0.9, m or rad; NaN for a
-  /// course.
+  /// displacement over time (Part::Kind::course).
   double minimal_detectable = 0.0;
   /// Mean ratio of found to true size for an effect near the limit of detection, which is found
   /// only if noise enlarges it. 1 if there is no such bias.

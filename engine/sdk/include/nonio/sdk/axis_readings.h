@@ -48,8 +48,9 @@ struct AxisReadings {
   /// everywhere.
   bool timed = false;
   double middle = 0.0;  ///< commanded position of the middle of the measured stretch, m or rad
-  /// Whether every reading has a material temperature. In the rows `interpolated` the temperature
-  /// is interpolated linearly in time between neighboring readings.
+  /// Whether every reading has a material temperature. In the rows `interpolated` it is
+  /// interpolated linearly in time between neighboring readings; at the ends of a line it is the
+  /// nearest one.
   bool temperature = false;
   std::vector<std::uint32_t> interpolated;  ///< rows with an interpolated temperature
 };

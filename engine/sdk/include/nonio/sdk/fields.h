@@ -115,9 +115,9 @@ inline bool parse_decimal(std::string_view text, bool comma_allowed, Decimal& d)
   return d.count > 0 && take_exponent(p, end, d);
 }
 
-/// Converts the text exactly with the standard library, for numbers whose digits do not fit into a
-/// double. The text is known to be well formed. Returns infinity (without sign) if the number is
-/// too large for a double, and 0 if it is too small.
+/// Converts the text exactly with the standard library, for numbers whose digits or power of ten a
+/// double does not represent exactly. The text is known to be well formed. Returns infinity
+/// (without sign) if the number is too large for a double, and 0 if it is too small.
 inline double slow_value(std::string_view text, const Decimal& d) {
   std::string plain(text.front() == '+' ? text.substr(1) : text);
   std::replace(plain.begin(), plain.end(), ',', '.');

@@ -84,7 +84,7 @@ struct ChainFit {
   std::vector<std::array<std::size_t, 2>> across;
   /// Derivatives of the unknowns by the readings: x of all readings, then y, then z.
   std::vector<std::vector<double>> by;
-  /// Derivatives of the residuals by the readings, in the same order; empty above 200 readings.
+  /// Derivatives of the residuals by the readings, in the order of `by`; empty above 200 readings.
   std::vector<std::vector<double>> residual_by;
   /// Residuals along the path on which an axis moves the ball: root mean square in this direction
   /// and in all others, and their degrees of freedom.

@@ -77,8 +77,8 @@ struct Shares {
   /// The part of `u` that is already contained in the repetition: for inputs that are independent
   /// per reading, the part from lines whose readings are in the residuals.
   std::vector<double> in_residuals;
-  /// Fourth root of the sum of c^4 over the independent rectangular parts of each input; 0 for
-  /// normal ones.
+  /// For each input with a rectangular distribution, the fourth root of the sum of the fourth
+  /// powers of its independent contributions to `u`; 0 for an input with a normal distribution.
   std::vector<double> rectangular{};
   /// degrees of freedom of the repetition, if lines differ; 0: those of the budget
   double dof = 0.0;
