@@ -9,7 +9,7 @@ namespace declared {
 using namespace config::declared;
 using config::Choice, config::Key, config::declared::Unit;
 using Cycle = CycleSpec;
-using Course = CycleSpec::Course;
+using Course = TemperatureCourse;
 
 constexpr Range from_0 = from(0.0, "expected a number from 0");
 constexpr Unit percent{"%", 0.01}, degC{"degC"}, K_per_h{"K/h", 1.0 / 3600.0};

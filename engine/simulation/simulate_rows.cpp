@@ -10,7 +10,7 @@ namespace nonio::simulation {
 
 namespace {
 
-double material(const CycleSpec::Course& c, double t) {
+double material(const TemperatureCourse& c, double t) {
   const double swing = c.swing * std::sin(2.0 * std::numbers::pi * t / c.period);
   return std::round((c.start + c.drift * t + swing) * 100.0) / 100.0;
 }

@@ -14,6 +14,12 @@
 
 namespace nonio::simulation {
 
+/// Temperature of the material over time: a value at the start, degC, plus a drift, K/s, plus a
+/// sine wave with an amplitude `swing`, K, and a period, s.
+struct TemperatureCourse {
+  double start = 20.0, drift = 0.0, swing = 0.0, period = 3600.0;
+};
+
 /// One [[cycle]]: how a measurement is simulated. All values are SI.
 struct CycleSpec {
   Measurement measurement;
@@ -34,12 +40,7 @@ struct CycleSpec {
   double misread = 0.0;  ///< probability that a reading is misread
   /// range of the size of a misreading, in multiples of the noise
   std::pair<double, double> misread_size{8.0, 40.0};
-  /// Temperature of the material over time: a value at the start, degC, plus a drift, K/s, plus a
-  /// sine wave with an amplitude `swing`, K, and a period, s.
-  struct Course {
-    double start = 20.0, drift = 0.0, swing = 0.0, period = 3600.0;
-  };
-  std::optional<Course> temperature;
+  std::optional<TemperatureCourse> temperature;
   std::uint32_t steps = 0;  ///< number of steps of a diagonal or step diagonal; 0: targets are used
   std::uint32_t readings = 720;               ///< number of readings per turn of a circle
   double set_up = 0.0;                        ///< angle of a straightedge to the axis, rad
