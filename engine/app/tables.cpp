@@ -139,8 +139,8 @@ void print_places(std::ostream& out, const Json& part, const TerminalWords& say)
   if (part.at("fails").empty()) return line(out, say("fails"), say("fails.nowhere"));
   out << "  " << say("fails") << "\n";
   for (const Json& place : part.at(part.at("left").empty() ? "fails" : "left"))
-    out << "    " << padded(where_text(place, say), 25)
-        << wrapped(text_in(place, "says"), 29, sentence_width(STDOUT_FILENO)).substr(29);
+    out << "    " << padded(where_text(place, say) + " ", 29)
+        << wrapped(text_in(place, "says"), 33, sentence_width(STDOUT_FILENO)).substr(33);
 }
 
 /// Prints the predicted result of a compensation table in the control; nothing if the model has no

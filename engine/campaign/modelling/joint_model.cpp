@@ -76,18 +76,18 @@ bool is_curve(const std::vector<model::Parameter>& group) {
   return std::count_if(group.begin(), group.end(), [](const auto& p) { return !p.shape; }) > 3;
 }
 
-std::string value_text(const std::vector<model::Parameter>& group, double size,
-                       Quantity deviation) {
+std::string value_text(const std::vector<model::Parameter>& group, double size, Quantity deviation,
+                       const config::TerminalWords& say) {
   std::string out;
   if (is_curve(group))
-    return "RMS " + short_text(printed(size, deviation)) + " " +
+    return "RMS " + say.number(short_text(printed(size, deviation))) + " " +
            std::string(unit_of(deviation).symbol);
   for (const model::Parameter& p : group) {
     if (p.shape) continue;
     const std::string unit(unit_of(p.quantity).symbol);
     out += (out.empty() ? "" : "; ") + (group.size() > 1 ? p.name + " " : std::string()) +
-           short_text(printed(p.value, p.quantity)) + (unit.empty() ? "" : " " + unit) +
-           ", U = " + short_text(2.0 * printed(p.u, p.quantity), 2);
+           say.number(short_text(printed(p.value, p.quantity))) + (unit.empty() ? "" : " " + unit) +
+           ", U = " + say.number(short_text(2.0 * printed(p.u, p.quantity), 2));
   }
   return out;
 }
@@ -135,30 +135,30 @@ std::string sentence_of(const model::JointEffect& e, const Together& t,
   const Quantity q = t.deviation();
   if (e.holds == Holds::shared)
     return say("joint.shared",
-               {{"effect", e.effect}, {"value", value_text(e.groups.front(), e.size, q)}});
+               {{"effect", e.effect}, {"value", value_text(e.groups.front(), e.size, q, say)}});
   if (e.holds == Holds::changed) {
     if (is_curve(e.groups[0]))
       return say("joint.changed-curve", {{"effect", e.effect},
                                          {"last", place_text(t, e.after - 1)},
                                          {"first", place_text(t, e.after)},
-                                         {"value", value_text(e.groups[0], e.size, q)}});
+                                         {"value", value_text(e.groups[0], e.size, q, say)}});
     const char* id = is_absent(e.groups[0])   ? "joint.appears"
                      : is_absent(e.groups[1]) ? "joint.vanishes"
                                               : "joint.changed";
     return say(id, {{"effect", e.effect},
                     {"last", place_text(t, e.after - 1)},
                     {"first", place_text(t, e.after)},
-                    {"before", value_text(e.groups[0], e.size, q)},
-                    {"after", value_text(e.groups[1], e.size, q)}});
+                    {"before", value_text(e.groups[0], e.size, q, say)},
+                    {"after", value_text(e.groups[1], e.size, q, say)}});
   }
   const auto [low, high] = extremes(e);
   if (is_curve(e.groups[low]))
     return say("joint.own-curve",
-               {{"effect", e.effect}, {"value", value_text(e.groups[low], e.size, q)}});
+               {{"effect", e.effect}, {"value", value_text(e.groups[low], e.size, q, say)}});
   return say("joint.own", {{"effect", e.effect},
-                           {"low", value_text(e.groups[low], e.size, q)},
+                           {"low", value_text(e.groups[low], e.size, q, say)},
                            {"of-low", place_text(t, low)},
-                           {"high", value_text(e.groups[high], e.size, q)},
+                           {"high", value_text(e.groups[high], e.size, q, say)},
                            {"of-high", place_text(t, high)}});
 }
 
@@ -170,7 +170,7 @@ std::string sentence_of(const Together& t, const config::TerminalWords& say) {
   const auto text_of = [&](double v, int digits) { return short_text(printed(v, q), digits); };
   const int digits = text_of(x.rms, usual) == text_of(x.rms_after, usual) ? most : usual;
   const auto text = [&](double v) {
-    return text_of(v, digits) + " " + std::string(unit_of(q).symbol);
+    return say.number(text_of(v, digits)) + " " + std::string(unit_of(q).symbol);
   };
   std::vector<std::string> names;
   for (const model::JointEffect& e : x.effects) names.push_back(e.effect);

@@ -251,6 +251,10 @@ class Durable(NightTest):
                     if self.run_nonio(*args, env=fault(where)).returncode == 0:
                         break
                     where = f"rename:{rng.randint(1, 10)}:KILL"
+                deadline = time.monotonic() + 30  # what the killed process started ends a moment later
+                while json.loads(self.status("--json").stdout)["state"] == "running":
+                    self.assertLess(time.monotonic(), deadline, "a process of the killed run goes on")
+                    time.sleep(0.05)
                 self.run_nonio(*args[:2], expect=0) if self.status("--max-age", "0").returncode else None
                 a, b = given_out(reference), given_out(self.out)
                 self.assertTrue(a == b, f"{args} {where}: {[k for k in a.keys() | b.keys() if a.get(k) != b.get(k)]}")

@@ -45,8 +45,8 @@ class HistoryServerTest(NightTest):
     def said(self):
         """What each command says that reads the history; not which night it was."""
         out = [self.query("--superseded")]
-        for command in (["history"], ["morning"]):
-            done = subprocess.run([NONIO, *command, self.out, "--json"], capture_output=True, text=True, timeout=60)
+        for command in (["machine", "history", self.out], ["status", self.out, "--actions"]):
+            done = subprocess.run([NONIO, *command, "--json"], capture_output=True, text=True, timeout=60)
             self.assertIn(done.returncode, (0, 1), done.stderr)
             self.assertEqual(done.stderr, "")
             out.append({k: v for k, v in json.loads(done.stdout).items() if k not in ("night", "date")})
