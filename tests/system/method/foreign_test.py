@@ -184,12 +184,12 @@ class ForeignMethod(unittest.TestCase):
         self.assertIn("B_mean", followed)
         words = self.nonio("plugin", "check", plugins, "--cases", self.work / "lever-gauge/cases", "--json", plugins=plugins)
         checks = {(c["plugin"], c["check"]): c["state"] for c in json.loads(words[:words.rindex("}") + 1])["checks"]}
-        self.assertEqual(checks["method lever-gauge", "kind"], "passed")
+        self.assertEqual(checks["method lever-gauge", "observed-kind"], "passed")
 
     def test_its_checks(self):
         words = self.nonio("plugin", "check", self.plugins, "--cases", self.work / "lever-gauge/cases", "--json")
         checks = {(c["plugin"], c["check"]): c["state"] for c in json.loads(words[:words.rindex("}") + 1])["checks"]}
-        for name in ("names", "keys", "columns", "round-trip", "hostile", "pure"):
+        for name in ("names", "keys", "columns", "round-trip", "malformed", "pure"):
             self.assertEqual(checks["method lever-gauge", name], "passed", name)
 
 

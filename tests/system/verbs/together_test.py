@@ -92,6 +92,21 @@ class Together(unittest.TestCase):
         self.assertIn(effect["per_campaign"], ("own", "changed"))
         self.assertEqual(self.answer()["verdict"]["differs"], ["backlash:X"])
 
+    def test_what_the_readings_do_not_separate_has_a_plan(self):
+        fleet.fleet(self.site, "shared", "zero-drift:X", 0.25, 4, 0.0, random.Random(1))
+        answer = self.answer()
+        effect, = answer["effects"]
+        plan, = answer["plans"]
+        one, other = plan["separates"]
+        self.assertEqual(one, effect["effect"])
+        self.assertIn(other, effect["aliases"])
+        self.assertIn(plan["campaign"], [c["campaign"] for c in answer["campaigns"]])
+        self.assertEqual(plan["readings"], 42)  # 21 targets from both sides
+        pause = 10 * 209 if "pause" in plan["plan"] else 0  # as long as the test: 210 readings, 10 s apart
+        self.assertAlmostEqual(plan["duration_s"], pause + 10 * 42, delta=30)
+        printed = " ".join(explain(self.site).stdout.split())
+        self.assertIn(f"({plan['campaign']}): {plan['says']}", printed)
+
     def test_nothing_is_found_where_there_is_nothing(self):
         fleet.fleet(self.site, "none", "", 0.0, 10, 0.3, random.Random(5))
         answer = self.answer()
