@@ -54,7 +54,7 @@ const campaigns = (() => {
   }
   let wait = 0;
   /// Sets a value of a query and loads its first page; after a moment while a person types.
-  function asks(of, key, value, again) {
+  function setQuery(of, key, value, again) {
     of[key] = value;
     of.page = 0;
     clearTimeout(wait);
@@ -76,8 +76,8 @@ const campaigns = (() => {
         tools.complain(e);
       }
     };
-    const search = el("input", {type: "search", id: "campaign-filter", "data-key": "campaign-filter", value: query.search, oninput: () => asks(query, "search", search.value, again)});
-    const state = el("select", {id: "campaign-state", "data-key": "campaign-state", onchange: () => asks(query, "state", state.value, again)},
+    const search = el("input", {type: "search", id: "campaign-filter", "data-key": "campaign-filter", value: query.search, oninput: () => setQuery(query, "search", search.value, again)});
+    const state = el("select", {id: "campaign-state", "data-key": "campaign-state", onchange: () => setQuery(query, "state", state.value, again)},
       el("option", {value: ""}, say("list.any")), ...states.map((s) => el("option", {value: s, selected: s === query.state}, wordOf(s))));
     return [el("h1", {tabindex: -1}, say("site.campaigns")), tools.out ? null : el("p", {class: "note"}, say("site.no_out")),
       answer.all === 0 && answer.complete && tools.edit ? el("section", {}, el("p", {}, say("list.begin")), tools.drop()) : null,
@@ -99,7 +99,7 @@ const campaigns = (() => {
         complain(e);
       }
     };
-    const search = el("input", {type: "search", id: "machine-filter", "data-key": "machine-filter", value: ofMachines.search, oninput: () => asks(ofMachines, "search", search.value, again)});
+    const search = el("input", {type: "search", id: "machine-filter", "data-key": "machine-filter", value: ofMachines.search, oninput: () => setQuery(ofMachines, "search", search.value, again)});
     return [el("h1", {tabindex: -1}, say("site.machines")), first.all === 0 ? el("p", {}, say("list.no_machines")) : el("p", {class: "filters"}, el("label", {}, say("list.search") + " ", search)),
       el("div", {id: "machine-list"}, ...machineTable(first, again))];
   }

@@ -35,7 +35,7 @@ class HistoryServerTest(NightTest):
 
     def choose(self, url, extra=""):
         (self.site / "site.toml").write_text(
-            "format = 1\n" + (f'[database]\nurl = "{url}"\nschema = "{self.schema}"\n{extra}' if url else ""))
+            "format = 1\n" + (f'[database]\nurl = "{url}"\nschema = "{self.schema}"\n{extra}' if url else "# the history is a file\n"))
 
     def query(self, *args, out=None):
         done = subprocess.run([NONIO, "machine", "list", out or self.out, "--csv", *args], capture_output=True, text=True, timeout=60)
