@@ -42,8 +42,7 @@ constexpr double least_against_zero = 30.0;
 // docs/dev/constants.md, M10.
 constexpr double cancels_beyond = 0.95;
 
-/// Whether two places share a factor; run is treated as time, and screw phase and angle are treated
-/// as position.
+/// Whether two places share a factor; run equals time, and screw phase and angle equal position.
 bool same_factor(const Where& a, const Where& b) {
   const auto kin = [](Factor f) {
     if (f == Factor::run) return Factor::time;

@@ -468,7 +468,7 @@ namespace {
 std::string released_by(const Source& source) {
   const Issue& issue = *source.in.issue;
   const std::string& responsible = source.in.campaign.laboratory.authoriser;
-  if (issue.is_draft()) return source.words.get("draft.nobody");
+  if (issue.is_draft()) return source.words.get("draft.not_approved");
   if (!issue.released_by.empty()) return issue.released_by;
   return source.words.get("authority.rules", {{"name", responsible}});
 }
