@@ -24,10 +24,11 @@ std::vector<std::string> heading(const OutputInput& in, const Law& law) {
   for (const std::string& effect : law.effects) effects += (effects.empty() ? "" : ", ") + effect;
   std::vector<std::string> out{
       "Nonio: compensation of heat for " + plain(law.axis) + " of " + in.campaign.id +
-          ", displacement " + law.displacement,
+          (law.of_runs ? ", runs of the axis" : ", displacement " + law.displacement),
       "model: " + effects,
-      "RMS of the displacement in this test: " + um(law.before) + " um, with the compensation " +
-          um(law.after) + " um",
+      std::string("RMS of the ") + (law.of_runs ? "deviations" : "displacement") +
+          " in this test: " + um(law.before) + " um, with the compensation " + um(law.after) +
+          " um",
       "Zero is the state in which the compensation begins: begin it where the machine is zeroed."};
   for (const std::string& effect : law.left_out)
     out.push_back("not compensated, it follows no recorded channel: " + effect);
@@ -50,6 +51,13 @@ std::string file_of(const Law& law, const char* control, const char* ending) {
 }
 
 std::string anything(const Law&) { return ""; }
+
+bool grows(const Law& law) {
+  return std::any_of(law.terms.begin(), law.terms.end(),
+                     [](const Term& term) { return term.growth != 0.0; });
+}
+
+std::string one_value(const Law& law) { return grows(law) ? "heat-compensation.position" : ""; }
 
 // LinuxCNC: HAL files
 
@@ -181,6 +189,7 @@ std::vector<Artifact> linuxcnc(const OutputInput& in, const Law& law) {
 
 std::string one_sensor_of_z(const Law& law) {
   if (law.axis != "Z") return "heat-compensation.only-z";
+  if (grows(law)) return one_value(law);
   const bool one = law.terms.size() == 1 && law.terms[0].kind == Term::Kind::temperature;
   return one ? "" : "heat-compensation.one-sensor";
 }
@@ -203,7 +212,8 @@ std::vector<Artifact> klipper(const OutputInput& in, const Law& law) {
 
 struct Dialect {
   const char *number, *result;
-  double sign;  ///< sign of the result relative to the error
+  double sign;          ///< sign of the result relative to the error
+  bool takes_position;  ///< whether the result has the growth in it; otherwise it is `slope`
 };
 
 /// Cycle time, s: a fiftieth of the shortest lag, from 0.1 s to 10 s, so that single precision is
@@ -226,7 +236,7 @@ std::string input_of(const Term& term, std::size_t channel) {
 
 std::string block(const OutputInput& in, const Law& law, const std::string& name,
                   const Dialect& d) {
-  std::string inputs, states, begin, step, sum;
+  std::string inputs, states, begin, step, at_once, sum, slope;
   for (const auto& c : law.channels)
     inputs += "  " + variable(c.name) + " : " + d.number + ";  (* " + c.unit + " *)\n";
   std::size_t n = 0;
@@ -235,30 +245,46 @@ std::string block(const OutputInput& in, const Law& law, const std::string& name
       const std::string id = std::to_string(++n), x = input_of(term, k), y = "y" + id, r = "r" + id;
       states += "  " + y + " : " + d.number + ";\n  " + r + " : " + d.number + ";\n";
       begin += "  " + y + " := " + x + ";\n  " + r + " := " + y + ";\n";
-      step += term.tau > 0.0 ? "  " + y + " := " + y + " + (" + x + " - " + y +
-                                   ") * (1.0 - EXP(-elapsed / " + fixed_text(term.tau, 3) + "));\n"
-                             : "  " + y + " := " + x + ";\n";
+      if (term.tau > 0.0)
+        step += "  " + y + " := " + y + " + (" + x + " - " + y + ") * (1.0 - EXP(-elapsed / " +
+                fixed_text(term.tau, 3) + "));\n";
+      else
+        at_once += y + " := " + x + ";\n";
+      const std::string change = " * (" + y + " - " + r + ")";
       const double gain = d.sign * (k == 0 ? term.gain : -term.gain);
-      sum += (sum.empty() ? "" : " + ") + ("(" + mm(gain) + ")") + " * (" + y + " - " + r + ")";
+      sum += (sum.empty() ? "(" : " + (") + mm(gain) + ")" + change;
+      if (term.growth != 0.0)
+        slope +=
+            (slope.empty() ? "(" : " + (") + fixed_text(d.sign * term.growth, 12) + ")" + change;
     }
   const std::string of = d.number;
+  std::string slopes;
+  if (!slope.empty() && d.takes_position) {
+    inputs += "  position : " + of + ";  (* mm *)\n";
+    sum += " + (" + slope + ") * (position - (" + mm(law.reference) + "))";
+    slope.clear();
+  } else if (!slope.empty()) {
+    slopes = "  slope : " + of + ";  (* mm/mm *)\n";
+    slope = "slope := " + slope + ";\n";
+  }
   return comment(heading(in, law), "(* ", " *)") + "FUNCTION_BLOCK " + name +
          "\nVAR_INPUT\n  dt : " + of +
          ";  (* s since the last call *)\n  reset : BOOL;  (* TRUE: begin from this state *)\n" +
-         inputs + "END_VAR\nVAR_OUTPUT\n  " + d.result + " : " + of +
-         ";  (* mm *)\nEND_VAR\nVAR\n  started : BOOL;\n" + "  elapsed : " + of + ";\n" + states +
-         "END_VAR\n" + "IF NOT started OR reset THEN\n" + begin +
+         inputs + "END_VAR\nVAR_OUTPUT\n  " + d.result + " : " + of + ";  (* mm *)\n" + slopes +
+         "END_VAR\nVAR\n  started : BOOL;\n" + "  elapsed : " + of + ";\n" + states + "END_VAR\n" +
+         "IF NOT started OR reset THEN\n" + begin +
          "  elapsed := 0.0;\n  started := TRUE;\nEND_IF;\nelapsed := elapsed + dt;\nIF elapsed "
          ">= " +
-         fixed_text(step_of(law), 3) + " THEN\n" + step + "  elapsed := 0.0;\nEND_IF;\n" +
-         d.result + " := " + sum + ";\nEND_FUNCTION_BLOCK\n";
+         fixed_text(step_of(law), 3) + " THEN\n" + step + "  elapsed := 0.0;\nEND_IF;\n" + at_once +
+         d.result + " := " + sum + ";\n" + slope + "END_FUNCTION_BLOCK\n";
 }
 
 std::vector<Artifact> twincat(const OutputInput& in, const Law& law) {
   const std::string axis = plain(law.axis);
+  const std::string position = grows(law) ? ", position := axis" + axis + ".NcToPlc.ActPos" : "";
   const std::vector<std::string> use{
       "use, with Position Correction enabled in the parameters of the axis:",
-      "  heat" + axis + "(dt := cycle, reset := zeroing, ...);",
+      "  heat" + axis + "(dt := cycle, reset := zeroing" + position + ", ...);",
       "  limiter" + axis + "(Axis := axis" + axis +
           ", Enable := TRUE, PositionCorrectionValue := heat" + axis +
           ".correction_mm, CorrectionMode := POSITIONCORRECTION_MODE_FAST, Acceleration := 1.0);",
@@ -268,7 +294,7 @@ std::vector<Artifact> twincat(const OutputInput& in, const Law& law) {
       "check the sign once: with PositionCorrectionValue 0.01 the axis must move by -0.01 mm"};
   return {{file_of(law, "twincat", ".st"),
            comment(use, "(* ", " *)") +
-               block(in, law, "FB_Heat" + axis, {"LREAL", "correction_mm", 1.0})}};
+               block(in, law, "FB_Heat" + axis, {"LREAL", "correction_mm", 1.0, true})}};
 }
 
 std::vector<Artifact> siemens(const OutputInput& in, const Law& law) {
@@ -276,13 +302,25 @@ std::vector<Artifact> siemens(const OutputInput& in, const Law& law) {
   std::vector<std::string> lines = heading(in, law);
   lines.emplace_back("SD43900 is written by the PLC: offset_mm of the SCL block next to this file");
   lines.push_back("check the sign once: with SD43900 = 0.01 the axis must move by +0.01 mm");
-  const std::string data = "$MA_TEMP_COMP_TYPE[" + axis + "]=1 ; MD32750, position-independent\n" +
-                           "$SA_TEMP_COMP_ABS_VALUE[" + axis + "]=0 ; SD43900, mm\n" +
-                           "$SA_TEMP_COMP_SLOPE[" + axis + "]=0 ; SD43910\n" +
-                           "$SA_TEMP_COMP_REF_POSITION[" + axis + "]=0 ; SD43920, mm\n";
+  const bool slope = grows(law);
+  if (slope) {
+    lines.emplace_back("SD43910 is written by the PLC too: slope of the SCL block");
+    lines.emplace_back("the axis adds SD43900 + SD43910 (P - SD43920), P in machine coordinates");
+    lines.push_back(
+        "check its sign once: with SD43900 = 0 and SD43910 = 0.00001 the axis must move "
+        "by +0.001 mm at 100 mm beyond SD43920");
+    lines.push_back("largest SD43910 in this test: " + fixed_text(law.largest_slope, 9) +
+                    "; the control limits it without an alarm: MD32760 must permit it");
+  }
+  const std::string type = slope ? "]=3 ; MD32750, position-independent and position-dependent\n"
+                                 : "]=1 ; MD32750, position-independent\n";
+  const std::string data = "$MA_TEMP_COMP_TYPE[" + axis + type + "$SA_TEMP_COMP_ABS_VALUE[" + axis +
+                           "]=0 ; SD43900, mm\n" + "$SA_TEMP_COMP_SLOPE[" + axis +
+                           "]=0 ; SD43910\n" + "$SA_TEMP_COMP_REF_POSITION[" + axis +
+                           "]=" + (slope ? mm(law.reference) : "0") + " ; SD43920, mm\n";
   return {{file_of(law, "siemens", ".ini"), comment(lines, "; ") + data + "M17\n"},
           {file_of(law, "siemens", ".scl"),
-           block(in, law, "NonioHeat" + axis, {"REAL", "offset_mm", -1.0})}};
+           block(in, law, "NonioHeat" + axis, {"REAL", "offset_mm", -1.0, false})}};
 }
 
 std::string not_documented(const Law&) { return "heat-compensation.not-documented"; }
@@ -291,7 +329,7 @@ std::string not_documented(const Law&) { return "heat-compensation.not-documente
 
 const std::vector<Format>& formats() {
   static const std::vector<Format> all{
-      {"linuxcnc", nullptr, anything, linuxcnc},
+      {"linuxcnc", nullptr, one_value, linuxcnc},
       {"klipper", nullptr, one_sensor_of_z, klipper},
       {"siemens", "heat-compensation.sign-inferred", anything, siemens},
       {"twincat", "heat-compensation.sign-inferred", anything, twincat},

@@ -6,6 +6,8 @@
 #include <map>
 #include <set>
 
+#include "nonio/sdk/channels.h"
+
 namespace nonio::heat_compensation {
 
 namespace {
@@ -51,8 +53,25 @@ const Observations* readings_of(const OutputInput& in, const std::string& measur
   return nullptr;
 }
 
+using Channel = Observations::Channel;
+
+/// Name of the column material_c as a channel, which effects `temperature` follow.
+constexpr const char* material = "material";
+
+std::optional<Channel> channel_of(const Observations& o, const std::string& name) {
+  if (const Channel* known = o.channel(name)) return *known;
+  if (name != material || o.material.size() != o.size()) return std::nullopt;
+  Channel out{material, "degC", {}, {}};
+  std::map<double, double> samples;
+  for (std::size_t i = 0; i < o.size(); ++i)
+    if (std::isfinite(o.material[i]))
+      samples[o.time.size() == o.size() ? o.time[i] : static_cast<double>(i)] = o.material[i];
+  for (const auto& [time, value] : samples) out.time.push_back(time), out.value.push_back(value);
+  return out;
+}
+
 struct Values {
-  double gain = 0.0, tau = 0.0, power = 1.0;
+  double gain = 0.0, tau = 0.0, power = 1.0, growth = 0.0, fixed = 0.0;
   bool has_gain = false;
 };
 
@@ -64,6 +83,10 @@ Values values_of(const ModelFit& fit, const std::string& effect) {
       v.tau = p.value;
     else if (p.name == "m")
       v.power = p.value;
+    else if (p.name == "fixed")
+      v.fixed = p.value;
+    else if (p.quantity == Quantity::expansion)
+      v.growth = p.value, v.has_gain = true;
     else
       v.gain = p.value, v.has_gain = true;
   }
@@ -77,8 +100,10 @@ std::optional<Term> term_of(const ModelFit& fit, const std::string& effect,
   const std::string kind = effect.substr(0, colon);
   const std::string of = colon == std::string::npos ? "" : effect.substr(colon + 1);
   Term term;
-  if (kind == "heat" || kind == "heat-slow") {
+  if (kind == "heat" || kind == "heat-slow" || kind == "heat-growth") {
     term.channels = {of};
+  } else if (kind == "temperature") {
+    term.channels = {material};
   } else if (kind == "heat-difference") {
     term.kind = Term::Kind::difference;
     term.channels = {of.substr(0, of.find('-')), of.substr(std::min(of.size(), of.find('-') + 1))};
@@ -89,10 +114,11 @@ std::optional<Term> term_of(const ModelFit& fit, const std::string& effect,
     return std::nullopt;
   }
   for (const std::string& name : term.channels)
-    if (readings.channel(name) == nullptr) return std::nullopt;
+    if (!channel_of(readings, name)) return std::nullopt;
   const Values v = values_of(fit, effect);
   if (!v.has_gain) return std::nullopt;
-  term.gain = v.gain, term.tau = v.tau, term.power = static_cast<int>(std::lround(v.power));
+  term.gain = v.gain - v.growth * v.fixed, term.growth = v.growth;
+  term.tau = v.tau, term.power = static_cast<int>(std::lround(v.power));
   if (term.kind == Term::Kind::source)
     for (const double n : readings.channel(of)->value)
       term.largest = std::max(term.largest, std::fabs(n));
@@ -106,8 +132,46 @@ double rms_about_mean(const std::vector<double>& x) {
   return x.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(x.size()));
 }
 
-Law law_of(const ModelFit& fit, const Observations& readings, const std::string& axis) {
+/// What a term of runs follows at each reading: change of its channel since the first sample, with
+/// its lag.
+std::vector<double> followed(const OutputInput& in, const ModelFit& fit, const Term& term) {
+  std::vector<double> out(fit.size(), 0.0);
+  std::optional<double> first;
+  for (std::size_t m = 0; m < fit.measurements.size(); ++m) {
+    const auto channel = channel_of(*readings_of(in, fit.measurements[m]), term.channels.front());
+    if (!channel || channel->value.empty()) continue;
+    if (!first) first = channel->value.front();
+    std::vector<double> time;
+    for (std::size_t i = 0; i < fit.size(); ++i)
+      if (fit.measurement[i] == m)
+        time.push_back(fit.time.empty() ? static_cast<double>(time.size()) : fit.time[i]);
+    const std::vector<double> own = lagged(*channel, term.tau, time);
+    for (std::size_t i = 0, k = 0; i < fit.size(); ++i)
+      if (fit.measurement[i] == m) out[i] = own[k++] + channel->value.front() - *first;
+  }
+  return out;
+}
+
+/// Adds what only runs of the axis show: the compensation begins with the first sample.
+void put_runs(Law& law, const OutputInput& in, const ModelFit& fit) {
+  const auto [low, high] = std::minmax_element(fit.target.begin(), fit.target.end());
+  law.reference = 0.5 * (*low + *high);
+  std::vector<double> rest = fit.deviation, slope(fit.size(), 0.0);
+  for (const Term& term : law.terms) {
+    const std::vector<double> follows = followed(in, fit, term);
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      slope[i] += term.growth * follows[i];
+      rest[i] -= (term.gain + term.growth * (fit.target[i] - law.reference)) * follows[i];
+    }
+  }
+  for (const double s : slope) law.largest_slope = std::max(law.largest_slope, std::fabs(s));
+  law.after = rms_about_mean(rest);
+}
+
+Law law_of(const ModelFit& fit, const Observations& readings, const std::string& axis,
+           const OutputInput& in) {
   Law law;
+  law.of_runs = fit.part == axis;
   law.measurement = fit.measurements.front();
   law.axis = axis[0] == '-' ? axis.substr(1) : axis;
   const double sense = axis[0] == '-' ? -1.0 : 1.0;
@@ -116,7 +180,7 @@ Law law_of(const ModelFit& fit, const Observations& readings, const std::string&
   for (const ModelFit::Effect& effect : fit.effects) {
     auto term = term_of(fit, effect.name, readings);
     if (!term) {
-      law.left_out.push_back(effect.name);
+      if (!law.of_runs) law.left_out.push_back(effect.name);  // others are of tables
       continue;
     }
     term->gain *= sense;
@@ -126,9 +190,10 @@ Law law_of(const ModelFit& fit, const Observations& readings, const std::string&
     law.effects.push_back(effect.name);
     law.terms.push_back(std::move(*term));
   }
-  for (const std::string& name : used) law.channels.push_back(*readings.channel(name));
+  for (const std::string& name : used) law.channels.push_back(*channel_of(readings, name));
   law.before = rms_about_mean(fit.deviation);
   law.after = rms_about_mean(rest);
+  if (law.of_runs && fit.size() > 0) put_runs(law, in, fit);
   return law;
 }
 
@@ -151,20 +216,24 @@ Expected<std::vector<Law>> laws(const OutputInput& in, std::vector<Finding>& fin
   std::vector<Law> out;
   for (const ModelFit& fit : in.results.models) {
     const std::size_t slash = fit.part.rfind('/');
-    const Observations* readings =
-        slash == std::string::npos ? nullptr : readings_of(in, fit.measurements.front());
-    if (readings == nullptr || readings->channels.empty() || fit.effects.empty()) continue;
-    const std::string displacement = fit.part.substr(slash + 1);
+    const Axis* runs = in.campaign.machine.axis(fit.part);
+    if (slash == std::string::npos && (runs == nullptr || runs->rotary)) continue;
+    const Observations* readings = readings_of(in, fit.measurements.front());
+    if (readings == nullptr || fit.effects.empty()) continue;
+    if (runs == nullptr && readings->channels.empty()) continue;
+    const std::string displacement = runs != nullptr ? fit.part : fit.part.substr(slash + 1);
     const auto entry = stated->find(displacement);
-    const std::string axis =
-        entry != stated->end() ? entry->second : axis_by_name(in.campaign, displacement);
+    const std::string axis = runs != nullptr          ? fit.part
+                             : entry != stated->end() ? entry->second
+                                                      : axis_by_name(in.campaign, displacement);
     if (axis.empty()) {
       findings.push_back(about("heat-compensation.no-axis", displacement));
       continue;
     }
-    Law law = law_of(fit, *readings, axis);
+    Law law = law_of(fit, *readings, axis, in);
     law.displacement = displacement;
     if (law.terms.empty()) {
+      if (law.of_runs) continue;
       findings.push_back(about("heat-compensation.no-effect", displacement));
       continue;
     }

@@ -191,14 +191,15 @@ class Block:
         exec(self.code, {}, names)
         self.state = {name: names[name] for name in self.state}
 
-    def run(self, columns, output, period=1.0):
+    def run(self, columns, output, period=1.0, position=None):
         channels = {"in_" + name.rsplit("_", 1)[0]: Signal(columns, name) for name in columns if name.endswith(("_c", "_rpm"))}
         channels = {name: f for name, f in channels.items() if name in self.type}
         out = []
-        self.cycle(dt=0.0, reset=True, **{n: f(0.0) for n, f in channels.items()})
+        at = lambda i: {"position": position[i]} if position else {}
+        self.cycle(dt=0.0, reset=True, **at(0), **{n: f(0.0) for n, f in channels.items()})
         for i in range(ROWS):
             for k in range(round(STEP / period)):
-                self.cycle(dt=period, reset=False, **{n: f(i * STEP + k * period) for n, f in channels.items()})
+                self.cycle(dt=period, reset=False, **at(i), **{n: f(i * STEP + k * period) for n, f in channels.items()})
                 if k == 0:
                     out.append(1.0 * self.state[output])
         return out
@@ -268,6 +269,84 @@ class HeatCompensation(BenchTest):
                            names={"z_um": "ch3_um"})
         block = Block((files / "heat-twincat-Z.st").read_text())
         self.assert_opposite(block.run(self.columns, "correction_mm"), "ch3", sign=-1.0)
+
+    # Runs of an axis whose screw grows
+
+    RUNS = MANIFEST.replace('kind = "thermal"', 'kind = "axis"\naxis = "X"').replace(
+        "{axes}", '[machine.axes.X]\nkind = "linear"\nactive_table = "none"\nactive_backlash_mm = "none"')
+
+    def write_runs(self, control, effects, material=False):
+        """Ten runs over 800 mm in which X grows with its screw, late, and moves with its bed; the true value of each row, um."""
+        rng, targets = random.Random(self.seed), [50.0 + 800.0 / 34 * i for i in range(35)]
+        waves = [[1.5 * math.sin(i / (90 + 41 * k) + rng.uniform(0, 6)) + 0.7 * math.sin(i / (40 + 13 * k)) for i in range(ROWS)]
+                 for k in range(2)]
+        screw, bed = ([22 + v for v in wave] for wave in waves)
+        late = screw if material else follow(screw, 300.0)
+        self.columns = {"time_s": [i * STEP for i in range(ROWS)], "screw_c": screw, "bed_c": bed}
+        head = "run,direction,target_mm,deviation_um,time_s,%s,bed_c" % ("material_c" if material else "screw_c")
+        rows, self.target, self.true = [head], [], []
+        for i in range(ROWS):
+            back = i // 35 % 2
+            x = targets[34 - i % 35 if back else i % 35]
+            true = (11.0e-3 * (x - 150.0) * (late[i] - late[0]) + (0.0 if material else 1.5 * (bed[i] - bed[0])))
+            self.target.append(x)
+            self.true.append(true)
+            rows.append("%d,%s,%.6f,%.5f,%g,%.4f,%.4f" % (i // 70 + 1, "-" if back else "+", x, true + rng.gauss(0, 0.05),
+                                                         i * STEP, screw[i], bed[i]))
+        (self.folder / "warm.csv").write_text("\n".join(rows) + "\n")
+        (self.folder / "campaign.toml").write_text(self.RUNS.format(
+            effects=", ".join('"%s"' % e for e in effects), options='control = "%s"' % control))
+        self.answer = self.run_site(expect=None)
+        return self.out / "c"
+
+    def assert_runs(self, added_mm, text):
+        """What the axis adds is the opposite of what it has, and leaves what the file states."""
+        rms = lambda v: math.sqrt(sum((x - sum(v) / len(v)) ** 2 for x in v) / len(v))
+        rest = [1e3 * a + t for a, t in zip(added_mm, self.true)]
+        self.assertLess(rms(rest), 0.1 * rms(self.true), "seed %d" % self.seed)
+        if "temperature:X" not in text:  # its zero is the mean of the test
+            table = self.out / "model.csv"
+            self.nonio("model", "compare", self.folder, "--csv", table)
+            says = [float(r["model_um"]) for r in csv.DictReader(table.read_text().splitlines())]
+            self.assertLess(rms([1e3 * a + v for a, v in zip(added_mm, says)]), 0.05 * rms(says), "seed %d" % self.seed)
+        measured = [float(r.split(",")[3]) for r in (self.folder / "warm.csv").read_text().splitlines()[1:]]
+        before, after = map(float, re.search(r"in this test: (\S+) um, with the compensation (\S+) um", text).groups())
+        self.assertAlmostEqual(before, rms(measured), delta=0.01)
+        self.assertAlmostEqual(after, rms([1e3 * a + m for a, m in zip(added_mm, measured)]),
+                               delta=0.05 * after + 0.005)  # last digit of the file
+
+    def straight_line(self, files, channels):
+        """The axis adds SD43900 + SD43910 (P - SD43920) where bits 0 and 1 of MD32750 are set."""
+        data = (files / "heat-siemens-X.ini").read_text()
+        value = {name: float(v) for name, v in re.findall(r"(?m)^\$[MS]A_(\w+)\[X\]=(\S+)", data)}
+        self.assertEqual(value["TEMP_COMP_TYPE"], 3)
+        offset, slope = (Block((files / "heat-siemens-X.scl").read_text()).run(channels, output, 0.5)
+                         for output in ("offset_mm", "slope"))
+        largest = float(re.search(r"largest SD43910 in this test: ([0-9.]+)", data)[1])
+        self.assertAlmostEqual(largest, max(map(abs, slope)), delta=0.05 * largest)
+        return [k0 + k * (p - value["TEMP_COMP_REF_POSITION"]) for k0, k, p in zip(offset, slope, self.target)], data
+
+    def test_siemens_straight_line_of_a_growing_screw(self):
+        files = self.write_runs("siemens", ("heat-growth:screw", "heat:bed"))
+        self.assert_runs(*self.straight_line(files, self.columns))
+        notes = [n["id"] for o in self.answer["outputs"] for n in o.get("notes", [])] + [str(self.answer)]
+        self.assertTrue(any("sign-inferred" in n or "inferred" in n for n in notes))
+
+    def test_siemens_straight_line_of_the_material_temperature(self):
+        files = self.write_runs("siemens", ("temperature:X",), material=True)
+        self.assert_runs(*self.straight_line(files, {**self.columns, "material_c": self.columns["screw_c"]}))
+
+    def test_twincat_adds_the_growth_at_its_position(self):
+        text = (self.write_runs("twincat", ("heat-growth:screw", "heat:bed")) / "heat-twincat-X.st").read_text()
+        self.assertIn("position := axisX.NcToPlc.ActPos", text)
+        self.assert_runs([-v for v in Block(text).run(self.columns, "correction_mm", position=self.target)], text)
+
+    def test_growth_is_refused_where_the_control_has_one_value(self):
+        for control, finding in (("linuxcnc", "position"), ("klipper", "only-z"), ("heidenhain", "not-documented")):
+            with self.subTest(control=control):
+                files = self.write_runs(control, ("heat-growth:screw", "heat:bed"))
+                self.assertIn("heat-compensation." + finding, self.findings())
+                self.assertEqual(list(files.glob("heat-*")), [])
 
     def findings(self):
         return {f["id"] for o in self.answer.get("tables", []) for f in o.get("findings", [])}
