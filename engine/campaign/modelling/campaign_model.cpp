@@ -47,6 +47,13 @@ std::string mistake_of_channel(const std::string& effect, const Effect& known,
   for (const model::Part& part : model::parts_of(read.manifest->campaign, read.observations)) {
     auto terms = model::terms_of(part, read.manifest->campaign.machine, {effect}, {known});
     if (terms && !terms->empty()) return {};
+    for (const model::ChannelLeft& left : part.channels_left)
+      if (split(effect).second.substr(0, split(effect).second.find('/')) == left.name &&
+          left.why != model::ChannelLeft::Why::speed)
+        return "\"" + effect + "\": measurement " + storage::listed(left.measurements) +
+               " has no " +
+               (left.why == model::ChannelLeft::Why::partly ? "channel " + left.name : "time_s") +
+               ", and is explained together with those that have it";
   }
   return "\"" + effect + "\": no measurement over time has this channel" +
          (effect.find('/') == std::string::npos ? "" : " and these displacements") +

@@ -419,6 +419,15 @@ std::string ModelWords::temperature_interpolated(const RowsPlace& rows) const {
               {{"file", rows.file}, {"lines", rows.lines}});
 }
 
+std::string ModelWords::channel_left(const model::ChannelLeft& left) const {
+  using Why = model::ChannelLeft::Why;
+  const char* const why = left.why == Why::partly    ? "partly"
+                          : left.why == Why::untimed ? "untimed"
+                                                     : "speed";
+  return says(std::string("channel-left.") + why, {},
+              {{"channel", left.name}, {"measurements", storage::listed(left.measurements)}});
+}
+
 std::string ModelWords::cancelling(const std::string& one, const std::string& other) const {
   return says("cancelling", {}, {{"one", one}, {"other", other}});
 }

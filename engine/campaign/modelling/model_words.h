@@ -31,6 +31,7 @@ class ModelWords {
   /// States why these readings cannot show an effect.
   std::string unseen(const model::Candidate& candidate, const RowsPlace& rows) const;
   std::string temperature_interpolated(const RowsPlace& rows) const;
+  std::string channel_left(const model::ChannelLeft& left) const;
   /// States that two effects cancel each other, so that the readings show neither.
   std::string cancelling(const std::string& one, const std::string& other) const;
   std::string plan(const model::Plan& plan) const;

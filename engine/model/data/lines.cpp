@@ -240,6 +240,16 @@ void append_lines(Observations& to, const Observations& more, const std::string&
   for (std::size_t i = 0; i < more.size(); ++i) to.sense.push_back(more.sense_of(i));
 }
 
+/// Appends the channels of a measurement whose lines begin with `first`. Times of two measurements
+/// have different origins, so each keeps its own channels.
+void append_channels(Observations& to, const Observations& more, std::uint32_t first) {
+  for (Observations::Channel channel : more.channels) {
+    channel.lines.resize(to.lines.size() - first);
+    std::iota(channel.lines.begin(), channel.lines.end(), first);
+    to.channels.push_back(std::move(channel));
+  }
+}
+
 }  // namespace
 
 bool sensed_along_one_axis(const Observations& o) {
@@ -298,12 +308,7 @@ void append_run(Part& part, const Observations& listed, const Measurement& m) {
     to.angular = more.angular;
   }
   auto& axis = to.axes.front();
-  // Times of two measurements have different origins, so channels with a lag can be used with one
-  // measurement only.
-  if (part.measurements.empty())
-    to.channels = more.channels;
-  else
-    to.channels.clear();
+  const auto first = static_cast<std::uint32_t>(to.lines.size());
   axis.position.insert(axis.position.end(), from.position.begin(), from.position.end());
   axis.approach.insert(axis.approach.end(), from.approach.begin(), from.approach.end());
   part.along = axis.position;
@@ -314,6 +319,7 @@ void append_run(Part& part, const Observations& listed, const Measurement& m) {
     to.line.insert(to.line.end(), more.size(), static_cast<std::uint32_t>(to.lines.size()));
     to.lines.push_back({m.id, more.lines.empty() ? Vector{} : more.lines.front().sense});
   }
+  append_channels(to, more, first);
   append_readings(part, more, m.id);
   std::copy(order.rows.begin(), order.rows.end(),
             part.row.end() - static_cast<std::ptrdiff_t>(order.rows.size()));
@@ -347,7 +353,9 @@ void append_space(Part& part, const Campaign& campaign, const std::vector<Observ
       axis.approach.insert(axis.approach.end(), column.approach.begin(), column.approach.end());
     }
     to.order_known = to.order_known && more.order_known;
+    const auto first = static_cast<std::uint32_t>(to.lines.size());
     append_lines(to, more, campaign.measurements[m].id);
+    append_channels(to, more, first);
     append_places(part, more, campaign.measurements[m]);
     append_readings(part, more, campaign.measurements[m].id);
   }

@@ -229,13 +229,55 @@ std::string listed_groupings(const Part& part) {
   return out.empty() ? "two measurements of one axis" : out;
 }
 
+/// Measurements of the part with a reading that lacks something.
+template <class Lacks>
+std::vector<std::string> lacking(const Part& part, const Lacks& lacks) {
+  std::set<std::uint32_t> which;
+  for (std::size_t i = 0; i < part.table.size(); ++i)
+    if (lacks(i)) which.insert(part.measurement[i]);
+  std::vector<std::string> out;
+  for (const std::uint32_t m : which) out.push_back(part.measurements[m]);
+  return out;
+}
+
+/// Removes the channels whose effects these readings cannot determine, and stores the reason.
+void leave_channels(Part& part) {
+  Observations& o = part.table;
+  if (part.kind == Part::Kind::course || o.channels.empty()) return;
+  const auto untimed = lacking(
+      part, [&](std::size_t i) { return o.time.size() != o.size() || !std::isfinite(o.time[i]); });
+  std::map<std::string, ChannelLeft> all;
+  for (const auto& c : o.channels) {
+    ChannelLeft left{c.name, ChannelLeft::Why::speed, {}};
+    if (c.is_temperature()) {
+      left.why = untimed.empty() ? ChannelLeft::Why::partly : ChannelLeft::Why::untimed;
+      left.measurements =
+          untimed.empty()
+              ? lacking(part,
+                        [&](std::size_t i) {
+                          return std::none_of(
+                              o.channels.begin(), o.channels.end(), [&](const auto& same) {
+                                return same.name == c.name &&
+                                       std::binary_search(same.lines.begin(), same.lines.end(),
+                                                          o.line_of(i));
+                              });
+                        })
+              : untimed;
+      if (left.measurements.empty()) continue;
+    }
+    all.emplace(c.name, std::move(left));
+  }
+  std::erase_if(o.channels, [&](const auto& c) { return all.contains(c.name); });
+  for (auto& [name, left] : all) part.channels_left.push_back(std::move(left));
+}
+
 /// Whether an effect can be in this part. Effects of channels occur only in displacements over time
-/// and in axis tests with recorded channels; other effects occur in all parts except displacements
+/// and next to recorded channels, not in ball centers; other effects occur in all parts except displacements
 /// over time.
 bool can_be_in(const Part& part, const Effect& effect) {
   if (!effect.of_channels) return part.kind != Part::Kind::course;
   return part.kind == Part::Kind::course ||
-         (part.kind == Part::Kind::axis && !part.table.channels.empty());
+         (part.kind != Part::Kind::balls && !part.table.channels.empty());
 }
 
 /// Returns the term of an effect for the axis or instance `written` of this part; none if the
@@ -279,7 +321,10 @@ std::vector<std::string> offered_by(const Part& part, const Effect& effect) {
 std::vector<Part> parts_of(const Campaign& campaign, const std::vector<Observations>& read) {
   std::vector<Part> parts = Parts(campaign, read).made();
   put_time_constants(campaign, read, parts);
-  for (Part& part : parts) part.groupings = groupings_of(part, campaign);
+  for (Part& part : parts) {
+    leave_channels(part);
+    part.groupings = groupings_of(part, campaign);
+  }
   return parts;
 }
 

@@ -55,6 +55,23 @@ std::vector<double> lagged(const Observations::Channel& channel, double tau,
   return out;
 }
 
+std::vector<double> lagged(const Observations& o, std::string_view name, double tau) {
+  std::vector<double> out(o.size(), 0.0);
+  const Observations::Channel* const first = o.channel(name);
+  for (const Observations::Channel& c : o.channels) {
+    if (c.name != name || c.value.empty() || first->value.empty()) continue;
+    std::vector<std::size_t> rows;
+    std::vector<double> time;
+    for (std::size_t i = 0; i < o.size(); ++i)
+      if (c.lines.empty() || std::binary_search(c.lines.begin(), c.lines.end(), o.line_of(i)))
+        rows.push_back(i), time.push_back(o.time[i]);
+    const std::vector<double> own = lagged(c, tau, time);
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      out[rows[k]] = own[k] + c.value.front() - first->value.front();
+  }
+  return out;
+}
+
 std::vector<double> time_constants_for(const std::vector<double>& time) {
   constexpr std::size_t least_times = 12, most = 18;
   std::vector<double> t = time;

@@ -69,10 +69,14 @@ Expected<void> check(const Observations& o) {
   }
   if (!std::all_of(o.u.begin(), o.u.end(), [](double u) { return finite(u) && u > 0.0; }))
     return fail("an uncertainty of a reading that is not a number above 0");
-  for (const auto& c : o.channels)
+  for (const auto& c : o.channels) {
+    if (std::any_of(c.lines.begin(), c.lines.end(),
+                    [&](std::uint32_t line) { return line >= o.lines.size(); }))
+      return fail("a channel " + c.name + " of a line that does not exist");
     if (c.time.size() != c.value.size() || !all_finite(c.value) || !all_finite(c.time) ||
         !std::is_sorted(c.time.begin(), c.time.end()))
       return fail("a channel " + c.name + " without a value at each of its times, ascending");
+  }
   for (const Finding& doubt : o.doubts)
     if (!doubt.attention || !doubt.id.starts_with("plausibility."))
       return fail("the doubt " + doubt.id + "; expected findings plausibility.* of attention");

@@ -9,6 +9,8 @@
 //     heat-source:n        a L(|n/n0|^m, tau)               a: m at the largest n0; m: 1 or 2
 //     heat-source-slow:n   a L(|n/n0|^m, tau), tau longer than that of heat-source:n
 //     settling:time        z exp(-t/tau)                    z: m
+//
+// In space, heat:T/X and heat-growth:T/X are the effects on the component along X.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -25,13 +27,18 @@ using Columns = Effect::Columns;
 
 /// Minimum range of a temperature channel, K; a smaller range is considered sensor noise.
 constexpr double least_range = 0.05;
+/// Smallest significant component of a direction of sensing.
+constexpr double least_share = 1e-9;
 
-bool varies(const Channel& c, double least) {
+/// Whether a channel varies, within a measurement or from one measurement to another.
+bool varies(const Observations& o, const Channel& c, double least) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  return std::any_of(c.value.begin(), c.value.end(), [&](double v) {
-    low = std::min(low, v);
-    high = std::max(high, v);
-    return high - low > least;
+  return std::any_of(o.channels.begin(), o.channels.end(), [&](const Channel& same) {
+    return same.name == c.name && std::any_of(same.value.begin(), same.value.end(), [&](double v) {
+             low = std::min(low, v);
+             high = std::max(high, v);
+             return high - low > least;
+           });
   });
 }
 
@@ -41,27 +48,74 @@ template <class Kind>
 std::vector<std::string> names(const Observations& o, const Kind& kind) {
   std::vector<std::string> out;
   for (const Channel& c : o.channels)
-    if (kind(c)) out.push_back(c.name);
+    if (kind(c) && std::find(out.begin(), out.end(), c.name) == out.end()) out.push_back(c.name);
   return out;
 }
 
-std::vector<std::string> temperatures(const Observations& o) {
-  return names(o, [](const Channel& c) { return c.is_temperature() && varies(c, least_range); });
+/// Whether readings are sensed in space: over several axes, or across the axis that moved.
+bool in_space(const Observations& o) {
+  if (o.axes.size() != 1) return o.axes.size() > 1 && !o.angular;
+  const std::size_t k = coordinate_of(o.axes.front().axis);
+  for (std::size_t i = 0; i < o.size() && k < 3 && !o.lines.empty(); ++i)
+    for (std::size_t other = 0; other < 3; ++other)
+      if (other != k && std::fabs(o.sense_of(i)[other]) > least_share) return true;
+  return false;
 }
 
+/// The name of the axis along a coordinate, "X" where none of the readings' axes is.
+std::string axis_along(const Observations& o, std::size_t k) {
+  for (const auto& axis : o.axes)
+    if (!axis.rotary && coordinate_of(axis.axis) == k) return axis.axis;
+  return std::string(1, "XYZ"[k]);
+}
+
+bool is_sensed(const Observations& o, std::size_t k) {
+  for (std::size_t i = 0; i < o.size(); ++i)
+    if (std::fabs(o.sense_of(i)[k]) > least_share) return true;
+  return false;
+}
+
+bool moves(const Observations::AxisColumn& axis) {
+  const auto [low, high] = std::minmax_element(axis.position.begin(), axis.position.end());
+  return low != high && *low < *high &&
+         std::all_of(axis.position.begin(), axis.position.end(),
+                     [](double x) { return std::isfinite(x); });
+}
+
+/// Names of temperatures; in space "T/X" for each coordinate that is sensed, or for growth each
+/// axis that moves and is sensed along.
+std::vector<std::string> places_of(const Observations& o, bool growth) {
+  const std::vector<std::string> all =
+      names(o, [&](const Channel& c) { return c.is_temperature() && varies(o, c, least_range); });
+  if (!in_space(o)) return all;
+  std::vector<std::string> out;
+  for (const std::string& name : all)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::string along = axis_along(o, k);
+      const auto* axis = o.axis(along);
+      if (is_sensed(o, k) && (!growth || (axis != nullptr && moves(*axis))))
+        out.push_back(name + "/" + along);
+    }
+  return out;
+}
+
+std::vector<std::string> temperatures(const Observations& o) { return places_of(o, false); }
+std::vector<std::string> growths(const Observations& o) { return places_of(o, true); }
+
 std::vector<std::string> sources(const Observations& o) {
-  return names(o, [](const Channel& c) { return is_source(c) && varies(c, 0.0); });
+  return names(o, [&](const Channel& c) { return is_source(c) && varies(o, c, 0.0); });
 }
 
 /// Whether the temperature may bend the structure: its role is "structure" or not stated.
-bool may_bend(const Channel& c) {
-  return c.is_temperature() && (c.role.empty() || c.role == "structure") && varies(c, least_range);
+bool may_bend(const Observations& o, const Channel& c) {
+  return c.is_temperature() && (c.role.empty() || c.role == "structure") &&
+         varies(o, c, least_range);
 }
 
 /// Names "A-B" of all pairs of channels. Channels with "-" in their name are omitted.
 std::vector<std::string> differences(const Observations& o) {
   std::vector<std::string> out;
-  const std::vector<std::string> all = names(o, may_bend);
+  const std::vector<std::string> all = names(o, [&](const Channel& c) { return may_bend(o, c); });
   for (std::size_t i = 0; i < all.size(); ++i)
     for (std::size_t j = i + 1; j < all.size(); ++j)
       if (all[i].find('-') == std::string::npos && all[j].find('-') == std::string::npos)
@@ -86,10 +140,12 @@ bool has_times(const Observations& o) {
 }
 
 /// Tests over time only. Positioning runs use the effects of `applies_to_runs`.
-bool applies(const Observations& o, const Axis&) { return has_times(o) && moved(o) == nullptr; }
+bool applies(const Observations& o, const Axis&) {
+  return has_times(o) && !in_space(o) && moved(o) == nullptr;
+}
 bool applies_to_all(const Observations& o, const Axis&) { return has_times(o); }
 bool applies_to_runs(const Observations& o, const Axis&) {
-  return has_times(o) && moved(o) != nullptr && !moved(o)->rotary;
+  return has_times(o) && (in_space(o) || (moved(o) != nullptr && !moved(o)->rotary));
 }
 
 Effect::Shape lag(const char* name, const char* help) {
@@ -131,16 +187,24 @@ tl::unexpected<Error> no_channel(const std::string& name) {
 }
 
 Expected<Columns> heat(const Observations& o, const Axis& of, const std::vector<double>& shape) {
-  const Channel* c = o.channel(of.name);
-  if (c == nullptr) return no_channel(of.name);
+  const std::size_t slash = std::min(of.name.find('/'), of.name.size());
+  const std::string name = of.name.substr(0, slash);
+  if (o.channel(name) == nullptr) return no_channel(name);
   if (shape.size() != 1) return fail("heat: expected a time constant");
-  return Columns{lagged(*c, shape[0], o.time)};
+  std::vector<double> column = lagged(o, name, shape[0]);
+  if (slash < of.name.size()) {
+    const std::size_t k = coordinate_of(of.name.substr(slash + 1));
+    if (k > 2) return fail("heat: expected an axis X, Y or Z after \"/\"");
+    for (std::size_t i = 0; i < column.size(); ++i) column[i] *= o.sense_of(i)[k];
+  }
+  return Columns{std::move(column)};
 }
 
 Expected<Columns> growth(const Observations& o, const Axis& of, const std::vector<double>& shape) {
   auto columns = heat(o, of, shape);
-  const auto* axis = moved(o);
   if (!columns) return columns;
+  const std::size_t slash = of.name.find('/');
+  const auto* axis = slash == std::string::npos ? moved(o) : o.axis(of.name.substr(slash + 1));
   if (axis == nullptr) return fail("heat-growth: no axis was moved");
   const auto [low, high] = std::minmax_element(axis->position.begin(), axis->position.end());
   const double middle = 0.5 * (*low + *high);
@@ -209,7 +273,7 @@ NONIO_PLUGIN(registry) {
   Effect grows =
       effect("heat-growth", "A screw, scale or bed grows with a measured temperature with a lag",
              {{"w", "expansion", Quantity::expansion}, {"s", "shift of the middle", per_kelvin}},
-             {lag("tau", "time constant of the lag")}, temperatures, growth);
+             {lag("tau", "time constant of the lag")}, growths, growth);
   grows.applies = applies_to_runs;
   registry.add(std::move(grows));
   registry.add(effect("heat-slow",

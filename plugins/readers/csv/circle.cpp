@@ -106,6 +106,7 @@ Expected<Observations> read_rows_of(const ReadInput& input, const Circle& circle
                                     const Table& table) {
   const Measurement& m = input.measurement;
   Observations obs = begin(m, table);
+  if (auto ok = put_channels(obs, table); !ok) return fail(ok.error());
   obs.axes = {{circle.first, false, {}, {}}, {circle.second, false, {}, {}}};
   const auto& deviation = *table.column("deviation_um");
   std::uint64_t arcs = 0;
@@ -138,15 +139,15 @@ Expected<Observations> read_rows_of(const ReadInput& input, const Circle& circle
 
 Expected<Observations> read_circle(const ReadInput& input) {
   NONIO_TRY(const auto circle, circle_of(input.measurement));
-  auto table = read_table(input.bytes, {{"direction", Kind::sign, true},
-                                        {"angle_deg", Kind::place, true},
-                                        {"deviation_um", Kind::number, true},
-                                        {"run", Kind::whole},
-                                        {"time_s"},
-                                        {"material_c"},
-                                        {"air_c"},
-                                        {"pressure_hpa"},
-                                        {"humidity_pct"}});
+  auto table = read_table(input.bytes, with_channels({{"direction", Kind::sign, true},
+                                                      {"angle_deg", Kind::place, true},
+                                                      {"deviation_um", Kind::number, true},
+                                                      {"run", Kind::whole},
+                                                      {"time_s"},
+                                                      {"material_c"},
+                                                      {"air_c"},
+                                                      {"pressure_hpa"},
+                                                      {"humidity_pct"}}));
   auto obs =
       table ? read_rows_of(input, circle, *table) : Expected<Observations>(fail(table.error()));
   if (!obs) obs.error().file = input.measurement.file;

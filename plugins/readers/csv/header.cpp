@@ -52,33 +52,6 @@ tl::unexpected<Error> fail_at(std::string_view column, std::string message) {
   return fail(std::move(error));
 }
 
-/// Whether the name is that of a channel by its ending, and not a misspelled known name.
-bool is_channel(std::string_view name) {
-  constexpr std::size_t slip = 2;
-  const auto ends = [&](const ChannelEnding& e) {
-    return name.size() > e.end.size() && name.ends_with(e.end);
-  };
-  if (std::none_of(std::begin(channel_endings), std::end(channel_endings), ends)) return false;
-  // names that cannot be displayed are refused
-  if (shown(name) != "\"" + std::string(name) + "\"") return false;
-  return std::none_of(known_columns.begin(), known_columns.end(), [&](const Known& k) {
-    return edit_distance(name, k.name) <= slip && k.name.size() > 5;
-  });
-}
-
-tl::unexpected<Error> unknown_column(std::string_view name, std::size_t number) {
-  if (name.empty())
-    return fail("column " + std::to_string(number) +
-                " of the header row has no name; check for an extra separator");
-  if (parse_number(name, true).kind == Field::Kind::taken)
-    return fail("expected a header row with the names of the columns, found the number " +
-                shown(name));
-  std::vector<std::string_view> names;
-  for (const Known& k : known_columns) names.push_back(k.name);
-  return fail_at(name, "unknown column " + shown(name) + "; did you mean \"" +
-                           std::string(nearest(name, names)) + "\"?");
-}
-
 /// Error if the unit of a column does not fit the kind of axis.
 std::optional<Error> wrong_unit(const Known& column, const Expectation& e) {
   const bool target = column.role == Role::target;
@@ -125,6 +98,42 @@ tl::unexpected<Error> twice(const std::string& before, std::string_view name) {
 }
 
 }  // namespace
+
+bool is_channel(std::string_view name) {
+  constexpr std::size_t slip = 2;
+  const auto ends = [&](const ChannelEnding& e) {
+    return name.size() > e.end.size() && name.ends_with(e.end);
+  };
+  if (std::none_of(std::begin(channel_endings), std::end(channel_endings), ends)) return false;
+  // names that cannot be displayed are refused
+  if (shown(name) != "\"" + std::string(name) + "\"") return false;
+  return std::none_of(known_columns.begin(), known_columns.end(), [&](const Known& k) {
+    return edit_distance(name, k.name) <= slip && k.name.size() > 5;
+  });
+}
+
+tl::unexpected<Error> unknown_column(std::string_view name, std::size_t number) {
+  if (name.empty())
+    return fail("column " + std::to_string(number) +
+                " of the header row has no name; check for an extra separator");
+  if (parse_number(name, true).kind == Field::Kind::taken)
+    return fail("expected a header row with the names of the columns, found the number " +
+                shown(name));
+  const bool slip =
+      edit_distance(name, "deviation_um") <= 2 || edit_distance(name, "deviation_arcsec") <= 2;
+  if (!slip && (name.ends_with("_um") || name.ends_with("_arcsec")))
+    return fail_at(name,
+                   "unknown column " + shown(name) +
+                       ": a row has one deviation, deviation_um or deviation_arcsec. Write the "
+                       "readings of each sensor into a file of its own, or state the one that "
+                       "is evaluated with option columns: \"" +
+                       std::string(name) + " = deviation_um\" or \"" + std::string(name) +
+                       " = ignore\"");
+  std::vector<std::string_view> names;
+  for (const Known& k : known_columns) names.push_back(k.name);
+  return fail_at(name, "unknown column " + shown(name) + "; did you mean \"" +
+                           std::string(nearest(name, names)) + "\"?");
+}
 
 namespace {
 

@@ -87,6 +87,12 @@ char find_separator(std::string_view row, const StatedColumns& stated = {});
 /// Number of names in the row that are known or in `stated`.
 std::size_t known_names(std::string_view row, char separator, const StatedColumns& stated = {});
 
+/// Whether the name is that of a channel by its ending, and not a misspelled known name.
+bool is_channel(std::string_view name);
+
+/// Error for a name that is not known, with the nearest one.
+tl::unexpected<Error> unknown_column(std::string_view name, std::size_t number);
+
 Expected<Header> parse_header(std::string_view row, const Expectation& expectation,
                               const StatedColumns& stated = {});
 

@@ -30,13 +30,6 @@ constexpr Sensor nest[] = {{"x_um", "X", 0}, {"x1_um", "X1", 0}, {"x2_um", "X2",
 
 constexpr std::string_view displacement_end = "_um";
 
-/// Adds columns for displacements, temperatures, speeds and loads of any name.
-std::vector<ColumnSpec> with_channels(std::vector<ColumnSpec> columns) {
-  columns.push_back({"*" + std::string(displacement_end)});
-  for (const ChannelEnding& e : channel_endings) columns.push_back({"*" + std::string(e.end)});
-  return columns;
-}
-
 std::string without(std::string_view name, std::string_view end) {
   return std::string(name.substr(0, name.size() - end.size()));
 }
@@ -313,6 +306,7 @@ Expected<Observations> read_thermal(const ReadInput& input) {
   } else {
     columns.push_back({"speed_rpm", Kind::place});
     columns = with_channels(with_sensors(std::move(columns)));
+    columns.push_back({"*" + std::string(displacement_end)});
   }
   auto table = read_table(input.bytes, columns);
   auto obs = !table      ? Expected<Observations>(fail(table.error()))

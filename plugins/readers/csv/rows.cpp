@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rows.h"
 
+#include <cmath>
+
+#include "header.h"
 #include "spatial.h"
 
 namespace nonio::csv {
@@ -28,6 +31,37 @@ void put_common(Observations& obs, const Table& table, std::size_t row) {
   const auto* run = table.column("run");
   obs.run.push_back(run == nullptr ? 1 : static_cast<std::uint32_t>((*run)[row]));
   put_further_columns(obs, table, row);
+}
+
+std::vector<ColumnSpec> with_channels(std::vector<ColumnSpec> columns) {
+  for (const ChannelEnding& e : channel_endings) columns.push_back({"*" + std::string(e.end)});
+  return columns;
+}
+
+Expected<void> put_channels(Observations& obs, const Table& table) {
+  const auto* time = table.column("time_s");
+  for (const auto& [name, values] : table.numbers)
+    for (const ChannelEnding& e : channel_endings) {
+      if (!name.ends_with(e.end) || name == "material_c" || name == "air_c" ||
+          name == "humidity_pct")
+        continue;
+      if (!is_channel(name)) return unknown_column(name, 1);
+      if (time == nullptr)
+        return fail(at_line(0, name,
+                            "missing column: \"" + name +
+                                "\" was recorded over the time; expected \"time_s\" "
+                                "next to it"));
+      std::map<double, double> samples;
+      for (std::size_t row = 0; row < values.size(); ++row)
+        if (std::isfinite(values[row]) && std::isfinite((*time)[row]))
+          samples.emplace((*time)[row], values[row]);
+      if (samples.empty()) continue;
+      Observations::Channel c{
+          name.substr(0, name.size() - e.end.size()), std::string(e.unit), {}, {}};
+      for (const auto& [at, value] : samples) c.time.push_back(at), c.value.push_back(value);
+      obs.channels.push_back(std::move(c));
+    }
+  return {};
 }
 
 Observations begin(const Measurement& m, const Table& table) {

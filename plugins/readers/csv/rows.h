@@ -26,6 +26,12 @@ void put_further_columns(Observations& obs, const Table& table, std::size_t row)
 /// Like put_further_columns, with the run; 1 if the table has none.
 void put_common(Observations& obs, const Table& table, std::size_t row);
 
+/// Appends columns for temperatures, speeds and loads of any name.
+std::vector<ColumnSpec> with_channels(std::vector<ColumnSpec> columns);
+
+/// Adds the channels of a table whose rows are readings. Error: no times, or a misspelled name.
+Expected<void> put_channels(Observations& obs, const Table& table);
+
 Observations begin(const Measurement& m, const Table& table);
 
 /// Error if there are no readings.

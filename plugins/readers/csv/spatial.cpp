@@ -171,8 +171,10 @@ Expected<Observations> read_general(const ReadInput& input) {
     columns.push_back({coordinate(axis), Kind::place});
     columns.push_back({axis.first + "_dir", Kind::motion});
   }
-  NONIO_TRY(const auto table, table_of(input, with_common(columns)));
+  NONIO_TRY(const auto table, table_of(input, with_channels(with_common(columns))));
   Observations obs = begin(input.measurement, table);
+  if (auto ok = put_channels(obs, table); !ok)
+    return in_file(Expected<Observations>(fail(ok.error())), input);
   std::vector<std::pair<const std::vector<double>*, const std::vector<double>*>> sources;
   for (const auto& axis : possible)
     if (const auto* position = table.column(coordinate(axis))) {

@@ -29,6 +29,8 @@ struct Column {
 
 using Role = Column::Role;
 
+constexpr std::string_view channel_endings[] = {"_c", "_rpm", "_pct", "_kw", "_a"};
+
 /// Mapping of a table from the options.
 struct Map : TableMap {
   std::vector<Column> columns;
@@ -44,6 +46,12 @@ const char* const roles_help =
     "print \"mean +\", \"mean -\", \"2s +\", \"2s "
     "-\" (or forward, reverse), \"mean\", \"dead zone\"";
 
+/// Whether a text is the column of a recorded temperature, speed or load.
+bool is_channel(std::string_view text) {
+  return std::any_of(std::begin(channel_endings), std::end(channel_endings),
+                     [&](std::string_view end) { return text.ends_with(end); });
+}
+
 Expected<Column> column_of(const std::string& text) {
   const auto words = by_blanks(text);
   const auto wrong = [&] {
@@ -55,6 +63,14 @@ Expected<Column> column_of(const std::string& text) {
   if (words.size() == 1 && words[0] == "mean") return Column{Role::both};
   if (words.size() == 1 && whole_number(words[0], 10000) != 0)
     return Column{Role::reading, Way::none, whole_number(words[0], 10000)};
+  if (words.size() == 1 && is_channel(words[0]))
+    return fail(of_option(
+        "columns",
+        "\"" + std::string(words[0]) +
+            "\" has one value in a row, and the readings of the row were taken at different "
+            "times: which value a reading had is not known. Give a table with a row for each "
+            "reading (reader csv: run, direction, target_mm, deviation_um, time_s, " +
+            std::string(words[0]) + "), or \"ignore\" the column"));
   if (words.size() != 2) return wrong();
   if (words[0] == "dead" && words[1] == "zone") return Column{Role::dead_zone};
   Column column;

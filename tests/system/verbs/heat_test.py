@@ -162,7 +162,9 @@ class Heat(VerbTest):
                               '[model]\neffects = ["heat:bearing"]\n')
         self.assertTrue(any("bearing (front bearing)" in says for says in self.json("explain", place)["next"]))
 
-    def axis(self, name, seed, growth, head="run,direction,target_mm,deviation_um,time_s,bed_c,screw_c,hall_c"):
+    HEAD = "run,direction,target_mm,deviation_um,time_s,bed_c,screw_c,hall_c"
+
+    def runs(self, seed, growth, head=HEAD, warmer=0.0, wander=1.0):
         """Runs of an axis whose screw grows 5 min after its thermometer, which wanders as two others do."""
         rng, late, t, rows = random.Random(seed), None, 0, [head]
         phase = [rng.uniform(0, 6) for _ in range(3)]
@@ -171,14 +173,112 @@ class Heat(VerbTest):
             for direction in "+-":
                 for x in targets if direction == "+" else targets[::-1]:
                     t += 30
-                    bed, screw, hall = (20 + 1.5 * math.sin(t / 900 * (0.5 + 0.4 * k) + phase[k])
-                                        + 0.7 * math.sin(t / 333 * (1 + 0.2 * k) + 2 * phase[k]) for k in range(3))
+                    bed, screw, hall = (20 + warmer + wander * (1.5 * math.sin(t / 900 * (0.5 + 0.4 * k) + phase[k])
+                                        + 0.7 * math.sin(t / 333 * (1 + 0.2 * k) + 2 * phase[k])) for k in range(3))
                     late = screw if late is None else late + (screw - late) * -math.expm1(-30 / 300)
                     value = growth * (x - 185) / 1000 * (late - 20) + (1 if direction == "+" else -1) + rng.gauss(0, 0.3)
                     rows.append(f"{run},{direction},{x:g},{value:.4f},{t},{bed:.3f},{screw:.3f},{hall:.3f}")
-        text = ('format = 1\n[campaign]\nid = "%s"\n[machine.axes.X]\nkind = "linear"\nactive_table = "none"\nactive_backlash_mm = "none"\n'
-                '[[measurement]]\nid = "X"\nkind = "axis"\naxis = "X"\nfile = "x.csv"\n' % name)
-        return self.write(name, text, **{"x.csv": "\n".join(rows) + "\n"})
+        return "\n".join(rows) + "\n"
+
+    AXIS = ('format = 1\n[campaign]\nid = "%s"\n[machine.axes.X]\nkind = "linear"\nactive_table = "none"\nactive_backlash_mm = "none"\n'
+            '[machine.axes.Y]\nkind = "linear"\nactive_table = "none"\nactive_backlash_mm = "none"\n')
+    ONE = '[[measurement]]\nid = "%s"\nkind = "axis"\naxis = "X"\nfile = "%s.csv"\n'
+
+    def axis(self, name, seed, growth, head=HEAD):
+        return self.write(name, self.AXIS % name + self.ONE % ("X", "x"), **{"x.csv": self.runs(seed, growth, head)})
+
+    def two(self, name, first, second, more=""):
+        return self.write(name, self.AXIS % name + self.ONE % ("one", "x1") + self.ONE % ("two", "x2") + more,
+                          **{"x1.csv": first, "x2.csv": second})
+
+    def part(self, verb, folder):
+        answer = self.json(verb, folder)
+        return answer["parts"][0] if "parts" in answer else answer
+
+    def test_two_measurements_of_an_axis_have_their_thermometers(self):
+        seed = random.randrange(10**6)
+        with self.subTest(seed=seed):
+            both = self.two("both", self.runs(seed, 8.0), self.runs(seed + 1, 8.0, warmer=2.0))
+            together = set(self.part("explain", both)["together"])
+            self.assertIn("heat-growth:screw", together)
+            # A difference of two days is a growth too, even where nothing changed within a day.
+            day = self.two("day", self.runs(seed, 8.0, wander=0.05), self.runs(seed + 1, 8.0, warmer=4.0, wander=0.05),
+                           '[model]\neffects = ["backlash:X", "heat-growth:screw"]\n')
+            model = self.part("compare", day)["model"]["parameters"]
+            w, = [p for p in model if p["effect"] == "heat-growth:screw" and p["name"] == "w"]
+            self.assertAlmostEqual(w["value"], 8.0, delta=max(4 * w["u"], 0.4))
+
+    def test_a_thermometer_that_one_measurement_lacks_is_refused_by_name(self):
+        whole = self.runs(3, 8.0)
+        less = "\n".join(",".join(r.split(",")[:6] + r.split(",")[7:]) for r in self.runs(4, 8.0).split("\n"))
+        partly = self.two("partly", whole, less)
+        self.assertTrue([w for w in self.part("compare", partly)["warnings"] if "screw" in w and "measurement two" in w])
+        self.assertFalse([c for c in self.part("explain", partly)["candidates"] if "screw" in c["effect"]])
+        self.assertIn("measurement two has no channel screw", self.nonio("model", "add", partly, "heat-growth:screw", expect=2).stderr)
+        bare = "\n".join(",".join(r.split(",")[:4]) for r in self.runs(4, 8.0).split("\n"))
+        untimed = self.part("compare", self.two("untimed", whole, bare))["warnings"]
+        self.assertTrue([w for w in untimed if "time_s" in w and "measurement two" in w], untimed)
+        speed = self.axis("speed", 5, 8.0, self.HEAD.replace("hall_c", "hall_rpm"))
+        self.assertTrue([w for w in self.part("compare", speed)["warnings"] if "hall" in w and "thermal" in w])
+
+    def circles(self, name, seed, growth, head="direction,angle_deg,deviation_um,run,time_s,screw_c,hall_c"):
+        """A ball bar in XY, once in ten minutes; X grows with its screw."""
+        rng, rows, radius = random.Random(seed), [head], 150.0
+        phase = rng.uniform(0, 6)
+        for run in range(1, 13):
+            start = 600.0 * run
+            for direction in "+-":
+                for k in range(72):
+                    t = start + k + (100 if direction == "-" else 0)
+                    angle = 5.0 * k if direction == "+" else 355.0 - 5.0 * k
+                    screw, hall = 22 + 2.5 * math.sin(t / 1500 + phase), 21 + 1.5 * math.sin(t / 900 + 2 * phase)
+                    a = math.radians(angle)
+                    value = growth * radius * 1e-3 * math.cos(a) ** 2 * (screw - 22) + 2.0 * math.cos(a) + rng.gauss(0, 0.15)
+                    rows.append(f"{direction},{angle:g},{value:.4f},{run},{t:g},{screw:.3f},{hall:.3f}")
+        text = self.AXIS % name + ('[[measurement]]\nid = "bar"\nkind = "circle"\nplane = "XY"\nradius_mm = 150\n'
+                                   'centre = { X = 400, Y = 300 }\nfile = "bar.csv"\n')
+        return self.write(name, text, **{"bar.csv": "\n".join(rows) + "\n"})
+
+    def test_a_circle_follows_a_thermometer(self):
+        seed = random.randrange(10**6)
+        with self.subTest(seed=seed):
+            grows = self.circles("circle", seed, 9.0)
+            answer = self.part("explain", grows)
+            self.assertIn("heat-growth:screw/X", answer["together"])
+            self.nonio("model", "add", grows, "scale:X")  # it was not 22 degC when the first circle was run
+            self.nonio("model", "add", grows, "heat-growth:screw/X")
+            model = self.part("compare", grows)["model"]["parameters"]
+            w, = [p for p in model if p["effect"] == "heat-growth:screw/X" and p["name"] == "w"]
+            self.assertAlmostEqual(w["value"], 9.0, delta=max(4 * w["u"], 0.4))
+            still = self.part("explain", self.circles("still", seed, 0.0))["together"]
+            self.assertFalse([e for e in still if e.startswith("heat")], still)
+        head = "direction,angle_deg,deviation_um,run,time_s,materal_c,hall_c"
+        self.assertIn('did you mean "material_c"', self.nonio("compare", self.circles("slip", 1, 9.0, head), expect=1).stderr)
+        head = "direction,angle_deg,deviation_um,run,humidity_pct,screw_c,hall_c"
+        self.assertIn('expected "time_s" next to it', self.nonio("compare", self.circles("no-time", 1, 9.0, head), expect=1).stderr)
+
+    def test_lines_across_the_motion_follow_a_thermometer(self):
+        """The general table: Y moves with the hall while X moves."""
+        rng = random.Random(7)
+        rows = ["X_mm,X_dir,nx,ny,nz,deviation_um,line,run,time_s,hall_c"]
+        for i in range(240):
+            t, x = 40.0 * i, 50.0 * abs(i % 24 - 12)
+            hall = 21 + 1.2 * math.sin(t / 1100) + 0.5 * math.sin(t / 400)
+            rows.append(f"{x:g},{'-' if i % 24 < 12 else '+'},0,1,0,{4.0 * (hall - 21) + rng.gauss(0, 0.2):.4f},a,{i // 24 + 1},{t:g},{hall:.3f}")
+        text = self.AXIS % "across" + '[[measurement]]\nid = "EYX"\nkind = "observations"\nfile = "eyx.csv"\n'
+        folder = self.write("across", text, **{"eyx.csv": "\n".join(rows) + "\n"})
+        self.assertIn("heat:hall/Y", self.part("explain", folder)["together"])
+
+    def test_several_deviations_in_a_row_are_refused_by_name(self):
+        several = self.axis("several", 1, 8.0, self.HEAD.replace("deviation_um", "one_um").replace("hall_c", "two_um"))
+        self.assertIn("a row has one deviation", self.nonio("compare", several, expect=1).stderr)
+        stated = (several / "campaign.toml").read_text() + '[options.csv]\ncolumns = ["one_um = deviation_um", "two_um = ignore"]\n'
+        (several / "campaign.toml").write_text(stated)
+        self.assertIn("heat-growth:screw", self.part("explain", several)["together"])
+        wide = self.AXIS % "wide" + (self.ONE % ("X", "x")) + ('reader = "wide-table"\n[options.wide-table]\n'
+                                                               'columns = ["target", "1 +", "1 -", "bed_c"]\n')
+        folder = self.write("wide", wide, **{"x.csv": "0,0.1,0.2,20.1\n100,0.3,0.5,20.2\n200,0.4,0.2,20.3\n"})
+        self.assertIn("row for each reading", self.nonio("compare", folder, expect=1).stderr)
 
     def test_an_axis_follows_a_thermometer_that_was_recorded_next_to_it(self):
         seed = random.randrange(10**6)

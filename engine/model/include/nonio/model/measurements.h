@@ -33,6 +33,18 @@ struct TimeConstant {
 /// the standard uncertainty of the difference (docs/dev/constants.md, M34).
 inline constexpr double time_constants_apart = 2.6;
 
+/// A recorded channel whose effects these readings cannot determine.
+struct ChannelLeft {
+  enum class Why {
+    partly,   ///< not recorded next to all measurements
+    untimed,  ///< readings without a time
+    speed     ///< a speed or load: only displacements over time determine its effects
+  };
+  std::string name;
+  Why why = Why::partly;
+  std::vector<std::string> measurements{};  ///< those that lack the channel, or times
+};
+
 /// Measurements that are explained together: they sense the same axes in the same unit.
 struct Part {
   enum class Kind {
@@ -63,6 +75,8 @@ struct Part {
                                                ///< from thermal tests
   /// Groupings of the lines of an axis; empty for a single measurement.
   std::vector<std::shared_ptr<const Grouping>> groupings{};
+
+  std::vector<ChannelLeft> channels_left{};  ///< channels without effects; not of a course
 
   // The members below apply to a course.
   std::string displacement{};   ///< name of the displacement, such as "x1"

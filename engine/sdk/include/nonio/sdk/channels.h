@@ -16,6 +16,10 @@ namespace nonio {
 std::vector<double> lagged(const Observations::Channel& channel, double tau,
                            const std::vector<double>& time);
 
+/// Returns the first-order lag of all channels of this name at the readings, each at those of its
+/// lines, minus the first value of the first one. Each starts in equilibrium with its first value.
+std::vector<double> lagged(const Observations& o, std::string_view name, double tau);
+
 /// Returns the time constants, s, that readings at these times can identify, ascending: 0, and
 /// values up to 1/12 of the duration in steps of a factor sqrt(2), none below four mean sampling
 /// intervals; at most 18. Empty if there are fewer than 12 different times.

@@ -58,6 +58,9 @@ struct Observations {
     std::vector<double> value;  ///< finite, in `unit`
     /// place and role that the manifest states (`Measurement::Channel`)
     std::string place{}, role{};
+    /// Indices of the lines next to which it was recorded, ascending; empty: next to all. A channel
+    /// of several measurements occurs once for each, because their times have different origins.
+    std::vector<std::uint32_t> lines{};
 
     bool is_temperature() const { return unit == "degC"; }
   };
@@ -96,6 +99,7 @@ struct Observations {
   std::vector<Finding> doubts{};
 
   std::size_t size() const { return deviation.size(); }
+  /// The first channel of this name.
   const Channel* channel(std::string_view name) const {
     for (const Channel& c : channels)
       if (c.name == name) return &c;
