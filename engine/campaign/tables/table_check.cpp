@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nonio/math/beam.h"
 #include "nonio/math/compensated.h"
 #include "nonio/math/distributions.h"
 #include "nonio/math/loaded_table.h"
@@ -142,6 +143,36 @@ Observations without(const Observations& o, const std::string& axis, const Table
   return raw;
 }
 
+/// Returns readings along a diagonal without the correction of these tables; none if that depends
+/// on the positions of a gantry's sides, which are not stated.
+Observations diagonal_without(const Campaign& campaign, const Observations& o,
+                              const Tables& tables) {
+  Observations raw = o;
+  const auto beams = math::beams_of(campaign);
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    math::Places at;
+    math::MotionSigns ways;
+    for (const auto& axis : o.axes) {
+      at[axis.axis] = axis.position[i];
+      if (!axis.approach.empty()) ways[axis.axis] = axis.approach[i];
+    }
+    for (const auto& axis : o.axes) {
+      const std::size_t k = coordinate_of(axis.axis);
+      if (axis.rotary || k > 2 || o.sense_of(i)[k] == 0.0) continue;
+      const auto moved = math::added_on_beam(
+          beams, axis.axis, at, ways,
+          [&](const std::string& one, const math::Places& places, const math::MotionSigns& of) {
+            return math::added(tables, one, places, of);
+          });
+      if (!moved) return {};
+      raw.deviation[i] -= o.sense_of(i)[k] * *moved;
+    }
+  }
+  return raw;
+}
+
+bool is_diagonal(const Measurement& m) { return m.kind == "diagonal" || m.kind == "step-diagonal"; }
+
 /// Sets the backlash values of the files in the options, unless others are stated.
 void state_backlash_of(Settings& options, const Tables& tables) {
   for (const LoadedTable& t : tables)
@@ -248,8 +279,10 @@ std::vector<Observations> without_tables(const Campaign& campaign,
                                          const Tables& tables) {
   std::vector<Observations> raw;
   for (std::size_t i = 0; i < readings.size(); ++i)
-    raw.push_back(
-        without(readings[i], control_axis(campaign.machine, campaign.measurements[i]), tables));
+    raw.push_back(is_diagonal(campaign.measurements[i])
+                      ? diagonal_without(campaign, readings[i], tables)
+                      : without(readings[i],
+                                control_axis(campaign.machine, campaign.measurements[i]), tables));
   return raw;
 }
 
@@ -316,7 +349,12 @@ Expected<std::optional<Underlay>> active_compensation(const reading::ReadCampaig
 
 void compare_with_measured(const reading::ReadCampaign& read, OutputResult& result) {
   const auto& measurements = read.manifest->campaign.measurements;
-  std::erase_if(result.findings, [](const Finding& f) { return f.id == "table.no-gain"; });
+  std::erase_if(result.findings, [&](const Finding& f) {
+    return f.id == "table.no-gain" &&
+           std::any_of(measurements.begin(), measurements.end(), [&](const Measurement& m) {
+             return m.id == f.measurement && m.kind == "axis";
+           });
+  });
   for (std::size_t i = 0; i < measurements.size(); ++i) {
     const Measurement& m = measurements[i];
     if (m.kind != "axis" || read.observations[i].size() == 0) continue;

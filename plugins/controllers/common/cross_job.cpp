@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "nonio/controllers/replay.h"
 #include "nonio/controllers/size.h"
@@ -95,6 +96,43 @@ void put_readings(ReadLine& line, const ControllerInput& in, const Measurement& 
   line.U = math::compensated_uncertainty_along(in.campaign, m, readings);
 }
 
+bool any_active(const ControllerInput& in, const ReadLine& line) {
+  return std::any_of(line.sense.begin(), line.sense.end(), [&](const auto& of) {
+    const Axis* axis = in.campaign.machine.axis(of.first);
+    return axis != nullptr && axis->active_table && !axis->active_table->empty();
+  });
+}
+
+/// Replaces the deviations by those of the readings, from which the host has removed the tables
+/// that were active. Without a reading at a stop, the line stays as it is.
+void take_without_tables(ReadLine& line, const ControllerInput& in, const Measurement& m) {
+  constexpr double same_place = 1e-6;  // m
+  const auto index = static_cast<std::size_t>(&m - in.campaign.measurements.data());
+  const auto& all = in.measured != nullptr ? *in.measured : in.observations;
+  if (index >= all.size() || all[index].axes.empty()) return;
+  const Observations& o = all[index];
+  std::vector<double> raw;
+  for (const auto& at : line.at) {
+    double sum[2]{}, count[2]{};
+    for (std::size_t i = 0; i < o.size(); ++i) {
+      if (std::any_of(o.axes.begin(), o.axes.end(), [&](const auto& axis) {
+            return std::fabs(axis.position[i] - at.at(axis.axis)) > same_place;
+          }))
+        continue;
+      const bool minus = !o.axes.front().approach.empty() && o.axes.front().approach[i] < 0;
+      sum[minus] += o.deviation[i], count[minus] += 1.0;
+    }
+    if (count[0] + count[1] == 0.0) return;
+    double mean = 0.0;
+    for (const int way : {0, 1})
+      if (count[way] > 0.0)
+        mean +=
+            sum[way] / count[way] / ((count[0] > 0.0 ? 1.0 : 0.0) + (count[1] > 0.0 ? 1.0 : 0.0));
+    raw.push_back(mean);
+  }
+  line.measured = std::exchange(line.deviation, std::move(raw));
+}
+
 /// Returns the diagonal of the set that rises (or falls) over this rectangle; nullptr: none.
 const Measurement* diagonal_over(const ControllerInput& in, const Results::Analysed& a,
                                  const Series& x, const Series& y, bool rising) {
@@ -147,9 +185,12 @@ std::optional<CrossJob> of_diagonals(const ControllerInput& in, const Results::A
                   {{f->over, Lx / L}, {g->over, (rising ? Ly : -Ly) / L}},
                   {},
                   (rising ? D1 : D2)->values};
-    if (const Measurement* m = diagonal_over(in, a, *f, *g, rising)) put_readings(line, in, *m);
     for (std::size_t i = 0; i < x.size(); ++i)
       line.at.push_back({{f->over, x[i]}, {g->over, y[rising ? i : y.size() - 1 - i]}});
+    if (const Measurement* m = diagonal_over(in, a, *f, *g, rising)) {
+      put_readings(line, in, *m);
+      if (any_active(in, line)) take_without_tables(line, in, *m);
+    }
     job.lines.push_back(std::move(line));
   }
   return job;

@@ -18,13 +18,6 @@ double range_of(const std::vector<double>& v) {
   return *high - *low;
 }
 
-/// The measurement with a stated line position (`at`) for this axis of the control; nullptr: none.
-const Measurement* line_on(const Campaign& campaign, const std::string& axis) {
-  for (const Measurement& m : campaign.measurements)
-    if (m.kind == "axis" && !m.at.empty() && control_axis(campaign.machine, m) == axis) return &m;
-  return nullptr;
-}
-
 /// Deviations along the line with the new tables: mean over the directions of reading. nullopt:
 /// positions of the gantry sides are missing.
 std::optional<std::vector<double>> after(const ReadLine& line, const Replay& replay) {
@@ -68,8 +61,8 @@ std::optional<double> left_on_side(const ControllerInput& in, const CrossJob& jo
 
 /// Rotation of the beam at the reference points of the pitch tables relative to the first stop,
 /// rad.
-std::optional<double> turn_of(const ControllerInput& in, const CrossJob& job, const Beam& beam,
-                              const NumberTables& settings) {
+std::optional<double> turn_of(const ControllerInput& in, const CrossJob& job,
+                              const math::Beam& beam, const NumberTables& settings) {
   const double x0 = job.lines.front().at.front().at(beam.axis);
   const auto one = left_on_side(in, job, beam.axis, x0, settings),
              other = left_on_side(in, job, beam.slave, x0, settings);
@@ -88,29 +81,8 @@ void keep_worst(std::vector<Prediction>& all, const Prediction& one) {
 
 }  // namespace
 
-std::vector<Beam> beams_of(const Campaign& campaign) {
-  std::vector<Beam> beams;
-  for (const Axis& a : campaign.machine.axes) {
-    if (a.slave.empty()) continue;
-    Beam& beam = beams.emplace_back(Beam{a.name, a.slave});
-    const Measurement *one = line_on(campaign, a.name), *other = line_on(campaign, a.slave);
-    if (one == nullptr || other == nullptr) continue;
-    for (const auto& [axis, place] : one->at) {
-      const auto there = other->at.find(axis);
-      if (there == other->at.end() || there->second == place) continue;
-      // sides that differ along two axes: the direction of the beam is ambiguous
-      if (!beam.along.empty()) {
-        beam.along.clear();
-        break;
-      }
-      beam.along = axis, beam.at_axis = place, beam.at_slave = there->second;
-    }
-  }
-  return beams;
-}
-
 void turn_to_reference(const ControllerInput& in, CrossJob& job, const NumberTables& settings) {
-  for (const Beam& beam : beams_of(in.campaign))
+  for (const math::Beam& beam : math::beams_of(in.campaign))
     for (CrossCurve& curve : job.curves) {
       if (curve.output != beam.axis || curve.input != beam.along) continue;
       const auto turn = turn_of(in, job, beam, settings);
@@ -123,7 +95,7 @@ void turn_to_reference(const ControllerInput& in, CrossJob& job, const NumberTab
 
 bool shift_slave(const ControllerInput& in, CrossJob& job, double C0Y,
                  const NumberTables& settings) {
-  for (const Beam& beam : beams_of(in.campaign)) {
+  for (const math::Beam& beam : math::beams_of(in.campaign)) {
     const bool carries = std::any_of(job.curves.begin(), job.curves.end(), [&](const auto& curve) {
       return curve.output == beam.axis && curve.input == beam.along;
     });
@@ -140,34 +112,25 @@ bool shift_slave(const ControllerInput& in, CrossJob& job, double C0Y,
   return false;
 }
 
-std::optional<double> Replay::moved(const std::string& axis, std::map<std::string, double> at,
-                                    std::map<std::string, int> direction) const {
-  for (const Beam& b : beams)
-    if (at.contains(b.axis)) at[b.slave] = at[b.axis], direction[b.slave] = direction[b.axis];
-  const auto of = [&](const std::string& one) {
-    double sum = math::added(tables, one, at, direction);
-    if (const auto zero = shift.find(one); zero != shift.end()) sum += zero->second;
-    const auto was = backlash.find(one);
-    for (const LoadedTable& t : tables)
-      if (t.output == one && t.backlash)
-        sum += (*t.backlash - (was == backlash.end() ? 0.0 : was->second)) / 2.0 * direction[one];
-    return sum;
-  };
-  const auto beam =
-      std::find_if(beams.begin(), beams.end(), [&](const Beam& b) { return b.axis == axis; });
-  const double own = of(axis);
-  if (beam == beams.end()) return own;
-  constexpr double same = 1e-12;  // m
-  const double other = of(beam->slave);
-  if (std::fabs(other - own) < same) return own;
-  const auto y = at.find(beam->along);
-  if (y == at.end()) return std::nullopt;
-  return own + (other - own) * (y->second - beam->at_axis) / (beam->at_slave - beam->at_axis);
+std::optional<double> Replay::moved(const std::string& axis, const math::Places& at,
+                                    const math::MotionSigns& direction) const {
+  return math::added_on_beam(
+      beams, axis, at, direction,
+      [&](const std::string& one, const math::Places& places, const math::MotionSigns& ways) {
+        double sum = math::added(tables, one, places, ways);
+        if (const auto zero = shift.find(one); zero != shift.end()) sum += zero->second;
+        const auto was = backlash.find(one);
+        const auto way = ways.find(one);
+        for (const LoadedTable& t : tables)
+          if (t.output == one && t.backlash && way != ways.end())
+            sum += (*t.backlash - (was == backlash.end() ? 0.0 : was->second)) / 2.0 * way->second;
+        return sum;
+      });
 }
 
 Replay replay_of(const CrossJob& set, const std::vector<AxisJob>& pitch,
                  const ControllerInput& input) {
-  Replay replay{.tables = {}, .beams = beams_of(input.campaign)};
+  Replay replay{.tables = {}, .beams = math::beams_of(input.campaign)};
   if (set.slave_zero) replay.shift[set.slave_zero->slave] = set.slave_zero->shift;
   for (const AxisJob& job : pitch) {
     if (!job.loaded || !together(set, job, input.campaign)) continue;
@@ -183,7 +146,9 @@ Replay replay_of(const CrossJob& set, const std::vector<AxisJob>& pitch,
 }
 
 void predict_lines(const CrossJob& job, const Replay& replay, OutputResult& result) {
-  if (!replay.replaces.empty()) {
+  const bool is_raw = std::all_of(job.lines.begin(), job.lines.end(),
+                                  [](const ReadLine& line) { return !line.measured.empty(); });
+  if (!replay.replaces.empty() && !is_raw) {
     result.notes.push_back(
         {"table.diagonals-not-predicted", {}, {{"axis", replay.replaces}}, job.measurement});
     return;
@@ -196,7 +161,7 @@ void predict_lines(const CrossJob& job, const Replay& replay, OutputResult& resu
       result.notes.push_back({"table.sides-not-placed", {}, {}, job.measurement});
       return;
     }
-    const double before = range_of(line.deviation);
+    const double before = range_of(line.measured.empty() ? line.deviation : line.measured);
     keep_worst(all, {job.measurement, line.name.substr(0, line.name.find(' ')), before,
                      math::predicted_after(before, range_of(*will), line.U), Quantity::deviation});
   }

@@ -143,7 +143,11 @@ class Cross(gantry_test.Gantry):
                 print(case)
                 self.assertLess(diagonal(after, falling), 0.2 * diagonal(before, falling) + 2.5, case)
             table = next(t for t in results["tables"] if t["plugin"] == CONTROL)
-            self.assertFalse([p for p in table["predictions"] if p["name"][0] == "D"], "what the old tables did is not in the readings")
+            predicted = {p["name"]: p for p in table["predictions"] if p["name"][0] == "D"}
+            U = min(v["U"] for a in results["analyses"] if a["plugin"] == "iso230-6" for n, v in a["values"].items() if n == "E")
+            for name, falling in (("D1", False), ("D2", True)):
+                self.assertAlmostEqual(predicted[name]["before"], diagonal(before, falling), delta=1.5)
+                self.assertAlmostEqual(predicted[name]["predicted"], max(diagonal(after, falling), U), delta=2.0)
 
     def test_curves_with_their_uncertainty_as_csv(self):
         results, _ = self.measured(Machine(random.Random(SEED)), SEED)
