@@ -132,9 +132,10 @@ Expected<double> backlash_of(std::string text) {
   return fail("expected the backlash value in mm or deg, or none, found \"" + text + "\"");
 }
 
-/// Asks the user for the state of the control that no file states. An error if there is no answer.
-Expected<void> ask_for_state(OpenCampaign& open, const Controller& control,
-                             const std::string& name) {
+/// Asks the user for the state of the control that no file states, and returns the answer. An error
+/// if there is none.
+Expected<tables::StateAnswer> ask_for_state(OpenCampaign& open, const Controller& control,
+                                            const std::string& name) {
   const config::TerminalWords say(open.place->context.templates, open.place->context.site.language);
   const Axis* const axis = open.campaign().machine.axis(name);
   const bool rotary = axis != nullptr && axis->rotary;
@@ -146,7 +147,8 @@ Expected<void> ask_for_state(OpenCampaign& open, const Controller& control,
                      {"unit", rotary ? "deg" : "mm"},
                      {"parameter", control.table.backlash}});
   };
-  if (auto done = ask.text(question("insert.ask.table").c_str(), table, ""); !done) return done;
+  if (auto done = ask.text(question("insert.ask.table").c_str(), table, ""); !done)
+    return fail(done.error());
   if (table.empty()) return fail(say("insert.ask.unanswered"));
   tables::StateAnswer answer;
   if (table != "none") {
@@ -155,13 +157,23 @@ Expected<void> ask_for_state(OpenCampaign& open, const Controller& control,
   }
   if (!control.table.backlash.empty() && axis != nullptr && !axis->active_backlash) {
     if (auto done = ask.text(question("insert.ask.backlash").c_str(), backlash, ""); !done)
-      return done;
+      return fail(done.error());
     if (backlash.empty()) return fail(say("insert.ask.unanswered"));
     NONIO_TRY(const auto value, backlash_of(backlash));
     answer.backlash = value / (rotary ? deg_per_rad : 1e3);
   }
   tables::state_by_answer(open.read, name, answer);
-  return {};
+  return answer;
+}
+
+/// Enters the answer of a person into the record of the machine, if the campaign names the machine
+/// and states its day. Returns the name of the record; empty: not entered.
+Expected<std::string> record_answer(const OpenCampaign& open, const std::string& axis,
+                                    const std::optional<tables::StateAnswer>& answer) {
+  if (!answer || open.campaign().date.empty()) return std::string();
+  if (open.campaign().machine.asset.empty() && !open.read.machine) return std::string();
+  return add_states(open, axis,
+                    {{open.campaign().date, "answer", answer->files, answer->backlash}});
 }
 
 int merge(const MergeWish& w, const Common& common) {
@@ -184,11 +196,13 @@ int merge(const MergeWish& w, const Common& common) {
                                 present->files, *axis);
   };
   auto merged = merge_now();
+  std::optional<tables::StateAnswer> answer;
   if (const Axis* const of = open.campaign().machine.axis(*axis);
       !merged && of != nullptr && !of->active_table && !common.json && Questions::on_terminal()) {
     complain(text_of(merged.error()));
-    if (auto asked = ask_for_state(open, *present->control, *axis); !asked)
-      return complain(text_of(asked.error()), exit_failed);
+    auto asked = ask_for_state(open, *present->control, *axis);
+    if (!asked) return complain(text_of(asked.error()), exit_failed);
+    answer = std::move(*asked);
     merged = merge_now();
   }
   if (!merged) return complain(text_of(merged.error()), exit_failed);
@@ -198,9 +212,12 @@ int merge(const MergeWish& w, const Common& common) {
   if (!w.out.empty())
     if (auto done = storage::publish(std::filesystem::absolute(w.out), merged->files); !done)
       return complain(text_of(done.error()), exit_failed);
-  const auto recorded =
+  auto answered = record_answer(open, *axis, answer);
+  if (!answered) return complain(text_of(answered.error()), exit_failed);
+  auto recorded =
       record_loading(*merged, *present, *options(present->control->info), *axis, w.loaded, open);
   if (!recorded) return complain(text_of(recorded.error()), exit_failed);
+  if (recorded->empty()) *recorded = std::move(*answered);
   return tell_merged(*merged, *present, *axis, w, *recorded, open, common);
 }
 

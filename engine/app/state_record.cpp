@@ -79,7 +79,11 @@ Expected<std::string> add_states(const OpenCampaign& open, const std::string& ax
         "machine: state asset in [machine] of campaign.toml");
   const fs::path site = config::site_of(open.folder);
   const std::string name = std::string(config::machines_folder) + "/" + asset + ".toml";
-  std::string text = record != nullptr ? record->bytes : "format = 1\nasset = \"" + asset + "\"\n";
+  // The record may have states of other axes that were added since the campaign was opened.
+  const auto present = storage::read_small_file(site / name);
+  std::string text = present             ? *present
+                     : record != nullptr ? record->bytes
+                                         : "format = 1\nasset = \"" + asset + "\"\n";
   if (!text.empty() && text.back() != '\n') text += '\n';
   const Axis* const of = machine.axis(axis);
   const bool rotary = of != nullptr && of->rotary;

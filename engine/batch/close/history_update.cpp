@@ -19,7 +19,7 @@ std::string in_one_line(const std::vector<Error>& errors) {
 }
 
 /// Returns one event of kind "compensation" for each state of a control in the machine records that
-/// was not read from a backup. Its text is the table that was loaded, "none" if no table was
+/// was loaded on its day. Its text is the table that was loaded, "none" if no table was
 /// active, or empty if the record does not state it.
 std::vector<config::Event> events_of(const config::MachineRecords& records) {
   std::vector<config::Event> events;
@@ -29,9 +29,7 @@ std::vector<config::Event> events_of(const config::MachineRecords& records) {
                  // the error
     for (const auto& [axis, recorded] : file.record->axes) {
       for (const config::ControlState& state : recorded.states) {
-        if (state.source == "backup")
-          continue;  // the state was read from a backup; no table was
-                     // loaded on that day
+        if (state.was_in_control()) continue;  // no table was loaded on that day
         events.push_back({state.since,
                           file.asset,
                           axis,

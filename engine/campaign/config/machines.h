@@ -22,17 +22,19 @@ struct ControlState {
   /// not stated.
   std::optional<std::string> table{};
   std::optional<double> backlash{};  ///< backlash value, m or rad; 0: not active; none: not stated
-  std::string source = "stated";     ///< origin: stated (by a person), backup or nonio
+  std::string source = "stated";     ///< origin: stated (by a person), backup, answer or nonio
   std::string sha256{};              ///< SHA-256 of the table files; empty: not stated
   std::string files{};               ///< key of the table's files in RecordFile::tables
   std::string key{};                 ///< key of this state in the record: axes.X or axes.X.state
   std::uint64_t line_of_table = 0, line_of_since = 0;
 
+  /// Whether the state was in the control on its day, by a backup or the answer of a person; if
+  /// not, it was loaded on that day.
+  bool was_in_control() const { return source == "backup" || source == "answer"; }
   /// Whether the state applies on a day. A state loaded on a day applies to later days only,
-  /// because the time of day is not known. A state from a backup applies to the day of the backup
-  /// too.
+  /// because the time of day is not known.
   bool counts_on(const std::string& day) const {
-    return source == "backup" ? day >= since : day > since;
+    return was_in_control() ? day >= since : day > since;
   }
 };
 

@@ -105,12 +105,25 @@ class Backup(StateBench):
         files = ",".join(str(mine / os.path.basename(f)) for f in backup.split(","))
         args = ["table", "insert", files, "--with", now, "--out", self.site / "load"]
         self.assertIn("active_table in [machine.axes.X]", self.nonio(*args, expect=1).stderr, "no terminal, no question")
+        record = next((self.site / "machines").glob("*.toml"))
+        known = record.read_text()
         said, status = self.answered(args, [backup.split(",")[0], "%.6f" % (before.backlash * 1e-3)])
         self.assertEqual(status, 0, said)
         self.assertIn("Value of MD32450 of X then, mm (or none)", said)
         table = TABLE[control](self.files(control, self.site / "load"))
         self.assertLess(truth.E(1, table), 1.7)
         shutil.rmtree(self.site / "load")
+        # The answer is in the record of the machine: a second time nothing is asked.
+        text = record.read_text()
+        state = text.split("[[axes.X.state]]")[-1]
+        self.assertIn('source = "answer"', state)
+        self.assertIn("since = 2024-11-20", state)
+        self.assertIn("backlash_mm = %.6g" % (before.backlash * 1e-3), state)
+        self.nonio(*args)
+        again = TABLE[control](self.files(control, self.site / "load"))
+        self.assertEqual([again.added(x) for x in truth.targets], [table.added(x) for x in truth.targets])
+        shutil.rmtree(self.site / "load")
+        record.write_text(known)
         # "none" is an answer: then the table is that of the readings as they are.
         said, status = self.answered(args, ["none", "none"])
         self.assertEqual(status, 0, said)
@@ -118,6 +131,8 @@ class Backup(StateBench):
         self.assertLess(max(truth.error(1, x, d, before) + table.added(x, d) for x in truth.targets for d in "+-") -
                         min(truth.error(1, x, d, before) + table.added(x, d) for x in truth.targets for d in "+-"), 1.7)
         shutil.rmtree(self.site / "load")
+        self.assertIn('table = "none"', record.read_text().split("[[axes.X.state]]")[-1])
+        record.write_text(known)
         for answers, word in ((["nothing.ini"], "nothing.ini"), ([""], "no answer"), (["none", "1 mm"], "expected the backlash value")):
             said, status = self.answered(args, answers)
             self.assertEqual(status, 1, said)

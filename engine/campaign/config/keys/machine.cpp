@@ -11,7 +11,7 @@ constexpr Range a_position = within(-1e6, 1e6, "expected a position of at most 1
 /// from_deg and to_deg). Controllers receive it in option `axes`.
 template <Key::Holds holds>
 constexpr Key::Into as_written = by<read_as_written, holds, &RecordedAxis::settings>;
-constexpr Choice state_sources[] = {{"stated"}, {"backup"}, {"nonio"}};
+constexpr Choice state_sources[] = {{"stated"}, {"backup"}, {"answer"}, {"nonio"}};
 template <auto... to>
 constexpr Key table_in_control = {"table", into<to..., &ControlState::table>,
                                   "The table in the control: its file below the site, further "
@@ -19,8 +19,8 @@ constexpr Key table_in_control = {"table", into<to..., &ControlState::table>,
 constexpr Key state_keys[] = {
     {"since", day<&ControlState::since>,
      "The day on which table and backlash value were loaded; they apply to measurements of later "
-     "days. With source = \"backup\": the first day on which they are known to have been in the "
-     "control.",
+     "days. With source = \"backup\" or \"answer\": the first day on which they are known to have "
+     "been in the control.",
      required},
     table_in_control<>,
     {"backlash_mm", number_or_0<&ControlState::backlash>,
@@ -29,7 +29,8 @@ constexpr Key state_keys[] = {
      "Value of the control's backlash parameter of a rotary axis, or \"none\".", deg,
      some_backlash},
     {"source", into<&ControlState::source>,
-     "How the state is known: stated by a person, read from a backup, written by Nonio.",
+     "How the state is known: stated by a person as loaded, read from a backup, stated by a person "
+     "in answer to `table insert` as active during a measurement, written by Nonio.",
      otherwise("stated"), state_sources},
     {"sha256", into<&ControlState::sha256>,
      "Digest of the files of the table; if they change, the record is refused."},
