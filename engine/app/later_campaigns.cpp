@@ -24,11 +24,12 @@ bool is_same_machine(const config::MachineRecords& records, const Machine& a, co
 
 bool has_readings(const Campaign& campaign, const std::string& axis, const fs::path& folder) {
   std::error_code error;
-  return std::any_of(campaign.measurements.begin(), campaign.measurements.end(),
-                     [&](const Measurement& m) {
-                       return m.kind == "axis" && control_axis(campaign.machine, m) == axis &&
-                              fs::is_regular_file(folder / m.file, error);
-                     });
+  return std::any_of(
+      campaign.measurements.begin(), campaign.measurements.end(), [&](const Measurement& m) {
+        const bool of_axis = m.kind == "axis" ? control_axis(campaign.machine, m) == axis
+                                              : m.kind == "diagonal" && m.from.contains(axis);
+        return of_axis && fs::is_regular_file(folder / m.file, error);
+      });
 }
 
 }  // namespace

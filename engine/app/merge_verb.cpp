@@ -12,6 +12,7 @@
 #include "campaign/planning/plan.h"
 #include "campaign/tables/control_state.h"
 #include "insert.h"
+#include "insert_set.h"
 #include "later_campaigns.h"
 #include "platform/storage/files.h"
 #include "questions.h"
@@ -184,6 +185,7 @@ int merge(const MergeWish& w, const Common& common) {
   OpenCampaign& open = *opened;
   if (const auto day = check_day(w.loaded, open.campaign().date); !day)
     return complain(text_of(day.error()));
+  const auto set = tables::set_of_axes(w.axis, open.campaign().machine);
   const auto axis = merged_axis(w.axis, open.campaign());
   if (!axis) return complain(axis.error().message);
   const auto options = [&](const Info& info) { return campaign_options(open, info, *settings); };
@@ -191,6 +193,9 @@ int merge(const MergeWish& w, const Common& common) {
   const auto present =
       load(open.place->plugins, w.backup, control, open.campaign(), *settings, options);
   if (!present) return complain(text_of(present.error()));
+  if (!set.empty())
+    return insert_set({w.axis, w.out, w.loaded}, *present, *options(present->control->info), set,
+                      open, common);
   const auto merge_now = [&] {
     return tables::merge_tables(open.read, *present->control, *options(present->control->info),
                                 present->files, *axis);
@@ -234,7 +239,9 @@ Verb insert_verb(Common& common) {
           {required(takes(Takes::file, {"BACKUP", &w->backup,
                                         "Files saved from the control: FILE, or FILE,FILE,..."})),
            required(takes(Takes::folder, {"--with", &w->folder, "Folder of the campaign"})),
-           {"--axis", &w->axis, "The axis (default: the measured axis, if there is only one)"},
+           {"--axis", &w->axis,
+            "The axis (default: the measured axis, if there is only one); XY: the tables of both, "
+            "and of one by the other"},
            takes(Takes::folder, {"--out", &w->out,
                                  "Folder for the changed files (default: only print the changes)"}),
            day({"--loaded", &w->loaded,
@@ -259,7 +266,12 @@ Verb insert_verb(Common& common) {
           "archives, HEIDENHAIN's CONFIG.CMA, lists of TwinCAT, Aerotech) keep every other byte; "
           "the new table gets the numbers that the axis has in the backup, or free ones. If the "
           "control would read a different table for another axis, nothing is written. For other "
-          "controls the files of the axis are written again.\n\nExit status: 0 inserted; 1 "
+          "controls the files of the axis are written again.\n\n--axis XY inserts what the "
+          "diagonals of "
+          "the campaign determine: the tables of X and Y, of both sides of a gantry, and those of "
+          "one axis by the position of the other (straightness and squareness). Each axis has its "
+          "state, as above. It prints the range of each diagonal as measured and with all files "
+          "loaded.\n\nExit status: 0 inserted; 1 "
           "refused; 2 usage or configuration.",
       .examples =
           {"nonio table insert backup/CNCPARAM.TXT --with site/2026-11-rossi --axis Z --out load"},

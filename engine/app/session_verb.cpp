@@ -13,6 +13,7 @@
 #include "campaign/tables/control_state.h"
 #include "check_campaign.h"
 #include "insert.h"
+#include "insert_set.h"
 #include "laboratory/assessment/loading_verdict.h"
 #include "laboratory/assessment/table_changes.h"
 #include "later_campaigns.h"
@@ -75,9 +76,12 @@ class Session {
     const auto axis = merged_axis(w_.axis, open_->campaign());
     if (!axis) return complain(axis.error().message);
     axis_ = *axis;
+    set_ = tables::set_of_axes(axis_, campaign().machine);
     if (auto day = check_day(w_.loaded, open_->campaign().date); !day)
       return complain(text_of(day.error()));
-    const bool is_done = backup() && table() && probe() && loading() && check() && verdict();
+    const bool is_done =
+        set_.empty() ? backup() && table() && probe() && loading() && check() && verdict()
+                     : backup() && tables_of_set() && loading() && check() && verdict_of_set();
     print();
     if (!is_done) return is_refused_ ? exit_failed : exit_done;
     return answer_ == Answer::worked ? exit_done : exit_failed;
@@ -119,9 +123,11 @@ class Session {
     return out;
   }
 
+  const std::string& first_axis() const { return set_.empty() ? axis_ : set_.front(); }
+
   const config::ControlState* recorded_state() const {
     if (!open_->read.machine) return nullptr;
-    const auto of = open_->read.machine->axes.find(axis_);
+    const auto of = open_->read.machine->axes.find(first_axis());
     return of == open_->read.machine->axes.end() ? nullptr : of->second.state_on(campaign().date);
   }
 
@@ -153,6 +159,42 @@ class Session {
   }
 
   Settings options() const { return *campaign_options(*open_, present_.control->info, settings_); }
+
+  /// Adds the steps of the state, of the new tables of several axes, and of their sign probe, which
+  /// is replaced by the diagonals of the check campaign.
+  bool tables_of_set() {
+    auto merged = merge_set_now(*open_, present_, options(), set_);
+    if (!merged) return refused("state", merged.error());
+    merged_set_ = std::move(*merged);
+    std::string state;
+    for (const auto& [axis, with] : merged_set_.with)
+      state += (state.empty() ? "" : "; ") + axis + ": " +
+               (with.tables.empty() ? say("session.state.none")
+                : with.from_backup  ? say("session.state.backup")
+                                    : say("session.state.stated", {{"files", with.files}}));
+    done("state", std::move(state));
+    tell_findings(*open_, merged_set_.findings);
+    if (merged_set_.files.empty()) return refused("table", Error{say("session.set.none")});
+    out_ = w_.out.empty() ? fs::path(w_.folder) / "load" : fs::path(w_.out);
+    day_of_loading();
+    if (loaded_.empty()) {
+      for (const std::string& axis : set_) tell_findings(*open_, older_measurement(*open_, axis));
+      if (auto stored = storage::publish(fs::absolute(out_), merged_set_.files); !stored)
+        return refused("table", stored.error());
+    }
+    std::string lines;
+    for (const tables::LineForecast& line : merged_set_.lines)
+      lines +=
+          (lines.empty() ? "" : "; ") +
+          say("session.set.line", {{"line", line.measurement},
+                                   {"before", with_unit(line.before, Quantity::deviation, *words_)},
+                                   {"after", with_unit(line.after, Quantity::deviation, *words_)}});
+    done("table", say("session.set", {{"files", names_of(merged_set_.files)},
+                                      {"folder", out_.string()},
+                                      {"lines", lines}}));
+    done("probe", say("session.probe.none", {{"why", say("session.set.probe")}}));
+    return true;
+  }
 
   bool table() {
     auto merged =
@@ -197,13 +239,15 @@ class Session {
   void day_of_loading() {
     loaded_ = w_.loaded;
     if (!loaded_.empty() || !open_->read.machine) return;
-    const auto of = open_->read.machine->axes.find(axis_);
+    const auto of = open_->read.machine->axes.find(first_axis());
     if (of == open_->read.machine->axes.end()) return;
     for (const config::ControlState& s : of->second.states) {
       const auto files = open_->read.state_files.find(s.files);
       if (s.since < campaign().date || files == open_->read.state_files.end()) continue;
       const auto in = tables::tables_in(*present_.control, files->second, campaign(), options());
-      if (in && tables::same_correction(*in, merged_.next, axis_) && loaded_.empty())
+      if (in && loaded_.empty() &&
+          (set_.empty() ? tables::same_correction(*in, merged_.next, axis_)
+                        : tables::are_loaded(*in, merged_set_, set_)))
         loaded_ = s.since;
     }
   }
@@ -250,11 +294,14 @@ class Session {
 
   bool loading() {
     if (loaded_.empty())
-      return missing("loading", say("session.loading.missing"), say("session.todo.load"),
+      return missing("loading", say("session.loading.missing"),
+                     say(set_.empty() ? "session.todo.load" : "session.set.load"),
                      " --loaded " + std::string("YYYY-MM-DD"));
     std::string record = open_->read.machine ? open_->read.machine->file : std::string();
     if (!w_.loaded.empty()) {
-      const auto recorded = record_loading(merged_, present_, options(), axis_, w_.loaded, *open_);
+      const auto recorded =
+          set_.empty() ? record_loading(merged_, present_, options(), axis_, w_.loaded, *open_)
+                       : record_set(merged_set_, present_, options(), set_, w_.loaded, *open_);
       if (!recorded) return refused("loading", recorded.error());
       record = *recorded;
     }
@@ -266,6 +313,8 @@ class Session {
   /// otherwise it is the last campaign with purpose check from the day of loading on, or else the
   /// first campaign from that day on. Returns false if the session ends at this step.
   bool check() {
+    if (!w_.check.empty() && !set_.empty())
+      return refused("check", Error{say("session.set.check")});
     if (!w_.check.empty()) {
       auto bytes = storage::read_file(w_.check);
       if (!bytes) return refused("check", bytes.error());
@@ -279,12 +328,13 @@ class Session {
       if (!folder) return refused("check", folder.error());
       check_ = {*folder, {}, w_.checked.empty() ? today() : w_.checked, "check"};
     } else {
-      for (const LaterCampaign& c : later_campaigns(*open_, axis_))
+      for (const LaterCampaign& c : later_campaigns(*open_, first_axis()))
         if (c.date >= loaded_ && (check_.folder.empty() || c.purpose == "check")) check_ = c;
     }
     if (check_.folder.empty())
       return missing("check", say("session.check.missing", {{"date", loaded_}}),
-                     say("session.todo.check"), " --check FILE");
+                     say(set_.empty() ? "session.todo.check" : "session.set.check"),
+                     set_.empty() ? " --check FILE" : "");
     done("check",
          say("session.check", {{"folder", check_.folder.string()}, {"date", check_.date}}));
     return true;
@@ -323,6 +373,34 @@ class Session {
                 : answer_ == Answer::failed ? "session.todo.failed"
                                             : "session.todo.open");
     if (answer_ != Answer::worked) command_ = command();
+    return true;
+  }
+
+  /// Adds the verdict of several axes: each diagonal as predicted, within its U.
+  bool verdict_of_set() {
+    const auto after = open_campaign(check_.folder.string(), common_);
+    if (!after)
+      return refused("verdict",
+                     Error{say("session.verdict.unread", {{"folder", check_.folder.string()}})});
+    const auto lines = tables::judge_lines(merged_set_, open_->read, after->read, set_);
+    if (lines.empty()) return refused("verdict", Error{say("session.set.check")});
+    std::string text;
+    bool worked = lines.size() == merged_set_.lines.size(), failed = false;
+    for (const tables::LineVerdict& line : lines) {
+      worked = worked && line.worked();
+      failed = failed || line.failed();
+      text += (text.empty() ? "" : "; ") + line.measurement + ": " +
+              say("session.set.verdict",
+                  {{"before", with_unit(line.before, Quantity::deviation, *words_)},
+                   {"predicted", with_unit(line.predicted, Quantity::deviation, *words_)},
+                   {"after", with_unit(line.after, Quantity::deviation, *words_)}});
+    }
+    answer_ = worked ? Answer::worked : failed ? Answer::failed : Answer::not_decided;
+    steps_.push_back({"verdict", worked ? "done" : failed ? "failed" : "open", std::move(text)});
+    todo_ = say(worked   ? "session.todo.nothing"
+                : failed ? "session.todo.failed"
+                         : "session.todo.open");
+    if (!worked) command_ = command();
     return true;
   }
 
@@ -394,6 +472,8 @@ class Session {
   fs::path out_;
   Loaded present_;
   tables::MergedTables merged_;
+  std::vector<std::string> set_;  ///< axes of --axis XY; empty: one axis
+  tables::MergedSet merged_set_;
   LaterCampaign check_;
   std::vector<Step> steps_;
   std::vector<Finding> verdict_;
@@ -423,7 +503,9 @@ Verb session_verb(Common& common) {
                  {"--backup", &w->backup,
                   "Files saved from the control: FILE, or FILE,FILE,... (default: what the record "
                   "of the machine has of the day of the measurement)"}),
-           {"--axis", &w->axis, "The axis (default: the measured axis, if there is only one)"},
+           {"--axis", &w->axis,
+            "The axis (default: the measured axis, if there is only one); XY: the tables of both, "
+            "and of one by the other"},
            day({"--loaded", &w->loaded,
                 "YYYY-MM-DD: the new table was loaded on this day; records it in "
                 "machines/<asset>.toml"}),

@@ -93,9 +93,13 @@ std::string without_origin(const std::string& text, std::string_view mark, std::
   const std::string origin = "axis " + plain(axis) + ", measurement ";
   const auto flush = [&](bool is_of_table) {
     std::size_t from = block.size();
+    const auto has = [](std::string_view line, std::string_view what) {
+      return line.find(what) != std::string_view::npos;
+    };
     for (std::size_t i = 0; is_of_table && i < block.size() && from == block.size(); ++i)
-      if (block[i].find(origin) != std::string_view::npos &&
-          block[i].find(", campaign ") != std::string_view::npos)
+      if ((has(block[i], ", campaign ") &&
+           (has(block[i], origin) || has(block[i], "diagonals of "))) ||
+          (has(block[i], ": axis ") && has(block[i], " by the position of ")))
         from = i;
     const auto is_ours = [&](std::string_view line) {
       return line.find("machine: ") != std::string_view::npos ||

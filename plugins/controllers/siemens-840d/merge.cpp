@@ -144,6 +144,16 @@ Expected<std::map<std::string, std::string>> numbers_for(const std::map<std::str
   return numbers;
 }
 
+/// A comment "; table 3: ..." with the number that the table has in the backup.
+std::string renumbered(const std::string& comment,
+                       const std::map<std::string, std::string>& numbers) {
+  const std::string start = "; table ";
+  const std::size_t colon = comment.find(':');
+  if (!comment.starts_with(start) || colon == std::string::npos) return comment;
+  const auto to = numbers.find(comment.substr(start.size(), colon - start.size()));
+  return to == numbers.end() ? comment : start + to->second + comment.substr(colon);
+}
+
 class Merger {
  public:
   explicit Merger(const MergeInput& in) : in_(in), files_(in.backup), changed_(in.backup.size()) {}
@@ -182,7 +192,8 @@ class Merger {
     std::set<std::string> own;
     for (const std::string_view text : controllers::lines_of(table.bytes))
       if (is_comment(text)) {
-        lines += std::string(controllers::trimmed(text)) + "\n";
+        if (text.find("CHOSEN, not read from a backup") == std::string_view::npos)
+          lines += renumbered(std::string(controllers::trimmed(text)), *numbers) + "\n";
       } else if (const auto l = line_of(text)) {
         const std::string& to = numbers->at(l->index[0]);
         own.insert(to);

@@ -10,6 +10,7 @@ import math
 import os
 import random
 import re
+import shutil
 import unittest
 
 import gantry_test
@@ -26,10 +27,22 @@ class Loaded:
 
     def __init__(self, machine, files, numbers, shift=0.0):
         self.machine, self.shift = machine, shift
-        self.pitch = {a: self.pitch_of(files, k) for a, k in numbers.items()}
-        self.cross = [c for n, t in files.items() if "CEC" in n for c in cec(t)]
         self.numbers = numbers
         self.backlash = machine.backlash
+        com = [c for n, t in files.items() if n.endswith(".COM") for c in self.columns_of(t)]
+        self.pitch = {a: next((t for i, o, t in com if i == o == k), self.pitch_of(files, k)) for a, k in numbers.items()}
+        self.cross = [c for n, t in files.items() if "CEC" in n for c in cec(t)] + [c for c in com if c[0] != c[1]]
+
+    @staticmethod
+    def columns_of(text):
+        """Tables of a .COM of Heidenhain: of each axis that has a column, by the axis of the file. X2 and Y2 are number 4."""
+        number = lambda axis: 4 if axis[1:] == "2" else "XYZ".index(axis) + 1
+        lines = text.splitlines()
+        heads = [(m[0], m.start()) for m in re.finditer(r"\S+", lines[1])] + [("", None)]
+        for (axis, start), (_, end) in list(zip(heads, heads[1:]))[3:]:
+            points = [(float(l.split()[1]), -1e3 * float(l[start:end])) for l in lines[2:] if l[:1].isdigit() and l[start:end].strip()]
+            if points:
+                yield number(re.match(r"BEGIN AXIS_(\w+)\.COM", lines[0])[1]), number(axis), Table(points)
 
     @staticmethod
     def pitch_of(files, number):
@@ -43,7 +56,7 @@ class Loaded:
         own = self.pitch[axis]
         sum_ = (own.added(at[axis], "+") + own.added(at[axis], "-")) / 2
         by = {k: a for a, k in self.numbers.items()}
-        return sum_ + sum(t.added(at[by[i]]) for i, o, t in self.cross if by[o] == axis) + (self.shift if axis == "U2" else 0.0)
+        return sum_ + sum(t.added(at[by[i]]) for i, o, t in self.cross if by.get(o) == axis) + (self.shift if axis == "U2" else 0.0)
 
     def along_u(self, u, v):
         one, two = self.added("U", u, v), self.added("U2", u, v)
@@ -63,22 +76,27 @@ def diagonal(machine, falling, n=80):
 
 
 class Cross(gantry_test.Gantry):
+    control = CONTROL
     test_y_driven_on_both_sides_is_x_in_a_mirror = test_y_on_two_lines_without_drives_is_refused_by_name_and_listed = None
+
+    not_stated = no_run = False
 
     def measured(self, machine, seed, driven="X", extra="", active=None):
         """The program's tables of this machine, by name."""
         self.more, self.active = extra, active or {}
-        results = self.write(machine, seed, driven, CONTROL)
-        return results, {o["file"]: (self.out / "c" / o["file"]).read_text() for o in results["outputs"] if o["plugin"] == CONTROL}
+        results = self.write(machine, seed, driven, self.control)
+        return results, {} if self.no_run else {o["file"]: (self.out / "c" / o["file"]).read_text() for o in results["outputs"] if o["plugin"] == self.control}
 
     def run_site(self, expect=0):
         path = self.folder / "campaign.toml"
-        text = path.read_text().replace("[run]\n", '[run]\noutputs = ["%s", "csv"]\n' % CONTROL).replace('"iso230-2"', '"iso230-2", "iso230-6"') + self.more
+        text = path.read_text().replace("[run]\n", '[run]\noutputs = ["%s", "csv"]\n' % self.control).replace('"iso230-2"', '"iso230-2", "iso230-6"') + self.more
         for axis, files in self.active.items():
             text = re.sub(r'(\[machine\.axes\.%s\]\nkind = "linear"\n)active_table = "none"\nactive_backlash_mm = "none"' % axis,
                           r'\1active_table = "%s"' % files, text)
+        if self.not_stated:
+            text = text.replace('active_table = "none"\nactive_backlash_mm = "none"\n', "")
         path.write_text(text)
-        return super().run_site(expect)
+        return {} if self.no_run else super().run_site(expect)
 
     @staticmethod
     def numbers(driven):
@@ -100,7 +118,7 @@ class Cross(gantry_test.Gantry):
                         (cross,) = [t for n, t in files.items() if "CEC" in n]
                         shift = self.shift_of(cross)
                         after = Loaded(machine, files, self.numbers(driven), shift)
-                        predicted = {p["name"]: p for t in results["tables"] if t["plugin"] == CONTROL for p in t["predictions"] if p["name"][0] == "D"}
+                        predicted = {p["name"]: p for t in results["tables"] if t["plugin"] == self.control for p in t["predictions"] if p["name"][0] == "D"}
                         U = min(v["U"] for a in results["analyses"] if a["plugin"] == "iso230-6" for n, v in a["values"].items() if n == "E")
                         for name, falling in (("D1", False), ("D2", True)):
                             was, now = diagonal(machine, falling), diagonal(after, falling)
@@ -120,7 +138,7 @@ class Cross(gantry_test.Gantry):
                         self.assertNotIn("the squareness is in them", cross)
                         self.assertIn("|==>|" if shift > 0 else "|<==|", cross)
                         self.assertLess(diagonal(after, True), diagonal(Loaded(machine, files, self.numbers(driven), -shift), True) + 0.5)
-                        (note,) = [n for t in results["tables"] if t["plugin"] == CONTROL for n in t["notes"] if "shift the zero" in str(n)]
+                        (note,) = [n for t in results["tables"] if t["plugin"] == self.control for n in t["notes"] if "shift the zero" in str(n)]
                         self.assertIn("%s2" % driven, str(note))
 
     def test_a_cross_table_that_was_active_is_removed_from_the_curves(self):
@@ -142,12 +160,168 @@ class Cross(gantry_test.Gantry):
                     k, diagonal(now, falling), diagonal(before, falling), diagonal(after, falling))
                 print(case)
                 self.assertLess(diagonal(after, falling), 0.2 * diagonal(before, falling) + 2.5, case)
-            table = next(t for t in results["tables"] if t["plugin"] == CONTROL)
+            table = next(t for t in results["tables"] if t["plugin"] == self.control)
             predicted = {p["name"]: p for p in table["predictions"] if p["name"][0] == "D"}
             U = min(v["U"] for a in results["analyses"] if a["plugin"] == "iso230-6" for n, v in a["values"].items() if n == "E")
             for name, falling in (("D1", False), ("D2", True)):
                 self.assertAlmostEqual(predicted[name]["before"], diagonal(before, falling), delta=1.5)
                 self.assertAlmostEqual(predicted[name]["predicted"], max(diagonal(after, falling), U), delta=2.0)
+
+    # nonio table insert --axis XY: a backup whose tables were active
+
+    FOREIGN = "$AN_CEC[20,0]=0.001\n$AN_CEC[20,1]=0.004\n$AN_CEC_INPUT_AXIS[20]=(AX1)\n$AN_CEC_OUTPUT_AXIS[20]=(AX3)\n" \
+              "$AN_CEC_STEP[20]=6000\n$AN_CEC_MIN[20]=0\n$AN_CEC_MAX[20]=6000\n$AN_CEC_IS_MODULO[20]=0\n" \
+              "$AN_CEC_DIRECTION[20]=0\n$AN_CEC_MULT_BY_TABLE[20]=0\n"
+
+    def worn(self, k, driven="X", of="old"):
+        """A gantry that was measured with the tables of its first campaign, which only the backup states."""
+        old, now = Machine(random.Random(SEED + k)), Machine(random.Random(SEED + 50 + k))
+        _, files = self.measured(old, SEED + k, driven)
+        backup = self.site.parent / "backup"
+        for old_files in (backup, self.out / "load"):
+            shutil.rmtree(old_files, ignore_errors=True)
+        backup.mkdir()
+        for n, t in files.items():
+            t = t.replace("campaign c", "campaign " + of).replace("2026-05-10", "2025-05-10" if of == "old" else "2026-05-10")
+            (backup / n).write_text(t.replace("M17\n", self.FOREIGN + "M17\n") if "CEC" in n else t)
+        before = Loaded(now, files, self.numbers(driven))
+        self.not_stated = True
+        self.measured(before, SEED + 90 + k, driven)
+        self.not_stated = False
+        return now, before, sorted(backup.iterdir())
+
+    def insert(self, files, axis="XY", *more, expect=0):
+        args = ["table", "insert", ",".join(map(str, files)), "--with", self.folder, "--axis", axis, "--out", self.out / "load", *more]
+        return self.json_of(*args) if expect == 0 else self.nonio(*args, expect=expect).stderr
+
+    def loaded(self, now, files, driven="X"):
+        """All files in the control afterwards."""
+        whole = {f.name: f.read_text() for f in files}
+        whole |= {f.name: f.read_text() for f in (self.out / "load").iterdir()}
+        return Loaded(now, whole, self.numbers(driven)), whole
+
+    def test_insert_of_several_axes_over_tables_that_were_active(self):
+        for control, k in (("siemens-840d", 0), ("siemens-840d", 1), ("siemens-840d", 2), ("heidenhain-tnc", 3)):
+            self.control = control
+            for driven in "XY":
+                with self.subTest(control=control, k=k, driven=driven, seed=SEED):
+                    now, before, files = self.worn(k, driven)
+                    answer = self.insert(files, "XY", "--loaded", "2026-05-12")
+                    after, whole = self.loaded(now, files, driven)
+                    lines = {l["measurement"]: l for l in answer["lines"]}
+                    for name, falling in (("D1", False), ("D2", True)):
+                        was, bare, will = (diagonal(m, falling) for m in (before, now, after))
+                        case = "%s: %.2f without, %.2f with the old, %.2f with the new tables, promised %.2f" % (name, bare, was, will, lines[name]["after_um"])
+                        print(driven, case)
+                        self.assertLess(will, 0.2 * bare + 2.5, case)
+                        self.assertAlmostEqual(lines[name]["before_um"], was, delta=1.5, msg=case)
+                        self.assertLess(abs(lines[name]["after_um"] - will), 3.0, case)
+                    for p in answer["predictions"]:
+                        self.assertLess(p["after"]["E_um"], 0.5 * p["before"]["E_um"] + 3.0, p)
+                    self.assertEqual(set(answer["measured_with"]), {"X", "Y", driven + "2"})
+                    record = (self.site / "machines" / "G-1.toml").read_text()
+                    for axis in ("X", "Y", driven + "2"):
+                        states = record.split("[[axes.%s.state]]" % axis)[1:]
+                        self.assertEqual([re.search(r'since = (\S+)', s)[1] for s in states], ["2026-05-10", "2026-05-12"], axis)
+                        self.assertIn("CEC.ini" if "siemens" in control else "-Y.COM", states[1].split("[[")[0])
+                    if "siemens" not in control:
+                        continue
+                    # The table of another axis and the numbers of the backup are as they were.
+                    (cross,) = [t for n, t in whole.items() if "CEC" in n]
+                    self.assertIn(self.FOREIGN, cross)
+                    old = (files[0].parent / next(n for n in whole if "CEC" in n)).read_text()
+                    number = lambda t: sorted(re.findall(r"OUTPUT_AXIS\[(\d+)\]=\((AX\d)\)", t))
+                    self.assertEqual(number(cross), number(old))
+                    self.assertNotIn("campaign old", cross.replace(self.FOREIGN, ""))
+                    self.assertNotIn("CHOSEN", cross)
+
+    def check_campaign(self, machine, seed):
+        """The same lines on this machine, four days after loading."""
+        self.folder, mine = self.site / "check", self.folder
+        self.folder.mkdir(exist_ok=True)
+        record = self.site / "machines" / "G-1.toml"
+        known = record.read_text()
+        self.no_run = self.not_stated = True
+        self.measured(machine, seed)
+        self.no_run = self.not_stated = False
+        path = self.folder / "campaign.toml"
+        path.write_text(path.read_text().replace('id = "c"', 'id = "check"\npurpose = "check"').replace("2026-05-10", "2026-05-16"))
+        record.write_text(known)
+        self.folder = mine
+
+    def test_session_of_several_axes(self):
+        now, before, files = self.worn(1)
+        backup = ",".join(map(str, files))
+        session = lambda *more, expect=0: self.json_of("table", "session", self.folder, "--axis", "XY", *more, expect=expect)
+        steps = lambda answer: {s["step"]: s["state"] for s in answer["steps"]}
+        first = session("--backup", backup, "--out", self.out / "load")
+        self.assertEqual(steps(first), {"backup": "done", "state": "done", "table": "done", "probe": "done", "loading": "missing"})
+        self.assertIn("D1", next(s["says"] for s in first["steps"] if s["step"] == "table"))
+        self.assertIn("--loaded YYYY-MM-DD", first["command"])
+        after, _ = self.loaded(now, files)
+        second = session("--backup", backup, "--loaded", "2026-05-12")
+        self.assertEqual(steps(second)["loading"], "done")
+        self.assertEqual(steps(second)["check"], "missing")
+        self.assertIn("purpose", second["todo"])
+        # What was active and what was loaded is in the record now.
+        third = session()
+        self.assertEqual(steps(third)["loading"], "done")
+        self.check_campaign(after, SEED + 7)
+        last = session()
+        self.assertEqual(steps(last)["verdict"], "done", last)
+        for name, falling in (("D1", False), ("D2", True)):
+            said = next(s["says"] for s in last["steps"] if s["step"] == "verdict")
+            found = re.search(name + r": range ([\d.]+) um before, ([\d.]+) um predicted, ([\d.]+) um after", said)
+            self.assertAlmostEqual(float(found[3]), diagonal(after, falling), delta=1.5)
+        refused = session("--check", files[0], expect=1)
+        self.assertEqual(steps(refused)["check"], "refused")
+        # Nothing was loaded.
+        self.check_campaign(before, SEED + 8)
+        worse = session(expect=1)
+        self.assertIn(steps(worse)["verdict"], ("failed", "open"))
+
+    def test_insert_of_several_axes_is_refused_by_name(self):
+        now, before, files = self.worn(0, of="c")
+        self.assertIn("was made from campaign c", self.insert(files, expect=1))
+        # The pitch tables state nothing; the cross tables do.
+        for f in files:
+            if "CEC" not in f.name:
+                f.write_text(f.read_text().replace("campaign c", "campaign old").replace("2026-05-10", "2025-05-10"))
+        said = self.insert(files, expect=1)
+        self.assertIn("the tables of several axes were made from campaign c", said)
+        self.assertRegex(said, r"CEC\.ini:\d+: ")
+        for f in files:
+            f.write_text(f.read_text().replace("campaign c", "campaign old"))
+        self.assertIn("contains no table of axis X2", self.insert([f for f in files if "X2" not in f.name and "CEC" not in f.name], expect=1))
+        self.assertIn("expected --axis", self.nonio("table", "insert", ",".join(map(str, files)), "--with", self.folder, expect=2).stderr)
+        self.insert(files, "XY", "--set", "squareness=slave-zero", expect=1)
+        for control, word in (("linuxcnc", "linuxcnc has no tables of one axis by the position of another"),
+                              ("twincat-volumetric", "cannot be merged into a backup")):
+            table = self.site.parent / ("linuxcnc-X.comp" if control == "linuxcnc" else "twincat-volumetric-XYZ.csv")
+            self.assertIn(word, self.one_of(control, table), control)
+        self.assertEqual(list(self.out.glob("load/*")), [])
+        # Without diagonals there are no such tables.
+        path = self.folder / "campaign.toml"
+        text = path.read_text()
+        path.write_text(re.sub(r'(?s)\[\[measurement\]\]\nid = "D\d".*?(?=\[\[measurement|\[run)', "", text))
+        self.assertIn("diagonals over XY are missing", self.insert(files, expect=1))
+
+    def one_of(self, control, table):
+        """What `insert` says of a table that this control wrote itself."""
+        path = self.folder / "campaign.toml"
+        text = path.read_text()
+        other = text.replace('control = "%s"' % self.control, 'control = "%s"' % control)
+        plain = re.sub(r'outputs = \[.*\]\n', "", other)
+        path.write_text(plain)
+        try:
+            if control == "linuxcnc":
+                table.write_text("".join("%.6f %.6f %.6f\n" % (x, x + 0.001 * (x / 6000), x) for x in range(0, 6001, 300)))
+            else:
+                table.write_text("#\nX EXX EYX\n0 0 0\n6000 0.001 0.002\n")
+            more = ["--set", "sign=error"] if "twincat" in control else []
+            return self.insert([table], "XY", "--control", control, *more, expect=1)
+        finally:
+            path.write_text(text)
 
     def test_curves_with_their_uncertainty_as_csv(self):
         results, _ = self.measured(Machine(random.Random(SEED)), SEED)
@@ -165,8 +339,8 @@ class Cross(gantry_test.Gantry):
 
     def test_without_a_known_gantry_the_choice_is_refused_by_name(self):
         self.more, self.active = '[options.siemens-840d]\nsquareness = "slave-zero"\n', {}
-        results = self.write(Machine(random.Random(SEED)), SEED, "X", CONTROL, sides=False)
-        table = next(t for t in results["tables"] if t["plugin"] == CONTROL)
+        results = self.write(Machine(random.Random(SEED)), SEED, "X", self.control, sides=False)
+        table = next(t for t in results["tables"] if t["plugin"] == self.control)
         self.assertIn("table.slave-zero-unknown", [f["id"] for f in table["findings"]])
         self.assertFalse([o for o in results["outputs"] if "CEC" in o["file"]])
 

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "insert_set.h"
+
+#include <filesystem>
+#include <iostream>
+
+#include "campaign/evaluation/evaluation.h"
+#include "insert.h"
+#include "platform/storage/files.h"
+#include "state_record.h"
+#include "tables.h"
+
+namespace nonio::app {
+
+Expected<tables::MergedSet> merge_set_now(const OpenCampaign& open, const Loaded& present,
+                                          const Settings& options,
+                                          const std::vector<std::string>& set) {
+  std::vector<Error> errors;
+  const reading::Stage quiet = [](const std::string&) {};
+  const evaluation::Work work{open.place->context, quiet, open.read, errors};
+  Results results;
+  results.analyses = evaluation::run_analyses(work);
+  const auto doubts = evaluation::open_doubts(work, results.analyses);
+  if (!errors.empty()) return fail(errors.front());
+  if (!doubts.empty())
+    return fail("finding " + doubts.front() +
+                " prevents tables: correct the cause, or accept it with a reason "
+                "([[accept]] in campaign.toml)");
+  return tables::merge_set(open.read, results, *present.control, options, present.files, set);
+}
+
+Expected<std::string> record_set(const tables::MergedSet& merged, const Loaded& present,
+                                 const Settings& options, const std::vector<std::string>& set,
+                                 const std::string& loaded, const OpenCampaign& open) {
+  std::string record;
+  for (const std::string& axis : set) {
+    tables::MergedTables one;
+    one.whole = merged.whole;
+    one.with = merged.with.at(axis);
+    one.next = tables::own_tables(merged.next, axis);
+    NONIO_TRY(record, record_loading(one, present, options, axis, loaded, open));
+  }
+  return record;
+}
+
+namespace {
+
+TableJson json_of(const tables::MergedSet& merged) {
+  TableJson json = {{"tables", TableJson::array()},
+                    {"predictions", TableJson::array()},
+                    {"lines", TableJson::array()},
+                    {"measured_with", TableJson::object()}};
+  for (const auto& d : merged.differences) json["tables"].push_back(difference_json(d));
+  for (const auto& f : merged.forecast) json["predictions"].push_back(forecast_json(f));
+  for (const auto& line : merged.lines) {
+    TableJson one = {{"measurement", line.measurement}};
+    put(one, "before", line.before, Quantity::deviation);
+    put(one, "after", line.after, Quantity::deviation);
+    json["lines"].push_back(std::move(one));
+  }
+  for (const auto& [axis, with] : merged.with)
+    json["measured_with"][axis] = with.files.empty() ? "none" : with.files;
+  return json;
+}
+
+}  // namespace
+
+int insert_set(const SetWish& w, const Loaded& present, const Settings& options,
+               const std::vector<std::string>& set, const OpenCampaign& open,
+               const Common& common) {
+  const auto merged = merge_set_now(open, present, options, set);
+  if (!merged) return complain(text_of(merged.error()), exit_failed);
+  for (const std::string& axis : set) tell_findings(open, older_measurement(open, axis));
+  tell_findings(open, merged->findings);
+  if (merged->files.empty())
+    return complain(
+        "no table of one axis by the position of another was made of this campaign, so "
+        "nothing was written: the findings state the reason, or the diagonals over " +
+            w.axis + " are missing",
+        exit_failed);
+  std::vector<std::string> written;
+  if (!w.out.empty()) {
+    if (auto done = storage::publish(std::filesystem::absolute(w.out), merged->files); !done)
+      return complain(text_of(done.error()), exit_failed);
+    for (const Artifact& f : merged->files)
+      written.push_back((std::filesystem::path(w.out) / f.name).string());
+  }
+  std::string recorded;
+  if (!w.loaded.empty()) {
+    auto record = record_set(*merged, present, options, set, w.loaded, open);
+    if (!record) return complain(text_of(record.error()), exit_failed);
+    recorded = std::move(*record);
+  }
+  if (common.json) {
+    TableJson json = {{"schema", "nonio-merge/1"},
+                      {"campaign", open.campaign().id},
+                      {"control", present.control->info.name},
+                      {"axis", w.axis}};
+    json.update(json_of(*merged));
+    json["files"] = written;
+    if (!recorded.empty()) json["recorded"] = recorded;
+    print_json(json);
+    return exit_done;
+  }
+  for (const auto& d : merged->differences) print_difference(d);
+  for (const auto& f : merged->forecast) print_forecast(f);
+  for (const auto& line : merged->lines)
+    sentence(std::cout, 0,
+             "diagonal " + line.measurement + ": range " +
+                 with_unit(line.before, Quantity::deviation) + " -> " +
+                 with_unit(line.after, Quantity::deviation));
+  for (const std::string& file : written) std::cout << file << "\n";
+  if (!recorded.empty()) std::cout << recorded << "\n";
+  return exit_done;
+}
+
+}  // namespace nonio::app
