@@ -171,7 +171,10 @@ Observations diagonal_without(const Campaign& campaign, const Observations& o,
   return raw;
 }
 
-bool is_diagonal(const Measurement& m) { return m.kind == "diagonal" || m.kind == "step-diagonal"; }
+/// Whether several axes moved from one end of a line to the other.
+bool is_diagonal(const Measurement& m) {
+  return !m.from.empty() && m.motion == Measurement::Motion::targets;
+}
 
 /// Sets the backlash values of the files in the options, unless others are stated.
 void state_backlash_of(Settings& options, const Tables& tables) {
