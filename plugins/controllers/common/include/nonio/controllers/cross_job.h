@@ -40,11 +40,11 @@ struct ReadLine {
   std::map<std::string, double> sense;            ///< direction of sensing, unit vector, by axis
   std::vector<std::map<std::string, double>> at;  ///< position of each axis at each stop
   std::vector<double> deviation;
-  /// deviations as measured, if tables that were active then are removed from `deviation`
-  std::vector<double> measured{};
   /// directions of reading, along `sense` (1) or against it (-1); `deviation` is the mean over them
   std::vector<int> ways{1, -1};
   double U = 0.0;  ///< expanded uncertainty of the range of `deviation`, m; 0: not known
+  /// deviations as measured, if tables that were active then are removed from `deviation`
+  std::vector<double> measured{};
 };
 
 /// Squareness as a shift of the zero of a gantry's second side, instead of a table: at the same
