@@ -57,6 +57,7 @@ std::vector<double> lagged(const Observations::Channel& channel, double tau,
 
 std::vector<double> lagged(const Observations& o, std::string_view name, double tau) {
   std::vector<double> out(o.size(), 0.0);
+  if (o.time.size() != o.size()) return out;
   const Observations::Channel* const first = o.channel(name);
   for (const Observations::Channel& c : o.channels) {
     if (c.name != name || c.value.empty() || first->value.empty()) continue;

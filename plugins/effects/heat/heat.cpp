@@ -54,9 +54,10 @@ std::vector<std::string> names(const Observations& o, const Kind& kind) {
 
 /// Whether readings are sensed in space: over several axes, or across the axis that moved.
 bool in_space(const Observations& o) {
+  if (o.lines.empty()) return false;
   if (o.axes.size() != 1) return o.axes.size() > 1 && !o.angular;
   const std::size_t k = coordinate_of(o.axes.front().axis);
-  for (std::size_t i = 0; i < o.size() && k < 3 && !o.lines.empty(); ++i)
+  for (std::size_t i = 0; i < o.size() && k < 3; ++i)
     for (std::size_t other = 0; other < 3; ++other)
       if (other != k && std::fabs(o.sense_of(i)[other]) > least_share) return true;
   return false;

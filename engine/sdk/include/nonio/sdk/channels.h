@@ -17,7 +17,8 @@ std::vector<double> lagged(const Observations::Channel& channel, double tau,
                            const std::vector<double>& time);
 
 /// Returns the first-order lag of all channels of this name at the readings, each at those of its
-/// lines, minus the first value of the first one. Each starts in equilibrium with its first value.
+/// lines, minus the first value of the first one. Each starts in equilibrium with its first value. 0
+/// for readings without times.
 std::vector<double> lagged(const Observations& o, std::string_view name, double tau);
 
 /// Returns the time constants, s, that readings at these times can identify, ascending: 0, and
