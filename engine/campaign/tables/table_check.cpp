@@ -154,7 +154,8 @@ Observations diagonal_without(const Campaign& campaign, const Observations& o,
     math::MotionSigns ways;
     for (const auto& axis : o.axes) {
       at[axis.axis] = axis.position[i];
-      if (!axis.approach.empty()) ways[axis.axis] = axis.approach[i];
+      if (!axis.approach.empty())
+        ways[axis.axis] = axis.approach[i] == 0 ? 0 : axis.approach[i] > 0 ? 1 : -1;
     }
     for (const auto& axis : o.axes) {
       const std::size_t k = coordinate_of(axis.axis);
