@@ -24,9 +24,7 @@ std::string in_one_line(const std::vector<Error>& errors) {
 std::vector<config::Event> events_of(const config::MachineRecords& records) {
   std::vector<config::Event> events;
   for (const config::RecordFile& file : records) {
-    if (!file.record)
-      continue;  // the record is invalid; campaigns of this machine fail and report
-                 // the error
+    if (!file.record) continue;  // campaigns of this machine report the error
     for (const auto& [axis, recorded] : file.record->axes) {
       for (const config::ControlState& state : recorded.states) {
         if (state.was_in_control()) continue;  // no table was loaded on that day

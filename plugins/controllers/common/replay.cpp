@@ -18,8 +18,8 @@ double range_of(const std::vector<double>& v) {
   return *high - *low;
 }
 
-/// Deviations along the line with the new tables: mean over the directions of reading. nullopt:
-/// positions of the gantry sides are missing.
+/// Deviations with the new tables, mean over the directions of travel; nullopt if the positions of
+/// the gantry's sides are needed but not stated.
 std::optional<std::vector<double>> after(const ReadLine& line, const Replay& replay) {
   std::vector<double> out = line.deviation;
   for (const int way : line.ways)
@@ -59,7 +59,7 @@ std::optional<double> left_on_side(const ControllerInput& in, const CrossJob& jo
   return std::nullopt;
 }
 
-/// Rotation of the beam at the reference points of the pitch tables relative to the first stop,
+/// Rotation of the beam at the reference points of the pitch tables relative to the first target,
 /// rad.
 std::optional<double> turn_of(const ControllerInput& in, const CrossJob& job,
                               const math::Beam& beam, const NumberTables& settings) {
@@ -70,7 +70,6 @@ std::optional<double> turn_of(const ControllerInput& in, const CrossJob& job,
   return (*other - *one) / (beam.at_slave - beam.at_axis);
 }
 
-/// Keeps the largest prediction of several runs of a line.
 void keep_worst(std::vector<Prediction>& all, const Prediction& one) {
   const auto known =
       std::find_if(all.begin(), all.end(), [&](const Prediction& p) { return p.name == one.name; });
@@ -155,7 +154,7 @@ void predict_lines(const CrossJob& job, const Replay& replay, OutputResult& resu
   }
   std::vector<Prediction> all;
   for (const ReadLine& line : job.lines) {
-    if (line.deviation.size() < 2) continue;  // no reading at whole steps
+    if (line.deviation.size() < 2) continue;
     const auto will = after(line, replay);
     if (!will) {
       result.notes.push_back({"table.sides-not-placed", {}, {}, job.measurement});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Displacements over time caused by recorded channels. L(x, tau): first-order lag of x, s
-// (sdk/channels.h); T, T1, T2: temperatures, degC; n: speed or load; t: time since the first
-// reading, s.
+// Displacements over time caused by recorded channels. L(x, tau): first-order lag of x with the
+// time constant tau, s (sdk/channels.h); T, T1, T2: temperatures, degC; n: speed or load; t: time
+// since the first reading, s.
 //
 //     heat:T               g L(T, tau)                      g: m/K
 //     heat-slow:T          g L(T, tau), tau longer than that of heat:T    g: m/K
@@ -25,7 +25,7 @@ namespace {
 using Channel = Observations::Channel;
 using Columns = Effect::Columns;
 
-/// Minimum range of a temperature channel, K; a smaller range is considered sensor noise.
+/// Minimum range of a temperature channel, K; a smaller range is regarded as sensor noise.
 constexpr double least_range = 0.05;
 /// Smallest significant component of a direction of sensing.
 constexpr double least_share = 1e-9;
@@ -113,7 +113,7 @@ bool may_bend(const Observations& o, const Channel& c) {
          varies(o, c, least_range);
 }
 
-/// Names "A-B" of all pairs of channels. Channels with "-" in their name are omitted.
+/// Pairs "A-B"; channels with "-" in their name are omitted.
 std::vector<std::string> differences(const Observations& o) {
   std::vector<std::string> out;
   const std::vector<std::string> all = names(o, [&](const Channel& c) { return may_bend(o, c); });
@@ -129,7 +129,6 @@ std::vector<std::string> of_time(const Observations& o) {
                                                    : std::vector<std::string>{};
 }
 
-/// The column of the axis that moved between targets; nullptr in a test over time.
 const Observations::AxisColumn* moved(const Observations& o) {
   if (o.axes.size() != 1 || o.axes.front().position.size() != o.size()) return nullptr;
   return o.axes.front().axis == "S" ? nullptr : &o.axes.front();
@@ -154,7 +153,6 @@ Effect::Shape lag(const char* name, const char* help) {
           .grid = [](const Observations& o, const Axis&) { return time_constants_for(o.time); }};
 }
 
-/// Shape parameter: a time constant other than 0.
 Effect::Shape decay(const char* name, const char* help) {
   return {.parameter = {name, help, Quantity::time},
           .grid = [](const Observations& o, const Axis&) {
@@ -164,7 +162,6 @@ Effect::Shape decay(const char* name, const char* help) {
           }};
 }
 
-/// Shape parameter: the longer half of the time constants.
 Effect::Shape slow(const char* name, const char* help) {
   return {.parameter = {name, help, Quantity::time},
           .grid = [](const Observations& o, const Axis&) {

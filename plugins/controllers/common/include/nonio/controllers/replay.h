@@ -9,10 +9,10 @@
 #include "nonio/controllers/cross_job.h"
 #include "nonio/math/beam.h"
 
-/// Joint effect of all tables of a run on the machine, parsed from the files that were written.
+/// Joint effect of all tables of a run on the machine, parsed from the written files.
 namespace nonio::controllers {
 
-/// Adds yaw to the squareness. C0Y refers to the first stop, but the pitch tables of both sides
+/// Adds yaw to the squareness: C0Y refers to the first target, but the pitch tables of both sides
 /// leave the beam unchanged where they are zero. The yaw between both positions is added to the
 /// cross table.
 void turn_to_reference(const ControllerInput&, CrossJob&, const NumberTables& settings);
@@ -40,16 +40,16 @@ struct Replay {
                               const math::MotionSigns& direction) const;
 };
 
-/// Returns the pitch tables that were written in this run and belong to the same state of the
-/// machine as these curves.
+/// The replay contains the pitch tables of this run for the same state of the machine as the
+/// curves.
 Replay replay_of(const CrossJob&, const std::vector<AxisJob>& pitch, const ControllerInput&);
 
-/// Adds the ranges of the lines before, and after with these tables; adds a finding if tables make
-/// one of them worse.
+/// Adds the ranges of the lines before compensation and with these tables, and a finding if a line
+/// becomes worse.
 void predict_lines(const CrossJob&, const Replay&, OutputResult& result);
 
-/// Predicts the lines with the tables that `parse` returns for these files, and with the pitch
-/// tables that were written. Error: a curve is not found in the files.
+/// Predicts the lines with the tables that `parse` returns for these files, and with the written
+/// pitch tables. Error: a curve is not found in the files.
 Expected<void> predict_cross(const CrossJob&, const std::vector<Artifact>&,
                              Expected<std::vector<LoadedTable>> (*parse)(const TableInput&),
                              const std::vector<AxisJob>& pitch, const ControllerInput&,
