@@ -136,11 +136,25 @@ void put_readings(ModelFit& out, const PartModel& whole) {
   out.deviation = whole.measured();
 }
 
+/// Sets what a fit leaves, for the model and for the model without one effect.
+template <class Out>
+void put_residuals(Out& out, const model::Comparison& c) {
+  out.rms = c.fit.rms;
+  out.cv_rms = c.cv_rms;
+  out.largest = c.largest;
+  out.residual = c.fit.residual;
+  out.weight = c.fit.weight;
+  out.cv_residual = c.cv_residual;
+  if (c.floor) {
+    out.floor = c.floor->s;
+    out.floor_u = c.floor->u;
+  }
+  for (const model::Suspect& s : c.suspects) out.suspects.push_back({s.row, s.minimal_detectable});
+}
+
 void put_fit(ModelFit& out, const PartModel& part, const model::Comparison& c) {
   const model::Fit& fit = c.fit;
-  out.residual = fit.residual;
-  out.weight = fit.weight;
-  out.cv_residual = c.cv_residual;
+  put_residuals(out, c);
   for (std::size_t t = 0; t < fit.terms.size(); ++t)
     out.effects.push_back({fit.terms[t].name(), fit.terms[t].effect->compensable, fit.part[t],
                            curve_of(part, fit, t)});
@@ -149,11 +163,6 @@ void put_fit(ModelFit& out, const PartModel& part, const model::Comparison& c) {
                               std::isfinite(p.u) ? std::optional(p.u) : std::nullopt, p.quantity,
                               p.shape});
   out.correlation = fit.correlation;
-  if (c.floor) {
-    out.floor = c.floor->s;
-    out.floor_u = c.floor->u;
-  }
-  for (const model::Suspect& s : c.suspects) out.suspects.push_back({s.row, s.minimal_detectable});
 }
 
 // Largest number of readings for which models with fewer effects are fitted too, because with more
@@ -339,8 +348,10 @@ std::vector<ModelFit::Without> without_each(const PartModel& part) {
     if (part.terms[t].effect->is_nuisance) continue;
     PartModel rest = part;
     rest.terms.erase(rest.terms.begin() + static_cast<std::ptrdiff_t>(t));
-    if (auto c = compare_part(rest))
-      out.push_back({part.terms[t].name(), c->fit.rms, c->cv_rms, std::move(c->fit.residual)});
+    const auto c = compare_part(rest);
+    if (!c) continue;
+    out.emplace_back().effect = part.terms[t].name();
+    put_residuals(out.back(), *c);
   }
   return out;
 }

@@ -168,22 +168,28 @@ void add_pictures(View& view, const Source& source) {
   }
 }
 
-std::string legend(const Source& source, const workbench::Kept& kept) {
+/// Returns what the legend states of the fit of the whole model.
+std::string legend_numbers(const Source& source) {
   const ModelFit& fit = source.fit;
   const Wording& words = source.words;
   const Quantity q = deviation_of(fit.angular);
-  std::string text = words.get("picture.legend") + " ";
-  text += fit.floor ? words.get("picture.legend_floor",
-                                {{"s", printed_number(*fit.floor, q, 2, words.language())},
-                                 {"unit", unit_text(q)}})
-                    : words.get("picture.no_floor");
+  std::string text = fit.floor
+                         ? words.get("picture.legend_floor",
+                                     {{"s", printed_number(*fit.floor, q, 2, words.language())},
+                                      {"unit", unit_text(q)}})
+                         : words.get("picture.no_floor");
   if (!fit.suspects.empty())
     text +=
         " " + words.get("picture.legend_suspect", {{"count", std::to_string(fit.suspects.size())}});
-  if (kept.rows.size() < fit.size())
-    text += " " + words.get("page.thinned", {{"shown", std::to_string(kept.rows.size())},
-                                             {"all", std::to_string(fit.size())}});
   return text;
+}
+
+std::string legend(const Source& source, const workbench::Kept& kept) {
+  const std::string text = source.words.get("picture.legend");
+  if (kept.rows.size() == source.fit.size()) return text;
+  return text + " " +
+         source.words.get("page.thinned", {{"shown", std::to_string(kept.rows.size())},
+                                           {"all", std::to_string(source.fit.size())}});
 }
 
 Expected<std::string> page_of(const Source& source) {
@@ -199,7 +205,7 @@ Expected<std::string> page_of(const Source& source) {
   add_pictures(view, source);
   view.set("pictures_heading", words.get("picture.heading", {{"part", source.fit.part}}));
   view.set("toggling", Html{typeset_html(words.get("page.toggling"))});
-  view.set("legend", legend(source, kept));
+  view.set("legend", legend(source, kept)).set("legend_numbers", legend_numbers(source));
   view.set("data", Html{workbench::data_of(drawn, kept, false)});
   return page_text("model", view, words);
 }

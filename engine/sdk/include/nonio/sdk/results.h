@@ -222,13 +222,6 @@ struct ModelFit {
     std::vector<double> contribution;  ///< predicted contribution to each reading; m or rad
     std::optional<Curve> curve{};      ///< for an effect that is a curve: its size
   };
-  /// The fit of the model without one of its effects.
-  struct Without {
-    std::string effect;
-    double rms = 0.0;
-    std::optional<double> cv_rms{};
-    std::vector<double> residual{};  ///< residual of each reading, m or rad
-  };
   /// An effect that is not in the model but is supported by the readings; m or rad.
   struct Candidate {
     std::string effect;
@@ -258,6 +251,16 @@ struct ModelFit {
     std::size_t row = 0;
     double minimal_detectable = 0.0;  ///< smallest error that would be detected, m or rad
   };
+  /// The fit of the model without one of its effects; members as those of the whole model.
+  struct Without {
+    std::string effect;
+    double rms = 0.0;
+    std::optional<double> cv_rms{};
+    double largest = 0.0;
+    std::vector<double> residual{}, weight{}, cv_residual{};
+    std::optional<double> floor{}, floor_u{};
+    std::vector<Suspect> suspects{};
+  };
 
   std::string part;  ///< name of the part, which is usable in a file name: "X"
   std::vector<std::string> measurements;
@@ -274,6 +277,9 @@ struct ModelFit {
   std::vector<std::int8_t> direction;  ///< direction of approach: +1, -1; 0 if not known
   std::vector<double> time;            ///< time of each reading, s; NaN where blank
   std::vector<double> temperature;     ///< material temperature, degC; NaN where blank
+  double rms = 0.0;                    ///< rms of the residuals, m or rad
+  std::optional<double> cv_rms{};      ///< rms of cross-validation over runs; absent with one run
+  double largest = 0.0;  ///< residual with the largest absolute value, suspect readings excluded
   std::vector<double> deviation, residual;
   /// weight of each reading, 0..1; a suspect reading has a small weight
   std::vector<double> weight;
