@@ -22,6 +22,9 @@ class PassZeros {
   /// because the readings of a pass are not independent. Flipping a few whole passes gives a
   /// coarser result than flipping many stretches.
   bool drawn_again() const;
+  /// Returns the effects of the best explanation that change mostly between repeats, if passes in
+  /// other orders show an effect as clearly as the passes in their own order; otherwise none.
+  std::vector<std::string> of_any_order() const;
   /// Returns the residual of each reading in the best explanation minus the mean of its repeats,
   /// scaled to the variance of a reading; it includes the part that a pass shares. 0 for readings
   /// without repeats.
@@ -37,6 +40,8 @@ class PassZeros {
   bool shows(const std::string& effect) const;
 
  private:
+  bool explains_zeros(const Workbench::State& others) const;
+  MatrixXd in_other_orders(const std::vector<double>& e) const;
   Noise with_passes() const;
   double share_of(const std::string& effect) const;
 

@@ -42,7 +42,7 @@ constexpr double least_against_zero = 30.0;
 // docs/dev/constants.md, M10.
 constexpr double cancels_beyond = 0.95;
 
-/// Whether two places share a factor; run equals time, and screw phase and angle equal position.
+/// Whether two places share a factor; run is time, screw phase and angle are position.
 bool same_factor(const Where& a, const Where& b) {
   const auto kin = [](Factor f) {
     if (f == Factor::run) return Factor::time;
@@ -65,6 +65,7 @@ class Judge {
         static_cast<double>(f_.suspects.size()) / static_cast<double>(f_.part.table.size());
     for (const Place& place : f_.of_model.places)
       if (place.p < place_p) out_.fails.push_back(place);
+    for (const std::string& name : passes_.of_any_order()) std::erase(out_.together, name);
     const double least = least_serious(f_.of_best.floor);
     // If the search treated zeros of passes as noise, effects and places are tested with them in
     // the model.
@@ -425,8 +426,7 @@ class Judge {
            f_.best.criterion + alias_evidence;
   }
 
-  /// Whether one pass contributes most of the evidence of an effect, if passes have zeros of their
-  /// own.
+  /// Whether one pass contributes most of an effect's evidence, if passes have own zeros.
   bool of_one_pass(const std::string& name) const {
     return f_.noise.zero == Noise::Zero::of_pass &&
            share_of_one(name, f_.repeats.pass, f_.repeats.passes) > most_of_one_pass;
@@ -463,8 +463,8 @@ class Judge {
     return out;
   }
 
-  /// Draws noise floors of simulated campaigns with this noise: chi-square distributed,
-  /// approximated by the cube of a normal variate (Wilson and Hilferty 1931).
+  /// Draws noise floors of campaigns with this noise: chi-square, approximated by the cube of a
+  /// normal variate (Wilson and Hilferty 1931).
   std::vector<std::optional<NoiseFloor>> floors(std::size_t campaigns) const {
     std::vector<std::optional<NoiseFloor>> out(campaigns, f_.of_best.floor);
     if (!f_.of_best.floor) return out;

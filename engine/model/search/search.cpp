@@ -249,7 +249,20 @@ class ChanceOf {
 
 }  // namespace
 
-Chance measure_chance(const Workbench& bench, const State& complete, const SignFlips& shuffles) {
+SignFlips drawn(const Workbench& bench, const State& complete, MatrixXd noise) {
+  SignFlips out;
+  bench.white().take_out_zeros(noise);
+  const MatrixXd basis = bench.basis(complete);
+  noise -= basis * math::transposed_product(basis, noise);
+  out.squares = noise.colwise().squaredNorm().transpose();
+  out.in_complete = math::transposed_product(basis, bench.columns());
+  out.products = math::transposed_product(noise, bench.columns());
+  out.noise = std::move(noise);
+  return out;
+}
+
+std::vector<double> least_p(const Workbench& bench, const State& complete,
+                            const SignFlips& shuffles) {
   const ChanceOf of(bench, complete, shuffles);
   // Keep only the largest decrease for each number of parameters, because the F-test is by far the
   // most expensive step.
@@ -262,15 +275,19 @@ Chance measure_chance(const Workbench& bench, const State& complete, const SignF
       fall = std::max(fall, added.fall(i));
     }
   }
+  std::vector<double> least(largest.size(), 1.0);
+  for (std::size_t i = 0; i < largest.size(); ++i)
+    for (const auto& [parameters, fall] : largest[i])
+      least[i] = std::min(least[i], of.p(static_cast<Index>(i), fall, parameters));
+  return least;
+}
+
+Chance measure_chance(const Workbench& bench, const State& complete, const SignFlips& shuffles) {
   // For the smallest of m independent p, -ln(1 - p) is exponentially distributed with rate m.
   double sum = 0.0;
-  for (std::size_t i = 0; i < largest.size(); ++i) {
-    double least = 1.0;
-    for (const auto& [parameters, fall] : largest[i])
-      least = std::min(least, of.p(static_cast<Index>(i), fall, parameters));
-    sum -= std::log1p(-std::min(least, 1.0 - 1e-12));
-  }
-  return {std::max(static_cast<double>(largest.size()) / std::max(sum, 1e-12), 1.0)};
+  const std::vector<double> least = least_p(bench, complete, shuffles);
+  for (const double p : least) sum -= std::log1p(-std::min(p, 1.0 - 1e-12));
+  return {std::max(static_cast<double>(least.size()) / std::max(sum, 1e-12), 1.0)};
 }
 
 std::vector<char> named_in(const Workbench& bench, const State& complete, const SignFlips& shuffles,

@@ -39,6 +39,14 @@ SignFlips shuffled(const Workbench& bench, const Workbench::State& complete,
                    const VectorXd& residual, const std::vector<std::uint32_t>& pass,
                    std::uint64_t seed, std::size_t stretch = stretch_of_signs);
 
+/// Returns what `shuffled` does for noise that is already drawn: one column per copy, with the
+/// weights of the bench.
+SignFlips drawn(const Workbench& bench, const Workbench::State& complete, MatrixXd noise);
+
+/// Returns for each copy the smallest p of one more effect.
+std::vector<double> least_p(const Workbench& bench, const Workbench::State& complete,
+                            const SignFlips& shuffles);
+
 Chance measure_chance(const Workbench& bench, const Workbench::State& complete,
                       const SignFlips& shuffles);
 
