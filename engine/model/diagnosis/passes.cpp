@@ -30,6 +30,7 @@ PassZeros::PassZeros(const Finding& finding)
   if (f_.noise.zero == Noise::Zero::of_pass ||
       (unordered_ && (zero == Noise::Zero::of_pass || zero == Noise::Zero::of_run)))
     left_.emplace(f_.part, f_.repeats, f_.of_best.fit, with_passes());
+  compare_orders();
 }
 
 bool PassZeros::drawn_again() const {
@@ -93,10 +94,12 @@ bool PassZeros::explains_zeros(const Workbench::State& others) const {
   return math::f_upper(math::test_ratio(fall / k, after.squares() / dof), k, dof) < by_chance;
 }
 
-std::vector<std::string> PassZeros::of_any_order() const {
+/// Compares the passes in their own order with passes in other orders: which effects of the best
+/// explanation the order does not show, and how often other orders would show some effect.
+void PassZeros::compare_orders() {
   // docs/dev/constants.md, M50.
   constexpr double fewest = 8.0, as_often = 0.05, of_cells = 0.5;
-  if (f_.part.kind != Part::Kind::axis || degrees_of_passes(f_.repeats) < fewest) return {};
+  if (f_.part.kind != Part::Kind::axis || degrees_of_passes(f_.repeats) < fewest) return;
   std::vector<std::string> in_time;
   Workbench::State others = f_.best;
   for (const Term& term : f_.of_best.fit.terms) {
@@ -108,23 +111,25 @@ std::vector<std::string> PassZeros::of_any_order() const {
     in_time.push_back(term.name());
     others = f_.bench->without(others, e);
   }
-  if (in_time.empty() || explains_zeros(others)) return {};
+  if (in_time.empty() ? f_.of_best.fit.noise.independent() : explains_zeros(others)) return;
   const Workbench& bench = *f_.bench;
+  const std::vector<double> least =
+      least_p(bench, others,
+              drawn(bench, others, bench.white()(in_other_orders(f_.of_model.fit.residual))));
+  const auto share = [&](const auto& which) {
+    return static_cast<double>(std::count_if(least.begin(), least.end(), which)) /
+           static_cast<double>(least.size());
+  };
+  alarms_ =
+      std::min(as_often, share([&](double p) { return f_.chance.corrected(p) < named_below; }));
   const Workbench::Gains gains = bench.gains(others);
   double own = 1.0;
-  for (std::size_t e = 0; e < bench.instances().size(); ++e) {
+  for (std::size_t e = 0; e < bench.instances().size() && !in_time.empty(); ++e) {
     if (bench.holds(others, e)) continue;
     const Workbench::State more = bench.with(others, gains, e);
     if (more.blocks.size() > others.blocks.size()) own = std::min(own, p_of(bench, more, e));
   }
-  const std::vector<double> least =
-      least_p(bench, others,
-              drawn(bench, others, bench.white()(in_other_orders(f_.of_model.fit.residual))));
-  const auto as_clear =
-      std::count_if(least.begin(), least.end(), [&](double p) { return p <= own; });
-  return static_cast<double>(as_clear) > as_often * static_cast<double>(least.size())
-             ? in_time
-             : std::vector<std::string>{};
+  if (share([&](double p) { return p <= own; }) > as_often) of_any_order_ = std::move(in_time);
 }
 
 Noise PassZeros::with_passes() const {

@@ -24,7 +24,10 @@ class PassZeros {
   bool drawn_again() const;
   /// Returns the effects of the best explanation that change mostly between repeats, if passes in
   /// other orders show an effect as clearly as the passes in their own order; otherwise none.
-  std::vector<std::string> of_any_order() const;
+  const std::vector<std::string>& of_any_order() const { return of_any_order_; }
+  /// Returns the rate at which passes in other orders would show an effect that is named; 0 if the
+  /// readings of a pass are independent.
+  double alarms() const { return alarms_; }
   /// Returns the residual of each reading in the best explanation minus the mean of its repeats,
   /// scaled to the variance of a reading; it includes the part that a pass shares. 0 for readings
   /// without repeats.
@@ -40,6 +43,7 @@ class PassZeros {
   bool shows(const std::string& effect) const;
 
  private:
+  void compare_orders();
   bool explains_zeros(const Workbench::State& others) const;
   MatrixXd in_other_orders(const std::vector<double>& e) const;
   Noise with_passes() const;
@@ -47,6 +51,8 @@ class PassZeros {
 
   const Finding& f_;
   bool unordered_ = false;
+  std::vector<std::string> of_any_order_{};
+  double alarms_ = 0.0;
   std::optional<PlacesLeft> left_{};
 };
 

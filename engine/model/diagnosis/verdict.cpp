@@ -61,6 +61,7 @@ class Judge {
   void run() {
     Verdict& v = out_.verdict;
     count_false_alarms(v);
+    v.false_alarms = std::max(v.false_alarms, passes_.alarms());
     v.suspects_share =
         static_cast<double>(f_.suspects.size()) / static_cast<double>(f_.part.table.size());
     for (const Place& place : f_.of_model.places)
@@ -496,8 +497,7 @@ class Judge {
     return f_.bench->white()(Eigen::Map<const VectorXd>(e.data(), static_cast<Index>(e.size())));
   }
 
-  /// Determines the rate of false alarms by flipping the signs of whole passes of the residuals, if
-  /// zeros of passes scatter.
+  /// Determines the rate of false alarms, if zeros of passes scatter, by flipping whole passes.
   void count_with_passes(Verdict& v) const {
     constexpr std::size_t draws = 200;  // docs/dev/constants.md, M14
     const std::vector<double> e = passes_.noise();
