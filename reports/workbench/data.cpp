@@ -18,7 +18,7 @@ using namespace reports;
 
 namespace {
 
-/// Writes eight significant digits, to keep large pages small; null if not finite.
+/// Eight significant digits keep large pages small; null if not finite.
 void put_number(JsonWriter& json, double value) {
   if (!std::isfinite(value)) return json.null();
   char buffer[32];
@@ -32,7 +32,6 @@ void put_number(JsonWriter& json, std::string_view name, double value) {
   put_number(json, value);
 }
 
-/// Writes a column for the kept rows; null if the files do not contain it.
 template <class T>
 void put_column(JsonWriter& json, std::string_view name, const std::vector<T>& values,
                 const std::vector<std::size_t>& rows, double factor = 1.0, double from = 0.0) {
@@ -120,7 +119,6 @@ void put_without(JsonWriter& json, const ModelFit& fit, const std::string& effec
   json.end_object();
 }
 
-/// Plane of a circle (first and second axis) and radius, m; 0: no circle.
 struct CircleOf {
   std::string axes;
   double radius = 0.0;
@@ -138,7 +136,6 @@ CircleOf circle_of(const Campaign& campaign, const std::string& id) {
   return out;
 }
 
-/// Writes radius in mm and plane of each measurement; 0 and "" if it is no circle.
 void put_circles(JsonWriter& json, const Drawn& source) {
   if (!has_circles(source.campaign, source.fit)) return;
   const auto& all = source.fit.measurements;
@@ -210,7 +207,6 @@ std::string data_of(const Drawn& source, const Kept& kept, bool titles) {
   json.member("unit", unit_text(up));
   json.member("position_unit", across.unit);
   json.member("time_unit", over_time.time_unit);
-  // Names of lines side by side; null: one axis.
   if (const Lanes lanes = lanes_of(fit); !lanes.names.empty()) {
     json.member("lanes", lanes.names);
   } else {

@@ -9,12 +9,10 @@
 
 namespace nonio::model {
 
-/// Returns the degrees of freedom of passes: their number minus the number of sides (line and
-/// direction).
+/// Number of passes minus number of sides (line and direction).
 double degrees_of_passes(const Repeats&);
 
-/// Returns the fraction of the sum of squares of columns (about their means) that is constant
-/// within each pass.
+/// Fraction of the sum of squares of columns, about their means, that is constant within each pass.
 double share_of_passes(const Repeats&, const MatrixXd& columns);
 
 /// Returns the fraction that is equal in all repeats of a cell.

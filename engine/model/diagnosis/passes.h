@@ -10,8 +10,8 @@
 
 namespace nonio::model {
 
-/// Decides whether zeros of passes in the residuals of the best explanation are a part of the
-/// noise, and repeats the tests of places and effects with that noise (docs/model.md, "Verdict").
+/// Decides whether zeros of passes are a part of the noise, and repeats the tests of places and
+/// effects with that noise (docs/model.md, "Verdict").
 class PassZeros {
  public:
   explicit PassZeros(const Finding&);
@@ -37,9 +37,9 @@ class PassZeros {
   /// uses the scatter of passes.
   std::vector<Place> places(const std::vector<double>& residual,
                             const std::optional<NoiseFloor>& floor, double least) const;
-  /// Returns whether an effect of the best explanation is significant if the zeros of passes
-  /// scatter; true if this cannot be tested. An effect that is nearly constant within a pass has
-  /// only as much evidence as the number of passes allows.
+  /// Whether an effect of the best explanation is significant if the zeros of passes scatter; true
+  /// if this cannot be tested. An effect that is nearly constant within a pass has only as much
+  /// evidence as the number of passes allows.
   bool shows(const std::string& effect) const;
 
  private:
