@@ -131,7 +131,7 @@ bool get_one(const GetWish& wish, const std::string& id, const Common& common) {
                -1);
   else if (!common.quiet)
     std::cout << to.string() << ": " << *written << " of " << files->size() << " files written"
-              << (in_place ? ": the results lie there" : "") << "\n";
+              << (in_place ? ": this is the folder of the results" : "") << "\n";
   return true;
 }
 

@@ -141,7 +141,8 @@ Verb status_verb(Common& common) {
                      "the run are applied already"}),
            {"--page", &list.page,
             "Print one of the pages instead: index.html, due.html, due.ics, instruments.html, "
-            "compare.html, machines/NAME.html; with --json, add the first five to the actions"}},
+            "compare.html, machines/NAME.html; with --json, add the first five to the actions. -: "
+            "read the names from stdin, and print each page as one line of JSON"}},
           common_arguments(common)),
       .footer =
           "The first line states number, date and age of the last run and its campaigns; with "

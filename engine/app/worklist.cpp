@@ -28,49 +28,71 @@ void keep_lines(const WorklistWish& wish, reports::SiteHistory& site) {
   });
 }
 
-/// Prints the lines as JSON; with `--page all` also the pages over all machines.
-int print_lines(const WorklistWish& wish, const Templates& templates, const std::string& language,
-                const assessment::LastRun& last_run, const reports::SiteHistory& whole,
-                const reports::SiteHistory& site) {
-  std::cout << "{\n \"schema\": \"nonio-morning/1\",\n \"night\": " << last_run.run
-            << ",\n \"date\": \"" << last_run.date
-            << "\",\n \"lines\": " << assessment::lines_json(site, templates);
+/// Returns the lines as JSON; with `--page all` also the pages over all machines.
+Expected<std::string> lines_text(const WorklistWish& wish, const Templates& templates,
+                                 const std::string& language, const assessment::LastRun& last_run,
+                                 const reports::SiteHistory& whole,
+                                 const reports::SiteHistory& site) {
+  std::string text =
+      "{\n \"schema\": \"nonio-morning/1\",\n \"night\": " + std::to_string(last_run.run) +
+      ",\n \"date\": \"" + last_run.date +
+      "\",\n \"lines\": " + assessment::lines_json(site, templates);
   if (!wish.page.empty()) {
-    const auto pages = reports::site_lists(whole, templates, language);
-    if (!pages) return complain(pages.error().message);
+    NONIO_TRY(const auto pages, reports::site_lists(whole, templates, language));
     storage::Json all = storage::Json::object();
-    for (const Artifact& page : *pages) all[page.name] = page.bytes;
-    std::cout << ",\n \"pages\": " << storage::dump_line(all);
+    for (const Artifact& page : pages) all[page.name] = page.bytes;
+    text += ",\n \"pages\": " + storage::dump_line(all);
   }
-  std::cout << "\n}\n";
-  return std::any_of(site.lines.begin(), site.lines.end(), reports::asks) ? exit_failed : exit_done;
+  return text + "\n}\n";
 }
 
-/// Prints one page of the site with its present content on stdout. Returns the exit status.
-int print_page(const WorklistWish& wish, const Templates& templates, const std::string& language,
-               assessment::Assessment& assessment) {
+/// Returns one page of the site with its present content.
+Expected<std::string> page_text(const WorklistWish& wish, const std::string& name,
+                                const Templates& templates, const std::string& language,
+                                assessment::Assessment& assessment) {
   const reports::SiteHistory& site = assessment.site();
   const std::string below = std::string(reports::machines_folder) + "/";
   for (std::size_t i = 0; i < site.machines.size(); ++i) {
-    if (wish.page != below + site.machines[i].file) continue;
-    auto machine = assessment.whole(i);
-    if (!machine) return complain(machine.error().message);
-    machine->curves = assessment::curves_of(wish.out, *machine);
-    const auto page = reports::machine_page_of(site, *machine, templates, language);
-    if (!page) return complain(page.error().message);
-    std::cout << page->bytes;
-    return exit_done;
+    if (name != below + site.machines[i].file) continue;
+    NONIO_TRY(auto machine, assessment.whole(i));
+    machine.curves = assessment::curves_of(wish.out, machine);
+    NONIO_TRY(auto page, reports::machine_page_of(site, machine, templates, language));
+    return std::move(page.bytes);
   }
-  const auto pages = reports::site_lists(site, templates, language);
-  if (!pages) return complain(pages.error().message);
-  for (const Artifact& page : *pages) {
-    if (page.name != wish.page) continue;
-    std::cout << page.bytes;
-    return exit_done;
+  NONIO_TRY(auto pages, reports::site_lists(site, templates, language));
+  for (Artifact& page : pages)
+    if (page.name == name) return std::move(page.bytes);
+  return fail("--page: there is no page " + name +
+              "; expected index.html, due.html, due.ics, instruments.html, "
+              "compare.html or machines/NAME.html");
+}
+
+/// Prints a page, or the message that there is none. Returns the exit status.
+int print(const Expected<std::string>& text, int status = exit_done) {
+  if (!text) return complain(text.error().message);
+  std::cout << *text;
+  return status;
+}
+
+int status_of(const reports::SiteHistory& site) {
+  return std::any_of(site.lines.begin(), site.lines.end(), reports::asks) ? exit_failed : exit_done;
+}
+
+/// Prints each page whose name is read from stdin as one line of JSON, so that a caller does not
+/// wait for the assessment of the site again. Name "all": what `--json --page all` prints.
+int print_requested(const WorklistWish& wish, const Templates& templates,
+                    const std::string& language, const assessment::LastRun& last_run,
+                    assessment::Assessment& assessment) {
+  const reports::SiteHistory& site = assessment.site();
+  for (std::string name; std::getline(std::cin, name);) {
+    const auto page = name == "all" ? lines_text(wish, templates, language, last_run, site, site)
+                                    : page_text(wish, name, templates, language, assessment);
+    std::cout << storage::dump_line(
+                     page ? storage::Json{{"page", *page}, {"status", status_of(site)}}
+                          : storage::Json{{"error", page.error().message}})
+              << std::endl;
   }
-  return complain("--page: there is no page " + wish.page +
-                  "; expected index.html, due.html, due.ics, instruments.html, "
-                  "compare.html or machines/NAME.html");
+  return exit_done;
 }
 
 }  // namespace
@@ -102,18 +124,20 @@ int print_worklist(const WorklistWish& wish, const Common& common) {
                       "/site.toml; expected de, en or it");
     language = "en";
   }
+  if (wish.page == "-") return print_requested(wish, *templates, language, *last_run, *assessment);
   if (!wish.page.empty() && !common.json)
-    return print_page(wish, *templates, language, *assessment);
+    return print(page_text(wish, wish.page, *templates, language, *assessment));
   reports::SiteHistory site = assessment->site();
   const std::size_t all = site.lines.size();
   keep_lines(wish, site);
   if (common.json)
-    return print_lines(wish, *templates, language, *last_run, assessment->site(), site);
+    return print(lines_text(wish, *templates, language, *last_run, assessment->site(), site),
+                 status_of(site));
   if (site.lines.empty()) site.hidden = all;
   const auto text = reports::worklist_text(site, *templates, language, site.lines.size());
   if (!text) return complain(text.error().message);
   std::cout << wrapped(*text, 0, sentence_width(STDOUT_FILENO), 4);
-  return std::any_of(site.lines.begin(), site.lines.end(), reports::asks) ? exit_failed : exit_done;
+  return status_of(site);
 }
 
 }  // namespace nonio::app

@@ -25,6 +25,9 @@ bool launch(const BenchWish& common, const storage::Json& what, int to_server) {
     ::signal(SIGCHLD, SIG_DFL);
     ::close(to_server);
     (*ends)[0] = process::Handle();
+    if (what.contains("partner"))
+      run_partner(own_program, what["partner"].get<std::vector<std::string>>(),
+                  std::move((*ends)[1]));
     if (what.contains("arguments"))
       run_tool(own_program, what["arguments"].get<std::vector<std::string>>(),
                what.value("input", ""), what.value("seconds", 0.0), std::move((*ends)[1]));
@@ -63,6 +66,10 @@ Expected<process::Handle> Launcher::open(const std::filesystem::path& campaign) 
 Expected<process::Handle> Launcher::run(const std::vector<std::string>& arguments, double seconds,
                                         const std::string& input) {
   return ask({{"arguments", arguments}, {"seconds", seconds}, {"input", input}});
+}
+
+Expected<process::Handle> Launcher::partner(const std::vector<std::string>& arguments) {
+  return ask({{"partner", arguments}});
 }
 
 Expected<process::Handle> Launcher::ask(const storage::Json& what) {

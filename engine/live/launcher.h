@@ -21,6 +21,8 @@ class Launcher {
   /// terminated after `seconds` (s). `input`: a line for its standard input.
   Expected<process::Handle> run(const std::vector<std::string>& arguments, double seconds,
                                 const std::string& input = {});
+  /// Runs this program as a partner (tool.h), which answers until the returned channel is closed.
+  Expected<process::Handle> partner(const std::vector<std::string>& arguments);
 
  private:
   Expected<process::Handle> ask(const storage::Json& what);

@@ -61,18 +61,38 @@ Answer SiteService::entered(const std::vector<std::string>& arguments, const std
   return out;
 }
 
+/// Returns what the process that makes the pages answers to the name of a page.
+ToolEnd SiteService::ask_pages(const process::Handle& partner, const std::string& name) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (over_ || !partner) return {};
+    channels_.insert(partner.get());
+  }
+  const auto line = ask_partner(partner, name, shells_.seconds);
+  const std::lock_guard lock(mutex_);
+  channels_.erase(partner.get());
+  const Json json = storage::parse_or_discard(line.value_or(""));
+  if (!json.is_object()) return {};
+  constexpr int error_status = 2;
+  return {json.value("status", error_status), json.value("page", ""), json.value("error", "")};
+}
+
 /// Returns the worklist and its pages. They are computed again only if their files have changed,
 /// because this takes seconds at 100,000 campaigns.
 std::shared_ptr<const SiteService::Shown> SiteService::shown() {
   const std::lock_guard lock(showing_);
-  auto next = std::make_shared<Shown>(Shown{worklist_stamp(wish_.folder, wish_.out)});
-  if (shown_ && shown_->stamp == next->stamp) return shown_;
-  std::vector<std::string> arguments{"status", "--actions", "--json",
-                                     verb_option("site", wish_.folder.string()),
-                                     wish_.out.string()};
-  const std::string command = command_line(arguments);
-  arguments.push_back(verb_option("page", "all"));
-  const ToolEnd end = call(arguments);
+  std::string stamp = worklist_stamp(wish_.folder, wish_.out);
+  if (shown_ && shown_->stamp == stamp) return shown_;
+  auto next = std::make_shared<Shown>();
+  next->stamp = std::move(stamp);
+  const std::vector<std::string> arguments{"status", "--actions", "--json",
+                                           verb_option("site", wish_.folder.string()),
+                                           wish_.out.string()};
+  std::vector<std::string> all = arguments;
+  all.push_back(verb_option("page", "-"));
+  if (auto channel = launcher_.partner(all)) next->partner = std::move(*channel);
+  ToolEnd end = ask_pages(next->partner, "all");
+  if (end.status < 0) end = call(arguments);  // its error output names the reason
   Json out = storage::parse_or_discard(end.out);
   const bool is_whole = out.is_object() && out.contains("pages");
   if (is_whole) {
@@ -80,7 +100,7 @@ std::shared_ptr<const SiteService::Shown> SiteService::shown() {
       next->pages[name] = std::move(text.get_ref<std::string&>());
     out.erase("pages");
   }
-  next->lines = of_end(end, std::move(out), command);
+  next->lines = of_end(end, std::move(out), command_line(arguments));
   if (is_whole) shown_ = next;
   return next;
 }
@@ -192,16 +212,21 @@ Answer SiteService::page(const std::string& name) {
   if (wish_.out.empty() || !(plain.ends_with(".html") || plain == "due.ics") ||
       !is_plain_file_in(folder, plain))
     return refused(404, "no_page");
+  const auto all = shown();
   if (!below) {
-    const auto all = shown();
     const auto found = all->pages.find(name);
     return found != all->pages.end()  ? Answer{200, "application/octet-stream", found->second, {}}
            : all->lines.status != 200 ? all->lines
                                       : refused(404, "no_page");
   }
-  const ToolEnd end = call({"status", "--actions", verb_option("site", wish_.folder.string()),
-                            verb_option("page", name), wish_.out.string()});
-  if (end.status != 0) return refusal(422, end.errors);
+  const std::lock_guard lock(showing_);
+  ToolEnd end = ask_pages(all->partner, name);
+  if (end.status < 0) {
+    if (shown_ == all) shown_.reset();  // the next request starts the process again
+    end = call({"status", "--actions", verb_option("site", wish_.folder.string()),
+                verb_option("page", name), wish_.out.string()});
+  }
+  if (end.status != 0 && end.status != 1) return refusal(422, end.errors);
   // Not sent as HTML: the page's own script would otherwise run with the address of this server.
   return {200, "application/octet-stream", end.out, {}};
 }

@@ -81,13 +81,16 @@ class SiteService : public Starting {
   Answer get(const std::string& path, const Request& request, const User* user);
   Answer post(const std::string& what, const Request& request, const User* user);
   Answer worklist();
-  /// The worklist and the pages over all machines, as they were at a state of the site.
+  /// The worklist and the pages over all machines, as they were at a state of the site. `partner`:
+  /// channel to the process that makes the pages of machines at this state.
   struct Shown {
     std::string stamp;
+    process::Handle partner{};
     Answer lines{};
     std::map<std::string, std::string> pages{};
   };
   std::shared_ptr<const Shown> shown();
+  ToolEnd ask_pages(const process::Handle& partner, const std::string& name);
   Answer metrics();
   Answer page(const std::string& name);
   Answer result(const std::string& campaign, const std::string& file);

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -113,6 +114,33 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
   said.erase(0, said.size() - std::min(said.size(), most_errors));
   process::write_text(channel.get(), storage::pack(!is_line, status, printed, said));
   ::_exit(0);
+}
+
+void run_partner(const std::string& program, const std::vector<std::string>& arguments,
+                 process::Handle channel) {
+  std::vector<char*> all{const_cast<char*>(program.c_str())};
+  for (const std::string& one : arguments) all.push_back(const_cast<char*>(one.c_str()));
+  all.push_back(nullptr);
+  if (::dup2(channel.get(), STDIN_FILENO) < 0 || ::dup2(channel.get(), STDOUT_FILENO) < 0)
+    ::_exit(1);
+  ::execv(program.c_str(), all.data());
+  ::_exit(1);
+}
+
+std::optional<std::string> ask_partner(const process::Handle& channel, const std::string& line,
+                                       double seconds) {
+  const std::string sent = line + "\n";
+  if (::send(channel.get(), sent.data(), sent.size(), MSG_NOSIGNAL) !=
+      static_cast<ssize_t>(sent.size()))
+    return std::nullopt;
+  constexpr double ms = 1000.0;
+  for (std::string got; got.size() < most_printed;) {
+    pollfd one{channel.get(), POLLIN, 0};
+    if (::poll(&one, 1, static_cast<int>(seconds * ms)) <= 0 || !take_from(channel.get(), got))
+      return std::nullopt;
+    if (got.ends_with('\n')) return got;
+  }
+  return std::nullopt;
 }
 
 void stop_tool(const process::Handle& channel) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,16 @@ struct ToolEnd {
 /// standard input; empty: none.
 [[noreturn]] void run_tool(const std::string& program, const std::vector<std::string>& arguments,
                            const std::string& input, double seconds, process::Handle channel);
+
+/// Runs the program in this process, with `channel` as its standard input and output. It ends when
+/// the other side closes the channel.
+[[noreturn]] void run_partner(const std::string& program, const std::vector<std::string>& arguments,
+                              process::Handle channel);
+
+/// Sends a line to a program that `run_partner` runs, and returns the line that it prints. None if
+/// the program has ended, or if it printed nothing for `seconds`.
+std::optional<std::string> ask_partner(const process::Handle& channel, const std::string& line,
+                                       double seconds);
 
 /// Receives what `run_tool` sends, and calls `line` for each line, until the program has ended.
 ToolEnd hear_tool(const process::Handle& channel,

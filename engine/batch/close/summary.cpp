@@ -331,6 +331,8 @@ void write_json(storage::Spool& out, const RunResult& run, Lists& lists, const s
     waiting.push_back(std::move(one));
   }
   out.add(",\n \"drafts\": " + waiting.dump());
+  if (!run.history_error.empty())
+    out.add(",\n \"history_error\": " + storage::dump_line(run.history_error));
   out.add(",\n \"notes\": " +
           storage::Json(run.notes).dump(-1, ' ', false, storage::Json::error_handler_t::replace) +
           "\n}\n");

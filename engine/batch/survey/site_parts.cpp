@@ -121,7 +121,7 @@ Expected<void> SiteParts::look_at_all() {
     NONIO_TRY(const auto files, config::template_paths(site_ / folder));
     for (const auto& [name, file] : files)
       if (const std::string path = std::string(folder) + "/" + name;
-          folder == config::templates_folder || (is_record(path) && name.find('/') == name.npos))
+          folder != config::machines_folder || (is_record(path) && name.find('/') == name.npos))
         paths.insert(path);
   }
   for (const std::string& path : paths) look(path);
