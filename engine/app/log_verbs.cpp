@@ -87,8 +87,6 @@ int event(EventWish& wish, const Common& common) {
   return exit_done;
 }
 
-/// Parses an optional number; an empty text leaves `into` unchanged. Returns false if the text is
-/// not a number.
 bool take_number(const std::string& text, std::optional<double>& into) {
   if (text.empty()) return true;
   double x = 0.0;
@@ -103,8 +101,6 @@ void put_number(Json& json, const char* name, const std::optional<double>& value
   if (value) json[name] = *value;
 }
 
-/// Prints the entries of acknowledged.toml in the order of the file, or only those of the requested
-/// machine. Returns the exit status.
 int list_acknowledged(const AckWish& wish, const Common& common) {
   const auto logs = config::read_site_logs(wish.site);
   if (!logs) return refuse_all(logs.error());

@@ -15,7 +15,6 @@ namespace dom = simdjson::dom;
 
 namespace {
 
-/// Returns a label value with the quoting of OpenMetrics.
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -64,7 +63,6 @@ void put_lines(const dom::object& summary, Metrics& metrics) {
   for (const auto& [kind, count] : kinds) metrics.value(std::to_string(count), "kind", kind);
 }
 
-/// Counts the dates of OUT/due.ics: machines whose certificate needs a new calibration.
 void put_due(const std::filesystem::path& out, Metrics& metrics) {
   using namespace std::chrono;
   const auto file = storage::read_file(out / "due.ics");
@@ -94,7 +92,7 @@ void put_due(const std::filesystem::path& out, Metrics& metrics) {
 Expected<std::string> metrics_of(const std::filesystem::path& out) {
   const auto path = out / "summary.json";
   NONIO_TRY(const auto text, storage::read_file(path));
-  // By simdjson, because the summary of 100,000 campaigns may have 100 MB.
+  // simdjson is used because the summary of 100,000 campaigns can have 100 MB.
   dom::parser parser;
   dom::object summary, counts;
   if (parser.parse(text).get(summary) != simdjson::SUCCESS ||

@@ -21,7 +21,7 @@ namespace {
 
 struct StatusWish {
   std::string out;
-  double max_age = 36.0;  ///< largest accepted age of the last complete run in h; 0: no limit
+  double max_age = 36.0;  ///< limit of the age of the last complete run, h; 0 means no limit
   WorklistWish list{};
 };
 
@@ -37,7 +37,7 @@ std::string hours_text(double hours, const TerminalWords& say) {
   return localised(fixed_text(hours, 1), say.language()) + " h";
 }
 
-/// Returns what is wrong with the runs; empty if nothing is.
+/// Returns the reason for exit status 1; empty for status 0.
 std::string trouble(const RunStatus& s, const StatusWish& wish, const TerminalWords& say) {
   if (s.state == RunStatus::State::cut_short)
     return say("state.cut-short", {{"run", run_text(s.run, say)}});
@@ -68,7 +68,7 @@ std::string line_of(const RunStatus& s, const std::string& wrong, const Terminal
   return line + (wrong.empty() ? "" : "; " + say("state.wrong", {{"what", wrong}}));
 }
 
-/// Returns the language of --language, otherwise that of the last run; empty before the first run.
+/// Returns the language of --language, otherwise of the last run; empty before the first run.
 std::string language_of(const StatusWish& wish) {
   if (!wish.list.language.empty()) return wish.list.language;
   const auto last_run = assessment::last_run_in(wish.out);

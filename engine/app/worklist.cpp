@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Implements `nonio status --actions`: prints the actions that the last run requires, one line
-// each.
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,7 +18,6 @@ namespace nonio::app {
 
 namespace {
 
-/// Removes lines that are older than the requested day, and lines of other customers' machines.
 void keep_lines(const WorklistWish& wish, reports::SiteHistory& site) {
   std::erase_if(site.lines, [&](const reports::WorkItem& l) {
     return (!wish.customer.empty() && l.customer != wish.customer) ||
@@ -28,7 +25,7 @@ void keep_lines(const WorklistWish& wish, reports::SiteHistory& site) {
   });
 }
 
-/// Returns the lines as JSON; with `--page all` also the pages over all machines.
+/// With --page, the JSON also contains the pages about all machines.
 Expected<std::string> lines_text(const WorklistWish& wish, const Templates& templates,
                                  const std::string& language, const assessment::LastRun& last_run,
                                  const reports::SiteHistory& whole,
@@ -46,7 +43,7 @@ Expected<std::string> lines_text(const WorklistWish& wish, const Templates& temp
   return text + "\n}\n";
 }
 
-/// Returns one page of the site with its present content.
+/// An error if there is no page `name`.
 Expected<std::string> page_text(const WorklistWish& wish, const std::string& name,
                                 const Templates& templates, const std::string& language,
                                 assessment::Assessment& assessment) {
@@ -67,7 +64,7 @@ Expected<std::string> page_text(const WorklistWish& wish, const std::string& nam
               "compare.html or machines/NAME.html");
 }
 
-/// Prints a page, or the message that there is none. Returns the exit status.
+/// Prints the text, or the error on stderr with exit status 2.
 int print(const Expected<std::string>& text, int status = exit_done) {
   if (!text) return complain(text.error().message);
   std::cout << *text;
@@ -78,8 +75,8 @@ int status_of(const reports::SiteHistory& site) {
   return std::any_of(site.lines.begin(), site.lines.end(), reports::asks) ? exit_failed : exit_done;
 }
 
-/// Prints each page whose name is read from stdin as one line of JSON, so that a caller does not
-/// wait for the assessment of the site again. Name "all": what `--json --page all` prints.
+/// Reads names of pages from stdin and prints each page as one line of JSON, so that the site is
+/// assessed only once.
 int print_requested(const WorklistWish& wish, const Templates& templates,
                     const std::string& language, const assessment::LastRun& last_run,
                     assessment::Assessment& assessment) {

@@ -55,8 +55,6 @@ Expected<Audit> audit(const fs::path& site, const config::Numbering& numbering) 
 
 namespace {
 
-/// Returns the name of an exported file: NUMBER.pdf or NUMBER-dcc.xml for files of the output
-/// `own`, otherwise NUMBER-OUTPUT-NAME.
 std::string export_name(const std::string& number, const evaluation::IssuedFile& file,
                         const std::string& own) {
   if (file.output == own && file.name.ends_with(".pdf")) return number + ".pdf";

@@ -15,7 +15,7 @@ Expected<config::Numbering> numbering_of(const std::filesystem::path& site);
 Expected<std::vector<RegisterEntry>> certificates_of(const std::filesystem::path& site,
                                                      const config::Numbering& numbering);
 
-/// Withdraws a number. The register keeps the reason `why` and the name `by`, which may be empty.
+/// The register keeps the reason `why` and the name `by`, which may be empty.
 Expected<void> withdraw(const std::filesystem::path& site, const config::Numbering& numbering,
                         const std::string& number, const std::string& why,
                         const std::string& by = {});

@@ -90,13 +90,12 @@ std::map<std::string, std::string> values_of(const Campaign& c) {
   return to;
 }
 
-/// Returns the severity of a decision: 0 none, 1 conforms, 2 indeterminate, 3 does not conform.
 int severity(std::string_view decision) {
   return decision.empty() ? 0 : decision == "conforms" ? 1 : decision == "does not conform" ? 3 : 2;
 }
 
-/// Returns the worst decision in results.json, empty if there is none; if there are tests before
-/// and after an adjustment, those before it are ignored.
+/// Returns the worst decision in results.json. Measurements before an adjustment are ignored if
+/// there are measurements after it.
 std::string verdict_of(const std::string& results, const Campaign* campaign) {
   bool has_after = false;
   std::vector<std::string> before;
@@ -317,7 +316,7 @@ bool CampaignIndex::look_at_all() {
 
 void CampaignIndex::run() {
   using Clock = std::chrono::steady_clock;
-  constexpr double share = 20.0;  // the pause is at least this many times the duration of a check
+  constexpr double share = 20.0;  // smallest ratio of the pause to the duration of a check
   std::chrono::duration<double> pause = pause_;
   while (true) {
     {

@@ -17,7 +17,7 @@ namespace {
 /// This program, even if its file was replaced after the start.
 constexpr const char* own_program = "/proc/self/exe";
 
-/// Starts one process for a campaign or a command. Returns false if the server has ended.
+/// Returns false if the server has ended.
 bool launch(const BenchWish& common, const storage::Json& what, int to_server) {
   auto ends = process::channel_pair(SOCK_STREAM, "a process of its own");
   if (!ends) return process::send_descriptors(to_server, '-', {});

@@ -24,7 +24,6 @@ namespace {
 constexpr bool is_line = true;
 constexpr std::size_t most_input = 4096, most_printed = 64 << 20, most_errors = 1 << 16;
 
-/// Appends what can be read to `into`. Returns false at the end of the stream.
 bool take_from(int fd, std::string& into) {
   std::array<char, 1 << 16> bytes;
   const ssize_t n = ::read(fd, bytes.data(), bytes.size());
@@ -42,8 +41,7 @@ int exit_status_of(const process::Child& child) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : by_signal;
 }
 
-/// Sends the complete lines of `text` from `sent` on, and advances `sent` to the first line that is
-/// not complete.
+/// Sends the complete lines from `sent` on and advances `sent`.
 void tell_lines(const std::string& text, std::size_t& sent, int channel) {
   for (std::size_t end; (end = text.find('\n', sent)) != std::string::npos; sent = end + 1) {
     process::write_text(channel, storage::pack(is_line, text.substr(sent, end - sent)));
@@ -71,7 +69,7 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
   if (!child) ::_exit(1);
   ::close(out[1]);
   ::close(errors[1]);
-  // Each line that a run prints is an event; the output of other commands is sent as one answer.
+  // Each line of a run is an event; the output of other commands is sent as one answer.
   const bool tells = !arguments.empty() && arguments.front() == "run";
   std::string printed, said;
   std::size_t sent_printed = 0, sent = 0;

@@ -166,7 +166,6 @@ namespace {
 
 constexpr std::size_t most_named = 12;  // campaigns named in a line; JSON has all
 
-/// Titles of finding ids such as "table.refused-reversal, ...".
 std::string titles(const Templates& templates, std::string_view language, const std::string& ids,
                    const std::string& axis) {
   std::string out;
@@ -198,7 +197,6 @@ std::string line_text(const Templates& templates, std::string_view language, con
     if (l.campaigns.size() > most_named) names += ", ...";
     finding.texts.emplace_back("campaigns", names);
   }
-  // The size of a change; for a scatter, a factor.
   for (const auto& [number, key] : {std::pair{"size", "site.size"}, {"factor", "site.factor"}})
     if (std::any_of(finding.evidence.begin(), finding.evidence.end(),
                     [wanted = number](const Number& n) { return n.name == wanted; }))

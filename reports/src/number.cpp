@@ -12,7 +12,7 @@ namespace {
 constexpr double largest_plain = 1e9;
 constexpr const char* dash = "–";
 
-/// Localizes a number; the minus sign is U+2212, which a PDF maps back to "-" when copied.
+/// The minus sign is U+2212, which a PDF maps back to "-" when copied.
 std::string typeset(std::string number, std::string_view language) {
   number = localised(std::move(number), language);
   std::string out;
@@ -24,7 +24,6 @@ std::string typeset(std::string number, std::string_view language) {
   return out;
 }
 
-/// Rounds to a multiple of 10^place.
 std::string rounded_text(double printed_value, int place, std::string_view language) {
   if (!std::isfinite(printed_value)) return dash;
   if (std::fabs(printed_value) >= largest_plain)

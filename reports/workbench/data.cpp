@@ -18,7 +18,7 @@ using namespace reports;
 
 namespace {
 
-/// Writes eight significant digits, to keep large pages small; null if not finite.
+/// Eight significant digits keep large pages small; null if not finite.
 void put_number(JsonWriter& json, double value) {
   if (!std::isfinite(value)) return json.null();
   char buffer[32];
@@ -32,7 +32,6 @@ void put_number(JsonWriter& json, std::string_view name, double value) {
   put_number(json, value);
 }
 
-/// Writes a column for the kept rows; null if the files do not contain it.
 template <class T>
 void put_column(JsonWriter& json, std::string_view name, const std::vector<T>& values,
                 const std::vector<std::size_t>& rows, double factor = 1.0, double from = 0.0) {
@@ -79,7 +78,6 @@ void put_pictures(JsonWriter& json, const Drawn& source, bool titles) {
   json.list("pictures", source.pictures, put);
 }
 
-/// Writes the refitted model without one effect: RMS of all readings, residuals of the page's rows.
 void put_without(JsonWriter& json, const ModelFit& fit, const std::string& effect,
                  const std::vector<std::size_t>& rows, double per_si) {
   json.key("without");
@@ -93,7 +91,6 @@ void put_without(JsonWriter& json, const ModelFit& fit, const std::string& effec
   json.end_object();
 }
 
-/// Plane of a circle (first and second axis) and radius, m; 0: no circle.
 struct CircleOf {
   std::string axes;
   double radius = 0.0;
@@ -111,7 +108,6 @@ CircleOf circle_of(const Campaign& campaign, const std::string& id) {
   return out;
 }
 
-/// Writes radius in mm and plane of each measurement; 0 and "" if it is no circle.
 void put_circles(JsonWriter& json, const Drawn& source) {
   if (!has_circles(source.campaign, source.fit)) return;
   const auto& all = source.fit.measurements;
@@ -188,7 +184,6 @@ std::string data_of(const Drawn& source, const Kept& kept, bool titles) {
   json.member("unit", unit_text(up));
   json.member("position_unit", across.unit);
   json.member("time_unit", over_time.time_unit);
-  // Names of lines side by side; null: one axis.
   if (const Lanes lanes = lanes_of(fit); !lanes.names.empty()) {
     json.member("lanes", lanes.names);
   } else {

@@ -11,7 +11,7 @@
 #include "nonio/sdk/plugin.h"
 #include "platform/storage/serialise.h"
 
-/// Members of the types that the processes of a run send to each other.
+/// Members of the types that the processes of a run exchange.
 namespace nonio::storage {
 
 NONIO_MEMBERS(Error, a, b, c, d, e)

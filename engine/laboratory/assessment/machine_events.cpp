@@ -5,7 +5,7 @@ namespace nonio::assessment {
 
 MachineEvents::MachineEvents(const std::vector<store::MachineState>& all,
                              const store::StoredLogs& logs) {
-  // Name of the machine by name or serial; null: several machines have this serial.
+  // Name of a machine by name or serial number; null if several machines have the serial number.
   std::map<std::string, const std::string*> named;
   for (const store::MachineState& m : all)
     for (const std::string& serial : m.serials) {

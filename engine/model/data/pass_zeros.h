@@ -9,12 +9,10 @@
 
 namespace nonio::model {
 
-/// Returns the degrees of freedom of passes: their number minus the number of sides (line and
-/// direction).
+/// Number of passes minus number of sides (line and direction).
 double degrees_of_passes(const Repeats&);
 
-/// Returns the fraction of the sum of squares of columns (about their means) that is constant
-/// within each pass.
+/// Fraction of the sum of squares of columns, about their means, that is constant within each pass.
 double share_of_passes(const Repeats&, const MatrixXd& columns);
 
 /// Mean residual of each pass, in the order in which the passes were made.
@@ -23,13 +21,11 @@ class ZerosOfPasses {
   ZerosOfPasses(const Part&, const Repeats&, const std::vector<double>& weight,
                 const std::vector<double>& residual);
 
-  /// Returns the p-value of the differences between passes of the same side under the hypothesis
-  /// that readings scatter independently with standard deviation s; 1 if s is 0, or if no side has
-  /// two passes.
+  /// p-value of the differences between passes of the same side, if readings scatter independently
+  /// with standard deviation s; 1 if s is 0, or if no side has two passes.
   double p_of_differences(double s) const;
-  /// Whether the zeros of passes show no significant trend, step between two passes, or run that
-  /// differs from the others, neither themselves nor in the reversal. Such an order indicates a
-  /// cause other than scatter. False if there are too few passes for this test.
+  /// Whether the zeros show no significant trend, step, or run that differs, neither themselves nor
+  /// in the reversal. Such an order indicates a cause, not scatter. False with too few passes.
   bool unordered() const;
 
  private:

@@ -26,8 +26,7 @@ std::set<std::size_t> effects_of(const Workbench& bench, const State& s) {
   return out;
 }
 
-/// Returns at most `side_by_side` states that have one effect more than those of `level`: those
-/// with the smallest criterion, one for each set of effects, with their shapes searched again.
+/// The best `side_by_side` states with one more effect, one for each set of effects.
 std::vector<State> grown(const Workbench& bench, const std::vector<State>& level) {
   std::vector<State> next;
   std::set<std::set<std::size_t>> seen;
@@ -51,8 +50,7 @@ std::vector<State> grown(const Workbench& bench, const std::vector<State>& level
   return next;
 }
 
-/// Removes one effect, or exchanges it for another, if this improves the criterion; false if
-/// nothing improves.
+/// Removes or exchanges one effect; returns false if the criterion does not improve.
 bool improve(const Workbench& bench, const State& start, State& best) {
   const auto fixed = effects_of(bench, start);
   for (const std::size_t e : effects_of(bench, best)) {
@@ -156,8 +154,7 @@ SignFlips shuffled(const Workbench& bench, const State& complete, const VectorXd
 
 namespace {
 
-/// Result of adding one effect to a complete model in every copy, with the shape that the search
-/// chooses.
+/// One effect added to a complete model in every copy, with the best shape.
 struct Added {
   VectorXd fall, parameters;
   std::vector<char> better;  ///< whether the criterion decreases
@@ -226,8 +223,7 @@ class ChanceOf {
 
 Chance measure_chance(const Workbench& bench, const State& complete, const SignFlips& shuffles) {
   const ChanceOf of(bench, complete, shuffles);
-  // Keep only the largest decrease for each number of parameters, because the F-test is by far the
-  // most expensive step.
+  // The F-test is by far the most expensive step, so only the largest decreases are tested.
   std::vector<std::map<double, double>> largest(static_cast<std::size_t>(shuffles.squares.size()));
   for (std::size_t e = 0; e < bench.instances().size(); ++e) {
     if (bench.holds(complete, e)) continue;

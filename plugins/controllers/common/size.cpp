@@ -12,10 +12,9 @@
 namespace nonio::controllers {
 namespace {
 
-/// A table that is 0 at a target cannot exceed E. More than twice E is not a table of this axis.
+/// A table that is 0 at a target cannot exceed E; one of more than twice E is not from this axis.
 constexpr double times_explained = 2.0;
 
-/// Limits from the readings: range of all mean deviations, and their steepest change. SI.
 struct Explained {
   double E = 0.0, slope = 0.0;
 };
@@ -37,7 +36,7 @@ Explained explained(const AxisJob& job) {
 
 struct Limit {
   double value;
-  std::string key;  ///< setting of the maker; empty: limit from the readings
+  std::string key;
 };
 
 Limit tighter(double of_readings, std::optional<double> of_maker, std::string key) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Chain bed - X - Y - Z - tool, x, y, z from the corner of the measured volume:
 //     XY (C0Y):  e_x = -c y     XZ (B0Z):  e_x = +c z     YZ (A0Z):  e_y = -c z
-// c: rad; signs of ISO 230-1: C0Y > 0 turns +Y towards -X, B0Z > 0 turns +Z towards +X, A0Z > 0
-// turns +Z towards -Y.
+// c: rad; signs of ISO 230-1: C0Y > 0 rotates +Y towards -X, B0Z > 0 rotates +Z towards +X, A0Z > 0
+// rotates +Z towards -Y.
 #include "nonio/sdk/space_readings.h"
 
 namespace nonio::squareness {

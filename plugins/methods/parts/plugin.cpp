@@ -24,7 +24,7 @@ constexpr const char* nominal[] = {"nominal_x", "nominal_y", "nominal_z"};
 constexpr const char* measured[] = {"measured_x", "measured_y", "measured_z"};
 constexpr double largest = 0.01;  // m, largest plausible deviation
 
-/// Whether the angle is a multiple of 90°, for which coordinates remain exact.
+/// Coordinates remain exact for multiples of 90 deg.
 bool is_quarter(double angle) {
   return std::fabs(std::remainder(angle, std::numbers::pi / 2)) < 1e-9;
 }
@@ -47,7 +47,6 @@ Expected<std::pair<double, bool>> growth_of(const Measurement& m) {
   return std::pair{expansion * (temperatures[1] - temperatures[0]), true};
 }
 
-/// Collects the three lines of a part; lines without readings are omitted.
 class Rows {
  public:
   Rows(const Measurement& m, std::array<bool, 3> places, bool size_known) {
@@ -147,7 +146,6 @@ Expected<Observations> observations_of(const MethodInput& in) {
   return o;
 }
 
-/// One feature for each position at which all sensed coordinates have readings.
 Expected<Readings> readings_of_part(const SimulationInput& in) {
   const Measurement& m = in.measurement;
   NONIO_TRY(const auto growth, growth_of(m));
