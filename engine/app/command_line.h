@@ -31,15 +31,15 @@ struct Argument {
   Takes takes = Takes::anything;
   bool exists = false;                 ///< whether the path must exist
   std::vector<std::string> choices{};  ///< accepted values; empty if any value is accepted
-  std::vector<std::string> offers{};   ///< values offered by completion; other values are accepted
-                                       ///< too
+  /// Values offered by completion; other values are accepted too.
+  std::vector<std::string> offers{};
   std::optional<std::pair<double, double>> range{};  ///< closed interval of a number
   std::string bare{};  ///< value of `--name` without "="; empty if a value is required
   bool shows_default = false;
   std::string brief{};
-  std::string old{};    ///< former name, which is still accepted
-  bool hidden = false;  ///< accepted, but not listed in help, because it belongs to a former
-                        ///< command
+  std::string old{};  ///< former name, which is still accepted
+  /// Accepted, but not listed in help, because it belongs to a former command.
+  bool hidden = false;
 
   bool is_positional() const { return !name.starts_with('-'); }
   bool is_flag() const { return std::holds_alternative<bool*>(target); }
@@ -90,8 +90,8 @@ struct Verb {
   std::vector<std::string> examples{};
   std::function<int()> run{};
   std::vector<Verb> verbs{};
-  std::string heading{};  ///< heading of the command in the help; empty if the command is not
-                          ///< listed
+  /// Heading of the command in the help; empty if the command is not listed.
+  std::string heading{};
 };
 
 /// A former name of a command; `words` replaces `old_words`, both separated by spaces.

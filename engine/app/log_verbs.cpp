@@ -157,6 +157,11 @@ int acknowledge(AckWish& wish, const Common& common) {
     if (text->empty()) return complain(std::string(name) + " is missing");
   if (!take_number(wish.value, a.value) || !take_number(wish.U, a.U))
     return complain("--value and --U: expected a number with a decimal point");
+  for (const char* kind : {"worklist.failed", "worklist.lost", "worklist.history"})
+    if (a.finding.starts_with(kind))
+      return complain("--finding " + a.finding +
+                      ": a failure or loss cannot be acknowledged; correct its cause, or record "
+                      "what was removed on purpose (nonio machine remove)");
   if (const auto added = config::add_acknowledgement(wish.site, a); !added)
     return refuse_all(added.error());
   say(common, wish.site, config::acknowledged_name,

@@ -19,8 +19,8 @@ struct NewAxis {
 struct NewCampaign {
   std::string id, customer, operator_name, date, maker, machine, serial, asset, control, instrument;
   std::vector<NewAxis> axes;
-  std::string reader{};                ///< reader of all files; empty if it is chosen by the
-                                       ///< content of each file
+  /// Reader of all files; empty if it is chosen by the content of each file.
+  std::string reader{};
   std::vector<std::string> columns{};  ///< entries of the reader option `columns`
   bool example() const;
 };

@@ -205,8 +205,19 @@ class Page {
     const double value = of.at(key), U = of.value("U", 0.0);
     if (of.at(key).is_number_integer()) return std::to_string(of.at(key).get<std::int64_t>());
     if (!(U > 0.0)) return local(fixed_text(value, of.value("unit", "").empty() ? 7 : 3));
-    return local(
-        fixed_text(value, std::clamp(1 - static_cast<int>(std::floor(std::log10(U))), 0, 12)));
+    constexpr int most = 12;
+    int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(U))), 0, most);
+    // As many as show on which side of its tolerance limit the value is.
+    if (const auto limit = of.find("tolerance"); limit != of.end() && limit->is_number()) {
+      const auto side = [&](double x) {
+        const double most_accepted = limit->get<double>();
+        return (std::fabs(x) > most_accepted) - (std::fabs(x) < most_accepted);
+      };
+      while (key == std::string_view("value") && digits < most &&
+             side(std::strtod(fixed_text(value, digits).c_str(), nullptr)) != side(value))
+        ++digits;
+    }
+    return local(fixed_text(value, digits));
   }
 
   /// Example: "4.82 ± 1.00 um". A value without U and unit is printed as a whole number or with

@@ -15,8 +15,8 @@ struct NewState {
   std::vector<Artifact> files;       ///< files of the table; empty if no table was active
   std::optional<double> backlash{};  ///< m or rad; std::nullopt is not entered
   std::vector<LoadedTable> tables{};
-  std::optional<double> reference{};  ///< position at which the table is zero, mm or deg;
-                                      ///< std::nullopt is not entered
+  /// Position at which the table is zero, mm or deg; std::nullopt is not entered.
+  std::optional<double> reference{};
 };
 
 /// Adds the states of an axis to machines/<asset>.toml of the site and copies their files next to

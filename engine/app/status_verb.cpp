@@ -137,8 +137,8 @@ Verb status_verb(Common& common) {
            {"--language", &list.language, "de, en or it; else that of the run's summary.txt"},
            existing(Takes::folder,
                     {"--site", &list.site,
-                     "The site: acknowledgements, withdrawals and events that were entered after "
-                     "the run are applied already"}),
+                     "The site: acknowledgements, withdrawals, events, removals and approvals that "
+                     "were entered after the run are applied already"}),
            {"--page", &list.page,
             "Print one of the pages instead: index.html, due.html, due.ics, instruments.html, "
             "compare.html, machines/NAME.html; with --json, add the first five to the actions. -: "
@@ -159,7 +159,7 @@ Verb status_verb(Common& common) {
       .run = [wish, &common] {
         wish->list.out = wish->out;
         if (wish->metrics) {
-          const auto text = metrics_of(wish->out);
+          const auto text = metrics_of(wish->out, wish->list.site);
           if (!text) return complain(text_of(text.error()));
           std::cout << *text;
           return exit_done;

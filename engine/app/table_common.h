@@ -35,7 +35,7 @@ Expected<Loaded> load(const loader::Plugins& plugins, const std::string& files,
                       const std::string& control, const Campaign& campaign, const Texts& settings,
                       const std::function<config::Checked<Settings>(const Info&)>& options_of);
 
-/// Same as `load`, for files that were already read.
+/// Does the same as `load` for files that were already read.
 Expected<Loaded> understood(
     const loader::Plugins& plugins, std::vector<Artifact> files, const std::string& control,
     const Campaign& campaign, const Texts& settings,

@@ -14,7 +14,7 @@ std::string padded_left(const std::string& text, std::size_t width);
 
 /// Returns the width of the terminal in columns, from 60 to 100; 100 without a terminal.
 std::size_t line_width(int descriptor);
-/// Same as `line_width`, but unlimited without a terminal, so that other programs get each sentence
+/// Returns `line_width`, or no limit without a terminal, so that other programs get each sentence
 /// on one line.
 std::size_t sentence_width(int descriptor);
 

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <iostream>
+#include <map>
 #include <optional>
 
 #include "campaign/config/site_files.h"
 #include "campaign/config/site_logs.h"
 #include "campaign/config/template_files.h"
+#include "certificates/certificate_list.h"
 #include "laboratory/assessment/assess.h"
 #include "laboratory/assessment/curves.h"
 #include "platform/storage/json_values.h"
@@ -18,11 +20,38 @@ namespace nonio::app {
 
 namespace {
 
+/// Losses and failures remain if their customer is not known.
 void keep_lines(const WorklistWish& wish, reports::SiteHistory& site) {
+  std::map<std::string, std::string> customer_of;
+  for (const reports::MachineHistory& m : site.machines) customer_of[m.id] = m.customer;
+  const auto is_of_other = [&](const reports::WorkItem& l) {
+    const auto machine = customer_of.find(l.machine);
+    const std::string& customer =
+        l.customer.empty() && machine != customer_of.end() ? machine->second : l.customer;
+    return customer.empty() ? l.kind != reports::WorkItem::Kind::lost &&
+                                  l.kind != reports::WorkItem::Kind::failed
+                            : customer != wish.customer;
+  };
   std::erase_if(site.lines, [&](const reports::WorkItem& l) {
-    return (!wish.customer.empty() && l.customer != wish.customer) ||
-           (!wish.since.empty() && !l.since.empty() && l.since < wish.since);
+    return (!wish.customer.empty() && is_of_other(l)) ||
+           (!wish.since.empty() && !l.since.empty() && l.since < wish.since &&
+            // Its day is that of the readings, which may be withheld since later.
+            l.kind != reports::WorkItem::Kind::withheld);
   });
+}
+
+/// Omits losses that a person has since recorded as intended, and drafts that no longer wait.
+void take_entered(const std::string& site, const config::SiteLogs& entered,
+                  assessment::LastRun& last_run) {
+  std::erase_if(last_run.vanished, [&](const assessment::LastRun::Vanished& v) {
+    return std::any_of(entered.forgotten.begin(), entered.forgotten.end(),
+                       [&](const config::Forgotten& f) {
+                         return f.campaign == v.campaign && f.date >= last_run.date;
+                       });
+  });
+  const auto drafts = certificates::waiting_campaigns(site);
+  if (!drafts) return;  // the drafts of the run remain
+  std::erase_if(last_run.waiting, [&](const std::string& id) { return !drafts->contains(id); });
 }
 
 /// With --page, the JSON also contains the pages about all machines.
@@ -95,7 +124,7 @@ int print_requested(const WorklistWish& wish, const Templates& templates,
 }  // namespace
 
 int print_worklist(const WorklistWish& wish, const Common& common) {
-  const auto last_run = assessment::last_run_in(wish.out);
+  auto last_run = assessment::last_run_in(wish.out);
   if (!last_run) return complain(last_run.error().message);
   std::optional<config::SiteLogs> entered;
   auto folders = common.template_folders();
@@ -103,6 +132,7 @@ int print_worklist(const WorklistWish& wish, const Common& common) {
     auto logs = config::read_site_logs(wish.site);
     if (!logs) return complain(text_of(logs.error().front()));
     entered = std::move(*logs);
+    take_entered(wish.site, *entered, *last_run);
     auto with_site = config::with_site_templates(folders, wish.site);
     if (!with_site) return complain(text_of(with_site.error()));
     folders = std::move(*with_site);

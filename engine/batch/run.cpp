@@ -261,10 +261,10 @@ void tell_plan(const RunResult& run, const RunEvents& events) {
 /// Data that are available before the first evaluation.
 struct Plan {
   Expected<store::SiteRecords> records;
-  std::string only;                              ///< id of the campaign of a reopened run,
-                                                 ///< otherwise empty
-  std::optional<std::uint64_t> history_known{};  ///< last run that the store contained completely,
-                                                 ///< according to the plan of a run in shards
+  /// Id of the campaign of a reopened run, otherwise empty.
+  std::string only;
+  /// Last run that the store contained completely, according to the plan of a run in shards.
+  std::optional<std::uint64_t> history_known{};
 };
 
 /// An error ends the run; its message is empty if a stop was requested.
@@ -330,8 +330,8 @@ Expected<void> do_planned(const RunOptions& options, const RunEvents& events, Se
       if (!state.issued_before) state.issued_before = issued_so_far(numbers);
       return check_numbers(options.out, run.campaigns, numbers);
     };
-  RunOptions numbered = options;  // one job at the merge, so that certificates are numbered in the
-                                  // order of the ids
+  // One job at the merge, so that certificates are numbered in the order of the ids.
+  RunOptions numbered = options;
   if (options.step == RunOptions::Step::merge && context.site.numbering.automatic)
     numbered.jobs = 1;
   bool well = do_campaigns(numbered, events, context, state, desk, run.campaigns);

@@ -299,8 +299,8 @@ class Again {
   reading::Context context_;
   const std::string& results_;
   Stated stated_;
-  std::optional<std::vector<std::string>> strange_;  ///< attached templates that differ from the
-                                                     ///< installed ones; nullopt if not compared
+  /// Attached templates that differ from the installed ones; nullopt if not compared.
+  std::optional<std::vector<std::string>> strange_;
   std::string missing_;  ///< name of a missing or different font, or empty
 };
 

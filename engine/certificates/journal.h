@@ -18,10 +18,11 @@ class Journal {
   struct Entry {
     std::int64_t place = 0;  ///< position in the journal, counted from 1 without gaps
     std::string at;          ///< UTC, for example "2026-11-22T14:21:33Z"
-    std::string what;        ///< kind of the event: made, drawn, approved, issued, withdrawn, or
-                             ///< second (a second approval, which has no effect)
-    std::string number;      ///< certificate number; may be empty
-    std::string says;        ///< details, a JSON object
+    /// Kind of the event: made, drawn, approved, issued, withdrawn, or second (a second approval,
+    /// which has no effect).
+    std::string what;
+    std::string number;  ///< certificate number; may be empty
+    std::string says;    ///< details, a JSON object
     std::string sha256;
   };
   static const char* const schema;

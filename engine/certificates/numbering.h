@@ -21,8 +21,8 @@ struct Releasing {
   reading::Twins twins{};  ///< files of readings shared with other campaigns, as found by the run
 };
 
-/// Accesses the site's register for a run, or for the approval of one campaign. Every call opens
-/// the register itself, because no process may inherit it from another.
+/// Accesses the site's register for a run, or for the approval of one campaign. A call that needs
+/// the register opens it, because no process may inherit an open register from another.
 class Numbers {
  public:
   struct Where {

@@ -122,8 +122,8 @@ Expected<std::string> same_values(std::string_view attached_text, std::string_vi
 
 namespace {
 
-/// Replaces numbers and SHA-256 digests, which may depend on the processor. Equal shapes are read
-/// alike by every JSON parser.
+/// Replaces numbers and SHA-256 digests, which may depend on the processor. Texts with the same
+/// shape have the same keys in the same order, so every JSON parser reads them in the same way.
 std::string shape_of(std::string_view json) {
   constexpr std::string_view number = "+-.0123456789eE";
   constexpr std::size_t digest = 64;

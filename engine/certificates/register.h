@@ -31,7 +31,8 @@ struct RegisterEntry {
   std::string released_account{}, withdrawn_account{};
   /// Account of users.toml whose password was given; if empty, `released_by` is unverified.
   std::string released_user{};
-  /// Subject and SHA-256 of the signer's certificate; empty before version 2026-12.
+  /// Subject and SHA-256 of the signer's certificate; empty without a signed PDF, and before
+  /// version 2026-12.
   std::string signer{}, signer_sha256{};
   bool in_force() const { return state == "issued"; }
 };

@@ -34,7 +34,7 @@ const config::Key& users_file();
 /// Returns the first mistake with its line. No account may occur twice, and no two accounts may
 /// have the same name, because two approvals must come from two persons.
 Expected<std::vector<User>> parse_users(std::string_view text);
-/// Also true for a file that cannot be read, for example a broken symbolic link.
+/// Whether users.toml exists, even if it cannot be read, for example as a broken symbolic link.
 bool has_users(const std::filesystem::path& site);
 /// Refuses a file above 1 MB, a symbolic link, and a file that group or others may write, because
 /// its writer decides who may approve.

@@ -370,8 +370,8 @@ Expected<Bench> open_bench(const BenchWish& wish) {
     modelling::set_model(part, {}, bench.read);
     readings += part.part.table.size();
   }
-  constexpr std::size_t many = 50000;  // number of readings for which the catalogue takes less than
-                                       // 0.1 s
+  // Number of readings for which the catalog takes less than 0.1 s.
+  constexpr std::size_t many = 50000;
   if (readings <= many) fill_catalogue(bench);
   return bench;
 }

@@ -29,8 +29,8 @@ struct Bench {
   std::unique_ptr<reading::Workplace> place;
   reading::ReadCampaign read;
   std::vector<modelling::PartModel> parts;
-  bool has_catalogue = false;  ///< false for many readings; child processes that need the catalogue
-                               ///< then make their own
+  /// False for many readings; child processes that need the catalog then make their own.
+  bool has_catalogue = false;
   /// Prepared matrices of large parts, which do not depend on the model.
   std::map<std::string, model::Groundwork> groundwork{};
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <string>
@@ -25,8 +26,8 @@ struct ListedCampaign {
   std::string certificate;     ///< number; empty if none was issued
   std::string message;         ///< first error; empty without errors
   bool draft = false;          ///< whether a draft of a certificate waits for approval
-  bool changed = false;        ///< whether campaign.toml has changed since the results
-                               ///< were stored
+  /// Whether campaign.toml has changed since the results were stored.
+  bool changed = false;
   std::vector<std::string> files{};
   std::vector<std::string> findings{};
   std::vector<std::string> columns{};  ///< reader option `columns` in campaign.toml
@@ -94,6 +95,13 @@ class CampaignIndex {
     ListedCampaign campaign;
     std::string stamp;
   };
+  /// What campaigns do not state themselves.
+  struct SiteFacts {
+    std::string stamp;
+    std::map<std::string, std::string> asset_of_alias{}, certificate_in_force{};
+    bool has_register = false;
+  };
+  void look_at_site();
   struct IsNewer {
     bool operator()(const ListedCampaign* a, const ListedCampaign* b) const;
   };
@@ -113,6 +121,7 @@ class CampaignIndex {
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::map<std::string, Seen> seen_{};
+  std::shared_ptr<const SiteFacts> facts_ = std::make_shared<SiteFacts>();
   std::set<const ListedCampaign*, IsNewer> order_{};
   std::uint64_t version_ = 1;
   bool over_ = false, soon_ = true, complete_ = false;

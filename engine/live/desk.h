@@ -34,8 +34,8 @@ class Remembered {
  public:
   struct Text {
     std::string head, rest;
-    storage::Json figures = storage::Json::object();  ///< of a fit: RMS, cross-validation RMS and
-                                                      ///< noise floor by names with units
+    /// RMS, cross-validation RMS and noise floor of a fit, by names with units.
+    storage::Json figures = storage::Json::object();
     std::size_t size() const { return head.size() + rest.size(); }
   };
   void put(const std::string& key, Text text);
@@ -156,8 +156,8 @@ class Desk {
   std::optional<Searching> searching_;
   std::uint64_t searches_ = 0;
   std::unique_ptr<Watch> watch_;
-  std::unique_ptr<BenchClient> bench_;  ///< declared last, because its thread uses all other
-                                        ///< members
+  /// Declared last, because its thread uses all other members.
+  std::unique_ptr<BenchClient> bench_;
 };
 
 }  // namespace nonio::live

@@ -27,13 +27,13 @@ struct Head {
 /// Settings of the server for the checks.
 struct Post {
   std::uint16_t port = 0;
-  std::string token;                 ///< 32 hexadecimal digits
-  std::vector<std::string> hosts{};  ///< values of --host, such as "nonio.example.org" or
-                                     ///< "nonio.example.org:8443"
-  bool ipv6 = false;                 ///< whether the server is also bound to [::1]
+  std::string token;  ///< 32 hexadecimal digits
+  /// Values of --host, such as "nonio.example.org" or "nonio.example.org:8443".
+  std::vector<std::string> hosts{};
+  bool ipv6 = false;  ///< whether the server is also bound to [::1]
   bool edit = false;
-  bool sign_in = false;  ///< whether requests have a session, which the service checks, instead of
-                         ///< a token
+  /// Whether requests have a session, which the service checks, instead of a token.
+  bool sign_in = false;
 };
 
 /// Limits of the head: bytes, fields, bytes of the target.

@@ -14,7 +14,7 @@ namespace nonio::live {
 
 namespace {
 
-/// This program, even if its file was replaced after the start.
+/// Path that executes this program even if its file was replaced after the start.
 constexpr const char* own_program = "/proc/self/exe";
 
 /// Returns false if the server has ended.

@@ -184,8 +184,8 @@ Expected<std::string> token_in(const std::string& file) {
 
 constexpr std::size_t threads = 16, most_queued = 64;
 constexpr auto heartbeat = std::chrono::seconds(15);
-constexpr auto between_events = std::chrono::milliseconds(100);  // at most 10 events per second are
-                                                                 // sent
+// Waiting events are sent at most 10 times per second.
+constexpr auto between_events = std::chrono::milliseconds(100);
 constexpr auto body_patience = std::chrono::seconds(30);
 
 struct House {

@@ -19,12 +19,12 @@ struct LiveWish {
   std::filesystem::path out;
   std::string token_file;          ///< empty for a new token at each start
   std::vector<std::string> hosts;  ///< names under which a proxy calls this server (--host)
-  std::string user_header;         ///< header with the user of the proxy; empty without such a
-                                   ///< proxy
+  /// Header with the user of the proxy; empty without such a proxy.
+  std::string user_header;
   std::uint16_t port = 0;
   bool edit = false, quiet = false;
-  bool sign_in = false;  ///< whether users sign in at this server: a site with users.toml and
-                         ///< without `user_header`
+  /// Whether users sign in at this server: a site with users.toml and without `user_header`.
+  bool sign_in = false;
 };
 
 /// Serves the page until SIGINT, SIGTERM or SIGHUP. Prints the address, with the token unless users

@@ -33,12 +33,12 @@ struct Answer {
   int status = 200;
   std::string type = "application/json", body;
   std::vector<std::pair<std::string, std::string>> headers{};
-  Said said{};                         ///< reason of a rejection; `body` may contain additional
-                                       ///< members
+  /// Reason of a rejection; `body` may contain additional members.
+  Said said{};
   std::shared_ptr<Listener> stream{};  ///< events instead of a body
   Events* events = nullptr;            ///< source of the events in `stream`
-  std::function<bool()> may_go_on{};   ///< called once per second; false ends the stream, because
-                                       ///< the session of the user has ended
+  /// Called once per second; false ends the stream, because the session of the user has ended.
+  std::function<bool()> may_go_on{};
 };
 
 /// Returns a rejection with the sentence "refused." + `name`; `Sentences::spelled` makes the body

@@ -31,8 +31,9 @@ class SignIn {
 
   struct Checked {
     bool fits = false;
-    int wait_s = 0;  ///< s; if not 0, the password was not checked because of wrong passwords or
-                     ///< other checks
+    /// Waiting time, s; if it is not 0, the password was not checked because of wrong passwords or
+    /// other checks.
+    int wait_s = 0;
   };
   /// Checks run one by one, so that guessing uses at most one processor, and at most two others are
   /// waited for. After a wrong password the account is blocked for 1, 2, 4 ... 60 s, whether it
@@ -62,13 +63,13 @@ class SignIn {
 
   Now now_;
   std::mutex mutex_, checking_;
-  std::string cookie_{};                       ///< name of the cookie; random for each start of the
-                                               ///< server
+  /// Name of the cookie; random for each start of the server.
+  std::string cookie_{};
   std::map<std::string, Session> sessions_{};  ///< by SHA-256 of the value of the cookie
-  std::map<std::string, Wrong> wrong_{};       ///< by account, and separately by account with a
-                                               ///< session
-  std::array<Wrong, 256> wrong_of_others_{};   ///< for accounts that do not exist, by SHA-256 of
-                                               ///< the account
+  /// By account, and separately by account with a session.
+  std::map<std::string, Wrong> wrong_{};
+  /// For accounts that do not exist, by SHA-256 of the account.
+  std::array<Wrong, 256> wrong_of_others_{};
   std::atomic<int> waiting_ = 0;
 };
 

@@ -24,6 +24,9 @@ struct RunNow {
 /// Returns a text that changes with the results or the logs.
 std::string worklist_stamp(const std::filesystem::path& site, const std::filesystem::path& out);
 
+/// Returns the file of the register of certificates; empty if it is not a file.
+std::filesystem::path register_of(const std::filesystem::path& site);
+
 /// Checks once per second whether a run, an entry on a page or a terminal, or an approval has
 /// changed the worklist.
 class SiteNews {

@@ -107,7 +107,8 @@ Answer SiteService::worklist() {
 
 Answer SiteService::metrics() {
   if (wish_.out.empty()) return refused(409, "no_out");
-  const ToolEnd end = call({"status", "--metrics", wish_.out.string()});
+  const ToolEnd end =
+      call({"status", "--metrics", verb_option("site", wish_.folder.string()), wish_.out.string()});
   if (end.status != 0) return refusal(503, end.errors);
   return {200, "application/openmetrics-text; version=1.0.0; charset=utf-8", end.out};
 }

@@ -21,7 +21,8 @@ struct ResultsNow {
 ResultsNow results_now(const std::filesystem::path& out, const std::string& id);
 
 /// A `nonio run` that was started from a page: one at a time, for one campaign or for all changed
-/// campaigns. Its state is JSON: state, stage, done, to_do and the differences of the results.
+/// campaigns. Its state is JSON: progress (`state`, `stage`, `done`, `to_do`), messages and, at the
+/// end, the differences of the results.
 class SiteRun {
  public:
   /// `changed` is called when `now()` has changed.

@@ -78,7 +78,12 @@ void SiteService::look_at_campaign() {
 
 void SiteService::tell(const std::string& what) {
   campaigns_->index().look_soon();
-  if (what == "worklist" && !wish_.out.empty()) shown();
+  if (what == "drafts") {  // the worklist counts them
+    const std::lock_guard lock(showing_);
+    shown_.reset();
+    publish("worklist");
+  }
+  if (what == "worklist" && !wish_.out.empty()) shown();  // no page waits for the result
   publish(what);
 }
 

@@ -33,8 +33,8 @@ struct PluginCheckRequest {
   std::string plugin;  ///< name of the only plugin to check; all plugins if empty
   std::uint64_t seed = 1;
   std::uint64_t seeds = 3;  ///< number of seeds, which are consecutive
-  double seconds = 20.0;    ///< limit of the processor time of a check, s; the elapsed time may be
-                            ///< 10 times as long
+  /// Limit of the processor time of a check, s; the elapsed time may be 10 times as long.
+  double seconds = 20.0;
   double memory_MB = 2000.0;
   std::filesystem::path own_plugins;
   std::vector<std::filesystem::path> template_folders;

@@ -146,8 +146,8 @@ std::vector<SetUp> settings_that_write(const Controller& o, const Bench& bench, 
 }
 
 /// Returns the range of the remaining error at the targets if the control adds the tables, m or
-/// rad; none without a table of the axis. If the files state the reversal, the range includes both
-/// directions.
+/// rad; std::nullopt without a table of the axis. If the files state the reversal, the range
+/// includes both directions.
 std::optional<double> left(const KnownError& k, const std::vector<LoadedTable>& tables) {
   const std::string axis = k.rotary ? "C" : "X";
   const auto c = math::correction_of(tables, axis);
@@ -285,8 +285,8 @@ double left_at_points(const KnownError& k, const std::vector<LoadedTable>& table
   return high - low;
 }
 
-/// The remaining error at each point of the table must be within half a step, so that rounding
-/// errors of increments do not accumulate.
+/// The remaining errors at the points of the table must differ by at most 1.05 steps, so that
+/// rounding errors of increments do not accumulate.
 Verdict table_rounding(const Controller& o, const Bench& bench) {
   return each_setting(o, bench, [&](const SetUp& s) -> std::string {
     storage::Random random = bench.random(12);

@@ -285,7 +285,7 @@ Verdict reader_signs(const Reader& r, const Bench& bench) {
   });
 }
 
-/// Only for readers with an option that states the unit of the file.
+/// Applies only to readers with an option that states the unit of the file.
 Verdict reader_inch(const Reader& r, const Bench& bench) {
   const auto has = [](const Option& o, const char* choice) {
     return std::find(o.choices.begin(), o.choices.end(), choice) != o.choices.end();

@@ -30,7 +30,7 @@ struct Sample {
   Campaign campaign;
   config::RawOptions options;
   std::vector<Observations> observations;
-  /// Results of the program's own plugins; none if the sample was not evaluated yet.
+  /// Results of the program's own plugins; std::nullopt if the sample was not evaluated yet.
   std::optional<Results> results{};
 
   const Observations& of(const Measurement& m) const {
@@ -120,7 +120,7 @@ std::vector<std::pair<std::string, Observations>> odd_tables(const Observations&
 /// The plugin's default options, replaced by those that the sample states.
 Settings settings_for(const Info& info, const Sample& sample);
 Settings settings_for(const Output& output, const Sample& sample);
-/// Also states numbers of the axes and encoder counts, which some controllers require.
+/// The settings also state numbers of the axes and encoder counts, which some controllers require.
 Settings settings_for(const Controller& controller, const Sample& sample);
 /// Returns the results of all analyses and models; computes them unless the sample contains them.
 Results results_of(const Sample& sample, const Bench& bench);

@@ -44,7 +44,7 @@ struct Seen {
   double sign = 1.0;                  ///< sign of the effects in the readings
 };
 
-/// Returns the axis or instance of the effect; none if it does not affect these readings.
+/// Returns the axis or instance of the effect; std::nullopt if it does not affect these readings.
 std::optional<Axis> place_in(const Seen& seen, const EffectSpec& e, const Machine& machine) {
   Effect effect = e.effect;
   if (seen.part != nullptr) {

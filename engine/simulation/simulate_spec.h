@@ -30,8 +30,8 @@ struct CycleSpec {
   std::optional<double> first, last, distance;  ///< range that replaces the targets, in file units
   double offset = 0.0;                          ///< largest random shift of a target, m or rad
   std::uint32_t runs = 5;
-  bool pendulum = true;  ///< whether each run has both directions; otherwise every run is in
-                         ///< `direction`
+  /// Whether each run has both directions; otherwise every run is in `direction`.
+  bool pendulum = true;
   double direction = 1.0;
   bool timed = true;
   double dwell = 5.0;    ///< time at each target, s
@@ -45,15 +45,15 @@ struct CycleSpec {
   std::uint32_t steps = 0;       ///< steps of a diagonal or step diagonal; targets are used if 0
   std::uint32_t readings = 720;  ///< readings per turn of a circle
   double set_up = 0.0;           ///< angle between straightedge and axis, rad
-  std::vector<std::array<double, 3>> balls;   ///< positions with the rotary axes at 0, m
-  std::string carrier;                        ///< another rotary axis that rotates too; may be
-                                              ///< empty
+  std::vector<std::array<double, 3>> balls;  ///< positions with the rotary axes at 0, m
+  /// Another rotary axis that rotates too; may be empty.
+  std::string carrier;
   std::vector<double> carrier_at;             ///< positions of the carrier, rad
   std::vector<std::array<double, 3>> senses;  ///< directions of gauges, unit vectors
-  std::string sensor;                         ///< for rtcp: "turns" (gauges that rotate with the
-                                              ///< axis) or "probe"; otherwise gauges at rest
-  std::array<double, 3> ball_offset{};        ///< true position of the ball minus its position in
-                                              ///< the control, m
+  /// For rtcp: "turns" (gauges that rotate with the axis) or "probe"; otherwise gauges at rest.
+  std::string sensor;
+  /// True position of the ball minus its position in the control, m.
+  std::array<double, 3> ball_offset{};
   /// Method whose files only the method itself can write, simulated as runs along the axis;
   /// otherwise null.
   const Method* method = nullptr;
@@ -80,8 +80,9 @@ struct EffectSpec {
   std::string name;  ///< "backlash:X"
   Axis axis;
   std::uint64_t line = 0;
-  std::vector<double> linear;                ///< linear parameters, SI
-  std::vector<std::optional<double>> shape;  ///< nonlinear parameters, SI; none if not specified
+  std::vector<double> linear;  ///< linear parameters, SI
+  std::vector<std::optional<double>>
+      shape;  ///< nonlinear parameters, SI; std::nullopt if not specified
 };
 
 struct Specification {

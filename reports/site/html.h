@@ -37,7 +37,8 @@ inline std::string from_root(const Page& page, const std::string& link) {
 }
 
 /// "−4.2 ± 0.4 µm", U = 2 u; without u the number and its unit.
-std::string value_text(const Page&, double value, std::optional<double> u, Quantity);
+std::string value_text(const Page&, double value, std::optional<double> u, Quantity,
+                       std::optional<double> limit = {});
 /// "6 months. Why.", or the reason for no proposal; empty if not required.
 std::string proposal_text(const Page&, const IntervalProposal&);
 /// "every 6 months"; empty without months.

@@ -36,7 +36,7 @@ void add_open_lines(View& view, const Page& page, const MachineHistory& m) {
     std::string text = page.words.get("site.kind." + std::string(name_of(l.kind))) + ": ";
     if (!l.axis.empty()) text += l.axis + " ";
     if (!l.quantity.empty()) text += quantity_text(page, l.quantity) + " ";
-    if (shows_value(l)) text += value_text(page, *l.value, l.u, l.unit) + ". ";
+    if (shows_value(l)) text += value_text(page, *l.value, l.u, l.unit, l.limit) + ". ";
     text = html_of(text).text;
     for (const char* part : {"says", "advice"})
       text += typeset_html(line_text(page, l, part)) + " ";

@@ -29,7 +29,7 @@ std::string number_of(const Page& page, const WorkItem& l) {
   std::string out;
   if (!l.quantity.empty()) out = site::quantity_text(page, l.quantity);
   if (!site::shows_value(l)) return out;
-  out += (out.empty() ? "" : " ") + site::value_text(page, *l.value, l.u, l.unit);
+  out += (out.empty() ? "" : " ") + site::value_text(page, *l.value, l.u, l.unit, l.limit);
   return out + site::limit_text(page, l);
 }
 

@@ -24,8 +24,8 @@ class HistoryUpdate {
       : options_(options), context_(context) {}
 
   /// Must be called before the first result is stored: marks the store as possibly outdated.
-  /// `known` is the run up to which the store is complete according to the plan; the store takes
-  /// precedence.
+  /// `known` is the run up to which the store is complete according to the plan; it applies only if
+  /// OUT/.nonio contains no such note of the store.
   Expected<void> begin(std::optional<std::uint64_t> known = {});
   std::optional<std::uint64_t> known() const { return known_; }
   /// Must be called after all results are stored. Adds these campaigns, or rebuilds the store if it

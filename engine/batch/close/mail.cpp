@@ -70,8 +70,8 @@ std::string encoded_subject(const std::string& subject) {
   const bool plain = std::all_of(text.begin(), text.end(),
                                  [](char c) { return static_cast<unsigned char>(c) < 0x80; });
   if (plain) return text;
-  constexpr std::size_t piece = 39;  // bytes; in base64 52 characters, so that an encoded word has
-                                     // at most 75
+  // 39 bytes are 52 characters in base64, so an encoded word has at most 75 characters.
+  constexpr std::size_t piece = 39;
   std::string out;
   for (std::size_t at = 0; at < text.size();) {
     std::size_t end = std::min(at + piece, text.size());

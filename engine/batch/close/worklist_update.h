@@ -11,9 +11,9 @@
 namespace nonio::batch {
 
 struct WorklistPages {
-  std::string text;  ///< for summary.txt, without failed and lost campaigns, which are separate
-                     ///< lists
-  std::string json;  ///< JSON list for summary.json
+  /// Text for summary.txt, without failed and lost campaigns, which are separate lists.
+  std::string text;
+  std::string json;          ///< JSON list for summary.json
   std::uint64_t asking = 0;  ///< number of lines that require action
   bool judged = true;        ///< whether any result has a tolerance limit
   std::string actions;       ///< lines that require action as JSON, in the language of the site

@@ -14,20 +14,21 @@
 
 namespace nonio::batch {
 
-/// Makes staged results durable in a child process while the workers continue. Up to 64 campaigns
-/// that were queued while the disk was busy are flushed together, so that no campaign is delayed.
+/// Makes staged results durable in a child process while the workers continue. All campaigns that
+/// were queued while the disk was busy, up to 64, are flushed together; a batch never waits for
+/// more campaigns.
 class Committer {
  public:
   struct Given {
     std::size_t campaign = 0;
-    std::uint32_t losses = 0;  ///< number of lost writes that the disk had reported before the
-                               ///< results were written
+    /// Number of lost writes that the disk had reported before the results were written.
+    std::uint32_t losses = 0;
   };
   struct Done {
     Given given;
-    std::string error;   ///< reason of a failure; empty if the results are stored
-    bool again = false;  ///< whether the process ended before an answer, so that the caller may
-                         ///< store the campaign
+    std::string error;  ///< reason of a failure; empty if the results are stored
+    /// Whether the process ended before an answer, so that the caller may store the campaign.
+    bool again = false;
   };
   /// Runs in the child process and returns one result per campaign.
   using Task = std::function<std::vector<Expected<void>>(const std::vector<Given>&)>;

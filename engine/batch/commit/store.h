@@ -24,8 +24,8 @@ Expected<void> stage(const std::filesystem::path& out, const evaluation::Evaluat
 
 struct Staged {
   std::string id;
-  std::uint32_t losses = 0;  ///< number of lost writes that the disk had reported before the first
-                             ///< file was written
+  /// Number of lost writes that the disk had reported before the first file was written.
+  std::uint32_t losses = 0;
 };
 
 /// Gives staged files their final names after they were read back from the disk, with one flush per

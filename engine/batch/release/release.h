@@ -13,12 +13,12 @@ namespace nonio::batch {
 
 struct ReleaseRequest {
   std::filesystem::path campaign;
-  std::string by;    ///< printed name of the person; empty if `user` is stated
-  std::string role;  ///< author or authoriser; empty for the default of the site:
-                     ///< author if it requires two persons
+  std::string by;  ///< printed name of the person; empty if `user` is stated
+  /// Author or authoriser; empty for the default of the site: author if it requires two persons.
+  std::string role;
   std::map<std::string, std::string> reasons;  ///< by finding_key or by id of the finding
-  std::filesystem::path out;                   ///< output folder of the run; empty for that of the
-                                               ///< draft
+  /// Output folder of the run; empty for that of the draft.
+  std::filesystem::path out;
   /// Account in users.toml with its password, which prove the identity of the person. Without an
   /// account, `by` is an unverified statement.
   std::string user{}, password{};

@@ -15,17 +15,17 @@ namespace nonio::batch {
 /// memory does not grow with them.
 struct CampaignState {
   std::string id{};
-  std::string folder{};   ///< relative to the site, in the encoding of the file system
-  std::string reason{};   ///< why the campaign is evaluated or not
-  std::string history{};  ///< digest of the machine history in the document; empty if no history
-                          ///< was available
+  std::string folder{};  ///< relative to the site, in the encoding of the file system
+  std::string reason{};  ///< why the campaign is evaluated or not
+  /// Digest of the machine history in the document; empty if no history was available.
+  std::string history{};
   enum class Action : char { todo, done, unchanged } action = Action::todo;
   evaluation::Status status = evaluation::Status::none;  ///< `none` before the evaluation
-  bool named_by_folder = false;                          ///< whether the id is the name of the
-                                                         ///< folder, because the manifest states no
-                                                         ///< id
-  bool is_campaign = true;  ///< false for a folder that cannot be listed and for a campaign of
-                            ///< another shard with the same files of readings
+  /// Whether the id is the name of the folder, because the manifest states no id.
+  bool named_by_folder = false;
+  /// False for a folder that cannot be listed and for a campaign of another shard with the same
+  /// files of readings.
+  bool is_campaign = true;
   bool shows_history = false;
 
   using Twin = std::pair<std::uint64_t, std::uint32_t>;

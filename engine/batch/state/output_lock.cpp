@@ -101,7 +101,8 @@ std::string temporary(const fs::path& path, const User& own) {
   return path.string() + "-" + own.boot.substr(0, own.boot.find('-')) + "-";
 }
 
-/// Removes temporary files of killed processes of this host. The caller must have the flock.
+/// Removes temporary files of processes that were killed since the last boot of this host. The
+/// caller must have the flock.
 void sweep(const fs::path& path, const User& own) {
   const std::string front = temporary(path, own);
   std::error_code error;

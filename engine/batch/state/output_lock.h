@@ -32,8 +32,8 @@ class OutputLock {
   int fd_;
   std::filesystem::path user_{};  ///< OUT/.nonio/user; empty if this object did not create the file
   std::string says_{};            ///< content of the file `user_`
-  long pid_ = 0;                  ///< process that created the file, because its child processes
-                                  ///< must not remove it
+  /// Process that created the file, because its child processes must not remove it.
+  long pid_ = 0;
 };
 
 /// Returns, for example, "process 17 on host a (job 5)"; empty if no process has exclusive use.

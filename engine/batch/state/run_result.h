@@ -25,23 +25,22 @@ struct RunOptions {
   std::filesystem::path own_plugins;
   std::size_t jobs = 0;  ///< number of worker processes; 0 for one per core
   bool force = false;
-  std::string only{};  ///< --only: folder or id of the only campaign that is evaluated again after
-                       ///< a complete run
+  /// --only: folder or id of the only campaign that is evaluated again after a complete run.
+  std::string only{};
   bool dry_run = false;
-  bool verify_results = false;  ///< whether to compare the digests of all output files, even if
-                                ///< their times are unchanged
-  std::string date{};           ///< YYYY-MM-DD; empty for today
+  /// Whether to compare the digests of all output files, even if their times are unchanged.
+  bool verify_results = false;
+  std::string date{};  ///< YYYY-MM-DD; empty for today
   std::string version;
   bool as_root = false;
-  bool confine = true;  ///< whether plugins are confined; false measures the cost of the
-                        ///< confinement
+  /// Whether plugins are confined; false measures the cost of the confinement.
+  bool confine = true;
   /// `whole` for a run without shards.
   enum class Step { whole, plan, shard, merge } step = Step::whole;
   std::uint64_t shard = 0, shards = 0;  ///< zero-based index of the shard and number of shards
   bool pack = false;                    ///< whether the shard delivers its results as one file
-  std::filesystem::path
-      scratch{};          ///< local folder of a packed shard; empty for the temporary folder of the
-                          ///< system
+  /// Local folder of a packed shard; empty for the temporary folder of the system.
+  std::filesystem::path scratch{};
   double patience = 0.0;  ///< waiting time of a merge for results of other hosts, s
 };
 
@@ -69,8 +68,8 @@ struct RunResult {
   enum class End { complete, interrupted, refused } end = End::complete;
   evaluation::RunLabel run{};
   std::optional<std::uint64_t> seen_before{};
-  std::string error;                     ///< reason why the run was refused or is not
-                                         ///< complete
+  /// Reason why the run was refused or is not complete.
+  std::string error;
   std::vector<CampaignState> campaigns;  ///< sorted by id
   std::vector<std::string> notes;
   std::vector<certificates::RegisterEntry> issued;
@@ -85,13 +84,14 @@ struct RunResult {
            !history_error.empty() || !worklist_error.empty();
   }
   std::size_t may_vanish = 0;  ///< number of missing campaigns that site.toml accepts
-  std::string actions{};       ///< JSON list of worklist lines that require action, in the language
-                               ///< of the site
-  std::optional<std::uint64_t> asking{};  ///< number of worklist lines that require action, if the
-                                          ///< worklist was made
-  std::string worklist_error{};           ///< error of the pages or of the mail
-  std::string history_error{};            ///< reason why OUT/history.sqlite lacks this run or
-                                          ///< reports contain outdated histories
+  /// JSON list of worklist lines that require action, in the language of the site.
+  std::string actions{};
+  /// Number of worklist lines that require action, if the worklist was made.
+  std::optional<std::uint64_t> asking{};
+  std::string worklist_error{};  ///< error of the pages or of the mail
+  /// Reason why the history lacks this run or some results, or why reports contain outdated
+  /// histories.
+  std::string history_error{};
   /// Number of campaigns per shard after the step `plan`.
   std::vector<std::uint64_t> planned{};
 };

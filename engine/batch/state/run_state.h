@@ -48,8 +48,8 @@ Expected<RunState> begin_run(const RunOptions& options, const std::string& site,
 /// evaluated again. An error if the run is not complete. Nothing is written, so that the run
 /// remains complete after an interruption.
 Expected<RunState> reopen_run(const RunOptions& options, const std::string& site);
-/// Returns the state at the beginning of the planned run without writing. An error if another run
-/// is in progress.
+/// Returns the state at the beginning of the planned run without writing. An error if this run is
+/// not in progress, or if it is of another site.
 Expected<RunState> planned_run(const RunOptions& options, const std::string& site,
                                std::uint64_t number);
 /// Marks the run as complete. The next run continues from `run.issued_before`.

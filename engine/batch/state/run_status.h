@@ -21,12 +21,12 @@ struct RunStatus {
   enum class State { complete, running, cut_short, planned } state = State::complete;
   evaluation::RunLabel run{};  ///< last run that began
   std::optional<RunEnd> last{};
-  double age = 0.0;                        ///< time since the last summary, s; only valid with
-                                           ///< `last`
-  std::optional<double> seconds{};         ///< duration of the last complete run, s; unknown for a
-                                           ///< run in shards
-  std::uint64_t shards = 0, reported = 0;  ///< shards of a planned run, and number of those with a
-                                           ///< record
+  /// Time since the last summary, s; only valid with `last`.
+  double age = 0.0;
+  /// Duration of the last complete run, s; unknown for a run in shards.
+  std::optional<double> seconds{};
+  /// Shards of a planned run, and number of those with a record.
+  std::uint64_t shards = 0, reported = 0;
   std::string used_by{};
 };
 

@@ -38,10 +38,10 @@ class SiteParts {
 
  private:
   struct Part {
-    std::string sha256;     ///< of the copy
-    std::string last_seen;  ///< date of the last run that found the file valid, YYYY-MM-DD; empty
-                            ///< for this run
-    std::string why;        ///< reason why the file is lost; empty for a valid file
+    std::string sha256;  ///< of the copy
+    /// Date of the last run that found the file valid, YYYY-MM-DD; empty for this run.
+    std::string last_seen;
+    std::string why;  ///< reason why the file is lost; empty for a valid file
   };
 
   Expected<void> read_inventory();

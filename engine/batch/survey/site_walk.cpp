@@ -98,7 +98,7 @@ class Walker {
     if (++remarks_ <= most_remarks) tell(Seen::note, text);
   }
 
-  /// Returns false, after reporting the reason, if the path did not respond in an earlier attempt.
+  /// Returns false, after reporting the reason, if an earlier attempt hung or crashed at this path.
   bool may(const std::string& place) {
     signs_.reading(place);
     const auto hung = passed_.find(place);

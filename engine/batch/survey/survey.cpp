@@ -177,7 +177,7 @@ void name_by_folder(std::vector<CampaignState>& states, const std::vector<Earlie
   std::map<std::string_view, std::string_view> known;
   std::set<std::string> taken;
   for (const EarlierResult& e : earlier) {
-    // An id from a manifest replaces one that was made from the name of the folder.
+    // A result that did not fail has the id of a valid manifest, which has precedence.
     const auto [at, is_new] = known.emplace(e.folder, e.id);
     if (!is_new && !e.failed) at->second = e.id;
     taken.insert(e.id);

@@ -201,6 +201,12 @@ void ChangeDetector::look_at_number(const CampaignState& state, const evaluation
                                     std::vector<std::string>& why) const {
   if (in_.numbers && record.draft && !in_.drafts.contains(state.id))
     why.push_back("its draft was released, or the register does not know it");
+  const bool amends = std::any_of(record.findings.begin(), record.findings.end(),
+                                  [](const auto& f) { return f.id == "certificate.amendment"; });
+  if (in_.numbers && amends && std::none_of(numbers_.begin(), numbers_.end(), [&](const auto& n) {
+        return n.second->campaign == state.id && n.second->in_force();
+      }))
+    why.push_back("the certificate that it replaces was withdrawn");
   const auto number = numbers_.find(record.certificate);
   if (number == numbers_.end() || number->second->in_force()) return;
   why.push_back("its certificate " + record.certificate + " was " + number->second->state);

@@ -27,9 +27,9 @@ class Evaluator {
       : stream_(stream), secrets_(std::move(secrets)) {}
 
   struct Analysed {
-    evaluation::Evaluated evaluated;                  ///< empty if no number is required
-    std::optional<std::vector<std::string>> missing;  ///< data that are missing for a certificate;
-                                                      ///< std::nullopt if no number is required
+    evaluation::Evaluated evaluated;  ///< empty if no number is required
+    /// Data that are missing for a certificate; std::nullopt if no number is required.
+    std::optional<std::vector<std::string>> missing;
   };
 
   /// Runs `read_campaign` and `analyse` in the other process. If it has ended, this process ends

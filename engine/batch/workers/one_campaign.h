@@ -23,12 +23,12 @@ struct SiteWork {
   const std::vector<CampaignState>& campaigns;
   const certificates::Numbers& numbers;
   certificates::Signer* signer;
-  const reading::Twins* twins;  ///< shared files of readings of an approved campaign; null in a
-                                ///< run
+  /// Shared files of readings of an approved campaign; null in a run.
+  const reading::Twins* twins;
   /// Machine histories by campaign id.
   const std::map<std::string, assessment::HistoryBasis>& histories;
-  bool elsewhere = false;  ///< whether register and key are on another host; campaigns that need
-                           ///< them are left to the merge
+  /// Whether register and key are on another host; campaigns that need them are left to the merge.
+  bool elsewhere = false;
 };
 
 struct RegisterState {

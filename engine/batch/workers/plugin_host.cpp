@@ -85,8 +85,8 @@ void PluginHost::end() {
 
 Expected<loader::Catalogue> PluginHost::start() {
   constexpr int most_trials = 100;  // each attempt omits one more plugin
-  int unexplained = 0;              // crashes without a plugin as the cause, such as a temporary
-                                    // lack of memory
+  // Crashes without a plugin as the cause, such as a temporary lack of memory.
+  int unexplained = 0;
   for (int i = 0; i < most_trials; ++i) {
     auto loaded = load_once();
     const bool again =

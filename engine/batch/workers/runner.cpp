@@ -361,9 +361,9 @@ class Runner {
   RegisterState register_;
   const std::map<std::string, assessment::HistoryBasis>& histories_;
   std::vector<CampaignState>& campaigns_;
-  const storage::Disk disk_;           ///< must be constructed before the first process that writes
-  std::vector<std::uint32_t> losses_;  ///< number of lost writes that the disk had reported before
-                                       ///< each campaign
+  const storage::Disk disk_;  ///< must be constructed before the first process that writes
+  /// Number of lost writes that the disk had reported before each campaign.
+  std::vector<std::uint32_t> losses_;
   Committer committer_;
   const std::size_t campaigns_per_worker_;
   std::size_t next_ = 0;

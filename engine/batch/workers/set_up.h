@@ -21,9 +21,9 @@ struct SetUp {
   std::optional<PluginHost> host;
   SiteParts parts;
   std::vector<std::string> notes;
-  std::string unstamped;  ///< note that no time-stamp server is configured; separate,
-                          ///< because it is the same in every run
-  std::string no_key;     ///< reason why nothing can be signed
+  /// Note that no time-stamp server is configured; separate, because it is the same in every run.
+  std::string unstamped;
+  std::string no_key;  ///< reason why nothing can be signed
 };
 
 /// Reads the site and starts the plugin host. An error contains all mistakes of site.toml. In a

@@ -19,8 +19,8 @@ enum class Answer : char {
   ok,
   attention,
   failed,
-  again,  ///< failed and not stored, because an earlier campaign of the worker may be the
-          ///< cause
+  /// Failed and not stored, because an earlier campaign of the worker may be the cause.
+  again,
   waits,
   not_stored,  ///< `Worker::stage` contains the reason
   none,        ///< the process ended without an answer

@@ -30,7 +30,7 @@ std::string key_of(const std::string& axis, const std::string& setting) {
   return "axes." + axis + "." + (travel ? "travel" : setting);
 }
 
-/// Axes for which the campaign may have tables, including slaves and the axes of measured lines.
+/// Axes that the settings of the output may name, including slaves and the axes of measured lines.
 std::set<std::string> axes_of(const Campaign& campaign) {
   std::set<std::string> names;
   for (const Axis& a : campaign.machine.axes) {

@@ -34,8 +34,8 @@ void check_control(const Work& work) {
                                                    "; there are " + comma_list(tables)));
 }
 
-/// Also true if no record states a control. Reports a difference only if the manifest has `[run]
-/// outputs`, because site.toml requests controllers for all machines.
+/// Whether the record of the machine states this control, or states none. Reports a difference only
+/// if the manifest has `[run] outputs`, because site.toml requests controllers for all machines.
 bool is_control_of_record(const Work& work, const std::string& controller) {
   const auto& machine = work.read.machine;
   if (!machine || machine->control.empty() || machine->control == controller) return true;

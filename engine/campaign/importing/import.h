@@ -18,9 +18,9 @@ struct ImportRule {
   std::string campaign;  ///< pattern of the id; if empty, date and placeholders except axis and id
   std::string kind = "axis";
   std::string reader;  ///< reader of every file; if empty, the content determines the reader
-  std::vector<std::string> exclude;  ///< files are skipped if their paths contain one of these
-                                     ///< texts
-  std::string axis;                  ///< axis of every file; if empty, the text at {axis}
+  /// Files are skipped if their paths contain one of these texts.
+  std::vector<std::string> exclude;
+  std::string axis;  ///< axis of every file; if empty, the text at {axis}
   /// Axis of the machine for each text at {axis}; if empty, the texts are names of axes.
   std::map<std::string, std::string, std::less<>> axes;
   std::string manifest;  ///< TOML text that every campaign.toml also contains

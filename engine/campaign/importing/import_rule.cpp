@@ -54,7 +54,8 @@ bool all_of_digits(std::string_view text) {
          std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Capital letters and digits, or a small letter of ISO 841 and digits (x and u2 name X and U2).
+/// Whether the text consists of capital letters and digits, or of a small letter of ISO 841 and
+/// digits (x and u2 name X and U2); at most 8 characters.
 bool is_axis(std::string_view text) {
   if (text.empty() || text.size() > 8) return false;
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };

@@ -206,7 +206,8 @@ void note_oddities(const Measurement& m, std::string_view bytes, Observations& o
   if (o.missing > 0 && m.kind != "axis")
     o.notes.push_back(
         {"readings.not-taken", {{"missing", static_cast<double>(o.missing), Quantity::count}}});
-  // Positions on an artifact are positions of its features and are not joined.
+  // Only targets at which the machine stops are joined; features of an artefact, for example, have
+  // positions of their own.
   if (m.motion != Measurement::Motion::targets) return;
   if (const std::size_t moved = join_targets(o); moved > 0)
     o.notes.push_back(

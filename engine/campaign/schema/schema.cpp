@@ -127,7 +127,7 @@ class SchemaWriter {
     json_.end_object();
   }
 
-  /// `assumed`: default of the key that distinguishes tables of this kind.
+  /// `assumed`: default that the name of the table implies for this key; empty if it implies none.
   void put_value(const config::Key& key, std::string_view assumed) {
     switch (key.holds) {
       case Holds::text:

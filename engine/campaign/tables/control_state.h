@@ -41,7 +41,8 @@ Expected<MeasuredWith> measured_with(const reading::ReadCampaign&, const Control
                                      const std::vector<Artifact>& backup, const std::string& axis,
                                      const Settings& options, std::vector<Finding>& findings);
 
-/// Sets the compensation of axes that only the backup states. Errors are those of `measured_with`.
+/// Sets the compensation of each measured axis for which only the backup states one. Errors are
+/// those of `measured_with`.
 Expected<void> state_by_backup(reading::ReadCampaign&, const Controller&,
                                const std::vector<Artifact>& backup, Settings& options,
                                std::vector<Finding>& findings);

@@ -176,6 +176,9 @@ class Assessment::State {
     for (const auto& e : evaluations) of_machine[e.machine].push_back(&e);
     std::set<std::string> forgotten;
     for (const config::Forgotten& f : logs_.forgotten) forgotten.insert(f.campaign);
+    const MachineNames names(states, logs_);
+    for (config::Acknowledgement& a : logs_.acknowledged)
+      if (const std::string* name = names.of(a.machine)) a.machine = *name;
     const MachineEvents events(states, logs_);
     note_unknown(states, events);
     const auto add = [&](Assessed m, const std::vector<const store::StoredEvaluation*>& all) {

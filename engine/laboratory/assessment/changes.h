@@ -33,9 +33,9 @@ struct Lesson {
   std::vector<double> ratios{};  ///< ratios of statistics::Scatter
   std::optional<nonio::statistics::Slope> slope{};
 };
-/// Returns the number of evaluations used for the statistics of the laboratory: all below 10,000,
-/// otherwise rounded down to two digits, so that a new campaign rarely changes the results of other
-/// machines.
+/// Returns the largest number of evaluations used for the statistics of the laboratory: below
+/// 10,000 evaluations no limit, otherwise their number rounded down to two digits, so that a new
+/// campaign rarely changes the results of other machines.
 std::uint64_t learned_from(std::uint64_t evaluations);
 /// Uses only the points of the first `evaluations` of the laboratory.
 Lesson lesson_of(const FollowedSeries& series, Fits& fits,
@@ -70,9 +70,9 @@ SeriesTests tests_of(const FollowedSeries& series);
 
 /// p of a change, adjusted for all tests of the run.
 struct Adjusted {
-  double news = 1.0;  ///< Benjamini and Hochberg: controls the proportion of false changes among
-                      ///< those reported
-  double any = 1.0;   ///< Holm: controls the probability of any false change in the run
+  /// Benjamini and Hochberg: controls the proportion of false changes among those reported.
+  double news = 1.0;
+  double any = 1.0;  ///< Holm: controls the probability of any false change in the run
 };
 
 /// Returns the adjusted p by series and change. `asked` is the number of tests by run.

@@ -179,8 +179,8 @@ class Describing {
     const StoredResult& r = m_.stored.results[result];
     const StoredCampaign& c = m_.stored.campaigns[r.campaign];
     HistoryPoint p{c.id, c.day, links_[r.campaign], state_of(r.state), si(r.value, q)};
-    if (!r.followed) {  // the U of an analysis includes the uncertainty that campaigns have in
-                        // common
+    // The U of an analysis includes the uncertainty that campaigns have in common.
+    if (!r.followed) {
       if (r.expanded) p.u = si(*r.expanded / r.k.value_or(2.0), q);
       return p;
     }

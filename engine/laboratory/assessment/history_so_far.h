@@ -24,8 +24,8 @@ struct HistoryBasis {
   /// results.
   std::vector<std::pair<std::string, std::string>> campaigns;
   std::vector<config::Event> events;  ///< up to `day`
-  int months = 0;                     ///< calibration interval of the site in months; 0 without a
-                                      ///< rule
+  /// Calibration interval of the site in months; 0 without a rule.
+  int months = 0;
   /// Digest of the other members.
   std::string sha256{};
 };

@@ -408,10 +408,11 @@ class OfMachine {
       const store::StoredCampaign& c = m_.stored.campaigns[w.campaign];
       const bool table = w.finding.starts_with("table.");
       WorkItem l = line(Kind::withheld,
-                        table                       ? "worklist.no-table"
-                        : is_calibration(w.finding) ? "worklist.calibration"
-                        : is_refusal(w.finding)     ? "worklist.no-result"
-                                                    : "worklist.certificate",
+                        table                               ? "worklist.no-table"
+                        : is_failed_compensation(w.finding) ? "worklist.compensation"
+                        : is_calibration(w.finding)         ? "worklist.calibration"
+                        : is_refusal(w.finding)             ? "worklist.no-result"
+                                                            : "worklist.certificate",
                         c.id + (w.axis.empty() ? "" : ":" + w.axis));
       l.axis = w.axis, l.campaign = c.id, l.since = c.day;
       put_text(l, "campaign", c.id);

@@ -179,9 +179,8 @@ std::optional<IntervalProposal> out_now(const AssessedMachine& m) {
 
 IntervalProposal proposal_of(const IntervalFacts& m, const Counted& counted) {
   constexpr std::uint64_t fewest_campaigns = 2;
-  if (m.out_now)
-    return *m.out_now;  // a machine that is out of tolerance needs a repair instead of
-                        // an interval
+  // A machine that is out of tolerance needs a repair instead of an interval.
+  if (m.out_now) return *m.out_now;
   if (m.days < fewest_campaigns) {
     IntervalProposal out = because(staircase_name, "few-campaigns");
     put(out, "campaigns", static_cast<double>(m.days));

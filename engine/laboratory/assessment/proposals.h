@@ -22,16 +22,16 @@ struct IntervalFacts {
   std::string maker, model;
   std::uint64_t days = 0;  ///< number of dates with a measurement
   double months = 0.0;     ///< calibration interval; 0 without one
-  double tested = 0.0;     ///< months from the previous date of measurement to the campaign of
-                           ///< `found`; 0 without one
+  /// Months from the previous date of measurement to the campaign of `found`; 0 without one.
+  double tested = 0.0;
   /// Worst decision among the last results as found of all quantities with a limit.
   std::optional<nonio::statistics::Found> found{};
-  std::optional<reports::IntervalProposal> chart{};    ///< shortest interval that the control
-                                                       ///< charts support
-  std::optional<reports::IntervalProposal> refusal{};  ///< reason why the control charts give no
-                                                       ///< interval
-  std::optional<reports::IntervalProposal> out_now{};  ///< worst value that is out of tolerance
-                                                       ///< today
+  /// Shortest interval that the control charts support.
+  std::optional<reports::IntervalProposal> chart{};
+  /// Reason why the control charts give no interval.
+  std::optional<reports::IntervalProposal> refusal{};
+  /// Worst value that is out of tolerance today.
+  std::optional<reports::IntervalProposal> out_now{};
 };
 
 /// `rule` is the interval in months according to site.toml; without a rule, the usual interval

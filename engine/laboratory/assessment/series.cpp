@@ -17,8 +17,8 @@ namespace {
 
 using storage::Json;
 
-constexpr double same_place = 0.01;  // largest difference of equal positions, as a fraction of the
-                                     // span
+// Largest difference of equal positions, as a fraction of the span.
+constexpr double same_place = 0.01;
 bool near(double a, double b, double span) { return std::fabs(a - b) <= same_place * span; }
 
 double number_at(const Json& o, const char* key) {

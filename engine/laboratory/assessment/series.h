@@ -20,8 +20,8 @@ struct FollowedSeries {
   std::vector<std::size_t> results;          ///< index of each point into StoredMachine::results
   std::vector<std::uint64_t> evaluations{};  ///< number of the evaluation of each point
   std::vector<nonio::statistics::Point> stated{};  ///< points as stated by their campaigns
-  std::vector<PointTargets> targets{};             ///< targets of each point; empty unless known
-                                                   ///< for all points
+  /// Targets of each point; empty unless known for all points.
+  std::vector<PointTargets> targets{};
   /// Stretch of the axis over which the points are compared; std::nullopt if the points are used as
   /// stated.
   std::optional<nonio::statistics::Stretch> over{};
@@ -29,17 +29,17 @@ struct FollowedSeries {
   /// An earlier result of the quantity that is not comparable with the series.
   struct Apart {
     std::size_t result = 0;
-    std::string why;  ///< id of the reason: span, place, across, model, period, radius, feed or
-                      ///< other
+    /// Id of the reason: span, place, across, model, period, radius, feed or other.
+    std::string why;
   };
   std::vector<Apart> apart{};
   nonio::statistics::Series series;
-  std::vector<std::string> said{};   ///< text of each declared event, as entered
-  std::vector<std::string> kinds{};  ///< kind of each declared event, such as crash, repair, table
-                                     ///< or instrument
-  bool ended = false;                ///< whether later campaigns measure the quantity in a way that
-                                     ///< is not comparable
-  std::uint64_t run = 0;             ///< run of the last point
+  std::vector<std::string> said{};  ///< text of each declared event, as entered
+  /// Kind of each declared event, such as crash, repair, table or instrument.
+  std::vector<std::string> kinds{};
+  /// Whether later campaigns measure the quantity in a way that is not comparable.
+  bool ended = false;
+  std::uint64_t run = 0;  ///< run of the last point
   nonio::statistics::Trend trend{};
   /// p of each change, adjusted for all tests of its run.
   std::vector<double> p_adjusted{};
@@ -54,8 +54,9 @@ struct ShownSeries {
   /// Deciding result of each campaign with a limit: as left before as found, and the worst of
   /// several measurements.
   std::vector<std::size_t> judged{};
-  bool ended = false;  ///< whether later campaigns use another unit, because the axis was changed
-                       ///< between linear and rotary
+  /// Whether later campaigns use another unit, because the axis was changed between linear and
+  /// rotary.
+  bool ended = false;
 };
 
 /// Returns the followed series by axis and quantity. `events` are those of this machine.
@@ -77,6 +78,20 @@ struct AssessedMachine {
   std::vector<config::Event> events;
   std::vector<FollowedSeries> followed;
   std::vector<ShownSeries> shown;
+};
+
+/// Finds machines by a present or former name or a serial number. Keeps references to both
+/// arguments.
+class MachineNames {
+ public:
+  MachineNames(const std::vector<store::MachineState>& all, const store::StoredLogs& logs);
+  /// Returns the present name; null if no machine, or several machines, have this name.
+  const std::string* of(const std::string& stated) const;
+
+ private:
+  const store::StoredLogs& logs_;
+  std::map<std::string, const std::string*>
+      named_{};  ///< null: a serial number of several machines
 };
 
 /// Finds the events of each machine, in the order of `logs`. An event names the machine, an alias,

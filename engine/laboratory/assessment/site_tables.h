@@ -11,9 +11,10 @@
 
 namespace nonio::assessment {
 
-/// Returns one entry per month with a measurement or an event.
+/// Returns one entry per month with a measurement, an event, or the beginning of one of `lines`.
 std::vector<reports::MonthOfMachine> months_of(const AssessedMachine& machine,
-                                               const reports::MachineHistory& described);
+                                               const reports::MachineHistory& described,
+                                               const std::vector<reports::WorkItem>& lines);
 
 /// Returns the campaigns by instrument, certificate and end of validity, without campaigns that
 /// state no instrument.

@@ -191,7 +191,7 @@ Standing standing_of(const AssessedMachine& m, const reports::MachineHistory& de
                 : last_run.date;
   for (std::size_t i = 0; i < s.lines.size(); ++i)
     if (auto rest = acknowledge(s.lines[i], m, logs, last_run.date)) s.lines.push_back(*rest);
-  s.months = months_of(m, described);
+  s.months = months_of(m, described, s.lines);
   s.instruments = instruments_of(m, out);
   s.has_results = !m.stored.results.empty();
   s.judged = !m.stored.without_value.empty();

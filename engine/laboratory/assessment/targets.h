@@ -15,10 +15,10 @@ namespace nonio::assessment {
 
 /// A fit to the values at the targets of a campaign, in the units of the store.
 struct StoredFit {
-  double beyond = 0.0, dof = 0.0;          ///< excess of the variance about the fit over that of
-                                           ///< the readings, and degrees of freedom
-  nonio::statistics::FittedCurve curve{};  ///< has no coefficients if the quantities do not depend
-                                           ///< on the ends of the targets
+  /// Excess of the variance about the fit over that of the readings, and degrees of freedom.
+  double beyond = 0.0, dof = 0.0;
+  /// Has no coefficients if the quantities do not depend on the ends of the targets.
+  nonio::statistics::FittedCurve curve{};
   /// Coefficients of cosine and sine of each sinusoid.
   std::vector<nonio::statistics::CoefficientOver> sinusoids{};
   std::vector<double> residuals{};  ///< by target; empty if not stored
@@ -39,8 +39,8 @@ struct PointTargets {
   std::string digest;
   nonio::statistics::Stretch span{};
   double other_variance = 0.0;  ///< variance of other origin than the readings
-  double share = 0.0;           ///< variance of the quantity for independent values of variance 1
-                                ///< at the targets
+  /// Variance of the quantity for independent values of variance 1 at the targets.
+  double share = 0.0;
   StoredFit fit{};
 };
 

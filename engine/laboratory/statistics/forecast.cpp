@@ -11,8 +11,8 @@ namespace {
 
 constexpr double act_beyond = 0.5;
 constexpr double one_sided = 1.6448536269514722;  // quantile of the one-sided 95 % bound
-constexpr double farthest = 0.5;                  // largest extrapolation, as a fraction of the
-                                                  // time span
+// Largest extrapolation, as a fraction of the time span.
+constexpr double farthest = 0.5;
 constexpr double years_ahead = 20.0;
 
 struct State {

@@ -14,12 +14,14 @@ namespace {
 constexpr double least_p = 1e-3;  // smallest p of an unexplained part that is noise
 // Largest RMS of an unexplained part that is noise, as a fraction of the change.
 constexpr double most_noise = 0.4;
-// Largest RMS of an unexplained part that is not noise, as a fraction of the RMS of h.
+// Largest RMS of an unexplained part that is not noise, as a fraction of the RMS of the change h by
+// the table (table_change.h).
 constexpr double most_left = 0.1;
 // Required difference of chi2 from a change without a table.
 constexpr double clear = 25.0;
-constexpr double distinct = 9.0;          // required difference of chi2 from any other candidate
-constexpr double slope_seen = 8.0;        // smallest slope of h in units of u_slope, if h is a line
+constexpr double distinct = 9.0;  // required difference of chi2 from any other candidate
+// Smallest slope of h, in units of u_slope, if h is recognized by its size and not by its shape.
+constexpr double slope_seen = 8.0;
 constexpr int most_points = 5;            // largest offset of a table, in points
 constexpr std::size_t fewest_places = 4;  // smallest number of positions
 
@@ -73,8 +75,8 @@ struct CurveChange {
   std::vector<double> x, value, variance;
   std::vector<int> direction;
   double middle = 0.0, length = 0.0;
-  double dof_of_noise = 0.0;  ///< degrees of freedom of the noise; 0 if it is known from repeated
-                              ///< runs
+  /// Degrees of freedom of the noise; 0 if it is known from repeated runs.
+  double dof_of_noise = 0.0;
 };
 
 CurveChange change_of(const MeasuredCurve& before, const MeasuredCurve& after, double resolution) {
@@ -329,8 +331,8 @@ TableCurve TableCurve::shifted(int points) const {
 
 namespace {
 
-/// Returns std::nullopt unless the change is known at enough positions over more than half of the
-/// axis.
+/// Returns std::nullopt unless the change is known at enough positions, over more than half of the
+/// range of `after`.
 std::optional<CurveChange> comparable(const MeasuredCurve& before, const MeasuredCurve& after,
                                       double resolution) {
   if (before.position.size() < 2 || after.position.size() < 2) return std::nullopt;

@@ -12,8 +12,8 @@ namespace nonio::statistics {
 /// Mean deviations at ascending targets; empty for a direction that was not measured.
 struct MeasuredCurve {
   std::vector<double> position{}, plus{}, minus{};
-  double u = 0.0;  ///< standard uncertainty of a mean without the parts that campaigns have in
-                   ///< common; 0 if unknown
+  /// Standard uncertainty of a mean without the parts that campaigns have in common; 0 if unknown.
+  double u = 0.0;
 };
 
 /// Correction that is linear between the points and constant outside them; zero without points.
@@ -32,9 +32,9 @@ struct TableChange {
   std::size_t table = 0;  ///< index into the known tables; not used for `removed`
   int points = 0;         ///< offset in points, positive towards larger positions
   double rms = 0.0;       ///< RMS of the change after removal of a constant per direction
-  double left = 0.0;      ///< RMS of the part that the table does not explain, without a constant
-                          ///< per direction
-  double p = 0.0;         ///< probability of such an unexplained part by chance
+  /// RMS of the part that the table does not explain, without a constant per direction.
+  double left = 0.0;
+  double p = 0.0;  ///< probability of such an unexplained part by chance
 };
 
 /// Recognizes a change as a table. The model is
@@ -54,9 +54,9 @@ struct TableChange {
 /// less than 0.4 of the change) or less than a tenth of h, (2) neither no change nor a change of
 /// scale or reversal explains it as well (chi2 larger by 25), (3) no other hypothesis does (chi2
 /// larger by 9). std::nullopt otherwise, and if the campaigns have too few positions in common, or
-/// positions over at most half of the axis. An offset that cannot be distinguished from none is
-/// `loaded`. `resolution` is the smallest standard uncertainty of a difference. Without `active`, S
-/// is empty or any known table. Source: least squares; limits by simulation
+/// positions over at most half of the range of `after`. An offset that cannot be distinguished from
+/// none is `loaded`. `resolution` is the smallest standard uncertainty of a difference. Without
+/// `active`, S is empty or any known table. Source: least squares; limits by simulation
 /// (tests/property/loaded_table_test.py).
 std::optional<TableChange> recognize(const MeasuredCurve& before, const MeasuredCurve& after,
                                      const std::optional<TableCurve>& active,

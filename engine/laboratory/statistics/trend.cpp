@@ -121,7 +121,8 @@ class Trending {
                        [&](const Change& c) { return c.after == after; });
   }
 
-  /// Whitened steps after all points without a step, orthogonal to the present model.
+  /// Columns of a step after each point that has none yet: whitened, orthogonal to the present
+  /// model and of unit length. Steps that are not identifiable are omitted.
   struct Places {
     std::vector<std::size_t> after;
     MatrixXd direction;
@@ -319,8 +320,8 @@ class Trending {
   /// penalty. At the border q = 0 the likelihood ratio is half a chi-square with 1 degree of
   /// freedom.
   void walk(Trend& out) const {
-    constexpr double at_border = 5.412;  // 99 % quantile of half a chi-square with 1 degree of
-                                         // freedom
+    // 99 % quantile of half a chi-square with 1 degree of freedom.
+    constexpr double at_border = 5.412;
     const bool restless = math::chi2_upper(out.chi2, out.dof) < named_below;
     if (s_.steps && !s_.steps->empty()) return;
     if (s_.points.size() < fewest_for_walk || static_cast<int>(shape_.changes.size()) > steps_ ||

@@ -37,8 +37,8 @@ struct ResultRow {
   std::optional<double> tolerance{};
   std::string decision{};
   std::string conditions{};  ///< JSON; must agree between comparable results
-  std::string not_stated{};  ///< missing manifest keys, separated by commas, whose contributions
-                             ///< `u_repeat` lacks
+  /// Missing manifest keys, separated by commas, whose contributions `u_repeat` lacks.
+  std::string not_stated{};
 };
 
 /// Covariance of the results `first` .. `first + count - 1`: upper triangle row by row.

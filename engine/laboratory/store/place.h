@@ -14,8 +14,8 @@ namespace nonio::store {
 /// Location of the store, kept in OUT/.nonio/database, so that reading does not need site.toml.
 struct StorePlace {
   std::optional<storage::Server> server{};  ///< std::nullopt for OUT/history.sqlite
-  std::string owner{};                      ///< random id, which the schema on the server contains
-                                            ///< too
+  /// Random id, which the schema on the server contains too.
+  std::string owner{};
   std::int64_t evaluations = 0;  ///< number of evaluations on the server after the last update
   /// Random ids of the last 500 updates on the server, which contains the last id. Two copies of
   /// the output folder that write to one schema are detected, because each lacks ids of the other.

@@ -23,8 +23,8 @@ struct Point {
   std::string value;  ///< shortest text that restores the double, as in all numeric members
   std::string u_repeat, u_common, expanded, k, tolerance, decision;
   std::string campaign, measurement, instrument, instrument_certificate, conditions;
-  std::string evaluation, superseded_by;  ///< numbers of the evaluation and of the evaluation that
-                                          ///< supersedes it, if any
+  /// Numbers of the evaluation and of the evaluation that supersedes it, if any.
+  std::string evaluation, superseded_by;
 };
 
 /// Returns the matching results, sorted by machine, axis, quantity, source, date and state. An
@@ -36,7 +36,7 @@ Expected<std::vector<Point>> query(const std::filesystem::path& out, const Query
 /// nearest name.
 Expected<std::string> machine_named(const std::filesystem::path& out, const std::string& name);
 
-/// Aliases are joined. Sorted by name.
+/// Sorted by name. A machine and its aliases are one entry.
 Expected<std::vector<NamedMachine>> machines_in(const std::filesystem::path& out);
 
 /// Returns names that may denote one machine and that no alias joins.

@@ -78,7 +78,7 @@ struct StoredMachine {
   std::vector<Later> later{};  ///< campaigns after the requested date, which `campaigns` excludes
 };
 
-/// A machine with its aliases joined.
+/// A machine; data of campaigns that state one of its aliases are included.
 struct MachineState {
   NamedMachine machine;
   std::uint64_t run = 0;  ///< run of its last evaluation in force
@@ -86,7 +86,8 @@ struct MachineState {
 };
 
 struct StoredEvaluation {
-  std::string machine;  ///< aliases are joined; empty without a machine
+  /// Name of the machine, even if the campaign states an alias; empty without a machine.
+  std::string machine;
   std::string campaign, sha256, day;
   std::uint64_t run = 0;
   bool counts = true;  ///< whether the evaluation is not superseded
@@ -94,7 +95,8 @@ struct StoredEvaluation {
 
 /// The last evaluation of a campaign.
 struct CountedCampaign {
-  std::string machine;  ///< aliases are joined; empty without a machine
+  /// Name of the machine, even if the campaign states an alias; empty without a machine.
+  std::string machine;
   std::string campaign, day, sha256;
 };
 
@@ -105,9 +107,9 @@ struct StoredLogs {
   std::vector<config::Acknowledgement> acknowledged;
   std::vector<config::Forgotten> forgotten;
   std::map<std::string, std::string> aliases;  ///< name by alias
-  std::map<std::string, int> due;              ///< calibration interval in months by machine; ""
-                                               ///< for all others
-  std::set<std::string> recorded{};            ///< machines with events in their records
+  /// Calibration interval in months by machine; "" for all others.
+  std::map<std::string, int> due;
+  std::set<std::string> recorded{};  ///< machines with events in their records
 };
 
 /// Reads a store. Superseded evaluations are skipped unless stated otherwise.
@@ -116,13 +118,14 @@ class StoreReader {
   /// An error if there is no store of this version.
   static Expected<StoreReader> open(const std::filesystem::path& out);
 
-  /// Sorted by name; aliases are joined, campaigns without a machine omitted.
+  /// Sorted by name. Campaigns that state an alias belong to its machine; those without a machine
+  /// are omitted.
   Expected<std::vector<MachineState>> machines();
   /// Campaigns after the date `until` are only listed in `later`.
   Expected<StoredMachine> machine(const std::string& name, const std::string& until = "9999-12-31");
   Expected<StoredMachine> campaign(const std::string& id, const std::string& until = "9999-12-31");
   Expected<StoredLogs> logs();
-  /// Aliases are joined.
+  /// Returns the name of the machine, even if the campaign states an alias, by id of the campaign.
   Expected<std::map<std::string, std::string>> machine_of_campaigns();
   /// Includes superseded evaluations, in the order of the store.
   Expected<std::vector<StoredEvaluation>> evaluations();

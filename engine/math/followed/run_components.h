@@ -25,7 +25,7 @@ struct RunComponents {
   /// Variance over the runs, m^2 or rad^2, of the offset that both passes of a run share (their
   /// mean), and of half the difference of their offsets.
   Part shared_offset, own_offset;
-  /// The same variances for the slopes of the passes, (m/m)^2 or (rad/rad)^2.
+  /// Variances over the runs of the corresponding slopes of the passes, (m/m)^2 or (rad/rad)^2.
   Part shared_slope, own_slope;
 };
 

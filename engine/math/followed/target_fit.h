@@ -24,8 +24,8 @@ TargetWeights of_means(const AxisTest&, const Eigen::VectorXd& t);
 /// Returns the weights of the mean of B_i over the targets approached from both directions.
 TargetWeights of_reversal(const AxisTest&);
 
-/// Variance of the linear function if the values at the targets (reversals B_i if `reversal`, else
-/// means) are independent with variance 1.
+/// Variance of the linear function if the values at the targets (reversals B_i if `reversal`,
+/// otherwise means) are independent with variance 1.
 double share_of_targets(const AxisTest&, const TargetWeights&, bool reversal);
 
 /// Fits a polynomial (a constant if a period is a full turn) and sinusoids with these periods (m or

@@ -112,7 +112,8 @@ bool is_multiple(std::int64_t step, const std::vector<std::int64_t>& pitches) {
                      [&](std::int64_t pitch) { return step % pitch == 0; });
 }
 
-/// Largest multiple of `m` up to `q` with which no step is a multiple of a pitch; else 0.
+/// Largest multiple of `m` up to `q` with which no step is a multiple of a pitch; 0 if there is
+/// none.
 std::int64_t with_pitch(const Search& s, const Triple& t, std::int64_t q, std::int64_t m) {
   // A pitch excludes every q, or every m-th q with m >= 2. Therefore, if any multiple is allowed,
   // one of a few consecutive multiples is allowed.
@@ -281,7 +282,8 @@ std::vector<TriplePlan> chosen(const Search& s, const TripleRequest& w) {
   return plans;
 }
 
-/// Returns nothing without this limit. max_points and hypotenuse become 20 times as large.
+/// Returns std::nullopt if the request has no such limit. max_points and hypotenuse become 20 times
+/// as large.
 std::optional<TripleRequest> without(TripleRequest w, TripleLimit limit) {
   bool had = true;
   switch (limit) {

@@ -152,7 +152,7 @@ std::optional<Circle> geometric(const Plane& p) {
 }
 
 /// Sense of the points about the normal relative to the encoder, and angle of the point at encoder
-/// zero. Nothing is returned if neither sense agrees to within `worst_follow`.
+/// zero. `sense_of` returns std::nullopt if neither sense agrees to within `worst_follow`.
 struct Sense {
   double sign = 1.0, zero = 0.0;
 };

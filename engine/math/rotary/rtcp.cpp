@@ -31,7 +31,8 @@ Matrix3d turn(const Vector3d& n, double angle) {
   return Matrix3d::Identity() + std::sin(angle) * cross + (1.0 - std::cos(angle)) * cross * cross;
 }
 
-/// Returns nothing if the positions follow no circle, or one with a radius below `least_radius`.
+/// Returns std::nullopt if the positions follow no circle, or one with a radius below
+/// `least_radius`.
 std::optional<RotaryFit> circle_of(const std::vector<RtcpReading>& all, std::size_t line) {
   std::map<long long, BallCentre> places;
   for (const RtcpReading& r : all) {
@@ -161,7 +162,8 @@ class Readings {
     across_ = {along == 0 ? 1U : 0U, along == 2 ? 1U : 2U};
   }
 
-  /// a and b refer to the mean height of the balls that are sensed across the axis, else of all.
+  /// a and b refer to the mean height of the balls that are sensed across the axis, otherwise of
+  /// all balls.
   void choose_point() {
     double height[2] = {0.0, 0.0}, n[2] = {0.0, 0.0};
     for (const RtcpReading& r : all_) {

@@ -24,7 +24,7 @@ struct Sphere {
   double radius;
 };
 
-/// `points`: relative to their mean. Returns nothing if they do not determine a sphere.
+/// `points`: relative to their mean. Returns std::nullopt if they do not determine a sphere.
 std::optional<Sphere> start(const MatrixXd& points) {
   MatrixXd columns(points.rows(), 4);
   columns << 2.0 * points, VectorXd::Ones(points.rows());

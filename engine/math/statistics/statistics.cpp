@@ -8,8 +8,6 @@
 #include "common/constants.h"
 
 namespace nonio::math {
-namespace {}
-
 // The second pass removes the rounding error of the first.
 double mean(std::span<const double> x) {
   if (x.empty()) return not_given;

@@ -6,7 +6,8 @@
 namespace nonio::math {
 namespace {
 
-/// Returns "X", or if the machine has none, another linear axis along X such as "X1"; else "X".
+/// Returns "X" for coordinate 0 or, if the machine has no such axis, another linear axis along X
+/// such as "X1"; "X" if there is none either.
 std::string axis_along(const Campaign& c, std::size_t coordinate) {
   const std::string letter(1, "XYZ"[coordinate]);
   if (c.machine.axis(letter) != nullptr) return letter;

@@ -44,7 +44,8 @@ Corner unit_along(std::size_t k) {
   return out;
 }
 
-/// Vector from the pivot of an axis to the tool; a squareness rotates the second axis itself.
+/// Returns the position relative to the center of the box, with the coordinates of the axes that
+/// the moving axis carries; for a squareness, with that of the second axis itself.
 Corner carried(const RigidTerm& term, const RigidBox& box, const Corner& at) {
   Corner out{};
   if (term.kind == Kind::squareness)

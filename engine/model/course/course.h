@@ -20,7 +20,7 @@ Expected<Explanation> explain_course(const Part& part, const std::vector<Term>& 
 /// of its own. The shapes of the terms are those of the fit.
 double left_out_rms(const Part& part, const std::vector<Term>& terms);
 
-/// Returns nothing if no term depends on a channel.
+/// Returns std::nullopt if no term depends on a channel.
 std::optional<Sensors> sensors_of(const Part& part, const Fit& fit);
 
 }  // namespace nonio::model

@@ -34,7 +34,7 @@ class CourseData {
   /// Mean time of the readings of bin b, and time from the first to the last bin, s.
   double time(Index b) const { return time_(b); }
   double duration() const { return size() > 1 ? time_(size() - 1) - time_(0) : 0.0; }
-  /// This part, then those that move with it: bins x displacements, m.
+  /// Displacement of this part, then those that move together with it: bins x displacements, m.
   const MatrixXd& displacements() const { return displacements_; }
   const Part& part() const { return part_; }
   /// Columns for the grid of a term, without shapes for which the effect returns an error.

@@ -112,8 +112,8 @@ class Worth {
     }
   }
 
-  /// A channel that is not a temperature and has an effect with a time constant, whose removal
-  /// increases the RMS by more than a tenth.
+  /// Finds a speed or load that acts through a part without a temperature sensor: its effect has a
+  /// time constant, and the RMS without it is larger by more than a tenth.
   void unseen() {
     for (const Sensors::One& one : out_.used) {
       const auto* channel = part_.table.channel(one.channel);

@@ -50,7 +50,7 @@ Part part_of(const Measurement& m, const Observations& o, std::uint32_t line,
   return part;
 }
 
-/// Correlation, without subtraction of means, of changes over a hundredth of the test; else 0.
+/// Correlation, without subtraction of means, of changes over a hundredth of the test; otherwise 0.
 double move_together(const std::vector<double>& a, const std::vector<double>& b) {
   const std::size_t step = std::max<std::size_t>(1, a.size() / 100);
   double aa = 0.0, ab = 0.0, bb = 0.0;

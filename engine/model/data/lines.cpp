@@ -37,7 +37,8 @@ Passes passes_of(const Observations& o) {
   return passes;
 }
 
-/// Several runs, with all readings of one direction before all readings of the other.
+/// Whether there are several runs, with all readings of one direction before all readings of the
+/// other.
 bool grouped(const Passes& passes) {
   std::map<std::int8_t, Rows> side;
   std::map<std::int8_t, int> runs;

@@ -23,7 +23,7 @@ std::vector<double> with_scatter(const std::vector<double>& weight, const Noise&
 Noise noise_of(const Part& part, const Repeats& repeats, const std::vector<double>& weight);
 
 /// Scatter of repeats, at least digit/sqrt(12), corrected for the part of the correlation that the
-/// pass terms of `saturate` absorb. Nothing with fewer than 3 degrees of freedom.
+/// pass terms of `saturate` absorb. std::nullopt with fewer than 3 degrees of freedom.
 std::optional<NoiseFloor> noise_floor(const Repeats& repeats, const Saturated& saturated,
                                       const std::vector<double>& weight, const Noise& noise);
 

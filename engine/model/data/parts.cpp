@@ -204,7 +204,8 @@ std::vector<std::shared_ptr<const Grouping>> groupings_of(const Part& part,
   return out;
 }
 
-/// Nothing without such groups, or if the effect is a description or part of the set-up.
+/// Returns std::nullopt without such groups, or if the effect is a description or part of the
+/// set-up.
 std::optional<Term> grouped(const Part& part, Term term, const std::string& by) {
   if (term.effect->description || term.effect->is_nuisance) return std::nullopt;
   for (const auto& grouping : part.groupings)
@@ -229,8 +230,8 @@ bool can_be_in(const Part& part, const Effect& effect) {
          (part.kind == Part::Kind::axis && !part.table.channels.empty());
 }
 
-/// `written`: axis or instance. Nothing if the effect cannot occur in the part, or if the part has
-/// no such axis or instance. `Effect::applies` is not tested.
+/// `written`: axis or instance. std::nullopt if the effect cannot occur in the part, or if the part
+/// has no such axis or instance. `Effect::applies` is not tested.
 std::optional<Term> term_of(const Part& part, const Effect& effect, const std::string& written) {
   if (!can_be_in(part, effect)) return std::nullopt;
   if (effect.instances) {

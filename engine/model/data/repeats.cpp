@@ -337,9 +337,10 @@ std::vector<double> rougher_than(double s, const Observations& o, const std::vec
 
 std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
                                  const std::vector<Term>& model) {
+  const std::size_t n = o.size();
+  // Without repeats and without an order in time, only an explanation can contradict a reading.
+  if (n < 10 || (!o.order_known && !Groups(r).any_repeats)) return {};
   const std::vector<double> y = without_set_up(o, model);
-  const std::size_t n = y.size();
-  if (n < 10) return {};
   const std::vector<double> e = polished(r, y);
   const double display = digit_of(o) / std::sqrt(12.0);
   // The factor 1.2 corrects for the noise that the subtraction of medians removes: with 4 to 10

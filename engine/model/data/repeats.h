@@ -42,7 +42,8 @@ std::vector<double> apart_from_others(const Repeats&, const std::vector<std::uin
 
 /// Readings that contradict their repeats and adjacent readings: found by medians, then tested
 /// against the scatter of the others (Student, corrected for the number of readings). Only set-up
-/// effects are subtracted. None with fewer than 10 readings, or if over a quarter.
+/// effects are subtracted. Empty with fewer than 10 readings, with neither repeats nor a known
+/// order, or if more than a quarter of the readings would be suspect.
 std::vector<Suspect> suspects_of(const Observations&, const Repeats&,
                                  const std::vector<Term>& model);
 

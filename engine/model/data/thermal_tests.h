@@ -12,8 +12,9 @@ namespace nonio::model {
 void put_time_constants(const Campaign& campaign, const std::vector<Observations>& read,
                         std::vector<Part>& parts);
 
-/// Nothing if the tests determine no time constant or contradict each other, if the effect has no
-/// such shape, if the readings have no times, or if the value is outside the range of the search.
+/// Returns std::nullopt if the tests determine no time constant or contradict each other, if the
+/// effect has no such shape, if the readings have no times, or if the value is outside the range of
+/// the search.
 std::optional<Term::Stated> stated_time_constant(const Part& part, const Effect& effect,
                                                  const Axis& axis);
 

@@ -14,7 +14,8 @@ inline constexpr std::size_t thin_beyond = 6000;
 Observations thinned(const Observations& o, const std::vector<double>& weight);
 Part thinned(const Part& part, const std::vector<double>& weight);
 
-/// Only tables of one axis with directions of approach; readings in space are seldom close.
+/// True only for tables of one axis with directions of approach, because readings in space are
+/// seldom close to each other.
 bool can_be_thinned(const Observations& o);
 
 }  // namespace nonio::model

@@ -219,7 +219,7 @@ Noise with_zero(const Observations& o, const std::vector<Term>& terms,
   const auto passes = *std::max_element(noise.pass.begin(), noise.pass.end()) + 1;
   const Signs signs(o, model, weight, noise);
   const bool of_neighbours = signs.of_neighbours() > no_sign;
-  const bool walks = signs.of(steps_of_walk(o)) > no_sign;
+  const bool walks = o.order_known && signs.of(steps_of_walk(o)) > no_sign;
   const bool of_run = runs && signs.of(of_groups(o.run)) > no_sign;
   const bool of_pass = passes > 2 && signs.of(of_groups(noise.pass)) > no_sign;
   if (!of_neighbours && !walks && !of_run && !of_pass) return noise;

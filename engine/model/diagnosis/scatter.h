@@ -14,8 +14,8 @@ bool two_valued(const Repeats& repeats, const std::vector<double>& residual,
                 const std::vector<double>& weight, double digit);
 
 /// Tests whether targets differ by more than their two sides do, without the most favorable target,
-/// because one reading may be an outlier; p is corrected for this choice. Nothing unless at least
-/// five targets of one axis were read once from each of two sides.
+/// because one reading may be an outlier; p is corrected for this choice. std::nullopt unless at
+/// least five targets of one axis were read once from each of two sides.
 std::optional<Place> next_to_a_misread_target(const Observations& o, const Repeats& repeats,
                                               const std::vector<double>& residual,
                                               const std::vector<double>& weight);

@@ -209,7 +209,8 @@ class Judge {
     return std::clamp(share * evidence, 0.0, alias_evidence);
   }
 
-  /// Evidence also with a random zero (a random walk, or one zero of each run).
+  /// Whether the effect has evidence even if the zero is random (a random walk, or one zero of each
+  /// run).
   bool walk_with(const std::string& name) const {
     std::vector<Term> terms = f_.of_model.fit.terms;
     const double without = f_.walk_with(terms).least();
@@ -224,7 +225,7 @@ class Judge {
   }
 
   /// Whether a place in `serious` shares a factor with the effect and has more than `share` of the
-  /// mean square of the effect, which may then be only the most similar one in the catalogue.
+  /// mean square of the effect, which may then be only the most similar one in the catalog.
   bool in_doubt(const std::string& name, const std::vector<Place>& serious, double share) const {
     for (std::size_t t = 0; t < f_.of_best.fit.terms.size(); ++t) {
       if (f_.of_best.fit.terms[t].name() != name) continue;

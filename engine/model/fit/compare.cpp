@@ -101,7 +101,7 @@ std::optional<double> rms_of(const std::vector<double>& residual,
 namespace {
 
 /// `squares`: sum over the whitened residuals; `repeats`: degrees of freedom of the repeats.
-/// Nothing without a floor or a degree of freedom.
+/// Returns std::nullopt without a floor or a degree of freedom.
 std::optional<LackOfFit> lack_of_fit(const Fit& fit, const std::optional<NoiseFloor>& floor,
                                      double repeats, double squares) {
   if (!floor) return std::nullopt;

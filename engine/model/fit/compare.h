@@ -74,7 +74,7 @@ std::vector<Place> seats_in(const Part& part, const Repeats& repeats, const Comp
 /// run that the others do not determine, or that is alone on its line; empty if all are alone.
 std::vector<double> cross_validated(const Observations& o, const std::vector<Term>& terms,
                                     const std::vector<double>& weight);
-/// Finite residuals only; nothing if none of them has a weight above 0.
+/// Returns the RMS of the finite residuals; std::nullopt if all of them have the weight 0.
 std::optional<double> rms_of(const std::vector<double>& residual,
                              const std::vector<double>& weight);
 

@@ -138,7 +138,8 @@ struct Said {
   }
 };
 
-/// Returns the terms of this axis whose prediction depends on the material temperature.
+/// Returns the terms of this axis whose prediction depends on the interpolated material
+/// temperatures.
 Expected<Said> warmed(const Observations& filled, const AxisReadings& r,
                       const std::vector<Term>& terms, const std::vector<VectorXd>& linear,
                       const std::string& axis) {

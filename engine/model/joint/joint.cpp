@@ -423,14 +423,15 @@ class JointSearch {
       out.verdict = Verdict::Kind::unknown;
   }
 
-  /// Null if the catalogue of the campaign does not contain the effect.
+  /// Null if the catalog of the campaign does not contain the effect.
   static const Term* term_of(const Member& member, const std::string& effect) {
     for (const Term& term : member.catalogue)
       if (term.name() == effect) return &term;
     return nullptr;
   }
 
-  /// The values are those of campaign m; nothing if the campaign does not determine the effect.
+  /// The values are those of campaign m; std::nullopt if the campaign does not determine the
+  /// effect.
   std::optional<Candidate> candidate_of(const JointEffect& effect, std::size_t m) const {
     const Term* const term = term_of(of_[m], effect.effect);
     const std::size_t g = effect.holds == Holds::shared    ? 0

@@ -16,8 +16,8 @@ namespace {
 
 using State = Workbench::State;
 
-/// In space, other shapes of the remaining effects are not tried beyond this loss of evidence:
-/// docs/dev/constants.md, M41.
+/// In space, an effect that replaces a member of the best model with this loss of evidence is no
+/// alias; other shapes of the remaining effects are then not tried: docs/dev/constants.md, M41.
 constexpr double hopeless = 100.0;
 
 double normal_below(double x) { return 0.5 * std::erfc(-x * std::numbers::sqrt2 / 2.0); }
@@ -195,9 +195,9 @@ class CandidateOf {
                unexplained_share * (f_.start.squares - f_.best.squares);
   }
 
-  /// Hardly any evidence is lost, or hardly any likelihood apart from the cost of additional
-  /// columns: the cost of the search must not decide. In space, where one curve can contain another
-  /// effect completely, the cost of parameters is ignored as well.
+  /// Whether the change loses hardly any evidence, or hardly any likelihood apart from the cost of
+  /// additional columns, because the cost of the search must not decide. In space, where one curve
+  /// can contain another effect completely, the cost of parameters is ignored as well.
   bool as_good(const State& changed) const {
     if (changed.criterion < f_.best.criterion + alias_evidence) return true;
     const double n = f_.bench->readings();

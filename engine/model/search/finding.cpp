@@ -291,7 +291,8 @@ class Finder {
     return least < all ? std::vector<Suspect>{worst} : std::vector<Suspect>{};
   }
 
-  /// Compares a reading of weight 0 with its prediction; nothing without a significant distance.
+  /// Compares a reading of weight 0 with its prediction; std::nullopt if the distance is not
+  /// significant.
   std::optional<Suspect> predicted(std::size_t row) const {
     // docs/dev/constants.md, M12.
     constexpr double rarely = 0.01;

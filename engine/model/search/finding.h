@@ -25,10 +25,10 @@ inline constexpr double unexplained_share = 0.04;
 struct Finding {
   const Part& part;
   Repeats repeats;
-  std::vector<Term> terms{};  ///< terms of the model, then the other terms of the catalogue
+  std::vector<Term> terms{};  ///< terms of the model, then the other terms of the catalog
   std::size_t in_model = 0;   ///< number of terms of the model
   std::uint64_t seed = 0;
-  /// descriptions of the catalogue that the model does not contain
+  /// descriptions of the catalog that the model does not contain
   std::vector<Term> descriptions{};
   std::vector<Suspect> suspects{};
   std::vector<double> weight{};  ///< weight of each reading: 0 for suspects

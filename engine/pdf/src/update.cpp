@@ -26,7 +26,7 @@ std::optional<std::size_t> number_in(std::string_view text) {
 }
 
 /// Position (/Prev) of the previous cross-reference table, as stated by the table of the part that
-/// ends at `end`; none if it states no such position.
+/// ends at `end`; std::nullopt if it states no such position.
 std::optional<std::size_t> table_before(std::string_view bytes, std::size_t end) {
   constexpr std::size_t longest = 30000;  // bytes of the table and trailer of an update
   constexpr std::string_view word = "\nstartxref\n", previous = "\n/Prev ";

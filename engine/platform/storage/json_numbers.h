@@ -8,8 +8,8 @@ namespace nonio::storage {
 
 /// Converts to SI; the suffix of the key states the unit.
 Number number_of(const std::string& key, const Json& value);
-/// Returns the value that `put` wrote under this name with any unit suffix; none if there is no
-/// such key.
+/// Returns the value that `put` wrote under this name with any unit suffix; std::nullopt without
+/// such a key.
 std::optional<Number> get(const Json& json, const std::string& name);
 
 }  // namespace nonio::storage

@@ -102,8 +102,8 @@ std::optional<std::uint64_t> number(const std::string& text) {
   return value;
 }
 
-/// None if there is no such file; an error unless it is a plain, uncompressed file of the stated
-/// size.
+/// Returns std::nullopt if the file does not exist; an error unless it is a plain, uncompressed
+/// file of the stated size.
 Expected<std::optional<std::uint64_t>> size_in(Database& database, const PackAddress& at) {
   const auto rows = database.rows(
       "SELECT mode, sz, length(data), typeof(data) FROM sqlar WHERE name = ?", {at.name});

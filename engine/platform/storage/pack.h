@@ -28,7 +28,7 @@ struct PackAddress {
   std::filesystem::path pack;
   std::string name;
 };
-/// None if the path is not a file below `.nonio/packs`.
+/// Returns std::nullopt if the path is not a file below `.nonio/packs`.
 std::optional<PackAddress> in_pack(const std::filesystem::path& path);
 
 class PackWriter {
@@ -44,10 +44,10 @@ class PackWriter {
   Database database_;
 };
 
-/// None if the pack has no such file. An error if the pack is missing, or if the pack or this file
-/// is damaged.
+/// Returns std::nullopt if the pack has no such file. An error if the pack is missing, or if the
+/// pack or this file is damaged.
 Expected<std::optional<std::string>> read_packed(const PackAddress& at);
-/// Returns the size in bytes without reading the content; none if there is no such file.
+/// Returns the size in bytes without reading the content; std::nullopt if the file does not exist.
 Expected<std::optional<std::uint64_t>> size_packed(const PackAddress& at);
 /// Returns the sorted names that begin with `folder` and '/', without this prefix.
 Expected<std::vector<std::string>> names_packed(const PackAddress& folder);

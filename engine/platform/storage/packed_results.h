@@ -82,7 +82,8 @@ struct Written {
   std::int64_t seconds = 0, nanoseconds = 0;
 };
 Expected<std::optional<Written>> written_at(const std::filesystem::path& file);
-/// Returns the time of the catalogue for a campaign in a pack; none if the file does not exist.
+/// Returns the time of the catalogue for a campaign in a pack; std::nullopt if the file does not
+/// exist.
 Expected<std::optional<Written>> record_written_at(const std::filesystem::path& folder);
 
 }  // namespace nonio::storage

@@ -25,9 +25,9 @@ struct Chart {
   struct Curve {
     std::string name, sheet;
     std::size_t position_column = 0, value_column = 0, first_row = 0, last_row = 0;
-    bool line = true;              ///< whether the points are connected by a line
-    std::optional<double> U = {};  ///< expanded uncertainty in the unit of the values; drawn as
-                                   ///< error bars if stated
+    bool line = true;  ///< whether the points are connected by a line
+    /// Expanded uncertainty in the unit of the values; drawn as error bars if stated.
+    std::optional<double> U = {};
   };
   std::string title, position_name, value_name;
   std::vector<Curve> curves;
@@ -44,8 +44,8 @@ struct Sheet {
 
 struct Workbook {
   std::string title;
-  std::string date;  ///< creation date YYYY-MM-DD, stated so that the same workbook gives the same
-                     ///< bytes
+  /// Creation date YYYY-MM-DD, stated so that the same workbook gives the same bytes.
+  std::string date;
   std::vector<Sheet> sheets;
 };
 

@@ -21,7 +21,8 @@ constexpr std::array<lxw_color_t, 6> colours{0x1B6CA8, 0xC8553D, 0x4D8B31,
 constexpr std::size_t chart_rows = 22;
 constexpr std::uint16_t chart_width = 900, chart_height = 420;
 
-/// None before 1900-03-01, because spreadsheets count the day 1900-02-29, which did not exist.
+/// Returns std::nullopt before 1900-03-01, because spreadsheets count the day 1900-02-29, which did
+/// not exist.
 std::optional<std::chrono::year_month_day> day_of(const std::string& text) {
   int year = 0;
   unsigned month = 0, day = 0;

@@ -14,8 +14,9 @@
 namespace nonio {
 namespace {
 
-// Returns size * 10^places rounded to an integer. None for places outside of 0..22, for a product
-// of 10^12 or more, or within 0.01 of a tie, which rounding errors of the product could decide.
+// Returns size * 10^places rounded to an integer. Returns std::nullopt for places outside of 0..22,
+// for a product of 10^12 or more, or within 0.01 of a tie, which rounding errors of the product
+// could decide.
 std::optional<std::int64_t> quickly_rounded(double size, int places) {
   if (places < 0 || places >= static_cast<int>(exact_powers_of_10.size())) return std::nullopt;
   const double product = size * exact_powers_of_10[static_cast<std::size_t>(places)];

@@ -120,8 +120,8 @@ Expected<std::vector<Stamp>> check_document_stamps(Added& added, Trusted& known,
 Expected<void> check_needed(const Added& added, const Trusted& known,
                             const std::vector<std::vector<CertificatePtr>>& chains) {
   std::set<std::string> in_chains, found;
-  for (const auto& chain : chains)  // the last certificate of a chain is the root, which no update
-                                    // contains
+  // The last certificate of a chain is the root, which no update contains.
+  for (const auto& chain : chains)
     for (std::size_t i = 0; i + 1 < chain.size(); ++i) in_chains.insert(der_of(chain[i].get()));
   for (const std::string& der : added.certificates)
     if (!in_chains.contains(der) || !found.insert(der).second)

@@ -18,8 +18,9 @@ struct Added {
   std::vector<std::string> certificates;  ///< in DER
 };
 
-/// Data of any other kind are an error. `ends`: result of `pdf::ends_of_parts`. `updater`: updater
-/// of the signed file, which can then write another update.
+/// Reads the time stamps, certificates and revocation data that updates add; any other addition is
+/// an error. `ends`: result of `pdf::ends_of_parts`. `updater`: updater of the signed file, which
+/// can then write another update.
 Expected<Added> read_updates(std::string_view bytes, const std::vector<std::size_t>& ends,
                              pdf::Updater& updater);
 

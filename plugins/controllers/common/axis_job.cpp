@@ -251,8 +251,26 @@ bool lacks_number(const std::vector<std::string>& of, const ControllerInput& inp
 bool states_active(const ControllerInput& input, const std::string& axis,
                    const std::string& measurement, bool backlash_in_options, OutputResult& result) {
   const Active active = active_of(input, axis, measurement, backlash_in_options);
-  if (active.table && active.backlash) return true;
   const Axis* a = input.campaign.machine.axis(axis);
+  if (active.table && active.backlash) {
+    const Measurement* m = measurement_of(input, measurement);
+    const bool none =
+        active.table->empty() && (a == nullptr || a->active_backlash.value_or(0.0) == 0.0);
+    const bool after = m != nullptr && m->adjustment == "after" && m->compensation != "off";
+    if (!none || !(after || (m != nullptr && m->compensation == "on"))) return true;
+    // A table from it would replace the one that was loaded meanwhile.
+    result.findings.push_back(
+        {"table.active-contradicted",
+         false,
+         {},
+         {{"axis", axis},
+          {"measurement", measurement},
+          {"stated", after ? "adjustment = \"after\"" : "compensation = \"on\""}},
+         measurement,
+         "If no table and no backlash value was active, state compensation = \"off\" in this "
+         "[[measurement]]. Otherwise state what was active, in a campaign of its own."});
+    return false;
+  }
   const std::string backlash =
       a != nullptr && a->rotary ? "active_backlash_deg" : "active_backlash_mm";
   const std::string missing = active.table      ? backlash

@@ -162,10 +162,15 @@ void predict(const AxisJob& job, const math::Correction& whole, OutputResult& re
   const double E_after = math::predicted_after(was.E(), will.E(), std::max(job.U.E, U_B));
   // Without a known scale, the curve is not the axis error, and predictions are made for the
   // diagonals instead.
-  if (job.scale_known) {
+  // Without all targets, the values of the axis are not known before compensation either.
+  if (job.scale_known && curve.left_out == 0) {
     add(both ? "E" : job.from_diagonals ? "M" : curve.plus.empty() ? "E-" : "E+", was.E(), E_after);
     add("B", was.B(), math::predicted_after(was.B(), will.B(), U_B));
     add("M", was.M(), math::predicted_after(was.M(), will.M(), job.U.M));
+  }
+  if (std::isnan(job.U.E) && will.E() < was.E()) {
+    Remark& note = result.notes.emplace_back(remark(job, "table.not-predicted"));
+    note.texts.emplace_back("id", job.measurement);
   }
   if (!(will.E() < was.E()))
     result.findings.push_back({"table.no-gain",

@@ -133,8 +133,9 @@ std::string size_words(const AxisJob& job, const TableSize& size) {
          decimal(size.slope * slope.per_si, 3) + " " + std::string(slope.symbol) +
          limit("slope_um_per_m", "slope_arcsec_per_deg", slope.symbol) + " from " +
          with_unit(job, size.slope_from, 4) +
-         (job.scale_known ? "; E of the axis " + deviation_words(job, explained(job).E)
-                          : std::string());
+         (job.scale_known && job.curve.left_out == 0
+              ? "; E of the axis " + deviation_words(job, explained(job).E)
+              : std::string());
 }
 
 void note_zero(const AxisJob& job, double zero, OutputResult& result) {

@@ -39,6 +39,18 @@ Expected<Effect::Columns> columns(const Observations& o, const Axis& axis,
   return fail("squareness: expected XY, XZ or YZ, found " + axis.name);
 }
 
+std::vector<std::string> of_bodies(const Observations& o) {
+  const auto in = in_bodies(o);
+  return in ? of(*in) : std::vector<std::string>();
+}
+
+Expected<Effect::Columns> columns_of_bodies(const Observations& o, const Axis& axis,
+                                            const std::vector<double>& shape) {
+  const auto in = in_bodies(o);
+  return in ? columns(*in, axis, shape)
+            : fail("part-squareness: expected parts that were turned by different angles");
+}
+
 }  // namespace
 
 NONIO_PLUGIN(registry) {
@@ -50,6 +62,15 @@ NONIO_PLUGIN(registry) {
              .applies = [](const Observations&, const Axis&) { return true; },
              .columns = columns,
              .instances = of});
+  registry.add(
+      Effect{.info = {"part-squareness", "1.0.0",
+                      "A squareness that turns with the part: of fixture or measuring machine"},
+             .linear = {{"c", "squareness in the frame of the part", Quantity::small_angle}},
+             .shapes = {},
+             .compensable = false,
+             .applies = [](const Observations&, const Axis&) { return true; },
+             .columns = columns_of_bodies,
+             .instances = of_bodies});
 }
 
 }  // namespace nonio::squareness

@@ -78,6 +78,23 @@ Expected<Effect::Columns> columns(const Observations& o, const Axis& place,
   return out;
 }
 
+std::vector<std::string> of_bodies(const Observations& o) {
+  const auto in = in_bodies(o);
+  return in ? of(*in) : std::vector<std::string>();
+}
+
+std::vector<double> grid_of_bodies(const Observations& o, const Axis& place) {
+  const auto in = in_bodies(o);
+  return in ? grid(*in, place) : std::vector<double>();
+}
+
+Expected<Effect::Columns> columns_of_bodies(const Observations& o, const Axis& place,
+                                            const std::vector<double>& shape) {
+  const auto in = in_bodies(o);
+  return in ? columns(*in, place, shape)
+            : fail("part-straightness: expected parts that were turned by different angles");
+}
+
 }  // namespace
 
 NONIO_PLUGIN(registry) {
@@ -91,6 +108,16 @@ NONIO_PLUGIN(registry) {
              .applies = [](const Observations& o, const Axis& a) { return !grid(o, a).empty(); },
              .columns = columns,
              .instances = of});
+  registry.add(Effect{
+      .info = {"part-straightness", "1.0.0",
+               "A bow that turns with the part: of fixture, clamping or measuring machine"},
+      .linear = {{"s", "rms of the curve over the places", Quantity::deviation}},
+      .shapes = {{{"knots", "knots of the spline", Quantity::count}, grid_of_bodies, false}},
+      .curve = true,
+      .compensable = false,
+      .applies = [](const Observations& o, const Axis& a) { return !grid_of_bodies(o, a).empty(); },
+      .columns = columns_of_bodies,
+      .instances = of_bodies});
 }
 
 }  // namespace nonio::straightness

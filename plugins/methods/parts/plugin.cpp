@@ -49,7 +49,8 @@ Expected<std::pair<double, bool>> growth_of(const Measurement& m) {
 
 class Rows {
  public:
-  Rows(const Measurement& m, std::array<bool, 3> places, bool size_known) {
+  Rows(const Measurement& m, std::array<bool, 3> places, bool size_known, const Vector& origin,
+       double turned) {
     o_.measurement = m.id;
     for (std::size_t k = 0; k < 3; ++k) {
       axis_[k] = o_.axes.size();
@@ -58,6 +59,8 @@ class Rows {
       o_.lines[k].sense[k] = 1.0;
       o_.lines[k].body = m.id;
       o_.lines[k].body_size_known = size_known;
+      o_.lines[k].body_origin = origin;
+      o_.lines[k].body_turned = turned;
     }
     places_ = places;
   }
@@ -103,7 +106,7 @@ Expected<Observations> observations_of(const MethodInput& in) {
     if (const auto at = origin.find(coordinates[k]); at != origin.end())
       from[k] = at->second * 1e-3;
   const std::vector<double>* z = r.column(nominal[2]);
-  Rows rows(m, {true, true, z != nullptr}, growth.second);
+  Rows rows(m, {true, true, z != nullptr}, growth.second, from, angle);
   std::uint64_t missing = 0;
   for (std::size_t i = 0; i < r.size(); ++i) {
     const Vector p{(*r.column(nominal[0]))[i], (*r.column(nominal[1]))[i],

@@ -121,7 +121,9 @@ void add_conformity(const Source& source, Blocks& blocks) {
   if (limits) table.columns.push_back({w.get("results.decision"), "", false});
   for (const Shown& s : all) {
     const Value& v = *s.value;
-    const Printed shown = printed_result(v.value, v.U, v.quantity, source.language());
+    const Printed shown =
+        printed_result(v.value, v.U, v.quantity, source.language(),
+                       s.limit == nullptr ? std::nullopt : std::optional(s.limit->tolerance));
     std::vector<Table::Cell> row = {{s.measured->measurement.id}, {pages::symbol(v.name), true}};
     if (!brief) row.push_back({w.get_or("value." + pages::without_rule(v.name), "")});
     row.push_back({shown.value});

@@ -97,9 +97,9 @@ void add_conformity(const Source& source, std::vector<std::string>& lines) {
       if (a.plugin == c.plugin && a.measurement == c.measurement)
         for (const Value& v : a.evaluation.values)
           if (v.name == c.name) value = &v;
-    const Printed shown =
-        value != nullptr ? printed_result(value->value, value->U, c.quantity, source.language())
-                         : Printed{"–", ""};
+    const Printed shown = value != nullptr ? printed_result(value->value, value->U, c.quantity,
+                                                            source.language(), c.tolerance)
+                                           : Printed{"–", ""};
     const std::string what =
         w.get(c.decision == Decision::does_not_conform ? "status.does_not_conform"
                                                        : "status.cannot_be_decided",

@@ -357,6 +357,21 @@ class Certificates(LiveTest):
             self.assertEqual([d.get("replaces") for d in drafts], ["S-0001"])
             self.assertEqual(len(json_of("certificates", self.lab)["certificates"]), 1)
 
+            # The number in force is found as long as its successor is a draft, and no longer after its withdrawal.
+            def listed(query="", found=1):
+                return s.until(f"/api/campaigns?{query}", lambda a: a["found"] == found, f"{query}: {found}")["campaigns"]
+            self.assertEqual([c["certificate"] for c in listed("search=S-0001")], ["S-0001"])
+            # A copied folder does not get what another one was given.
+            shutil.copytree(self.lab / "adjusted", self.lab / "copy")
+            copy = next(c for c in listed(found=2) if c["folder"] == "copy")
+            self.assertEqual((copy["state"], copy.get("certificate"), copy["files"]), ("failed", None, []))
+            self.assertIn("adjusted", copy["message"])
+            shutil.rmtree(self.lab / "copy")
+            nonio("certificate", "withdraw", self.lab, "S-0001", "--why", "wrong machine", "--by", "B. Sample")
+            listed("search=S-0001", found=0)
+            lines = s.until("/api/site", lambda a: all(x["id"] != "worklist.draft" for x in a["lines"]) or a, "worklist")["lines"]
+            self.assertEqual(sorted({x["id"] for x in lines if x["id"] == "worklist.draft"}), ["worklist.draft"] if s.get("/api/drafts")["drafts"] else [])
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -90,9 +90,10 @@ Block value_table(const Source& source, const Results::Analysed& a) {
   if (shape.decision) column("results.decision", false, false);
   for (const Value& v : a.evaluation.values) {
     if (left_out(source, v)) continue;
-    const Printed shown =
-        printed_result(v.value, v.U ? v.U : v.repeatability, v.quantity, source.language());
     const Conformity* c = conformity_of(source.in, a, v.name);
+    const Printed shown =
+        printed_result(v.value, v.U ? v.U : v.repeatability, v.quantity, source.language(),
+                       c == nullptr ? std::nullopt : std::optional(c->tolerance));
     std::vector<Table::Cell> row = {{symbol(v.name), true}};
     if (shape.meaning) row.push_back({meaning_of(source, v.name)});
     row.push_back({shown.value});

@@ -145,14 +145,15 @@ void add_decisions(const Source& source, const Results::Analysed& a, Blocks& blo
   for (const Value& v : a.evaluation.values) {
     const Conformity* c = conformity_of(source.in, a, v.name);
     if (c == nullptr) continue;
-    table.rows.push_back({{symbol(v.name), true},
-                          {printed_result(v.value, v.U, v.quantity, source.language()).value},
-                          {plain_number(source, c->tolerance, c->quantity)},
-                          {unit_text(c->quantity)},
-                          {decision_text(source, c->decision), true,
-                           c->decision == Decision::conforms           ? Level::good
-                           : c->decision == Decision::does_not_conform ? Level::failed
-                                                                       : Level::attention}});
+    table.rows.push_back(
+        {{symbol(v.name), true},
+         {printed_result(v.value, v.U, v.quantity, source.language(), c->tolerance).value},
+         {plain_number(source, c->tolerance, c->quantity)},
+         {unit_text(c->quantity)},
+         {decision_text(source, c->decision), true,
+          c->decision == Decision::conforms           ? Level::good
+          : c->decision == Decision::does_not_conform ? Level::failed
+                                                      : Level::attention}});
   }
   if (!table.rows.empty()) blocks.push_back({std::move(table), "decisions on rules"});
 }

@@ -43,7 +43,8 @@ struct Candidate {
   /// Mean ratio of found to true size near the limit of detection; 1 without bias.
   double bias = 1.0;
   std::vector<std::uint32_t> rows{};  ///< rows of the part's table that are the reason `why`
-  /// Descriptions of position in the model with which the evidence was found; empty: none.
+  /// Descriptions of position in the model with which the evidence was found; empty if there was
+  /// none.
   std::vector<std::string> with_descriptions{};
 };
 
@@ -166,7 +167,7 @@ struct Explanation {
   std::vector<Place> fails;
   /// at most three measurements that would separate aliases, or two effects that cancel each other
   std::vector<Plan> plans;
-  /// owner of effects that are not in the catalogue but are referenced by terms
+  /// owner of effects that are not in the catalog but are referenced by terms
   std::shared_ptr<const void> keeps{};
   /// for a course with effects of channels in its model or in its best explanation
   std::optional<Sensors> sensors{};

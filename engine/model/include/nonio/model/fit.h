@@ -85,7 +85,7 @@ struct Noise {
   double zero_size = 0.0;
   double zero_found = 0.0;  ///< most likely value of `zero_size`
   bool zero_open = false;   ///< whether the readings do not bound the size of the zero from above
-  double digit = 0.0;       ///< step of the last digit of the readings, m or rad; 0: none was found
+  double digit = 0.0;  ///< step of the last digit of the readings, m or rad; 0 if none was found
   std::optional<Stretch> stretch{};
   std::vector<double> rough{};  ///< standard deviation of each reading relative to s; empty: 1
   std::vector<std::uint32_t> pass{};  ///< index of the pass of each reading

@@ -59,7 +59,7 @@ struct JointExplanation {
   std::vector<JointEffect> candidates;  ///< each as the only addition, the best first
   std::vector<JointEffect> effects;  ///< significant effects, in the order in which they were found
   /// For each named effect with aliases, of plans for at most eight campaigns: the one with enough
-  /// power and the fewest readings, else the largest power.
+  /// power and the fewest readings, otherwise the one with the largest power.
   std::vector<JointPlan> plans{};
   /// All readings: RMS with the models, with the named effects in addition, of the noise; m or rad
   double rms = 0.0, rms_after = 0.0, noise = 0.0;

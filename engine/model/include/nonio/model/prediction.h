@@ -28,10 +28,10 @@ struct Prediction {
 Expected<Prediction> predict(const Part& seen, const std::vector<Term>& model, const Part& unseen,
                              bool zero_kept);
 
-/// Readings of an axis or of lines in space. The zeros of the lines and the nuisances `set_up` of
-/// the unseen readings are new unknowns. u contains the parameters, the new unknowns and one
-/// reading. Errors: an axis of the seen part is missing in the unseen part, one part has lengths
-/// and the other angles, or the seen readings do not determine the model.
+/// Predicts readings of an axis or of lines in space. The zeros of the unseen lines and the
+/// parameters of the effects `set_up` are new unknowns. u combines the parameters, the new unknowns
+/// and one reading. Errors: the parts have different axes or no lines, one has lengths and the
+/// other angles, or the seen readings do not determine the model or leave no degree of freedom.
 Expected<Prediction> predict_places(const Part& seen, const std::vector<Term>& model,
                                     const Part& unseen, const std::vector<Term>& set_up);
 

@@ -60,8 +60,8 @@ struct File {
   std::vector<Object> objects;     ///< by object number; entry 0 is not used
   std::vector<std::size_t> order;  ///< object numbers in the order of the file
   Value trailer;
-  std::size_t body = 0, xref = 0;  ///< positions of the first object and of the cross-reference
-                                   ///< table, bytes
+  /// Positions of the first object and of the cross-reference table, bytes.
+  std::size_t body = 0, xref = 0;
 
   /// Returns the value or, for a reference, the value of the referenced object. Null if the object
   /// does not exist, or if it is a reference itself.

@@ -66,9 +66,9 @@ class Updater {
   std::size_t catalogue_ = 0, page_ = 0;
   /// Positions of the end of the file so far and of the last cross-reference table, bytes.
   std::size_t end_ = 0, last_table_ = 0;
-  std::size_t size_ = 0;   ///< smallest unused object number
-  std::size_t store_ = 0;  ///< number of the object that lists all revocation data; 0 without such
-                           ///< data
+  std::size_t size_ = 0;  ///< smallest unused object number
+  /// Number of the object that lists all revocation data; 0 without such data.
+  std::size_t store_ = 0;
   std::vector<std::size_t> certificates_, answers_, lists_, fields_;
 };
 

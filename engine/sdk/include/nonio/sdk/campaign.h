@@ -27,8 +27,9 @@ struct Axis {
   std::map<std::string, double> tolerance{};  ///< upper limits by result name, m or rad
   /// For a gantry: name of the control's axis that drives the second side; otherwise empty.
   std::string slave{};
-  /// Compensation that was active in the control during the measurement; none if the manifest does
-  /// not state it. `active_table` contains the files of the table and is empty without a table.
+  /// Compensation that was active in the control during the measurement; std::nullopt if the
+  /// manifest does not state it. `active_table` contains the files of the table and is empty
+  /// without a table.
   std::optional<std::string> active_table{};
   std::optional<double> active_backlash{};  ///< m or rad; 0 if no value was active
 };
@@ -38,8 +39,8 @@ struct Machine {
   /// Kind of machine ("gantry milling machine"), and its condition at the calibration.
   std::string description, condition;
   std::string structure;  ///< gantry, single-column, bridge, other; empty if not stated
-  std::string control;    ///< name of the controller plugin that writes tables; the default
-                          ///< controllers if empty
+  /// Name of the controller plugin that writes tables; the default controllers if empty.
+  std::string control;
   std::vector<Axis> axes;
   std::string asset{};  ///< the owner's inventory number; empty if not stated
 
@@ -59,8 +60,8 @@ struct Instrument {
   /// For a probe: full ranges of the form error of its ball and of the probing error, m.
   std::optional<double> sphere{}, probe{};
   /// For a material measure (scale, step gauge): expansion coefficient, 1/K, and the full ranges of
-  /// its temperature, K, and of that coefficient, 1/K. None if its length does not depend on
-  /// temperature, or if U_per_length includes this effect.
+  /// its temperature, K, and of that coefficient, 1/K. std::nullopt if its length does not depend
+  /// on temperature, or if U_per_length includes this effect.
   std::optional<double> expansion{}, temperature_range{}, expansion_range{};
   /// Issuer of the calibration certificate, and last day of its validity.
   std::string issuer{}, valid_until{};
@@ -189,7 +190,7 @@ struct Measurement {
   std::string square{};  ///< for a straightness: name of the reference square
   /// Whether it was measured after the square was reversed about a face.
   bool square_turned = false;
-  /// These replace the tolerances of the axis for results of the same name.
+  /// Tolerances that replace those of the axis for results of the same name.
   std::vector<Tolerance> tolerances{};
   /// Values of the keys that the method declares, in manifest units and including defaults.
   Settings settings{};
@@ -232,7 +233,7 @@ struct Formula {
     std::string name;
     Quantity quantity = Quantity::number;
     double start = 0.0;  ///< initial value of the fit, SI
-    /// Search range, SI; none for a linear parameter.
+    /// Search range, SI; std::nullopt for a linear parameter.
     std::optional<std::pair<double, double>> range{};
   };
   std::string name, axis, expression;

@@ -43,8 +43,8 @@ inline std::int8_t direction_of(Way way, int listed) {
   return static_cast<std::int8_t>(sign);
 }
 
-/// Returns the SI value of one unit of length (m), or of angle (rad) if `angle`; none if the name
-/// is not a unit.
+/// Returns the SI value of one unit of length (m), or of angle (rad) if `angle`; std::nullopt if
+/// the name is not a unit.
 inline std::optional<double> unit_named(std::string_view name, bool angle) {
   constexpr std::pair<std::string_view, double> lengths[] = {
       {"inch", 0.0254}, {"m", 1.0}, {"mm", 1e-3}, {"nm", 1e-9}, {"um", 1e-6}};
@@ -61,7 +61,8 @@ constexpr const char* units_known(bool angle) {
   return angle ? "arcsec, deg, mrad, rad, urad" : "inch, m, mm, nm, um";
 }
 
-/// ' ' means any number of blanks and tabs; none if the name is unknown.
+/// Returns ' ' for "blank", which means one or more blanks or tabs, and std::nullopt if the name is
+/// unknown.
 inline std::optional<char> separator_named(std::string_view name) {
   if (name == "tab") return '\t';
   if (name == "blank") return ' ';
@@ -75,8 +76,8 @@ struct RowRange {
   Way way = Way::none;  ///< direction of travel of all rows
 };
 
-/// Parses "12-36 forward", "41- reverse" (to the end of the file) or "5-9"; none if the text is
-/// malformed.
+/// Parses "12-36 forward", "41- reverse" (to the end of the file) or "5-9"; std::nullopt if the
+/// text is malformed.
 inline std::optional<RowRange> row_range_of(std::string_view text) {
   RowRange range;
   const std::size_t blank = text.find(' ');

@@ -136,7 +136,7 @@ inline double slow_value(std::string_view text, const Decimal& d) {
 
 }  // namespace detail
 
-/// #N/A, in other languages #N/D or #NV.
+/// Whether the text is #N/A, or #N/D or #NV in other languages.
 inline bool missing_in_spreadsheet(std::string_view text) {
   return detail::same_word(text, "#n/a") || detail::same_word(text, "#n/d") ||
          detail::same_word(text, "#nv");

@@ -55,7 +55,7 @@ struct RoundedResult {
 };
 
 /// Rounds U to two significant digits (GUM, JCGM 100:2008, 7.2.6) and the value to the same place,
-/// with at most 9 decimals. None if U is not above 0, or if a number is not finite.
+/// with at most 9 decimals. Returns std::nullopt if U is not above 0, or if a number is not finite.
 std::optional<RoundedResult> rounded_result(double value, double U);
 
 /// Uses an exponent only for an absolute value below 1e-4 (except 0) or of at least 1e9. Empty if
@@ -73,7 +73,7 @@ double rounded_by_digits(double value);
 double printed(double si, Quantity quantity);
 
 /// Returns the digits of the shortest text that parses to the same double, for 1e-11 <= size <
-/// 1e12; none if the fast method does not find them. `append_shortest` is for every value.
+/// 1e12; std::nullopt if the fast method does not find them. `append_shortest` is for every value.
 std::optional<Decimal> shortest_decimal(double size);
 
 /// Appends the shortest text that parses to the same double, as std::to_chars writes it.

@@ -33,8 +33,8 @@ struct HistorySegment {
 };
 
 struct HistoryChange {
-  std::string after, before;  ///< days of the last campaign before the change and of the first
-                              ///< campaign after it
+  /// Days of the last campaign before the change and of the first campaign after it.
+  std::string after, before;
   double size = 0.0, u = 0.0, p = 1.0;  ///< p: p-value adjusted for all tests of the run
   std::string cause;                    ///< undeclared, event, instrument or table
   std::string event{};
@@ -65,8 +65,8 @@ struct HistorySeries {
   std::optional<HistoryForecast> forecast{};
   /// Whether later campaigns form a new series because they use another method.
   bool ended = false;
-  /// Range of the axis over which the model compares campaigns with different targets; none if
-  /// points are compared directly. The points themselves are evaluated at their own targets.
+  /// Range of the axis over which the model compares campaigns with different targets; std::nullopt
+  /// if points are compared directly. The points themselves are evaluated at their own targets.
   struct Over {
     double from = 0.0, to = 0.0;
   };

@@ -23,8 +23,9 @@ inline std::size_t coordinate_of(std::string_view axis) {
 inline constexpr double grid_tolerance = 1e-7;
 
 /// The table to which all measurements are converted: one row per reading. Columns have `size()`
-/// entries, or none if the file does not contain them. SI: m, rad, s, degC. deviation = actual -
-/// target (ISO 230-2), see docs/conventions.md. `check` (sdk/check.h) defines the valid values.
+/// entries, or none if the file does not contain them. Units: m, rad, s and degC, unless a member
+/// states another one. deviation = actual - target (ISO 230-2), see docs/conventions.md. `check`
+/// (sdk/check.h) defines the valid values.
 struct Observations {
   struct AxisColumn {
     std::string axis;
@@ -34,17 +35,21 @@ struct Observations {
     /// stated.
     std::vector<std::int8_t> approach;
   };
-  /// Readings of one line have a common unknown zero and a common direction of sensing.
+  /// Readings of one line have a common unknown zero and, without `Observations::sense`, a common
+  /// direction of sensing.
   struct Line {
     std::string name;
     /// Direction of sensing, a unit vector; all 0 if the deviation is an angle, or if it is not
     /// stated.
     std::array<double, 3> sense{};
-    /// Common name of the lines of one rigid body whose position and orientation in the machine are
-    /// unknown.
+    /// Common name of the lines of one rigid body whose exact position and orientation in the
+    /// machine are unknown.
     std::string body{};
     /// False if the size of the body is unknown, because its temperature is unknown.
     bool body_size_known = true;
+    /// As stated: position of the zero of the body, m, and rotation about Z, rad.
+    std::array<double, 3> body_origin{};
+    double body_turned = 0.0;
   };
 
   /// A quantity recorded in addition to the deviations: a temperature, a speed, a load. It has its
@@ -65,16 +70,16 @@ struct Observations {
   std::vector<AxisColumn> axes;
   std::vector<Line> lines;
 
-  std::vector<double> deviation;           ///< actual - target, m or rad; finite
-  std::vector<double> u;                   ///< standard uncertainty of the deviation, m or rad
-  std::vector<std::uint32_t> run;          ///< number of the run in the file, from 1
-  std::vector<std::uint32_t> line;         ///< index into `lines`; if empty, all readings belong to
-                                           ///< lines[0]
+  std::vector<double> deviation;   ///< actual - target, m or rad; finite
+  std::vector<double> u;           ///< standard uncertainty of the deviation, m or rad
+  std::vector<std::uint32_t> run;  ///< number of the run in the file, from 1
+  /// Index into `lines`; if empty, all readings belong to lines[0].
+  std::vector<std::uint32_t> line;
   std::vector<std::uint32_t> source_line;  ///< line of the file, 1-based
   std::vector<double> time;                ///< s; NaN if blank
   std::vector<double> material, air;       ///< temperatures, degC; NaN if blank
-  std::vector<double> pressure, humidity;  ///< air pressure, hPa; relative humidity, %; NaN if
-                                           ///< blank
+  /// Air pressure, hPa; relative humidity, %; NaN if blank.
+  std::vector<double> pressure, humidity;
 
   std::vector<Channel> channels{};
 

@@ -189,7 +189,7 @@ struct Effect {
   struct Shape {
     Parameter parameter;
     /// Returns the values to be tested, ascending, SI: one value if it is known (a period in the
-    /// manifest), none if the readings do not identify the parameter.
+    /// manifest), no value if the readings do not identify the parameter.
     std::function<std::vector<double>(const Observations&, const Axis&)> grid;
     bool continuous = true;  ///< whether the best value may be between grid values
     /// Default value, such as a fixed point in the middle of the measured range. Unlike other grid
@@ -296,7 +296,7 @@ struct Output {
   void (*prepare)(const Templates&) = nullptr;
   /// Optional: errors in the templates and words that this output uses.
   std::vector<Error> (*check_templates)(const Templates&) = nullptr;
-  /// None if the document is not issued under a number.
+  /// std::nullopt if the document is not issued under a number.
   std::optional<Certificate> certificate{};
   /// Optional: whether the document contains the machine's history with these options; it is then
   /// written again when the history changes.

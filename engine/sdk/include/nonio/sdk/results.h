@@ -181,7 +181,7 @@ inline std::string identifier_of(std::string_view number, std::string_view readi
 enum class Decision { conforms, does_not_conform, cannot_be_decided };
 
 struct Conformity {
-  std::string measurement, axis, plugin, name;  ///< axis: empty if no axis was measured
+  std::string measurement, axis, plugin, name;  ///< axis: empty unless the kind is "axis"
   double tolerance = 0.0;
   Quantity quantity = Quantity::deviation;
   Decision decision = Decision::cannot_be_decided;
@@ -196,14 +196,14 @@ struct ModelFit {
   /// The rms, smallest and largest value of a curve, m or rad.
   struct Curve {
     double rms = 0.0, low = 0.0, high = 0.0;
-    /// Positions of `low` and `high` along the line, m or rad; none in space, or if several
+    /// Positions of `low` and `high` along the line, m or rad; std::nullopt in space, or if several
     /// positions have this value.
     std::optional<double> low_at{}, high_at{};
   };
   struct Parameter {
     std::string effect, name;  ///< effect and symbol: "backlash:X", "b"
     double value = 0.0;
-    std::optional<double> u{};  ///< standard uncertainty, SI; none if it is not known
+    std::optional<double> u{};  ///< standard uncertainty, SI; std::nullopt if it is not known
     Quantity quantity = Quantity::number;
     /// Whether the value was found by a search over a nonlinear parameter: period, time constant,
     /// instant.
@@ -239,7 +239,8 @@ struct ModelFit {
   struct Step {
     std::string effect;  ///< effect that was added; empty for the first step
     double rms = 0.0;
-    std::optional<double> cv_rms{};  ///< rms of cross-validation over runs; none with one run
+    std::optional<double>
+        cv_rms{};  ///< rms of cross-validation over runs; std::nullopt with one run
   };
   /// A temperature, speed or load that was recorded during the readings.
   struct Channel {
@@ -280,8 +281,8 @@ struct ModelFit {
   /// Standard deviation of repeated readings, and its standard uncertainty.
   std::optional<double> floor{}, floor_u{};
   std::vector<Suspect> suspects;
-  std::vector<Finding> diagnosis;       ///< verdict about the model, then findings about its
-                                        ///< residuals and the false-alarm rate
+  /// Verdict about the model, then findings about its residuals and the false-alarm rate.
+  std::vector<Finding> diagnosis;
   std::vector<Without> without{};       ///< one fit for each effect that can be removed
   std::vector<Candidate> candidates{};  ///< ordered by evidence, largest first
   /// Effects without evidence, each with the smallest detectable size. Their texts form one
@@ -296,8 +297,8 @@ struct ModelFit {
 /// All results of a campaign, which outputs use and results.json contains.
 struct Results {
   struct Analysed {
-    std::string plugin, version, measurement;  ///< measurement: empty if the campaign as a whole
-                                               ///< was evaluated
+    /// measurement: empty if the campaign as a whole was evaluated.
+    std::string plugin, version, measurement;
     Evaluation evaluation;
     /// Name of the part of the model, such as "warm/z"; empty if `measurement` identifies it.
     std::string part{};

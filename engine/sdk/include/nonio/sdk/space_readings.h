@@ -46,6 +46,12 @@ struct SpaceReadings {
 /// The positions are the commanded ones, with NaN for a coordinate that is not stated.
 SpaceReadings space_of(const Observations& o);
 
+/// Returns the readings of bodies with positions and directions of sensing in the frame of each
+/// body, and no position for all other readings. Of the coordinates, X and Y must be stated.
+/// std::nullopt if all bodies have the same rotation about Z (docs/conventions.md), because their
+/// own errors are then not separable from those of the machine.
+std::optional<Observations> in_bodies(const Observations& o);
+
 /// Whether the readings are centers of a ball on a rotary axis: lengths, measured over an angle.
 bool of_ball_centres(const Observations& o);
 

@@ -84,8 +84,8 @@ inline std::string escaped_markup(std::string_view text, Markup where = Markup::
   return out;
 }
 
-/// Converts UTF-16 text with a byte-order mark (Excel's "Unicode text") to UTF-8; none without such
-/// a mark. An error, with its line, if the bytes are not valid UTF-16.
+/// Converts UTF-16 text with a byte-order mark (Excel's "Unicode text") to UTF-8; std::nullopt
+/// without such a mark. An error, with its line, if the bytes are not valid UTF-16.
 inline Expected<std::optional<std::string>> utf8_of_utf16(std::string_view bytes) {
   const bool little = bytes.starts_with("\xFF\xFE"), big = bytes.starts_with("\xFE\xFF");
   if (!little && !big) return std::nullopt;

@@ -33,7 +33,7 @@ struct PositioningRule {
   std::string_view name;  ///< name in [options.positioning] rules: "iso-1988"
   std::string_view title;
   RuleForm form = RuleForm::iso;
-  double k = 0.0;  ///< number of standard deviations on each side of a mean; 0: none are used
+  double k = 0.0;  ///< number of standard deviations on each side of a mean; 0 if none are used
   bool systematic = true;       ///< for `iso`: whether the edition defines E and M
   bool without_offset = false;  ///< for `nmtba`: whether a constant is subtracted from the means
   std::size_t approaches = 0;   ///< readings per target and direction; 0: not known

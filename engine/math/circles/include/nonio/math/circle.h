@@ -57,7 +57,8 @@ PathCircle minimum_zone(std::span<const CircleReading>, double R);
 PathCircle about(std::span<const CircleReading>, double R, std::array<double, 2> centre);
 
 /// Circular hysteresis H, m: largest difference of the radii of the two directions at one angle,
-/// rad; nothing without such an angle. Readings at most `step`, rad, apart are interpolated.
+/// rad; `circular_hysteresis` returns std::nullopt without such an angle. Readings at most `step`,
+/// rad, apart are interpolated.
 struct Hysteresis {
   double H = 0.0, angle = 0.0;
 };

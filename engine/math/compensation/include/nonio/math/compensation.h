@@ -34,7 +34,7 @@ struct ErrorCurve {
 /// occurs: a target with one side would add a step of half the reversal to the mean.
 ErrorCurve error_curve(const AxisTest& test);
 
-/// Folds the curve of a rotary axis into 0..2 pi with equal ends. Nothing unless it covers the
+/// Folds the curve of a rotary axis into 0..2 pi with equal ends. std::nullopt unless it covers the
 /// turn: at least three positions, not longer than a turn, and an end gap of at most 1.5 times the
 /// largest other gap. Positions that coincide are averaged.
 std::optional<ErrorCurve> closed_turn(const ErrorCurve& curve);
@@ -58,12 +58,12 @@ struct GridRule {
   std::string axis;
 };
 
-/// Returns the grid of the requested step; without one, that of evenly spaced targets, else the
-/// coarsest that contains every position of the curve with a step of at least 1/8 of their mean
-/// distance, else one of about half their smallest distance, on which the curve is interpolated.
-/// Errors, with the axis: fewer than 2 targets or points; a first point after the last target; a
-/// requested step that is not an integer multiple of `unit`, does not divide the turn or is not a
-/// power of two; more points than the control accepts, with a suggestion.
+/// Returns the grid of the requested step; without one, that of evenly spaced targets, otherwise
+/// the coarsest that contains every position of the curve with a step of at least 1/8 of their mean
+/// distance, otherwise one of about half their smallest distance, on which the curve is
+/// interpolated. Errors, with the axis: fewer than 2 targets or points; a first point after the
+/// last target; a requested step that is not an integer multiple of `unit`, does not divide the
+/// turn or is not a power of two; more points than the control accepts, with a suggestion.
 Expected<Grid> choose_grid(const std::vector<double>& position, const GridRule& rule);
 
 /// Rounds each value to an integer number of `unit` (half away from zero, to 12 digits: 2.5 um is a

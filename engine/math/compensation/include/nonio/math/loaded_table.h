@@ -29,7 +29,7 @@ double added(const std::vector<LoadedTable>& tables, std::string_view output,
 
 /// Correction of one axis: the sum of the tables whose only input is this axis, plus (direction +)
 /// or minus (-) half of the backlash value. `present`: backlash value in the control, if no table
-/// sets one. Nothing without such tables.
+/// sets one. std::nullopt without such tables.
 std::optional<Correction> correction_of(const std::vector<LoadedTable>& tables,
                                         std::string_view axis, double present = 0.0);
 

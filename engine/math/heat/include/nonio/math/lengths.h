@@ -32,7 +32,7 @@ namespace nonio::math {
 struct LengthLimit {
   double A = 0.0;  ///< constant part of the limit, m
   double K = 0.0;  ///< in L/K: length for each m of error; 0: no such term
-  double B = 0.0;  ///< upper bound, m; 0: none
+  double B = 0.0;  ///< upper bound, m; 0 if there is none
   bool stated() const { return A > 0.0 || K > 0.0 || B > 0.0; }
   double at(double L) const;
 };
@@ -59,7 +59,7 @@ LengthAnswer judge_lengths(const std::vector<LengthError>& all, const LengthLimi
                            std::string_view rule = "iso14253-1");
 
 /// The largest range of the first three repeats of a length, m, and the indices of its smallest and
-/// largest error. `repeat_range` returns none if no length has two repeats.
+/// largest error. `repeat_range` returns std::nullopt if no length has two repeats.
 struct RepeatRange {
   double range = 0.0;
   std::size_t low = 0, high = 0;
@@ -75,7 +75,7 @@ struct LengthPlan {
 LengthPlan length_plan(const std::vector<LengthError>& all);
 
 /// The least-squares sphere of points, by Gauss-Newton on the radial distances; lengths in m.
-/// `form_of_sphere` returns none for fewer than five points or points in a plane.
+/// `form_of_sphere` returns std::nullopt for fewer than five points or points in a plane.
 struct FormOfSphere {
   std::array<double, 3> centre{};
   double radius = 0.0, P = 0.0;

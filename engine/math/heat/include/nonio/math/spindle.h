@@ -47,7 +47,7 @@ struct Turns {
 std::optional<Turns> turns_of(const SpindleTrack&);
 
 /// Returns r = X cos t + Y sin t, if t grows from X to Y; for `sense` -1, t grows from X to -Y, r =
-/// X cos t - Y sin t. Returns nothing if X and Y differ in the number of turns or of angles.
+/// X cos t - Y sin t. Returns std::nullopt if X and Y differ in the number of turns or of angles.
 std::optional<Turns> rotating(const Turns& X, const Turns& Y, int sense = 1);
 
 struct ErrorMotion {

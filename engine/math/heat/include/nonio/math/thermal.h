@@ -36,9 +36,9 @@ struct RangeOf {
 
 /// Returns nothing for an empty track.
 std::optional<RangeOf> whole_range(const Track&);
-/// Range of the readings in the first w, s; nothing if the test is shorter than w.
+/// Range of the readings in the first w, s; std::nullopt if the test is shorter than w.
 std::optional<RangeOf> first_range(const Track&, double w);
-/// Returns the largest range in any window of w, s; none if the test is shorter than w.
+/// Returns the largest range in any window of w, s; std::nullopt if the test is shorter than w.
 std::optional<RangeOf> largest_range(const Track&, double w);
 
 /// Standard deviation of a reading from second differences, s^2 = sum (d_(i-1) - 2 d_i +

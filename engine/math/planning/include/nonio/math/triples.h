@@ -49,7 +49,8 @@ struct TripleRequest {
   std::int64_t max_points = 1500;
   /// periods of screw, rack or scale, m; no step may be a multiple of a period
   std::vector<double> pitch_x{}, pitch_y{};
-  /// Whether ISO 230-2 sampling is required: five targets per meter up to 2 m, else every 250 mm.
+  /// Whether ISO 230-2 sampling is required: five targets per meter up to 2 m, above 2 m one every
+  /// 250 mm.
   bool density = false;
   EvenSteps even = EvenSteps::any;
   std::int64_t hypotenuse = 5000;

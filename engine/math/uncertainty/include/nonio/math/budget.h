@@ -70,7 +70,7 @@ struct Shares {
   /// The part of `u` that is already contained in the repetition: for inputs that are independent
   /// per reading, the part from lines whose readings are in the residuals.
   std::vector<double> in_residuals;
-  /// Fourth root of the sum of fourth powers of independent rectangular parts of `u`; else 0.
+  /// Fourth root of the sum of fourth powers of independent rectangular parts of `u`; otherwise 0.
   std::vector<double> rectangular{};
   /// degrees of freedom of the repetition, if lines differ; 0: those of the budget
   double dof = 0.0;

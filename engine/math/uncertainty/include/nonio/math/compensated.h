@@ -18,11 +18,12 @@ CompensatedUncertainty compensated_uncertainty(const Campaign&, const Measuremen
                                                const Observations&, const AxisTest&,
                                                bool has_drift);
 
-/// Expanded uncertainty (k = 2) of the range of mean deviations along a diagonal, m; 0: not known.
+/// Expanded uncertainty (k = 2) of the range of mean deviations along a diagonal, m; NaN: not known.
 double compensated_uncertainty_along(const Campaign&, const Measurement&, const Observations&);
 
 /// Returns the deviation to be stated after compensation: `after`, but at least min(U, before),
-/// because errors below U are not known and therefore not compensated.
+/// because errors below U are not known and therefore not compensated. NaN if U is NaN and the
+/// compensation has an effect.
 double predicted_after(double before, double after, double U);
 
 }  // namespace nonio::math

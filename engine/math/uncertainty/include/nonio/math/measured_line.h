@@ -37,7 +37,8 @@ struct MeasuredLine {
 
   /// Whether every stop was read from this direction; 0: from both directions.
   bool has(int direction) const;
-  /// Returns 0 if every stop was read from both directions, else the common direction, if any.
+  /// Returns 0 if every stop was read from both directions, otherwise the common direction;
+  /// std::nullopt without one.
   std::optional<int> direction() const;
   /// Standard uncertainty of the mean at the stop with the fewest readings; 0 if it is not known.
   double u_mean(int direction = 0) const;

@@ -49,7 +49,7 @@ struct Squareness {
 };
 
 /// `one-line`, `unknown` (the square was not turned over, and its error is not stated), `too-few`
-/// or `incomplete`. `which`: name of the square for the first two, else id of the measurement.
+/// or `incomplete`. `which`: name of the square for the first two, otherwise id of the measurement.
 struct NoSquareness {
   std::string why;
   std::string which;

@@ -57,7 +57,8 @@ UncertaintyBudget contributions_of(const Budget&, const std::string& axis, bool 
 /// that do not average out (A, E, M, P, Pa); otherwise only the environment contributes.
 std::vector<double> shares_of(const Budget&, double U, bool systematic);
 
-/// Smallest number of readings in a mean, over targets and directions with readings; else 0.
+/// Smallest number of readings in a mean, over targets and directions with readings; 0 without
+/// readings.
 std::size_t approaches_per_mean(const AxisTest&);
 
 /// Expanded uncertainties (k = 2) of the results of ISO 230-2; m or rad. n: approaches in each

@@ -52,8 +52,8 @@ struct DirectStraightness : MeanCurve {
   /// true: the even part is used too, relative to a line through both ends. false: only the odd
   /// part is used, because the slope of the reference line is unknown.
   bool whole = false;
-  /// The same line with the straightedge turned over, with equal signs: the mean of both is used,
-  /// in which the error of the straightedge cancels.
+  /// Curve of this line with the straightedge turned over, with equal signs: the mean of both
+  /// curves is used, in which the error of the straightedge cancels.
   std::optional<MeanCurve> reversed{};
   std::size_t readings() const { return mean.size() + (reversed ? reversed->mean.size() : 0); }
   double mean_of(std::size_t i) const {

@@ -75,7 +75,8 @@ struct AxisSeries {
 struct StepChoices {
   /// Whether the mirror is known to be square to the diagonals, to within u over a step.
   bool set_up_known = false;
-  /// Whether the mirror was set square to the beam; else the beam was aligned with the diagonal.
+  /// Whether the mirror was set square to the beam; otherwise the beam was aligned with the
+  /// diagonal.
   bool mirror_to_beam = true;
   /// Standard uncertainty of a reading, m; 0: estimated from the residuals.
   double u_reading = 0.0;
@@ -137,8 +138,8 @@ struct StepChecks {
 StepChecks check_step_diagonals(const StepDiagonals&);
 
 /// Returns the mean total of the diagonals minus its prediction from three axis series, m: mean D -
-/// sum of (T_a/L) E_aa(T_a), scaled to the whole travel. Nothing if a total is missing, or an axis
-/// has no series over more than 90 % of its travel.
+/// sum of (T_a/L) E_aa(T_a), scaled to the whole travel. std::nullopt if a total is missing, or an
+/// axis has no series over more than 90 % of its travel.
 std::optional<Estimated> close_lengths(const StepDiagonals&, const std::vector<AxisSeries>&,
                                        double u_reading);
 
