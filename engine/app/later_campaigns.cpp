@@ -13,8 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Whether two campaigns name the same machine, by the record of the site, otherwise by asset or by
-/// maker and serial.
+/// Compares the records of the machines, otherwise the asset, or maker and serial number.
 bool is_same_machine(const config::MachineRecords& records, const Machine& a, const Machine& b) {
   const auto of_a = config::record_of(records, a), of_b = config::record_of(records, b);
   if (of_a && of_b && *of_a != nullptr && *of_a == *of_b) return true;

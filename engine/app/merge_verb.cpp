@@ -120,8 +120,7 @@ int tell_merged(const tables::MergedTables& merged, const Loaded& present, const
   return exit_done;
 }
 
-/// Parses a backlash value in mm or deg with an absolute value of at most 10, with a point or a
-/// decimal comma, or "none" (0).
+/// Parses a value from -10 to 10, in mm or deg, with a decimal point or comma; "none" is 0.
 Expected<double> backlash_of(std::string text) {
   if (text == "none") return 0.0;
   std::replace(text.begin(), text.end(), ',', '.');
@@ -132,7 +131,6 @@ Expected<double> backlash_of(std::string text) {
   return fail("expected the backlash value in mm or deg, or none, found \"" + text + "\"");
 }
 
-/// Asks the user for the state of the control that no file states. An error if there is no answer.
 Expected<void> ask_for_state(OpenCampaign& open, const Controller& control,
                              const std::string& name) {
   const config::TerminalWords say(open.place->context.templates, open.place->context.site.language);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Implements `nonio table session`: the steps from backup and readings to the verdict on the loaded
-// table. It stores no state: the present step follows from the files, the record of the machine and
-// the campaigns of the site.
+// The session stores no state: each call determines the present step from the files, the record of
+// the machine and the campaigns of the site.
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -35,8 +34,7 @@ struct SessionWish {
 };
 
 struct Step {
-  std::string name, state;  ///< name of the step, and its state: done, missing, refused; for the
-                            ///< verdict also failed, open
+  std::string name, state;
   std::string text;
 };
 
@@ -49,7 +47,6 @@ std::string names_of(const std::vector<Artifact>& files) {
   return out;
 }
 
-/// Quotes an argument for the shell if necessary.
 std::string shell_word(const std::string& text) {
   const auto is_plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -92,8 +89,7 @@ class Session {
   void done(const char* step, std::string text) {
     steps_.push_back({step, "done", std::move(text)});
   }
-  /// Adds a step that is missing, with a description of the required action and the command to
-  /// continue with. Returns false, because the session ends at this step.
+  /// Adds the step at which the session ends. Returns false.
   bool missing(const char* step, std::string text, std::string todo, const std::string& argument) {
     steps_.push_back({step, "missing", std::move(text)});
     todo_ = std::move(todo);
@@ -108,7 +104,8 @@ class Session {
     return false;
   }
 
-  /// Returns the command of this session, without arguments that the machine record already states.
+  /// Omits --loaded and --check, because the machine record and the site already contain their
+  /// values.
   std::string command() const {
     std::string out = "nonio table session " + shell_word(w_.folder);
     if (!w_.backup.empty()) out += " --backup " + shell_word(w_.backup);
@@ -125,8 +122,6 @@ class Session {
     return of == open_->read.machine->axes.end() ? nullptr : of->second.state_on(campaign().date);
   }
 
-  /// Reads the files saved from the control; without them, those that the record states for the day
-  /// of the measurement. Returns false if the session ends at this step.
   bool backup() {
     std::vector<Artifact> files;
     if (!w_.backup.empty()) {
@@ -166,8 +161,7 @@ class Session {
                    {{"files", merged_.with.files}}));
     tell_findings(*open_, merged_.findings);
     if (merged_.files.empty()) return refused("table", Error{say("session.table.refused")});
-    // Sets the compensation that was active during the measurement in the campaign `open_`, because
-    // the sign probe and the verdict need it too.
+    // The sign probe and the verdict need the compensation that was active during the measurement.
     Settings settled = options();
     std::vector<Finding> repeated;
     if (auto stated = tables::state_by_backup(open_->read, *present_.control, present_.files,
@@ -191,9 +185,8 @@ class Session {
     return true;
   }
 
-  /// Sets the day of loading to that of --loaded, otherwise to the first day, not before the
-  /// measurement, on which the record states the new table in the control. Without such a day it
-  /// remains empty.
+  /// The date of loading is that of --loaded, otherwise the first date, not before the measurement,
+  /// on which the machine record contains the new table. Without such a date, `loaded_` is empty.
   void day_of_loading() {
     loaded_ = w_.loaded;
     if (!loaded_.empty() || !open_->read.machine) return;
@@ -218,10 +211,9 @@ class Session {
     return std::nullopt;
   }
 
-  /// Adds the step that recommends a sign probe: moves between two positions, at which an
-  /// instrument shows whether the table has the wrong sign. Writes its part program unless a table
-  /// was loaded already. If there is no such probe, or the error of the axis is too small for it,
-  /// the session continues without it. Returns false if the session ends at this step.
+  /// Recommends a sign probe, two moves at which an instrument shows a wrong sign of the table, and
+  /// writes its part program before the table is loaded. Without a suitable probe the session
+  /// continues. Returns false if the session ends at this step.
   bool probe() {
     const auto raw = raw_readings(*open_, axis_);
     if (!raw) return refused("probe", raw.error());
@@ -262,9 +254,9 @@ class Session {
     return true;
   }
 
-  /// Determines the campaign that checks the table. With --check it is made from that file;
-  /// otherwise it is the last campaign with purpose check from the day of loading on, or else the
-  /// first campaign from that day on. Returns false if the session ends at this step.
+  /// The check campaign is made from the file of --check, otherwise it is the last campaign since
+  /// the loading with purpose "check", otherwise the first campaign since the loading. Returns
+  /// false if the session ends at this step.
   bool check() {
     if (!w_.check.empty()) {
       auto bytes = storage::read_file(w_.check);

@@ -14,10 +14,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t largest_file = 1'000'000;  // largest size of a table file that a record
-                                                 // names, bytes
+constexpr std::size_t largest_file = 1'000'000;  // limit per file, bytes
 
-/// Returns the file name with characters that are not safe in a list of files replaced by '_'.
 std::string safe(const std::string& name) {
   std::string out = name;
   for (char& c : out)

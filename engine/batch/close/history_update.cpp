@@ -18,20 +18,16 @@ std::string in_one_line(const std::vector<Error>& errors) {
   return all;
 }
 
-/// Returns one event of kind "compensation" for each state of a control in the machine records that
-/// was not read from a backup. Its text is the table that was loaded, "none" if no table was
-/// active, or empty if the record does not state it.
+/// Returns an event of kind "compensation" for each state of a control in the machine records. Its
+/// text is the loaded table, "none" without a table, or empty if the record does not state it.
 std::vector<config::Event> events_of(const config::MachineRecords& records) {
   std::vector<config::Event> events;
   for (const config::RecordFile& file : records) {
-    if (!file.record)
-      continue;  // the record is invalid; campaigns of this machine fail and report
-                 // the error
+    if (!file.record) continue;  // campaigns of this machine report the error
     for (const auto& [axis, recorded] : file.record->axes) {
       for (const config::ControlState& state : recorded.states) {
         if (state.source == "backup")
-          continue;  // the state was read from a backup; no table was
-                     // loaded on that day
+          continue;  // the date is that of a backup; no table was loaded
         events.push_back({state.since,
                           file.asset,
                           axis,

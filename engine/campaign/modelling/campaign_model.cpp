@@ -13,7 +13,6 @@ namespace nonio::modelling {
 
 namespace {
 
-/// Splits an effect into kind and axis, without the groups of lines ("@adjustment").
 std::pair<std::string, std::string> split(const std::string& effect) {
   const std::size_t colon = effect.find(':');
   if (colon == std::string::npos) return {effect, ""};
@@ -35,13 +34,10 @@ std::vector<std::string> known_names(const reading::ReadCampaign& read) {
   return names;
 }
 
-/// Whether a text has the form of ISO 230-1 letters: "XY", "EYX", "X".
 bool can_be_in_space(const std::string& of) {
   return !of.empty() && of.find_first_not_of("EXYZABC0123456789") == std::string::npos;
 }
 
-/// Returns an error unless a measurement over time has the channel and the displacements of an
-/// effect such as "heat:t4/x1+x2".
 std::string mistake_of_channel(const std::string& effect, const Effect& known,
                                const reading::ReadCampaign& read) {
   for (const model::Part& part : model::parts_of(read.manifest->campaign, read.observations)) {
@@ -65,7 +61,7 @@ std::string mistake_of(const std::string& written, const reading::ReadCampaign& 
   const auto [kind, axis] = split(effect);
   const auto is_kind = [&, &k = kind](const Effect& e) { return e.info.name == k; };
   const auto known = std::find_if(read.effects.begin(), read.effects.end(), is_kind);
-  // computed only for a message, because it tests all effects on all readings
+  // Computed only for a message, because it tests all effects on all readings.
   const auto nearest = [&] { return storage::suggestion(effect, known_names(read)); };
   if (kind.empty() || axis.empty())
     return "expected kind:axis, such as backlash:X; found \"" + effect + "\"" + nearest();
@@ -139,7 +135,9 @@ ReadingPlace place_of(const PartModel& part, const Campaign& campaign, std::size
     if (m.id == place.measurement) place.file = m.file;
   if (row < o.source_line.size()) place.line = o.source_line[row];
   if (row < o.run.size()) place.run = o.run[row];
-  place.direction = part.part.way[row] > 0 ? 1 : part.part.way[row] < 0 ? -1 : 0;
+  // Features of a body have no known direction of approach.
+  const bool is_feature = !o.lines.empty() && !o.lines[o.line_of(row)].body.empty();
+  if (!is_feature) place.direction = part.part.way[row] > 0 ? 1 : part.part.way[row] < 0 ? -1 : 0;
   place.target = part.part.along[row];
   place.position = part.position();
   return place;
@@ -181,8 +179,6 @@ Expected<void> without_mistakes(const std::vector<std::string>& effects,
 
 namespace {
 
-/// Subtracts the prediction of an effect with a stated value from the readings; does nothing if the
-/// readings do not show the effect.
 Expected<void> hold(PartModel& part, const Entry& entry, const Machine& machine,
                     const std::vector<Effect>& effects) {
   NONIO_TRY(auto terms, model::terms_of(part.part, machine, {entry.effect}, effects));
@@ -201,7 +197,6 @@ Expected<void> hold(PartModel& part, const Entry& entry, const Machine& machine,
   return {};
 }
 
-/// Appends the terms whose value the model states to the terms of the fit.
 void append_held(const PartModel& part, model::Fit& fit) {
   for (const PartModel::Held& h : part.held) {
     fit.terms.push_back(h.term);
@@ -213,7 +208,6 @@ void append_held(const PartModel& part, model::Fit& fit) {
   }
 }
 
-/// Returns the catalogue without the terms whose value the model states.
 std::vector<model::Term> without_held(std::vector<model::Term> catalogue, const PartModel& part) {
   std::erase_if(catalogue, [&](const model::Term& t) {
     return std::any_of(part.held.begin(), part.held.end(),
@@ -364,8 +358,8 @@ std::vector<model::Term> library_of(const PartModel& part, std::shared_ptr<const
 
 namespace {
 
-/// Removes candidates with separate values for each group of measurements, unless they belong to
-/// the chosen set or explain more than the same effect with one common value.
+/// Removes candidates with a value for each group, unless they are in the chosen set or explain
+/// more than one common value.
 void leave_out_weaker_groups(model::Explanation& e) {
   std::map<std::string, double> score;
   for (const model::Candidate& c : e.candidates) score[c.term.name()] = c.score;
@@ -378,25 +372,20 @@ void leave_out_weaker_groups(model::Explanation& e) {
   });
 }
 
-/// Whether another cause may have the same appearance as the named effect, because its shape was
-/// searched, or a quantity was recorded that no effect of the catalogue depends on.
+/// Whether a cause may have the same appearance as the named effect: its shape was searched, or a
+/// quantity was recorded that no effect of the catalog depends on.
 bool may_imitate(const PartModel& part, const model::Candidate& named) {
   const Observations& o = part.part.table;
   return !named.term.effect->shapes.empty() || !o.air.empty() || !o.pressure.empty() ||
          !o.humidity.empty();
 }
 
-/// Searches the causes of the library together with the catalogue, if the catalogue leaves an error
-/// unexplained or names an effect that may imitate a cause. The new result replaces `out` only if
-/// the named effect has evidence by itself and if the result contains one cause, or none if the
-/// catalogue already named an effect. Any other set only describes an error that none of its
-/// effects causes. Whether there is an error at all was decided before. The rate of false alarms is
-/// that of the second search, whose noise no longer contains what the first search left
-/// unexplained.
+/// Searches causes together with the catalog. The result replaces `out` only if its named effect
+/// has evidence by itself, and if it contains exactly one cause, or none if the catalog already
+/// named an effect. The rate of false alarms is that of the second search.
 void look_up_library(const PartModel& part, std::uint64_t seed, const model::Groundwork* known,
                      model::Explanation& out) {
   using Kind = model::Verdict::Kind;
-  // Without repeated readings, many of the numerous shapes would describe the remaining error.
   if (!out.comparison.floor || part.library == nullptr) return;
   const bool explained = out.verdict.kind == Kind::missing;
   if (explained ? !may_imitate(part, out.candidates.front()) : out.verdict.kind != Kind::unknown)
@@ -430,7 +419,6 @@ Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t s
     if (out && with_library) look_up_library(part, seed, known, *out);
     if (out) leave_out_weaker_groups(*out);
     if (out) append_held(part, out->comparison.fit);
-    // effects that do not apply are listed with the reason
     if (out)
       out->candidates.insert(out->candidates.end(), part.left_out.begin(), part.left_out.end());
     return out;

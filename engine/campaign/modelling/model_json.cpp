@@ -13,7 +13,6 @@ namespace nonio::modelling {
 
 namespace {
 
-/// Whether a person stated the value of the shape, so that it was not searched.
 bool is_stated(const model::Parameter& p, const std::vector<model::Term>& terms) {
   return p.shape && std::any_of(terms.begin(), terms.end(), [&](const model::Term& t) {
            return t.name() == p.effect && model::has_stated(t) &&
@@ -21,7 +20,6 @@ bool is_stated(const model::Parameter& p, const std::vector<model::Term>& terms)
          });
 }
 
-/// Returns the value of a parameter that the model fixes, as it is written there: "12.3 arcsec".
 std::string written_value(const PartModel& part, const model::Parameter& p) {
   for (const PartModel::Held& held : part.held)
     if (held.parameter.effect == p.effect) return *entry_of(held.text).value;
@@ -79,7 +77,6 @@ storage::Json suspects_json(const std::vector<model::Suspect>& suspects, const P
   return list;
 }
 
-/// Writes the noise floor, or why it is not known.
 void put_floor(storage::Json& json, const model::Comparison& c, const PartModel& part) {
   if (c.floor) {
     storage::put(json, "noise_floor", c.floor->s, part.deviation());
@@ -105,7 +102,6 @@ const char* zero_text(model::Noise::Zero zero) {
   return "steady";
 }
 
-/// Writes the correlation of the noise and how it is used in the weights and in u.
 void put_noise(storage::Json& json, const model::Fit& fit, Quantity q) {
   const model::Noise& noise = fit.noise;
   storage::Json one = {{"zero", zero_text(noise.zero)}};
@@ -168,8 +164,6 @@ storage::Json positioning_json(const AfterTable::Positioning& p, Quantity q) {
   return json;
 }
 
-/// Writes what would remain after compensation by a table; nothing if the model has no compensable
-/// effect.
 void put_after_table(storage::Json& json, const PartModel& part, const model::Fit& fit,
                      Quantity q) {
   const AfterTable predicted = after_table(part, fit);
@@ -186,10 +180,6 @@ void put_after_table(storage::Json& json, const PartModel& part, const model::Fi
   json["after_table"] = std::move(one);
 }
 
-/// Returns the warnings about a fit as sentences: values below their uncertainty, gains that are
-/// too large, parameters that are not identifiable, positions or orders that are not stated,
-/// interpolated temperatures, time constants of thermal tests, and noise that is not independent or
-/// not constant.
 std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,
                                      const ModelWords& words) {
   std::vector<std::string> out;
@@ -205,7 +195,11 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
     out.push_back(words.has_unstated_position());
   for (const std::string& measurement : part.part.order_assumed)
     out.push_back(words.order_assumed(measurement));
-  if (!part.part.table.order_known) out.push_back(words.order_unknown());
+  const auto& lines = part.part.table.lines;
+  const bool features =
+      !lines.empty() &&
+      std::none_of(lines.begin(), lines.end(), [](const auto& l) { return l.body.empty(); });
+  if (!part.part.table.order_known && !features) out.push_back(words.order_unknown());
   if (part.interpolated.count > 0) out.push_back(words.temperature_interpolated(part.interpolated));
   for (std::string& said : words.time_constants(part, fit)) out.push_back(std::move(said));
   for (std::string& said : words.noise(fit, part)) out.push_back(std::move(said));
@@ -269,8 +263,6 @@ storage::Json candidate_json(const model::Candidate& c, const PartModel& part, d
   return json;
 }
 
-/// Returns JSON that states why an effect is not a candidate, in which lines of the file, and what
-/// would help.
 storage::Json unseen_json(const model::Candidate& c, const PartModel& part,
                           const Campaign& campaign, const ModelWords& words) {
   const std::string says = words.unseen(c, place_of(part, campaign, c.rows));
@@ -304,7 +296,6 @@ storage::Json sensors_json(const model::Sensors& s, Quantity q) {
   return json;
 }
 
-/// Returns the values of an effect in each group with their expanded uncertainty.
 storage::Json values_json(const std::vector<model::Parameter>& parameters) {
   storage::Json list = storage::Json::array();
   for (const model::Parameter& p : parameters) {
@@ -331,13 +322,12 @@ storage::Json verdict_json(const Explained& e, const ModelWords& words) {
   json["says"] = words.verdict(e.explanation, e.part);
   if (const std::string text = words.card(v.effect, "is"); !text.empty()) json["is"] = text;
   if (const std::string text = words.card(v.effect, "remedy"); !text.empty())
-    // "cure" is the former name, which is written for one more version
+    // The former name "cure" is written for one more version.
     json["remedy"] = json["cure"] = text;
   storage::put(json, "suspects_share", v.suspects_share, Quantity::ratio);
   return json;
 }
 
-/// Returns what one more run would change; `now` are the parameters of the present fit.
 storage::Json what_if_json(const std::vector<model::Foresight>& all,
                            const std::vector<model::Parameter>& now = {}) {
   storage::Json list = storage::Json::array();
@@ -385,8 +375,6 @@ storage::Json statements_json(const std::vector<model::Statement>& statements,
   return list;
 }
 
-/// Writes the additional results for a displacement over time: its cross-validation, and which
-/// effects are not identifiable separately.
 void put_course(storage::Json& json, const PartModel& part, const model::Explanation& e) {
   if (part.part.kind != model::Part::Kind::course) return;
   storage::Json cv = {{"kind", "blocks"}, {"n", model::course_blocks}};
@@ -430,7 +418,7 @@ storage::Json explained_json(const Explained& e, const Campaign& campaign,
   json["unseen"] = std::move(unseen);
   json["together"] = x.together;
   json["significant"] = x.certain;
-  json["certain"] = x.certain;  // name of the key in version 0.1
+  json["certain"] = x.certain;  // name in version 0.1
   storage::Json cancelling = storage::Json::array();
   for (const auto& pair : x.cancelling) cancelling.push_back({pair.first, pair.second});
   json["cancelling"] = std::move(cancelling);
@@ -547,7 +535,7 @@ storage::Json explain_json(const std::vector<Explained>& all, const Campaign& ca
   storage::Json parts = storage::Json::array();
   for (const Explained& e : all) parts.push_back(explained_json(e, campaign, words));
   if (!all.empty()) json.update(parts[most_severe(all)]);
-  // displacements over time are written as parts even if there is only one
+  // Displacements over time are written as parts even if there is only one.
   if (all.size() != 1 || all.front().part.part.kind == model::Part::Kind::course)
     json["parts"] = std::move(parts);
   json["seed"] = seed;

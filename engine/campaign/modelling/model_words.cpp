@@ -67,7 +67,6 @@ Finding place_finding(const model::Place& place, Quantity deviation) {
 }
 
 Finding plan_finding(const model::Plan& plan) {
-  // the same in all languages
   const std::string duration =
       plan.duration
           ? ", " + fixed_text(std::max(1.0, std::round(*plan.duration / 60.0)), 0) + " min"
@@ -171,8 +170,6 @@ class Next {
           {{"effect", s.weakest}});
   }
 
-  /// Proposes the cheapest plan that separates the effects. If no plan separates them, proposes to
-  /// measure over a wider range.
   void plan() {
     if (e_.plans.empty()) return;
     const auto good = std::find_if(e_.plans.begin(), e_.plans.end(),
@@ -295,7 +292,7 @@ Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
   if ((v.kind == Kind::nothing || v.kind == Kind::unknown) && !e.comparison.floor)
     f.id += "-without-floor";
   if (v.kind == Kind::nothing && part.part.kind == model::Part::Kind::course && e.comparison.floor)
-    f.id += "-over-time";  // over time, the noise floor comes from successive readings
+    f.id += "-over-time";
   if (const model::Fit& fit = e.comparison.fit; v.kind == Kind::nothing && e.comparison.floor &&
                                                 fit.noise.zero == model::Noise::Zero::of_pass) {
     f.id += "-of-passes";
@@ -472,7 +469,7 @@ std::string ModelWords::curve(const ModelFit::Curve& c, const PartModel& part) c
 }
 
 std::string ModelWords::suspect(const model::Suspect& s, const ReadingPlace& at, Quantity q) const {
-  return says("suspect",
+  return says(at.run == 0 && at.direction == 0 ? "suspect.feature" : "suspect",
               {{"residual", s.residual, q},
                {"detectable", s.minimal_detectable, q},
                {"target", at.target, at.position},
@@ -509,7 +506,7 @@ std::vector<std::string> ModelWords::noise(const model::Fit& fit, const PartMode
   const model::Noise& noise = fit.noise;
   const Quantity q = part.deviation();
   std::vector<std::string> out;
-  // readings over time always have correlated noise, which u includes
+  // Readings over time have correlated noise, which u includes.
   if (part.part.kind == model::Part::Kind::course) return out;
   if (noise.neighbours > 0.0 && noise.p < significant_below)
     out.push_back(says("noise.neighbours",
@@ -561,9 +558,8 @@ std::string ModelWords::unmeasured(const std::string& effect) const {
 std::string ModelWords::card(const std::string& effect, const std::string& what) const {
   const std::string name = "effect." + kind_of(effect) + "." + what;
   std::string text = words(templates_, language_, name);
-  // causes of the library have at least English texts
   if (text.empty()) text = words(templates_, "en", name);
-  // a plugin may use the former name of the key
+  // A plugin may use the former name of the key.
   return text.empty() && what == "remedy" ? card(effect, "cure") : text;
 }
 

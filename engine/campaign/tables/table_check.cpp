@@ -21,7 +21,7 @@ bool same_axes(const LoadedTable& a, const LoadedTable& b) {
   return a.output == b.output && a.input == b.input;
 }
 
-/// Returns the sum of the tables at position `x` when moving in direction `dir`.
+/// `dir`: direction of motion, +1 or -1.
 double sum_at(const std::vector<const LoadedTable*>& tables, const std::vector<double>& x,
               int dir) {
   double sum = 0.0;
@@ -29,7 +29,7 @@ double sum_at(const std::vector<const LoadedTable*>& tables, const std::vector<d
   return sum;
 }
 
-using Knots = std::vector<std::vector<double>>;  // grid positions of each input axis, m or rad
+using Knots = std::vector<std::vector<double>>;  // m or rad, by input axis
 
 void merge(Knots& knots, const std::vector<const LoadedTable*>& tables) {
   for (const LoadedTable* t : tables)
@@ -42,7 +42,6 @@ void merge(Knots& knots, const std::vector<const LoadedTable*>& tables) {
   }
 }
 
-/// Returns every point of the grid; the last input varies fastest.
 std::vector<std::vector<double>> points_of(const Knots& knots) {
   std::vector<std::vector<double>> points{{}};
   for (const auto& k : knots) {
@@ -99,9 +98,8 @@ void compare(TableDifference& d, const std::vector<const LoadedTable*>& was,
   if (!will.empty()) d.next = shape_of(will);
 }
 
-/// Returns the range (m or rad) that the means at the targets exceed by scatter alone in 5 % of
-/// cases; 0 without repeated readings. It is added because a table is made from one sample of the
-/// means. The factor is from a simulation with 10 to 200 means.
+/// Returns the range (m or rad) that means at the targets exceed by scatter alone in 5 % of cases;
+/// 0 without repeated readings. The factor is from a simulation with 10 to 200 means.
 double range_of_scatter(const math::AxisTest& test) {
   double squares = 0.0, n = 0.0, means = 0.0;
   for (std::size_t i = 0; i < test.targets.size(); ++i)
@@ -122,15 +120,12 @@ double present_backlash(const Settings& options, const std::string& axis, bool r
   return stated_backlash(options, axis, rotary).value_or(0.0);
 }
 
-/// Whether one of the tables corrects this axis by its own position.
 bool corrects(const Tables& tables, const std::string& axis) {
   return std::any_of(tables.begin(), tables.end(), [&](const LoadedTable& t) {
     return t.output == axis && t.input.size() == 1 && t.input.front() == axis;
   });
 }
 
-/// Returns the readings without the correction of these tables; the effect of the backlash
-/// parameter stays.
 Observations without(const Observations& o, const std::string& axis, const Tables& tables) {
   Observations raw = o;
   if (raw.axes.empty()) return raw;
@@ -142,14 +137,12 @@ Observations without(const Observations& o, const std::string& axis, const Table
   return raw;
 }
 
-/// Sets the backlash values of the files in the options, unless others are stated.
 void state_backlash_of(Settings& options, const Tables& tables) {
   for (const LoadedTable& t : tables)
     if (t.backlash.value_or(0.0) != 0.0 && present_backlash(options, t.output, t.rotary) == 0.0)
       state_backlash(options, t.output, t.rotary, *t.backlash);
 }
 
-/// Sets the present tables as active compensation, so that the new table states them.
 void state_active_compensation(Campaign& campaign, const Settings& options, const Tables& present) {
   for (Axis& axis : campaign.machine.axes) {
     if (!corrects(present, axis.name)) continue;
@@ -182,7 +175,6 @@ Expected<const Controller*> control_of(const loader::Plugins& plugins, const std
     return fail("no control \"" + name + "\"" + storage::suggestion(name, names) + "; there are " +
                 storage::listed(names));
   if (named.size() == 1) return named.front();
-  // Controllers whose format the files would have if one line were correct.
   std::vector<const Controller*> nearly;
   for (const Controller* o : all) {
     const auto settled = config::options_from(o->info, options);
@@ -256,7 +248,7 @@ std::vector<Observations> without_tables(const Campaign& campaign,
 Results without_tables(const Results& results, const Tables& tables) {
   Results out = results;
   for (Results::Analysed& a : out.analyses) {
-    std::map<char, std::string> axis_of;  // names of the axes by their letter in ISO 230-1
+    std::map<char, std::string> axis_of;
     const auto is_curve = [](const Series& s) {
       return s.name.size() >= 3 && s.name[0] == 'E' && s.quantity == Quantity::deviation;
     };
@@ -301,7 +293,7 @@ Expected<std::optional<Underlay>> active_compensation(const reading::ReadCampaig
       return fail(who + "its files hold no table of " + axis +
                   (tables->empty() ? "" : ", but of " + tables->front().output) +
                   "; which number has the axis in the control?");
-    for (const LoadedTable& t : *tables) {  // a file may contain tables of other axes too
+    for (const LoadedTable& t : *tables) {
       if (t.output != axis) continue;
       const auto stated = stated_backlash(options, axis, t.rotary);
       if (stated && t.backlash.value_or(0.0) != 0.0 && std::fabs(*stated - *t.backlash) > 5e-10)
@@ -370,8 +362,7 @@ TableForecast forecast_of_axis(const Campaign& campaign, const Measurement& m,
   };
   const auto will = math::after(math::error_curve(math::AxisTest::arrange(raw)), c);
   const auto U = math::compensated_uncertainty(campaign, m, readings, test, true);
-  // U of the reversal is included if these tables change the reversal by more than their last
-  // digit.
+  // U of the reversal is included if the tables change the reversal by more than the last digit.
   constexpr double last_digit = 1e-7;  // m or rad
   const bool compensates_reversal =
       std::any_of(measured.position.begin(), measured.position.end(),
@@ -381,6 +372,9 @@ TableForecast forecast_of_axis(const Campaign& campaign, const Measurement& m,
   f.B[1] = math::predicted_after(was.B(), will.B(), U_B);
   f.M[1] = math::predicted_after(was.M(), will.M(), U.M);
   f.scatter = std::max(will.E() + range_of_scatter(test) - f.E[1], 0.0);
+  // Values of the axis require all targets.
+  if (measured.left_out > 0)
+    for (double* value : {f.E, f.B, f.M}) value[0] = value[1] = std::nan("");
   return f;
 }
 
@@ -399,14 +393,13 @@ Expected<RenewedTables> renew(const reading::ReadCampaign& read, const Controlle
   auto whole = write(campaign, raw);
   if (!whole) return tl::unexpected<Error>(whole.error());
   RenewedTables out{std::move(whole->artifacts), {}, {}, std::move(whole->findings)};
-  // one measurement at a time, because an axis may be measured twice
   for (std::size_t i = 0; i < raw.size(); ++i) {
     const Measurement& m = campaign.measurements[i];
     if (m.kind != "axis" || raw[i].size() == 0) continue;
     const Campaign one = with_one(campaign, m);
     const auto files = write(one, {raw[i]});
     if (!files) return tl::unexpected<Error>(files.error());
-    if (files->artifacts.empty()) continue;  // the table was refused; a finding states why
+    if (files->artifacts.empty()) continue;
     const auto tables = tables_in(controller, files->artifacts, one, options);
     if (!tables) return tl::unexpected<Error>(tables.error());
     out.forecast.push_back(forecast_of_axis(campaign, m, control_axis(campaign.machine, m),

@@ -19,12 +19,10 @@ namespace nonio::model {
 
 namespace {
 
-/// The order in which the readings of one axis were taken.
 struct Order {
   std::vector<std::uint32_t> rows;  ///< row indices, first reading first
   bool known = true;                ///< if false, nothing may be concluded from the order in time
-  /// whether the cycle of ISO 230-2 is assumed, because the order of the file is impossible
-  bool assumed = false;
+  bool assumed = false;  ///< whether the cycle of ISO 230-2 replaces an impossible order of rows
 };
 
 using Rows = std::vector<std::uint32_t>;
@@ -39,8 +37,8 @@ Passes passes_of(const Observations& o) {
   return passes;
 }
 
-/// Whether all readings of one direction precede all readings of the other direction, and there are
-/// several runs.
+/// Whether there are several runs, with all readings of one direction before all readings of the
+/// other.
 bool grouped(const Passes& passes) {
   std::map<std::int8_t, Rows> side;
   std::map<std::int8_t, int> runs;
@@ -68,9 +66,8 @@ bool against_its_direction(const Observations& o, const Passes& passes) {
   });
 }
 
-/// Returns the rows in pendulum order: run by run, starting with the direction that is listed
-/// first, each pass along its direction. Runs are counted separately in each direction, because the
-/// second group of a file may continue the numbering.
+/// Run by run, starting with the direction that is listed first, each pass along its direction.
+/// Runs are counted separately in each direction, because a file may continue their numbering.
 Rows pendulum(const Observations& o, const Passes& passes) {
   const auto& axis = o.axes.front();
   std::map<std::int8_t, std::uint32_t> count;
@@ -89,12 +86,10 @@ Rows pendulum(const Observations& o, const Passes& passes) {
   return rows;
 }
 
-/// Returns the order of the readings. If every reading has a time, they are sorted by time.
-/// Otherwise the order is `said`, which the manifest states: "pendulum", "as-listed" or "unknown"
-/// (as listed, and not known). If `said` is empty, the order is as listed, unless a machine cannot
-/// have moved in this order: several runs with all readings of one direction before all readings of
-/// the other, or a pass listed against its direction. Then the cycle of ISO 230-2 is assumed
-/// (forward and back, run by run).
+/// Order in time, if every reading has a time. Otherwise `said`, from the manifest: "pendulum",
+/// "as-listed" or "unknown" (as listed, and not known). If `said` is empty, as listed, unless a
+/// machine cannot have moved in this order: several runs with all readings of one direction before
+/// all of the other, or a pass against its direction. Then the cycle of ISO 230-2 is assumed.
 Order order_of(const Observations& o, const std::string& said) {
   Order out;
   out.rows.resize(o.size());
@@ -127,8 +122,7 @@ bool moves(const Observations::AxisColumn& axis) {
   return *low < *high;
 }
 
-/// Appends the measured columns of `more`, but not positions and lines, and stores the measurement
-/// `id` and the row of each reading in the part.
+/// Appends the measured columns of `more`, but not positions and lines.
 void append_readings(Part& part, const Observations& more, const std::string& id) {
   Observations& to = part.table;
   const std::size_t before = to.size(), added = more.size();
@@ -141,8 +135,7 @@ void append_readings(Part& part, const Observations& more, const std::string& id
   to.missing += more.missing;
 }
 
-/// Returns the positions of one axis in a measurement. If its readings do not contain the axis,
-/// each is the position that the manifest states, or NaN if it states none.
+/// An axis that is not in the readings has the position that the manifest states, otherwise NaN.
 Observations::AxisColumn column_of(const std::string& axis, const Observations& o,
                                    const Measurement& m) {
   if (const auto* column = o.axis(axis)) {
@@ -164,8 +157,7 @@ Vector point_of(const Observations& o, std::size_t i) {
   return p;
 }
 
-/// Appends the places of a circle: the arc length from its point at 0 deg, counterclockwise, and
-/// the direction of travel, +1 for counterclockwise.
+/// Arc length from the point at 0 deg, counterclockwise; direction +1 for counterclockwise.
 void append_angles(Part& part, const Observations& o, const Measurement& m) {
   double radius = 0.0;
   std::size_t u = 0, v = 1;
@@ -189,10 +181,8 @@ void append_angles(Part& part, const Observations& o, const Measurement& m) {
   }
 }
 
-/// Appends the place of each reading along its line, and the direction of motion. If exactly one
-/// linear axis moves, these are the position and approach of this axis; for a circle see
-/// `append_angles`; otherwise they are counted along the direction of sensing, from the start of
-/// the diagonal.
+/// If exactly one linear axis moves, place and direction are its position and approach; for a
+/// circle see `append_angles`; otherwise along the direction of sensing, from the start.
 void append_places(Part& part, const Observations& o, const Measurement& m) {
   std::vector<const Observations::AxisColumn*> moved;
   for (const auto& axis : o.axes)
@@ -298,8 +288,7 @@ void append_run(Part& part, const Observations& listed, const Measurement& m) {
     to.angular = more.angular;
   }
   auto& axis = to.axes.front();
-  // Times of two measurements have different origins, so channels with a lag can be used with one
-  // measurement only.
+  // Times of measurements have different origins: a channel with a lag needs a single measurement.
   if (part.measurements.empty())
     to.channels = more.channels;
   else

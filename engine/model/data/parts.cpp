@@ -57,8 +57,7 @@ class Parts {
       return;
     }
     // Only measurements at targets or along a path are used, because effects of the model depend on
-    // positions of the axes. Readings of rigid-body also contain the unknown placement of the
-    // artefact.
+    // positions of the axes. Readings of rigid-body contain the unknown placement of the artefact.
     if (own.motion != Motion::targets && own.motion != Motion::path) return;
     if (own.kind == "ball-centres") {
       kind_[m] = Kind::balls;
@@ -76,7 +75,6 @@ class Parts {
     order_.push_back(m);
   }
 
-  /// Whether an axis run is explained together with the diagonals of its state.
   bool in_space(std::size_t m) const {
     const std::size_t k = coordinate_of(read_[m].axes.front().axis);
     if (!oblique_ || read_[m].angular || !coordinates_.contains(k)) return false;
@@ -106,8 +104,7 @@ class Parts {
       parts_.push_back(std::move(*part));
   }
 
-  /// Adds one part with all measurements in space of this state of the machine; without diagonals
-  /// only those with the same axis and direction of sensing.
+  /// Measurements in space of a state; without diagonals only those of equal axis and direction.
   void add_space(std::size_t m) {
     if (done_.contains(m)) return;
     const std::string state = state_of(measurement(m));
@@ -143,16 +140,14 @@ class Parts {
   const std::vector<Observations>& read_;
   std::map<std::size_t, Kind> kind_;
   std::vector<std::size_t> order_;
-  std::set<std::string> states_;       // states of measurements sensed across the motion
-  std::set<std::size_t> coordinates_;  // coordinates that measurements across the motion move or
-                                       // sense
+  std::set<std::string> states_;       // states of measurements across the motion
+  std::set<std::size_t> coordinates_;  // coordinates that these measurements move or sense
   std::set<std::size_t> done_;
   bool oblique_ = false;
   std::vector<Part> parts_;
 };
 
-/// Returns whether effects of this axis can occur in this part: always in an axis test; in space,
-/// if some reading both approaches along this linear axis and senses it; otherwise never.
+/// In space, some reading must both approach along this linear axis and sense along the axis.
 bool concerns(const Part& part, const Axis& axis) {
   if (part.kind == Part::Kind::axis) return true;
   if (part.kind == Part::Kind::balls || part.kind == Part::Kind::course || axis.rotary)
@@ -165,8 +160,7 @@ bool concerns(const Part& part, const Axis& axis) {
   return false;
 }
 
-/// Groups the measurements of an axis by a property that the manifest states; null if the property
-/// is not stated for all measurements, or is the same for all of them.
+/// Null if the property is not stated for all measurements, or is the same for all of them.
 std::shared_ptr<const Grouping> grouping_by(
     const std::string& by, const std::vector<const Measurement*>& measurements,
     const std::function<std::string(const Measurement&)>& text) {
@@ -182,9 +176,8 @@ std::shared_ptr<const Grouping> grouping_by(
   return out->name.size() > 1 ? out : nullptr;
 }
 
-/// Returns the ways to group the lines of an axis: by stated properties first, then by measurement.
-/// A property that gives the same groups as an earlier one is omitted. Empty for other parts, and
-/// for a single measurement.
+/// Groups by stated properties first, then by measurement, without repetition. Empty unless the
+/// part is an axis with several measurements.
 std::vector<std::shared_ptr<const Grouping>> groupings_of(const Part& part,
                                                           const Campaign& campaign) {
   std::vector<std::shared_ptr<const Grouping>> out;
@@ -211,8 +204,8 @@ std::vector<std::shared_ptr<const Grouping>> groupings_of(const Part& part,
   return out;
 }
 
-/// Returns the term with groups by the property `by`; none if the part has no such groups, or if
-/// the effect is a description or part of the set-up.
+/// Returns std::nullopt without such groups, or if the effect is a description or part of the
+/// set-up.
 std::optional<Term> grouped(const Part& part, Term term, const std::string& by) {
   if (term.effect->description || term.effect->is_nuisance) return std::nullopt;
   for (const auto& grouping : part.groupings)
@@ -229,18 +222,16 @@ std::string listed_groupings(const Part& part) {
   return out.empty() ? "two measurements of one axis" : out;
 }
 
-/// Whether an effect can be in this part. Effects of channels occur only in displacements over time
-/// and in axis tests with recorded channels; other effects occur in all parts except displacements
-/// over time.
+/// Effects of channels occur only in displacements over time and in axis tests with recorded
+/// channels; other effects occur in all parts except displacements over time.
 bool can_be_in(const Part& part, const Effect& effect) {
   if (!effect.of_channels) return part.kind != Part::Kind::course;
   return part.kind == Part::Kind::course ||
          (part.kind == Part::Kind::axis && !part.table.channels.empty());
 }
 
-/// Returns the term of an effect for the axis or instance `written` of this part; none if the
-/// effect cannot occur in the part, or if the part has no such axis or instance. `Effect::applies`
-/// is not tested.
+/// `written`: axis or instance. std::nullopt if the effect cannot occur in the part, or if the part
+/// has no such axis or instance. `Effect::applies` is not tested.
 std::optional<Term> term_of(const Part& part, const Effect& effect, const std::string& written) {
   if (!can_be_in(part, effect)) return std::nullopt;
   if (effect.instances) {

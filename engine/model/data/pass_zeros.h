@@ -24,9 +24,8 @@ class ZerosOfPasses {
   ZerosOfPasses(const Part&, const Repeats&, const std::vector<double>& weight,
                 const std::vector<double>& residual);
 
-  /// Returns the p-value of the differences between passes of the same side under the hypothesis
-  /// that readings scatter independently with standard deviation s; 1 if s is 0, or if no side has
-  /// two passes.
+  /// p-value of the differences between passes of the same side, if readings scatter independently
+  /// with standard deviation s; 1 if s is 0, or if no side has two passes.
   double p_of_differences(double s) const;
   /// Returns the sum of squares of the readings' zeros about the means of their sides.
   double squares() const;

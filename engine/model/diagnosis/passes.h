@@ -19,8 +19,7 @@ class PassZeros {
   /// Whether each pass has a zero of its own that varies randomly.
   bool scatter() const { return left_.has_value(); }
   /// Whether the rate of false alarms must be determined by flipping the signs of whole passes,
-  /// because the readings of a pass are not independent. Flipping a few whole passes gives a
-  /// coarser result than flipping many stretches.
+  /// because the readings of a pass are not independent; coarser than with many stretches.
   bool drawn_again() const;
   /// Returns the effects of the best explanation that change mostly between repeats, if passes in
   /// other orders show an effect as clearly as the passes in their own order; otherwise none.
@@ -32,9 +31,7 @@ class PassZeros {
   /// scaled to the variance of a reading; it includes the part that a pass shares. 0 for readings
   /// without repeats.
   std::vector<double> noise() const;
-  /// Returns the places of `residual`, tested with zeros of passes as a part of the noise. Requires
-  /// that these zeros scatter. The test of a place that is determined by differences between passes
-  /// uses the scatter of passes.
+  /// Requires `scatter`, by which places determined by differences between passes are tested.
   std::vector<Place> places(const std::vector<double>& residual,
                             const std::optional<NoiseFloor>& floor, double least) const;
   /// Whether an effect of the best explanation is significant if the zeros of passes scatter; true

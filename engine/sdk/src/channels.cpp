@@ -8,7 +8,6 @@ namespace nonio {
 
 namespace {
 
-/// Returns the lag at each sample of the channel, minus the channel's first value.
 std::vector<double> at_samples(const Observations::Channel& c, double tau) {
   std::vector<double> y(c.value.size(), 0.0);
   double before = 0.0, step = -1.0, decay = 0.0;
@@ -41,10 +40,10 @@ std::vector<double> lagged(const Observations::Channel& channel, double tau,
   for (std::size_t i = 0; i < time.size(); ++i) {
     if (k >= t.size() || t[k] > time[i])
       k = static_cast<std::size_t>(std::upper_bound(t.begin(), t.end(), time[i]) - t.begin());
-    while (k < t.size() && t[k] <= time[i]) ++k;  // index of the first sample after this reading
+    while (k < t.size() && t[k] <= time[i]) ++k;
     if (k == 0) continue;
     if (k == t.size()) {
-      // The channel keeps its last value, which the lag approaches further.
+      // The channel keeps its last value, to which the lag converges.
       const double x = channel.value.back() - channel.value.front();
       out[i] = tau > 0.0 ? x + (y.back() - x) * std::exp(-(time[i] - t.back()) / tau) : x;
       continue;

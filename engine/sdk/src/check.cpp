@@ -19,8 +19,7 @@ bool is_direction(const std::array<double, 3>& s) {
   return std::all_of(s.begin(), s.end(), finite);
 }
 
-/// Checks the indices of lines and the directions of sensing, because a wrong index would read past
-/// the end of a vector.
+/// A wrong index of a line would cause an access beyond the end of a vector.
 Expected<void> check_lines(const Observations& o) {
   if (o.size() == 0) return {};
   if (o.lines.empty()) return fail("readings of no line; expected one line at least");

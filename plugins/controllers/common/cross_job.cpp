@@ -14,9 +14,9 @@ namespace nonio::controllers {
 
 namespace {
 
-/// A straightness and the squareness that belongs to it. The error is the series plus `sign` times
-/// the squareness times the distance. C0Y turns +Y towards -X, B0Z turns +Z towards +X, A0Z turns
-/// +Z towards -Y (ISO 230-1).
+/// A straightness and its squareness; the error is the series plus `sign` times the squareness
+/// times the distance. C0Y rotates +Y towards -X, B0Z rotates +Z towards +X, A0Z rotates +Z towards
+/// -Y (ISO 230-1).
 struct Part {
   const char *series, *squareness;
   double sign;
@@ -40,8 +40,6 @@ const Value* value_of(const Evaluation& e, std::string_view name) {
   return nullptr;
 }
 
-/// The error curve of a part on axis `output`; series names end with `ending`. nullopt: not
-/// determined.
 std::optional<CrossCurve> curve_of(const Evaluation& e, const Part& part, const std::string& output,
                                    const char* ending = "") {
   const Series* s = series_of(e, std::string(part.series) + ending);
@@ -71,7 +69,6 @@ TableSize size_of_curve(const CrossCurve& curve) {
   return size;
 }
 
-/// Settings of option `axes`. A malformed option is empty here; `known_axes` reports it.
 NumberTables known_settings(const ControllerInput& in) {
   return settings_of_axes(in.options).value_or(NumberTables{});
 }
@@ -82,7 +79,6 @@ const Measurement* measurement_named(const Campaign& campaign, std::string_view 
   return nullptr;
 }
 
-/// Sets the directions of X in which this diagonal was read, and its uncertainty.
 void put_readings(ReadLine& line, const ControllerInput& in, const Measurement& m) {
   const auto index = static_cast<std::size_t>(&m - in.campaign.measurements.data());
   if (index >= in.observations.size() || in.observations[index].axes.empty()) return;
@@ -95,12 +91,11 @@ void put_readings(ReadLine& line, const ControllerInput& in, const Measurement& 
   line.U = math::compensated_uncertainty_along(in.campaign, m, readings);
 }
 
-/// Returns the diagonal of the set that rises (or falls) over this rectangle; nullptr: none.
 const Measurement* diagonal_over(const ControllerInput& in, const Results::Analysed& a,
                                  const Series& x, const Series& y, bool rising) {
   std::vector<std::string> ids = a.evaluation.uses;
   ids.push_back(a.measurement);
-  constexpr double same_place = 1e-6;  // m
+  constexpr double same_place = 1e-6;
   const auto spans = [&](double from, double to, const Series& s) {
     return std::fabs(std::min(from, to) - s.position.front()) < same_place &&
            std::fabs(std::max(from, to) - s.position.back()) < same_place;
@@ -117,12 +112,11 @@ const Measurement* diagonal_over(const ControllerInput& in, const Results::Analy
   return nullptr;
 }
 
-/// The curves and both diagonals as read, at the stops of the curves.
 std::optional<CrossJob> of_diagonals(const ControllerInput& in, const Results::Analysed& a) {
   const Evaluation& e = a.evaluation;
   const bool even_only = series_of(e, "q_odd") != nullptr;
-  // A repeated measurement of two diagonals after compensation shows what the tables leave. A table
-  // from it would wrongly replace them.
+  // A repeated measurement of two diagonals after compensation shows the remaining errors; a table
+  // from it would wrongly replace the tables.
   if (even_only && std::any_of(e.findings.begin(), e.findings.end(), [](const Finding& found) {
         return found.id == "diagonals.remeasured";
       }))
@@ -155,8 +149,7 @@ std::optional<CrossJob> of_diagonals(const ControllerInput& in, const Results::A
   return job;
 }
 
-/// The body diagonals at the stops where all axes have moved equally far, which a tilted mirror
-/// does not affect.
+/// The points at which all axes have moved equally far, where a tilted mirror has no effect.
 std::vector<ReadLine> body_diagonals(const Campaign& campaign, const Measurement& m,
                                      const Observations& o) {
   constexpr double same_part = 1e-6;
@@ -246,8 +239,8 @@ std::vector<std::string> CrossJob::outputs() const {
 
 namespace {
 
-/// Adds the curves of the second gantry side according to `rule`. False, with a finding, if the
-/// effect of a table on that side is not known.
+/// Adds the curves of the second gantry side according to `rule`. Returns false, with a finding, if
+/// the effect of a table on that side is not known.
 bool both_sides(CrossJob& job, SecondSide rule, const Campaign& campaign, OutputResult& result) {
   if (rule == SecondSide::moves_along) return true;
   std::vector<CrossCurve> all;
@@ -271,12 +264,10 @@ bool is_by_slave_zero(const ControllerInput& in, bool volume) {
   return !volume && in.options.has("squareness") && in.options.text("squareness") == "slave-zero";
 }
 
-/// Text such as "+0.0123 mm".
 std::string shift_words(const SlaveZero& z) {
   return (z.shift < 0.0 ? "" : "+") + decimal(z.shift * 1e3, 4) + " mm";
 }
 
-/// Text drawing of the shift, with the driven axis on the right.
 std::vector<std::string> drawing(const SlaveZero& z) {
   const bool plus = z.shift > 0.0;
   const auto place = [&](const std::string& side, double at) {
@@ -295,7 +286,6 @@ std::vector<std::string> drawing(const SlaveZero& z) {
   return lines;
 }
 
-/// Whether the active tables of all axes are stated; findings for those that are not.
 bool all_active_stated(const ControllerInput& in, const CrossJob& job, OutputResult& result) {
   bool all = true;
   for (const std::string& axis : job.moving())
@@ -455,7 +445,6 @@ bool together(const CrossJob& set, const AxisJob& job, const Campaign& campaign)
   }
   if (names_one) return false;
   if (!set.volume) return true;
-  // Step diagonals only use runs of the same state.
   const Measurement *one = measurement_named(campaign, set.measurement),
                     *other = measurement_named(campaign, job.measurement);
   return one != nullptr && other != nullptr && state_of(*one) == state_of(*other);

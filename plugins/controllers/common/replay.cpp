@@ -18,15 +18,14 @@ double range_of(const std::vector<double>& v) {
   return *high - *low;
 }
 
-/// The measurement with a stated line position (`at`) for this axis of the control; nullptr: none.
 const Measurement* line_on(const Campaign& campaign, const std::string& axis) {
   for (const Measurement& m : campaign.measurements)
     if (m.kind == "axis" && !m.at.empty() && control_axis(campaign.machine, m) == axis) return &m;
   return nullptr;
 }
 
-/// Deviations along the line with the new tables: mean over the directions of reading. nullopt:
-/// positions of the gantry sides are missing.
+/// Deviations with the new tables, mean over the directions of travel; nullopt if the positions of
+/// the gantry's sides are needed but not stated.
 std::optional<std::vector<double>> after(const ReadLine& line, const Replay& replay) {
   std::vector<double> out = line.deviation;
   for (const int way : line.ways)
@@ -66,7 +65,7 @@ std::optional<double> left_on_side(const ControllerInput& in, const CrossJob& jo
   return std::nullopt;
 }
 
-/// Rotation of the beam at the reference points of the pitch tables relative to the first stop,
+/// Rotation of the beam at the reference points of the pitch tables relative to the first target,
 /// rad.
 std::optional<double> turn_of(const ControllerInput& in, const CrossJob& job, const Beam& beam,
                               const NumberTables& settings) {
@@ -77,7 +76,6 @@ std::optional<double> turn_of(const ControllerInput& in, const CrossJob& job, co
   return (*other - *one) / (beam.at_slave - beam.at_axis);
 }
 
-/// Keeps the largest prediction of several runs of a line.
 void keep_worst(std::vector<Prediction>& all, const Prediction& one) {
   const auto known =
       std::find_if(all.begin(), all.end(), [&](const Prediction& p) { return p.name == one.name; });
@@ -98,7 +96,7 @@ std::vector<Beam> beams_of(const Campaign& campaign) {
     for (const auto& [axis, place] : one->at) {
       const auto there = other->at.find(axis);
       if (there == other->at.end() || there->second == place) continue;
-      // sides that differ along two axes: the direction of the beam is ambiguous
+      // The sides differ along two axes, so the direction of the beam is ambiguous.
       if (!beam.along.empty()) {
         beam.along.clear();
         break;
@@ -157,7 +155,7 @@ std::optional<double> Replay::moved(const std::string& axis, std::map<std::strin
       std::find_if(beams.begin(), beams.end(), [&](const Beam& b) { return b.axis == axis; });
   const double own = of(axis);
   if (beam == beams.end()) return own;
-  constexpr double same = 1e-12;  // m
+  constexpr double same = 1e-12;
   const double other = of(beam->slave);
   if (std::fabs(other - own) < same) return own;
   const auto y = at.find(beam->along);
@@ -190,7 +188,7 @@ void predict_lines(const CrossJob& job, const Replay& replay, OutputResult& resu
   }
   std::vector<Prediction> all;
   for (const ReadLine& line : job.lines) {
-    if (line.deviation.size() < 2) continue;  // no reading at whole steps
+    if (line.deviation.size() < 2) continue;
     const auto will = after(line, replay);
     if (!will) {
       result.notes.push_back({"table.sides-not-placed", {}, {}, job.measurement});

@@ -37,8 +37,6 @@ using IsOwn = std::function<bool(const Line&)>;
 
 bool is_comment(std::string_view line) { return controllers::trimmed(line).starts_with(';'); }
 
-/// The text with its own lines replaced. If it has none, `add` inserts them before M17; otherwise
-/// nullopt.
 std::optional<std::string> replaced(const std::string& before, const IsOwn& is_own,
                                     const std::string& axis, const std::string& lines, bool add) {
   const std::string text =
@@ -59,7 +57,6 @@ std::optional<std::string> replaced(const std::string& before, const IsOwn& is_o
       lines, end);
 }
 
-/// The assignments and comments of a text, one per line.
 std::string body_of(const std::string& text) {
   std::string out;
   for (const std::string_view line : controllers::lines_of(text))
@@ -75,7 +72,7 @@ std::vector<Line> lines_in(const std::vector<Artifact>& files) {
   return out;
 }
 
-/// Error if an axis has a name other than AXn, because it could be the axis of the new table.
+/// An axis with a name other than AXn could be the axis of the new table.
 Expected<void> only_numbered(const std::vector<Artifact>& files) {
   const auto check = [](std::string_view axis) -> Expected<void> {
     const auto number =
@@ -119,7 +116,6 @@ bool is_taken(std::int64_t number, const Settings& options) {
                      [&](const auto& r) { return r.first <= number && number <= r.second; });
 }
 
-/// Number of each new table: that of the same axis and direction in the backup, or a free one.
 Expected<std::map<std::string, std::string>> numbers_for(const std::map<std::string, Cec>& fresh,
                                                          const std::map<std::string, Cec>& present,
                                                          const Settings& options) {
@@ -196,7 +192,6 @@ class Merger {
     return fail("the backup holds no $AN_CEC: load the new file as it is");
   }
 
-  /// Replaces the lines of the axis in its file, or adds them to a file with others of this kind.
   bool put(const IsOwn& is_own, const std::string& lines, const std::string& kind) {
     for (const bool add : {false, true})
       for (std::size_t i = 0; i < files_.size(); ++i) {

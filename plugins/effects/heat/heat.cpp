@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Displacements over time caused by recorded channels. L(x, tau): first-order lag of x, s
-// (sdk/channels.h); T, T1, T2: temperatures, degC; n: speed or load; t: time since the first
-// reading, s.
+// Displacements over time caused by recorded channels. L(x, tau): first-order lag of x with the
+// time constant tau, s (sdk/channels.h); T, T1, T2: temperatures, degC; n: speed or load; t: time
+// since the first reading, s.
 //
 //     heat:T               g L(T, tau)                      g: m/K
 //     heat-slow:T          g L(T, tau), tau longer than that of heat:T    g: m/K
@@ -23,7 +23,7 @@ namespace {
 using Channel = Observations::Channel;
 using Columns = Effect::Columns;
 
-/// Minimum range of a temperature channel, K; a smaller range is considered sensor noise.
+/// Minimum range of a temperature channel, K; a smaller range is regarded as sensor noise.
 constexpr double least_range = 0.05;
 
 bool varies(const Channel& c, double least) {
@@ -53,12 +53,12 @@ std::vector<std::string> sources(const Observations& o) {
   return names(o, [](const Channel& c) { return is_source(c) && varies(c, 0.0); });
 }
 
-/// Whether the temperature may bend the structure: its role is "structure" or not stated.
+/// The role of the channel must be "structure" or not stated.
 bool may_bend(const Channel& c) {
   return c.is_temperature() && (c.role.empty() || c.role == "structure") && varies(c, least_range);
 }
 
-/// Names "A-B" of all pairs of channels. Channels with "-" in their name are omitted.
+/// Pairs "A-B"; channels with "-" in their name are omitted.
 std::vector<std::string> differences(const Observations& o) {
   std::vector<std::string> out;
   const std::vector<std::string> all = names(o, may_bend);
@@ -74,7 +74,6 @@ std::vector<std::string> of_time(const Observations& o) {
                                                    : std::vector<std::string>{};
 }
 
-/// The column of the axis that moved between targets; nullptr in a test over time.
 const Observations::AxisColumn* moved(const Observations& o) {
   if (o.axes.size() != 1 || o.axes.front().position.size() != o.size()) return nullptr;
   return o.axes.front().axis == "S" ? nullptr : &o.axes.front();
@@ -85,7 +84,6 @@ bool has_times(const Observations& o) {
          std::all_of(o.time.begin(), o.time.end(), [](double t) { return std::isfinite(t); });
 }
 
-/// Tests over time only. Positioning runs use the effects of `applies_to_runs`.
 bool applies(const Observations& o, const Axis&) { return has_times(o) && moved(o) == nullptr; }
 bool applies_to_all(const Observations& o, const Axis&) { return has_times(o); }
 bool applies_to_runs(const Observations& o, const Axis&) {
@@ -97,7 +95,6 @@ Effect::Shape lag(const char* name, const char* help) {
           .grid = [](const Observations& o, const Axis&) { return time_constants_for(o.time); }};
 }
 
-/// Shape parameter: a time constant other than 0.
 Effect::Shape decay(const char* name, const char* help) {
   return {.parameter = {name, help, Quantity::time},
           .grid = [](const Observations& o, const Axis&) {
@@ -107,7 +104,6 @@ Effect::Shape decay(const char* name, const char* help) {
           }};
 }
 
-/// Shape parameter: the longer half of the time constants.
 Effect::Shape slow(const char* name, const char* help) {
   return {.parameter = {name, help, Quantity::time},
           .grid = [](const Observations& o, const Axis&) {

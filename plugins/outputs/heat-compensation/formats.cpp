@@ -18,7 +18,6 @@ std::string lower(std::string s) {
 std::string mm(double m) { return fixed_text(1e3 * m, 9); }
 std::string um(double m) { return fixed_text(1e6 * m, 2); }
 
-/// Header lines of every file, without comment marks.
 std::vector<std::string> heading(const OutputInput& in, const Law& law) {
   std::string effects;
   for (const std::string& effect : law.effects) effects += (effects.empty() ? "" : ", ") + effect;
@@ -38,7 +37,7 @@ std::string comment(const std::vector<std::string>& lines, const std::string& be
                     const std::string& after = "") {
   std::string out;
   for (std::string line : lines) {
-    for (char& c : line)  // characters that would end the comment or the line
+    for (char& c : line)
       if (c == '\n' || c == '\r' || c == '*') c = ' ';
     out += before + line + after + "\n";
   }
@@ -51,8 +50,6 @@ std::string file_of(const Law& law, const char* control, const char* ending) {
 
 std::string anything(const Law&) { return ""; }
 
-// LinuxCNC: HAL files
-
 std::string signal_of(const Law& law, const std::string& channel) {
   for (const auto& c : law.channels)
     if (c.name == channel)
@@ -60,7 +57,6 @@ std::string signal_of(const Law& law, const std::string& channel) {
   return "";
 }
 
-/// HAL components of a law; `component` adds them in the order of execution in the thread.
 class Hal {
  public:
   Hal(const Law& law, double period) : law_(law), period_(period), axis_(lower(plain(law.axis))) {}
@@ -102,7 +98,6 @@ class Hal {
     lines_ += "net " + signal_of(law_, channel) + " => " + pin + "\n";
   }
 
-  /// Adds components for a channel (or its power) with its lag; returns the output pin.
   std::string lagged(const Term& term, std::size_t channel, const std::string& id) {
     std::string from;
     if (term.kind == Term::Kind::source) {
@@ -128,7 +123,6 @@ class Hal {
     return lag + ".out";
   }
 
-  /// Adds a term to the pin `sum`; returns the pin of the new sum: compensation of the axis in mm.
   std::string one(const Term& term, std::size_t i, const std::string& sum) {
     const std::string id = std::to_string(i + 1);
     const std::string first = lagged(term, 0, id + "a");
@@ -177,8 +171,6 @@ std::vector<Artifact> linuxcnc(const OutputInput& in, const Law& law) {
       {file_of(law, "linuxcnc", ".hal"), comment(lines, "# ") + start + Hal(law, period).text()}};
 }
 
-// Klipper: [z_thermal_adjust]
-
 std::string one_sensor_of_z(const Law& law) {
   if (law.axis != "Z") return "heat-compensation.only-z";
   const bool one = law.terms.size() == 1 && law.terms[0].kind == Term::Kind::temperature;
@@ -198,8 +190,6 @@ std::vector<Artifact> klipper(const OutputInput& in, const Law& law) {
            comment(lines, "# ") + "[z_thermal_adjust]\ntemp_coeff: " + mm(term.gain) +
                "\nsmooth_time: " + fixed_text(std::max(term.tau, 1.0), 1) + "\n"}};
 }
-
-// Structured text of IEC 61131-3, and of SCL
 
 struct Dialect {
   const char *number, *result;

@@ -15,8 +15,6 @@ std::string trimmed(const std::string& s) {
   return from == std::string::npos ? "" : s.substr(from, s.find_last_not_of(" \t") - from + 1);
 }
 
-/// Axis of each displacement from option `axes`, with prefix "-" if the sensor has the opposite
-/// sign.
 Expected<std::map<std::string, std::string>> stated_axes(const OutputInput& in) {
   std::map<std::string, std::string> out;
   for (const std::string& entry : in.options.texts("axes")) {
@@ -34,8 +32,6 @@ Expected<std::map<std::string, std::string>> stated_axes(const OutputInput& in) 
   return out;
 }
 
-/// The axis Z for "z" or "z2" if the machine has it, and likewise for other letters; otherwise
-/// empty.
 std::string axis_by_name(const Campaign& campaign, const std::string& displacement) {
   for (const Axis& axis : campaign.machine.axes)
     if (!axis.rotary && axis.name.size() == 1 &&
@@ -70,7 +66,6 @@ Values values_of(const ModelFit& fit, const std::string& effect) {
   return v;
 }
 
-/// Term by the name of the effect (plugins/effects/heat); nullopt: it does not use a channel.
 std::optional<Term> term_of(const ModelFit& fit, const std::string& effect,
                             const Observations& readings) {
   const std::size_t colon = effect.find(':');

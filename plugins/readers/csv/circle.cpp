@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Readings of a circle: radial deviation over angle, from the first axis of the plane to the
-// second.
+// Circles: radial deviation over the angle from the first axis of the plane to the second.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -18,12 +16,11 @@ namespace {
 
 constexpr double circle_turn = 2.0 * std::numbers::pi, circle_deg = std::numbers::pi / 180.0;
 
-/// Rows by run and direction, in file order.
 using CircleRuns = std::map<std::pair<std::uint32_t, int>, std::vector<std::size_t>>;
 
 struct Circle {
-  std::string first, second;  ///< axes of the plane
-  std::size_t u = 0, v = 0;   ///< their coordinate indexes
+  std::string first, second;
+  std::size_t u = 0, v = 0;
   double centre_u = 0.0, centre_v = 0.0, radius = 0.0;
 };
 
@@ -54,9 +51,8 @@ CircleRuns runs_of(const Table& table) {
   return runs;
 }
 
-/// The rows to be evaluated: all rows of up to a turn; for longer runs, without the arcs of
-/// `over_travel_deg`. Error: the angle is not monotonic, or the run is longer than this option
-/// allows.
+/// Excludes the arcs of `over_travel_deg` of runs longer than a revolution. Error: the angle is not
+/// monotonic, or the run is longer than this option allows.
 Expected<std::vector<std::size_t>> evaluated(const Table& table,
                                              const std::vector<std::size_t>& rows, int direction,
                                              double over_travel) {
@@ -84,7 +80,7 @@ Expected<std::vector<std::size_t>> evaluated(const Table& table,
   return kept;
 }
 
-/// Direction of approach of an axis; at a reversal point, that of the motion before.
+/// At a reversal point, the direction is that of the preceding motion.
 std::int8_t approach_of(double speed, double before) {
   constexpr double at_rest = 1e-9;
   return (std::fabs(speed) > at_rest ? speed : before) > 0.0 ? std::int8_t{1} : std::int8_t{-1};

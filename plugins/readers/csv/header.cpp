@@ -47,19 +47,17 @@ const Known* find(std::string_view name) {
 
 tl::unexpected<Error> fail_at(std::string_view column, std::string message) {
   Error error{std::move(message)};
-  // The message alone has names that cannot be displayed unchanged.
+  // Names that cannot be displayed unchanged appear only in the message.
   if (shown(column) == "\"" + std::string(column) + "\"") error.column = column;
   return fail(std::move(error));
 }
 
-/// Whether the name is that of a channel by its ending, and not a misspelled known name.
 bool is_channel(std::string_view name) {
   constexpr std::size_t slip = 2;
   const auto ends = [&](const ChannelEnding& e) {
     return name.size() > e.end.size() && name.ends_with(e.end);
   };
   if (std::none_of(std::begin(channel_endings), std::end(channel_endings), ends)) return false;
-  // names that cannot be displayed are refused
   if (shown(name) != "\"" + std::string(name) + "\"") return false;
   return std::none_of(known_columns.begin(), known_columns.end(), [&](const Known& k) {
     return edit_distance(name, k.name) <= slip && k.name.size() > 5;
@@ -79,7 +77,6 @@ tl::unexpected<Error> unknown_column(std::string_view name, std::size_t number) 
                            std::string(nearest(name, names)) + "\"?");
 }
 
-/// Error if the unit of a column does not fit the kind of axis.
 std::optional<Error> wrong_unit(const Known& column, const Expectation& e) {
   const bool target = column.role == Role::target;
   const bool angle = target ? e.rotary : e.angular_reading();
@@ -116,7 +113,6 @@ std::optional<Error> missing_column(const Header& header, const Expectation& e) 
   return Error{"missing column: expected " + missing + ", found " + found};
 }
 
-/// Error that `name` has the same meaning as an earlier column.
 tl::unexpected<Error> twice(const std::string& before, std::string_view name) {
   if (before == name)
     return fail_at(name, "column \"" + before + "\" occurs twice; expected it once");
@@ -128,7 +124,6 @@ tl::unexpected<Error> twice(const std::string& before, std::string_view name) {
 
 namespace {
 
-/// 3 for "#3"; 0 for any other text.
 std::size_t column_number(std::string_view text) {
   std::size_t number = 0;
   if (!text.starts_with('#') || text.size() < 2 || text[1] == '0') return 0;

@@ -11,13 +11,12 @@
 
 namespace nonio::csv {
 
-/// Meaning of a column.
 enum class Role : std::uint8_t {
   run,
   direction,
   target,
   reading,
-  ignored,  ///< ignored by option `columns`
+  ignored,  ///< excluded by option `columns`
   time,
   material,
   air,
@@ -26,39 +25,37 @@ enum class Role : std::uint8_t {
   channel  ///< a temperature, speed or load of any name
 };
 
-/// Unit of a channel by the end of its column name.
+/// Unit of a channel according to the end of its column name.
 struct ChannelEnding {
   std::string_view end, unit;
 };
 inline constexpr ChannelEnding channel_endings[] = {
     {"_c", "degC"}, {"_rpm", "rpm"}, {"_pct", "%"}, {"_kw", "kW"}, {"_a", "A"}};
 
-/// Column names from option `columns`: the name in the file (or "#3" for the third column) and a
-/// known name or "ignore".
+/// Option `columns`: pairs of the name in the file (or "#3" for the third column) and a known name
+/// or "ignore".
 class StatedColumns {
  public:
   /// Parses entries such as "Soll mm = target_mm". Error: any other form.
   static Expected<StatedColumns> of(const std::vector<std::string>& entries);
   bool empty() const { return names_.empty(); }
-  /// The known name of column `index` (from 0); `name` itself if it is not in the option.
+  /// The known name of column `index` (from 0); `name` itself if the option does not contain it.
   std::string_view known(std::string_view name, std::size_t index) const;
-  /// Whether the row contains all names and column numbers of the option.
   bool all_in(const std::vector<std::string_view>& row) const;
-  /// The largest column number; 0: names only.
+  /// 0 if the option contains only names.
   std::size_t last_number() const;
-  /// The names, separated by commas, for messages.
+  /// Separated by commas, for messages.
   std::string list() const;
 
  private:
   struct Stated {
-    std::string name;        ///< as in the option, "#3" included
-    std::size_t number = 0;  ///< column number from 1; 0: identified by name
+    std::string name;        ///< as in the option, including "#3"
+    std::size_t number = 0;  ///< column number from 1; 0 if identified by name
     std::string known;
   };
   std::vector<Stated> names_{};
 };
 
-/// Expected content of the file.
 struct Expectation {
   std::string axis;
   bool rotary = false;
@@ -73,8 +70,8 @@ struct Expectation {
 
 struct Header {
   char separator = ',';
-  std::vector<Role> roles;         ///< role of each column
-  std::vector<std::string> names;  ///< name of each column
+  std::vector<Role> roles;
+  std::vector<std::string> names;
   bool reading_is_position = false;
 
   bool has(Role role) const;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Displacements between tool and workpiece over time (thermal tests) and over the angle of a
 // spindle. Each sensor is a line. The position of axis "S" is the accumulated spindle angle.
 #include <algorithm>
@@ -30,7 +29,6 @@ constexpr Sensor nest[] = {{"x_um", "X", 0}, {"x1_um", "X1", 0}, {"x2_um", "X2",
 
 constexpr std::string_view displacement_end = "_um";
 
-/// Adds columns for displacements, temperatures, speeds and loads of any name.
 std::vector<ColumnSpec> with_channels(std::vector<ColumnSpec> columns) {
   columns.push_back({"*" + std::string(displacement_end)});
   for (const ChannelEnding& e : channel_endings) columns.push_back({"*" + std::string(e.end)});
@@ -41,7 +39,6 @@ std::string without(std::string_view name, std::string_view end) {
   return std::string(name.substr(0, name.size() - end.size()));
 }
 
-/// Channels with the rows in which they were recorded, without air humidity.
 std::vector<Observations::Channel> channels_of(const Table& table) {
   std::vector<Observations::Channel> out;
   const auto& time = *table.column("time_s");
@@ -66,7 +63,6 @@ std::vector<ColumnSpec> with_sensors(std::vector<ColumnSpec> columns) {
   return columns;
 }
 
-/// The sensors of the nest that the file contains.
 std::vector<Sensor> nest_of(const Table& table) {
   std::vector<Sensor> out;
   for (const Sensor& s : nest)
@@ -74,7 +70,6 @@ std::vector<Sensor> nest_of(const Table& table) {
   return out;
 }
 
-/// Like nest_of. Error: the file has none.
 Expected<std::vector<Sensor>> sensors_of(const Table& table) {
   std::vector<Sensor> out = nest_of(table);
   if (out.empty())
@@ -83,7 +78,6 @@ Expected<std::vector<Sensor>> sensors_of(const Table& table) {
   return out;
 }
 
-/// A column of displacements; `sense` is zero if the direction of the sensor is not known.
 struct Displacement {
   std::string column, name;
   Sense sense{};
@@ -115,8 +109,8 @@ std::optional<Error> times_grow(const Table& table) {
   return std::nullopt;
 }
 
-/// Accumulated angle of a spindle from its speed, which applies until the next row, and its
-/// direction of rotation. Without speeds it is at rest.
+/// Accumulated spindle angle and direction of rotation from the speed, which applies until the next
+/// row. Without speeds the spindle is at rest.
 struct Turning {
   std::vector<double> angle;
   std::vector<std::int8_t> turns;
@@ -139,13 +133,12 @@ Expected<Turning> turning_of(const Table& table) {
   return out;
 }
 
-/// Whether a row is in the period of the measurement; outside of it only channels are used.
+/// Only channels are used outside of the period.
 bool in_period(const Measurement& m, double time) {
   const std::vector<double> period = m.settings.numbers("period");
   return period.size() != 2 || (time >= period[0] && time < period[1]);
 }
 
-/// Reads displacements over time, with the machine at rest or the spindle turning.
 Expected<Observations> read_nest(const ReadInput& input, const Table& table) {
   NONIO_TRY(const auto sensors, displacements_of(table));
   if (auto error = times_grow(table)) return fail(std::move(*error));
@@ -175,8 +168,7 @@ Expected<Observations> read_nest(const ReadInput& input, const Table& table) {
   return complete(std::move(obs));
 }
 
-/// Reads an axis that cycles between targets. Each reading of a target and direction is a new
-/// cycle.
+/// An axis that cycles between targets: each reading of a target and direction is a new cycle.
 Expected<Observations> read_exercised(const ReadInput& input, const Table& table) {
   const Measurement& m = input.measurement;
   const Axis* axis = input.campaign.machine.axis(m.axis);
@@ -209,8 +201,8 @@ Expected<Observations> read_exercised(const ReadInput& input, const Table& table
   return complete(std::move(obs));
 }
 
-/// Angles from one pulse per turn, rad: equal steps between pulses. NaN before the first and after
-/// the last pulse.
+/// Angles from one pulse per revolution, rad, with equal steps between pulses; NaN before the first
+/// and after the last pulse.
 std::vector<double> angles_by_pulses(const std::vector<double>& index) {
   std::vector<double> out(index.size(), NAN);
   std::vector<std::size_t> pulses;
@@ -224,7 +216,7 @@ std::vector<double> angles_by_pulses(const std::vector<double>& index) {
   return out;
 }
 
-/// Set-up of a row: orientation of the ball on the spindle, and of the sensors, deg.
+/// Orientation of the ball on the spindle, and of the sensors, deg.
 struct SetUp {
   double ball = 0.0, sensor = 0.0;
   auto operator<=>(const SetUp&) const = default;
@@ -240,7 +232,7 @@ std::string set_up_name(const Sensor& s, const SetUp& at) {
 Expected<std::vector<double>> angles_of(const Table& table, const std::vector<std::size_t>& rows) {
   std::vector<double> out;
   if (const auto* angle = table.column("angle_deg")) {
-    // With falling angles (opposite rotation), the sign is changed so that angles increase.
+    // Decreasing angles (opposite rotation) change their sign.
     const bool falls = rows.size() > 1 && (*angle)[rows[1]] < (*angle)[rows[0]];
     for (std::size_t k = 0; k < rows.size(); ++k) {
       out.push_back((*angle)[rows[k]] * (falls ? -heat_deg : heat_deg));

@@ -8,7 +8,6 @@
 #include "nonio/sdk/plugin.h"
 #include "table.h"
 
-/// Functions shared by the readers of spatial.h: units, columns of time and air, error positions.
 namespace nonio::csv {
 
 using Kind = ColumnSpec::Kind;
@@ -17,25 +16,22 @@ using Sense = std::array<double, 3>;
 inline constexpr double per_mm = 1e-3, per_um = 1e-6, per_deg = 1.0 / deg_per_rad;
 inline constexpr std::string_view coordinates = "XYZ";
 
-/// Appends the optional columns of time and air.
+/// Adds the optional columns of time and air to the columns of a measurement.
 std::vector<ColumnSpec> with_common(std::vector<ColumnSpec> columns);
 
-/// Adds time, air and line number of a reading from row `row`.
 void put_further_columns(Observations& obs, const Table& table, std::size_t row);
 
-/// Like put_further_columns, with the run; 1 if the table has none.
+/// As `put_further_columns`, and the run, which is 1 if the table has no such column.
 void put_common(Observations& obs, const Table& table, std::size_t row);
 
 Observations begin(const Measurement& m, const Table& table);
 
-/// Error if there are no readings.
 Expected<Observations> complete(Observations obs);
 
 Error at_line(std::uint64_t line, std::string column, std::string message);
 
 Expected<Table> table_of(const ReadInput& input, const std::vector<ColumnSpec>& columns);
 
-/// Adds the file name to an error that has none.
 template <class T>
 Expected<T> in_file(Expected<T> result, const ReadInput& input) {
   if (!result && result.error().file.empty()) result.error().file = input.measurement.file;

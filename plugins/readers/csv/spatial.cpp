@@ -19,7 +19,7 @@ Expected<Span> span_of(const Campaign& campaign, const Measurement& m) {
   for (const auto& [axis, from] : m.from) {
     const auto to = m.to.find(axis);
     if (to == m.to.end()) return bad("`from` has axis " + axis + ", `to` has not");
-    if (to->second == from) continue;  // the axis does not move
+    if (to->second == from) continue;
     const Axis* known = campaign.machine.axis(axis);
     if (known != nullptr && known->rotary)
       return bad("expected linear axes in `from` and `to`, found the rotary axis " + axis);
@@ -60,7 +60,6 @@ void spread(Observations& obs, const Span& span) {
 
 namespace {
 
-/// The rotary axes that a table of ball centers may have in addition to `axis`.
 std::vector<std::string> other_rotary_axes(const Campaign& campaign, const std::string& axis) {
   std::vector<std::string> names;
   for (const Axis& other : campaign.machine.axes)
@@ -92,7 +91,7 @@ Expected<Observations> read_ball_centres(const ReadInput& input) {
     line.sense[k] = 1.0;
     obs.lines.push_back(line);
   }
-  std::vector<const std::vector<double>*> also;  // angles of the other axes
+  std::vector<const std::vector<double>*> also;
   for (const std::string& other : others)
     if (const auto* column = table.column(other + "_deg")) {
       also.push_back(column);
@@ -123,7 +122,6 @@ Expected<Observations> read_ball_centres(const ReadInput& input) {
 
 namespace {
 
-/// Axes (name, rotary) of a general table: those of the machine, and X, Y, Z.
 std::vector<std::pair<std::string, bool>> possible_axes(const Campaign& campaign) {
   std::vector<std::pair<std::string, bool>> axes;
   for (const Axis& axis : campaign.machine.axes) axes.emplace_back(axis.name, axis.rotary);
@@ -133,7 +131,7 @@ std::vector<std::pair<std::string, bool>> possible_axes(const Campaign& campaign
   return axes;
 }
 
-/// Numbers the lines by name. `sense` is kept for all readings if a line has several directions.
+/// `sense` is kept for all readings if a line has several directions.
 class GeneralLines {
  public:
   explicit GeneralLines(Observations& obs) : obs_(obs) {}

@@ -19,22 +19,20 @@ using namespace readers;
 
 namespace {
 
-/// Meaning of a column from the options.
 struct Column {
   enum class Role : std::uint8_t { ignore, target, reading, mean, two_sigma, both, dead_zone };
   Role role = Role::ignore;
   Way way = Way::none;
-  std::uint32_t run = 0;  ///< number of the run, from 1
+  std::uint32_t run = 0;
 };
 
 using Role = Column::Role;
 
-/// Mapping of a table from the options.
 struct Map : TableMap {
   std::vector<Column> columns;
 
   bool means() const;
-  /// The map for one table; its direction applies to columns that only state a run.
+  /// The direction of a table applies to columns that state only a run.
   Map of(const RowRange& table) const;
 };
 
@@ -95,7 +93,7 @@ Expected<std::vector<Column>> columns_of(const std::vector<std::string>& texts) 
   return columns;
 }
 
-/// Error unless each run has a direction from either its column or its table.
+/// The direction of a run must be stated by either its column or its table.
 Expected<void> check_ways(const Map& map) {
   for (const Column& c : map.columns)
     for (const RowRange& table : map.tables)
@@ -136,12 +134,12 @@ Expected<Map> map_of(const Settings& options, bool rotary) {
   return map;
 }
 
-/// Numbers in units of the file; NaN if missing.
+/// In units of the file; NaN if missing.
 struct Table {
   std::vector<std::vector<double>> rows;
   std::vector<std::uint64_t> lines;
   std::vector<double> targets;
-  int decimals = 0;  ///< most digits after the decimal mark
+  int decimals = 0;
 };
 
 int decimals_of(std::string_view number) {
@@ -151,7 +149,6 @@ int decimals_of(std::string_view number) {
 
 class TableReader {
  public:
-  /// All tables of a file share `numbers`, because the decimal mark must be the same.
   TableReader(const Map& map, Numbers& numbers) : map_(map), numbers_(numbers) {}
 
   Expected<Table> read(std::string_view bytes) {
@@ -208,7 +205,6 @@ class TableReader {
   Table table_;
 };
 
-/// Index of the first column with this role and direction (0: any); npos: none.
 std::size_t column(const Map& map, Role role, int way, int listed) {
   for (std::size_t k = 0; k < map.columns.size(); ++k)
     if (const Column& c = map.columns[k];
@@ -217,7 +213,7 @@ std::size_t column(const Map& map, Role role, int way, int listed) {
   return std::string::npos;
 }
 
-/// Error if a column is the mean of the other runs, because it would reduce the scatter.
+/// A column that is the mean of the other runs would reduce the scatter.
 Expected<void> no_average(const Map& map, const Table& table, int listed) {
   if (table.rows.size() < 3) return {};
   for (std::size_t k = 0; k < map.columns.size(); ++k) {
@@ -237,7 +233,7 @@ Expected<void> no_average(const Map& map, const Table& table, int listed) {
         size = std::max(size, std::fabs(row[j] - row[k]));
       }
       largest = std::max(largest, std::fabs(sum / static_cast<double>(others) - row[k]));
-      if (std::isnan(sum) || std::isnan(row[k])) size = 0.0;  // not determinable
+      if (std::isnan(sum) || std::isnan(row[k])) size = 0.0;
     }
     if (others >= 2 && size > 0.0 && largest <= 0.01 * size)
       return fail(of_option("columns", "column " + std::to_string(k + 1) +
@@ -247,7 +243,6 @@ Expected<void> no_average(const Map& map, const Table& table, int listed) {
   return {};
 }
 
-/// Checks mean and Dead Zone = reverse - forward of a print against its columns.
 Expected<void> check_print(const Map& map, const Table& table, int listed) {
   const std::size_t forward = column(map, Role::mean, listed, listed),
                     reverse = column(map, Role::mean, -listed, listed);
@@ -304,7 +299,7 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
   if (!all) return fail(all.error());
   Numbers numbers(all->separator != ',');
   Runs runs(input, axis, axis.rotary);
-  int listed = 0;  // of the first table, for the whole file
+  int listed = 0;
   Table last;
   for (const RowRange& rows : all->tables) {
     const Map map = all->of(rows);

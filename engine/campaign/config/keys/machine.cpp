@@ -6,9 +6,8 @@ namespace declared {
 
 constexpr Range a_limit = above(0.0, "expected a limit above 0");
 constexpr Range a_position = within(-1e6, 1e6, "expected a position of at most 1000000 in size");
-/// Declares a number or a pair of numbers that is stored in the settings of the axis, in the unit
-/// of the file, under the name of its key (the ends of a travel under from_mm and to_mm, or
-/// from_deg and to_deg). Controllers receive it in option `axes`.
+/// Stores numbers in the settings of the axis, in the unit and under the name of the key; a travel
+/// under from_mm and to_mm, or from_deg and to_deg. Controllers receive them in option `axes`.
 template <Key::Holds holds>
 constexpr Key::Into as_written = by<read_as_written, holds, &RecordedAxis::settings>;
 constexpr Choice state_sources[] = {{"stated"}, {"backup"}, {"nonio"}};

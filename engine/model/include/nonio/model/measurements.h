@@ -10,13 +10,10 @@
 #include "nonio/model/fit.h"
 #include "nonio/sdk/campaign.h"
 
-/// Which measurements of a campaign are explained together, and which effects a model of them can
-/// contain.
 namespace nonio::model {
 
-/// Time constant of the growth of a linear axis while it moves, from the thermal tests of the
-/// campaign. In first-order heating, such a test and the runs of the axis have only this in common,
-/// not the amplitude nor the initial temperature (docs/model.md).
+/// Time constant of the growth of a linear axis while it moves, from thermal tests. These have only
+/// the time constant in common with the runs of the axis (docs/model.md).
 struct TimeConstant {
   enum class State {
     known,
@@ -41,10 +38,10 @@ struct Part {
     balls,  ///< centers of a ball that turns with a rotary axis: radial and axial, m
     course  ///< a displacement over time, with recorded channels
   };
-  std::string name;                       ///< for example "X", "XY", "EYX", "warm/x1"
-  std::vector<std::string> measurements;  ///< ids of the measurements
-  /// axes of the part: one for `axis` and `balls`, the linear axes for `space`; for `course` one
-  /// axis that has only the name of the displacement
+  std::string name;  ///< for example "X", "XY", "EYX", "warm/x1"
+  std::vector<std::string> measurements;
+  /// one for `axis` and `balls`, the linear axes for `space`; for `course` an axis that is only a
+  /// name
   std::vector<Axis> axes;
   Observations table;  ///< readings of all measurements of the part
   Kind kind = Kind::axis;
@@ -53,29 +50,24 @@ struct Part {
   std::vector<std::uint32_t> row{};
   /// place of each reading on its line, m or rad; for `course` its time, s
   std::vector<double> along{};
-  /// direction of motion of each reading along its line, +1 or -1; 0 if it is not known, and for
-  /// `course`
+  /// direction of motion along the line, +1 or -1; 0 if it is not known, and for `course`
   std::vector<std::int8_t> way{};
-  /// Measurements of an axis for which the cycle of ISO 230-2 is assumed, because the order of the
-  /// file is impossible.
+  /// Measurements of an axis with an impossible order of rows: the cycle of ISO 230-2 is assumed.
   std::vector<std::string> order_assumed{};
-  std::vector<TimeConstant> time_constants{};  ///< time constants of the growth of the part's axes,
-                                               ///< from thermal tests
+  std::vector<TimeConstant> time_constants{};  ///< of the axes, from thermal tests
   /// Groupings of the lines of an axis; empty for a single measurement.
   std::vector<std::shared_ptr<const Grouping>> groupings{};
 
   // The members below apply to a course.
   std::string displacement{};   ///< name of the displacement, such as "x1"
   std::size_t displacements{};  ///< number of displacements of the measurement
-  /// Displacements of the same measurement that move together with this one, at the same times, m.
-  /// Their effects are searched together, but each displacement has parameters of its own.
+  /// Displacements that move together with this one, m; each has parameters of its own.
   std::vector<std::vector<double>> companions{};
   std::vector<std::string> companion_names{};
 };
 
-/// Returns the index of the shape that is the time constant of a growth: continuous, named "tau", a
-/// time, in an effect with one linear parameter, a growth per length. None if the effect has no
-/// such shape.
+/// Index of the shape that is the time constant of a growth: continuous, named "tau", a time, in an
+/// effect with one linear parameter, a growth per length.
 std::optional<std::size_t> time_constant_shape(const Effect& effect);
 /// Whether the term uses the value of a shape that another measurement states.
 bool has_stated(const Term& term);
@@ -88,32 +80,27 @@ inline bool has_unstated_position(const Part& part) {
   return false;
 }
 
-/// Returns the parts of a campaign, in the order of their first measurements: runs of one axis;
-/// measurements in space; ball centers of a rotary axis; displacements over time. If the campaign
-/// has diagonals, each state of the machine has one part in space, which contains the runs of its
-/// axes; otherwise there is one part for each axis and direction of sensing. Other measurements are
-/// omitted, and so are measurements whose readings `check` (sdk/check.h) rejects.
+/// Parts in the order of their first measurements. If the campaign has diagonals, each state of the
+/// machine has one part in space, which contains the runs of its axes; otherwise one for each axis
+/// and direction of sensing. Other measurements and those rejected by `check` are omitted.
 std::vector<Part> parts_of(const Campaign& campaign, const std::vector<Observations>& read);
 
-/// Returns all effects that apply to a part, except nuisances, followed by the grouped terms of
-/// effects whose values can differ between groups of lines.
+/// Effects that apply to a part, except nuisances, followed by the grouped terms of effects whose
+/// values can differ between groups of lines.
 std::vector<Term> catalogue(const Part& part, const std::vector<Effect>& effects);
 
 /// Returns the names of an effect in this part: "backlash:X", "straightness:EYX".
 std::vector<std::string> names_of(const Part& part, const Effect& effect);
 
-/// Returns an effect of the model as the manifest writes it for this part: its name, followed by
-/// the displacements of the part if the measurement has others that do not move together with them:
-/// "heat:t4/x1", "heat:t4/x1+x2".
+/// Effect as the manifest writes it for this part, with its displacements if the measurement has
+/// others that do not move together with them: "heat:t4/x1", "heat:t4/x1+x2".
 std::string written_for(const Part& part, const std::string& effect);
-/// Returns whether the displacements that follow "/" in an effect, as the manifest writes it,
-/// include the displacement of this part. True if none are listed, or if the part is not a course.
+/// False if `effect` lists displacements after "/" without that of this part, which is a course.
 bool is_for(const Part& part, const std::string& effect);
 
-/// Returns the terms of the effects that a model names, then the nuisances, then the model's
-/// descriptions. An error for an unknown kind, axis or grouping, or for an effect that does not
-/// apply to the readings. Effects that cannot occur in this part are omitted, and so is an effect
-/// that the model also has with groups, because the groups include it.
+/// Terms of the named effects, then the nuisances, then the descriptions. Errors: an unknown kind,
+/// axis or grouping, or an effect that does not apply to the readings. Effects that cannot occur in
+/// this part are omitted, and so is an effect that the model also has with groups.
 Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
                                      const std::vector<std::string>& names,
                                      const std::vector<Effect>& effects);

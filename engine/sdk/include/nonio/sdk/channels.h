@@ -5,20 +5,18 @@
 
 #include "nonio/sdk/observations.h"
 
-/// First-order lags of recorded channels, from which effects of channels compute their columns.
 namespace nonio {
 
-/// Returns the first-order lag y of a channel x at the times of the readings: dy/dt = (x - y)/tau,
-/// exact if x is linear between its samples; tau 0 gives the channel itself. The channel is taken
-/// as constant before its first and after its last sample. The result is in the unit of the
-/// channel, minus the channel's first value. `time`: time of each reading, s, in any order; `tau`
-/// in s.
+/// Returns the first-order lag y of a channel x at `time` (s, in any order): dy/dt = (x - y)/tau,
+/// with tau in s, exact if x is linear between its samples; tau = 0 gives the channel itself.
+/// Before its first and after its last sample the channel is regarded as constant. The result is
+/// relative to the channel's first value, in its unit.
 std::vector<double> lagged(const Observations::Channel& channel, double tau,
                            const std::vector<double>& time);
 
 /// Returns the time constants, s, that readings at these times can identify, ascending: 0, and
-/// values up to 1/12 of the duration in steps of a factor sqrt(2), none below four mean sampling
-/// intervals; at most 18. Empty if there are fewer than 12 different times.
+/// values from four mean sampling intervals to 1/12 of the duration in steps of a factor sqrt(2);
+/// at most 18. Empty if there are fewer than 12 different times.
 std::vector<double> time_constants_for(const std::vector<double>& time);
 
 }  // namespace nonio

@@ -12,43 +12,43 @@
 #include "nonio/sdk/plugin.h"
 
 /// Tables that compensate one axis by the position of another: straightness and squareness from
-/// diagonals or step diagonals, at the points of their pitch.
+/// diagonals or step diagonals.
 namespace nonio::controllers {
 
-/// Error of axis `output` over the position of axis `input`, 0 at the reference point of `input` as
-/// in all tables. SI.
+/// Error of axis `output` over the position of axis `input`, SI; 0 at the reference point of
+/// `input`.
 struct CrossCurve {
   std::string input, output;
   std::vector<double> position, value;
-  double reference = 0.0;  ///< position of `input` at which the error is 0
-  /// whether the reference is stated; if not, it is 0 if the axis has this position, else its
-  /// nearest end
+  double reference = 0.0;
+  /// Whether the reference is stated; otherwise it is 0 if the axis has this position, or the
+  /// nearest end.
   bool told = false;
   std::string side_of{};  ///< if `output` is the second side of a gantry: the axis that it follows
 };
 
 /// Effect of a table of the first side of a gantry on its second side.
 enum class SecondSide {
-  own_table,    ///< none: compensation is entered for each side, so both get the table
-  moves_along,  ///< the second side moves along, because the table changes the commanded position
-  not_known,    ///< the maker does not state it: no table is written
+  own_table,    ///< compensation is entered for each side, so both get the table
+  moves_along,  ///< the second side follows, because the table changes the commanded position
+  not_known,    ///< the maker does not document it, so no table is written
 };
 
-/// A measured line in space, for which the effect of tables can be predicted.
+/// A measured line in space for which the effect of tables can be predicted.
 struct ReadLine {
-  std::string name;                               ///< name of the line: D1, PPP
+  std::string name;                               ///< D1, PPP
   std::map<std::string, double> sense;            ///< direction of sensing, unit vector, by axis
-  std::vector<std::map<std::string, double>> at;  ///< position of each axis at each stop
+  std::vector<std::map<std::string, double>> at;  ///< position of each axis at each target
   std::vector<double> deviation;
-  /// directions of reading, along `sense` (1) or against it (-1); `deviation` is the mean over them
+  /// Directions of travel, along `sense` (1) or against it (-1); `deviation` is the mean over them.
   std::vector<int> ways{1, -1};
-  double U = 0.0;  ///< expanded uncertainty of the range of `deviation`, m; 0: not known
+  double U = 0.0;  ///< expanded uncertainty of the range of `deviation`, m; 0 if not known
 };
 
-/// Squareness as a shift of the zero of a gantry's second side, instead of a table: at the same
-/// command that side is `shift` further towards plus.
+/// Squareness compensated by a shift of the zero of a gantry's second side instead of a table: for
+/// the same command that side is `shift` further towards plus.
 struct SlaveZero {
-  std::string axis, slave, along;        ///< along: axis along the beam
+  std::string axis, slave, along;        ///< `along` is the axis along the beam
   double at_axis = 0.0, at_slave = 0.0;  ///< positions of the sides along the beam, m
   double shift = 0.0;                    ///< m
 };
@@ -60,51 +60,48 @@ struct CrossJob {
   std::vector<CrossCurve> curves;
   std::vector<ReadLine> lines;
   bool volume = false;  ///< whether the curves are from step diagonals
-  /// With two diagonals alone, the curves are the even parts of the straightnesses; size of the odd
-  /// part q_odd, which no table contains, m.
+  /// With two diagonals alone, the curves are only the even parts of the straightnesses; this is
+  /// the size of the odd part q_odd, m.
   std::optional<double> odd_left{};
   std::optional<SlaveZero> slave_zero{};  ///< set if option squareness is "slave-zero"
-  /// rad, contained in the squareness: yaw of a gantry's beam at the position where its pitch
-  /// tables are zero
+  /// Part of the squareness: yaw of a gantry's beam at the position where its pitch tables are
+  /// zero, rad.
   double yaw_at_reference = 0.0;
 
-  /// Returns the axes X, Y, Z that occur, for names of files; a gantry's second side is included in
-  /// its axis.
+  /// The axes X, Y, Z that occur, for file names; the second side of a gantry is included in its
+  /// axis.
   std::string axes() const;
-  /// Returns the axes that the tables move, each once.
   std::vector<std::string> outputs() const;
-  /// Returns every axis that is the input or output of a curve.
   std::vector<std::string> moving() const;
 };
 
-/// Returns the jobs from the analyses; a curve that is not determined gives no table. On a gantry
-/// each side has its curve; if it has not, a finding states why there is no table.
+/// A curve that is not determined gives no table. On a gantry each side has its curve; otherwise a
+/// finding states why there is no table.
 std::vector<CrossJob> cross_jobs(const ControllerInput&, SecondSide, OutputResult& result);
 
 /// Adds a finding that no cross table is written for a gantry, because the motion of its second
 /// side is not known.
 void refuse_second_side(const Axis&, const std::string& measurement, OutputResult& result);
 
-/// Returns option squareness, which selects how the squareness of a gantry is compensated.
+/// Selects how the squareness of a gantry is compensated.
 Option squareness_option();
 
-/// Whether this pitch table and these curves belong to the same state of the machine.
+/// Whether this pitch table and these curves are from the same state of the machine.
 bool together(const CrossJob&, const AxisJob&, const Campaign&);
 
-/// Returns true, and adds findings, if a curve is larger or steeper than the maker of the machine
-/// allows for a table of its output axis: settings largest_um and slope_um_per_m.
+/// Returns true, with findings, if a curve exceeds the limits of the machine's maker for its output
+/// axis: settings largest_um and slope_um_per_m.
 bool oversized(const CrossJob&, const ControllerInput&, OutputResult&);
 
-/// Returns lines about the whole set for the file: errors that no table contains, source of the
-/// squareness. They are also added as notes.
+/// Lines for the file: errors that no table contains, and the source of the squareness; also added
+/// as notes.
 std::vector<std::string> set_words(const CrossJob&);
 
-/// `cross_words` returns a line about a curve for the file: "Y over X: zero at 0.0 mm of X, largest
-/// entry ..."; `note_cross` adds the same as notes.
+/// "Y over X: zero at 0.0 mm of X, largest entry ..."; `note_cross` adds the same as notes.
 std::string cross_words(const CrossCurve&);
 void note_cross(const CrossJob&, OutputResult&);
 
-/// Error if there are more points than option `max_points` allows.
+/// An error if there are more points than option `max_points` allows.
 Expected<void> fits(const CrossJob&, const Settings& options);
 
 }  // namespace nonio::controllers
