@@ -203,11 +203,13 @@ def story(nonio, count, seed, hide):
             if wrong:
                 print(f"  seed {s}: {real.name}, hidden {truth}, named {', '.join(names)}", file=sys.stderr)
     print(f"seeds {seed} .. {seed + count - 1}; verdicts {dict(verdicts)}")
+    alarms = count - verdicts["nothing"]
     if not hide:
-        print(f"  alarms found {share(count - verdicts['nothing'], count)}, printed {100 * statistics.fmean(printed):.1f} %")
+        print(f"  alarms found {share(alarms, count)}, printed {100 * statistics.fmean(printed):.1f} %")
     for key, all_of in tallies.items():
         print(f"  {key:30} {'named' if hide else 'true'} {share(sum(r for r, _ in all_of), len(all_of))}   "
               f"wrong names {share(sum(w for _, w in all_of), len(all_of))}")
+    return 100 * alarms / count
 
 
 def main():
@@ -216,11 +218,12 @@ def main():
     parser.add_argument("--hidden", type=int, metavar="COUNT")
     parser.add_argument("--complete", type=int, metavar="COUNT")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--most", type=float, metavar="PERCENT", help="of --complete: status 1 beyond so many alarms")
     parser.add_argument("--page", type=pathlib.Path, help="instead: whether this page states what is found")
     args = parser.parse_args()
     if args.hidden or args.complete:
-        story(args.nonio, args.hidden or args.complete, args.seed, bool(args.hidden))
-        return 0
+        alarms = story(args.nonio, args.hidden or args.complete, args.seed, bool(args.hidden))
+        return 1 if args.complete and args.most is not None and alarms > args.most else 0
     return 0 if read_all(args.nonio, args.page) else 1
 
 

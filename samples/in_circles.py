@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Circles: a ball bar run both ways, and one way only."""
+"""Circles: a ball bar run both ways, and one way only; and plates with holes."""
 import math
 
-from parts import MADE_UP, Noise, linear, manifest
+from parts import GOOD_ROOM, MADE_UP, Noise, linear, manifest
 
 
 class Mill:
@@ -88,4 +88,34 @@ def one_way():
                                       environment=SHOP, analyses=["circle"])}
 
 
-STORIES = {"40-circles": both_ways, "41-circle-one-way": one_way}
+def plate(noise, turn, shift, turned):
+    """Holes of a plate as a measuring machine finds them: Y leans by 34 urad and follows a bow of X, and the fixture
+    bends each plate in the same way."""
+    rows, c, s = [], (1, 0)[turned // 90], (0, 1)[turned // 90]
+    for y in range(0, 401, 50):
+        for x in range(0, 401, 50):
+            at_x, at_y = 500 + c * x - s * y, 300 + s * x + c * y  # in the machine
+            um_x = -34e-3 * (at_y - 300)
+            um_y = 6.0 * (((at_x - 500) / 250) ** 2 - 1)
+            dx, dy = c * um_x + s * um_y, -s * um_x + c * um_y + 3.0 * (x / 200 - 1) ** 2
+            dx += shift[0] - 1e-3 * turn * y + 0.5 * noise.normal()
+            dy += shift[1] + 1e-3 * turn * x + 0.5 * noise.normal()
+            rows.append("%d,%d,%.4f,%.4f" % (x, y, x + 1e-3 * dx, y + 1e-3 * dy))
+    return "\n".join(["# " + MADE_UP, "nominal_x_mm,nominal_y_mm,measured_x_mm,measured_y_mm", *rows]) + "\n"
+
+
+def turned_plates():
+    """Two plates of one set-up, the second turned by 90 deg."""
+    noise = Noise(150)
+    story = ["Two plates of 81 holes, bored by one machine, the second turned by 90 deg, then measured on a coordinate measuring",
+             "machine. The errors of the machine stay with it, the bend of the fixture turns with the plate."]
+    cold = {"temperatures_c": [20.0, 20.0], "expansion_um_per_m_K": 11.5}
+    parts = [{"id": "plate-1", "kind": "part", "file": "plate-1.csv", "origin": {"X": 500.0, "Y": 300.0}, "turned_deg": 0, **cold},
+             {"id": "plate-2", "kind": "part", "file": "plate-2.csv", "origin": {"X": 500.0, "Y": 300.0}, "turned_deg": 90, **cold}]
+    return {"plate-1.csv": plate(noise, 40.0, (12.0, -7.0), 0), "plate-2.csv": plate(noise, -25.0, (-4.0, 9.0), 90),
+            "campaign.toml": manifest(story, "50-turned-plates", "Esempio Cinquanta S.r.l.", "Modena", "2026-06-24",
+                                      dict(MACHINE, serial="S-0150"), {"X": linear(1000.0), "Y": linear(800.0)}, parts,
+                                      environment=GOOD_ROOM, analyses=["model-fit"], model=["squareness:XY"])}
+
+
+STORIES = {"40-circles": both_ways, "41-circle-one-way": one_way, "50-turned-plates": turned_plates}

@@ -40,8 +40,8 @@ class Rolling:
                 self.bow("ZX", x) + self.bow("ZY", y) + E[2] + up * self.angle("AX", x))
 
 
-def whole_volume():
-    noise, files, measurements, machine = Noise(123), {}, [], Rolling()
+def whole_volume(seed=123):
+    noise, files, measurements, machine = Noise(seed), {}, [], Rolling()
     stops, size = 9, machine.travel
 
     def add(name, places, mean, reversal, s, unit="deviation_um", **keys):

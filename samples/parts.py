@@ -137,6 +137,8 @@ def toml(value):
         return "%g" % value
     if isinstance(value, dict):
         return "{ %s }" % ", ".join("%s = %g" % item for item in value.items())
+    if isinstance(value, list):
+        return "[%s]" % ", ".join(map(toml, value))
     return '"%s"' % value
 
 

@@ -6,18 +6,16 @@
 #include "nonio/sdk/campaign.h"
 #include "nonio/sdk/error.h"
 
-/// Parses lengths and axes on the command line.
 namespace nonio::app {
 
-/// Converts a length from mm to m. The argument is a text, so that a decimal comma gets a better
-/// error message than that of CLI11.
+/// Converts a length from mm to m. An error if the text is not a number with a decimal point.
 Expected<double> length_of(const std::string& option, const std::string& text);
 
-/// Whether the name consists of capital letters and digits.
 bool is_axis_name(const std::string& name);
-/// Returns an axis that is rotary or linear by its name alone: A, B and C are rotary (ISO 841).
+/// Returns an axis without travel; it is rotary if the name starts with A, B or C (ISO 841).
 Axis axis_named(const std::string& name);
-/// Parses the value "X=0:12000" of --axis, in mm, or in degrees for A, B and C.
+/// Parses an axis and its travel, such as "X=0:12000": mm, or degrees for a rotary axis, converted
+/// to m or rad. An error unless the first end is below the second.
 Expected<Axis> axis_of(const std::string& text);
 
 }  // namespace nonio::app

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// `nonio backup` and `nonio restore`.
 #include <iostream>
 #include <memory>
 #include <set>
@@ -20,7 +19,6 @@ struct BackupWish {
   std::string folder, file, out;
 };
 
-/// Reports what is not in the backup, and returns it for the JSON.
 Json report_left_out(const fs::path& folder, const storage::BackupSummary& summary) {
   Json all = Json::array();
   for (const std::string& name : summary.left_out) {
@@ -52,7 +50,6 @@ int backup(const BackupWish& wish, const Common& common) {
   return exit_done;
 }
 
-/// Returns the certificates in an output folder whose numbers the register does not contain.
 Expected<Json> issued_since(const fs::path& site, const fs::path& out) {
   NONIO_TRY(const auto numbering, certificates::numbering_of(site));
   NONIO_TRY(const auto entries, certificates::certificates_of(site, numbering));
@@ -66,7 +63,7 @@ Expected<Json> issued_since(const fs::path& site, const fs::path& out) {
   if (!listed) return fail(listed.error());
   for (const fs::path& folder : folders) {
     const auto text = storage::read_file(folder / "results.json");
-    if (!text) continue;  // the folder contains no results
+    if (!text) continue;
     const Json results = storage::parse_or_discard(*text);
     if (!results.is_object() || !results.contains("certificate")) continue;
     const auto text_of = [&of = results["certificate"]](const char* name) {

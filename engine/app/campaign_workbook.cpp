@@ -23,10 +23,10 @@ namespace {
 
 using Row = std::vector<Cell>;
 
-/// Names of the fixed sheets; sheets of measurements must not use them.
+/// Sheets of measurements must not use these names.
 constexpr const char* fixed_names[] = {"Summary", "Charts", "Points", "Curves", "Budget"};
 
-/// Largest number of points in one curve of a chart; Excel refuses more.
+/// Number of points per curve that Excel accepts in a chart.
 constexpr std::size_t most_chart_points = 32'000;
 
 Cell number(const Json& of, const char* key) {
@@ -46,7 +46,6 @@ std::string column_name(const std::string& name, const std::string& unit) {
   return unit.empty() ? name : name + " (" + unit + ")";
 }
 
-/// Returns measurement, plugin and part of an analysis, for example "X, iso230-2".
 std::string title_of(const Json& analysis) {
   std::string title = analysis.value("measurement", "");
   for (const char* key : {"plugin", "part"})
@@ -148,7 +147,6 @@ class Composer {
         sheet.rows.push_back({text(a, "measurement"), analysis_name(a), name, number(v, "value"),
                               number(v, "U"), text(v, "unit"), number(v, "k"),
                               number(v, "tolerance"), decision(v), number(v, "repeatability")});
-    // A tolerance without a value also gets a row.
     for (const Json& c : results_.value("conformity", Json::array()))
       if (!has_value(c))
         sheet.rows.push_back({text(c, "measurement"), text(c, "plugin"), text(c, "name"), Cell(),
@@ -200,7 +198,7 @@ class Composer {
     std::move(rows.begin(), rows.end(), std::back_inserter(sheet.rows));
   }
 
-  /// Adds sheets with the columns of a file of readings, so that Nonio can read the sheets again.
+  /// The columns are those of a file of readings, so that Nonio can read the sheets again.
   void readings() {
     for (const Observations& o : shown_.observations) {
       if (o.measurement.empty() || (o.size() == 0 && o.channels.empty())) continue;
@@ -227,8 +225,6 @@ class Composer {
     return i >= approach.size() || approach[i] == 0 ? "" : approach[i] > 0 ? "+" : "-";
   }
 
-  /// Returns whether the readings are of a single axis and have the columns run, direction, target
-  /// and deviation.
   static bool is_of_one_axis(const Observations& o) {
     return o.axes.size() == 1 && o.lines.size() <= 1 && o.sense.empty();
   }
@@ -309,8 +305,7 @@ class Composer {
     }
   }
 
-  /// Adds a chart with the deviations of an axis and their means by direction; none if the analysis
-  /// does not have the means of both directions.
+  /// Adds a chart of the mean deviations over the targets, unless the analysis lacks a direction.
   void add_means(const Json& analysis, std::size_t first) {
     const Json& units = analysis.at("point_units");
     const std::size_t count = analysis.at("points").size();
@@ -387,7 +382,6 @@ class Composer {
     std::move(charts.begin(), charts.end(), std::back_inserter(charts_));
   }
 
-  /// Adds a curve to the chart of the same axis and units, which is made if there is none.
   static void add_curve(std::vector<Chart>& charts, const std::string& title,
                         const std::string& name, const Json& s,
                         std::pair<std::size_t, std::size_t> rows) {
@@ -450,8 +444,7 @@ class Composer {
   config::TerminalWords say_;
   Json results_;
   storage::Workbook book_{};
-  std::map<std::string, std::string> names_{};  ///< names of the sheets with readings, by
-                                                ///< measurement
+  std::map<std::string, std::string> names_{};
   std::vector<Chart> charts_{};
 };
 

@@ -6,9 +6,8 @@
 
 namespace nonio::app {
 
-/// Returns the results of one campaign as a spreadsheet: decisions with their uncertainty, points,
-/// curves with charts, budgets, and the readings if `shown` contains them. Numbers are those of
-/// results.json. An error if `shown` does not contain a results.json.
+/// Returns the results of one campaign as a spreadsheet with the numbers of results.json. An error
+/// if `shown` does not contain results of schema nonio-results/1.
 Expected<storage::Workbook> workbook_of(const Shown& shown);
 
 }  // namespace nonio::app

@@ -38,9 +38,7 @@ Json to_json(const RegisterEntry& e) {
   return json;
 }
 
-/// Returns the line about a person, for example "  released by B. Sample (user sample, account
-/// lab@room-3)": the name as stated, the user of users.toml whose password was given, the account
-/// of the operating system.
+/// Example: "  approved by B. Sample (user sample, account lab@room-3)".
 std::string person_text(const char* what, const std::string& by, const std::string& account,
                         const std::string& user = {}) {
   if (by.empty() && account.empty()) return {};

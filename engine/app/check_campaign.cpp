@@ -20,9 +20,8 @@ std::string_view trimmed(std::string_view s) {
   return s;
 }
 
-/// A table of the manifest: its header, and its lines with line ends.
 struct Section {
-  std::string head;  ///< header, for example "[campaign]"; empty: lines before the first table
+  std::string head;
   std::vector<std::string> lines{};
 
   bool is_part_of(std::string_view name) const {
@@ -71,8 +70,7 @@ std::string backlash_text(double value, bool rotary) {
   return text;
 }
 
-/// Returns the manifest of the check campaign: the text of the original with single lines changed,
-/// without the other measurements and without the tables [model] and [accept].
+/// Changes single lines, so that the rest of the text is kept.
 std::string check_text(std::string_view text, const std::string& id, const CheckCampaign& check,
                        bool rotary) {
   auto sections = sections_of(text);
@@ -114,8 +112,7 @@ std::string check_text(std::string_view text, const std::string& id, const Check
   return out;
 }
 
-/// Whether the changed manifest states what was intended, with the same machine, control and
-/// targets of the measurement as before.
+/// Whether the manifest, parsed again, contains the intended values and is otherwise unchanged.
 bool is_meant(const config::Manifest& read, const config::Manifest& before, const std::string& id,
               const CheckCampaign& check) {
   const Campaign& c = read.campaign;

@@ -23,10 +23,9 @@ namespace {
 
 constexpr std::size_t most_rows = 6, most_points = 20'000;
 
-/// Result of reading the file.
 struct Read {
   const Reader* reader = nullptr;
-  std::string axis{};  ///< name of the axis with which the file was read
+  std::string axis{};
   Observations readings{};
 };
 
@@ -34,7 +33,6 @@ class FileCheck {
  public:
   FileCheck(const fs::path& file, const FileWish& wish, const Common& common)
       : name_(file.filename().string()), columns_(wish.columns), common_(common) {
-    // The stated axis is tried before all other axes.
     if (!wish.axis.empty()) axes_.insert(axes_.begin(), wish.axis);
   }
 
@@ -53,8 +51,6 @@ class FileCheck {
   }
 
  private:
-  /// Returns the reader that recognizes the file; with stated columns, the one that can show the
-  /// rows of its table. Null if there is none.
   const Reader* reader_of(std::string_view bytes,
                           const std::optional<reading::StatedTable>& table) const {
     if (!columns_.empty()) return table ? table->reader : nullptr;
@@ -88,7 +84,6 @@ class FileCheck {
       const Error& error = got.error();
       if (first.message.empty()) first = error;
       (campaign.machine.axes.front().rotary ? was_rotary : was_linear) = true;
-      // An error that both kinds of axes give does not depend on the axis.
       if (was_linear && was_rotary && error.line != 0 && error.line == first.line &&
           error.message == first.message)
         break;
@@ -128,13 +123,12 @@ class FileCheck {
     if (read) {
       const Observations& o = read->readings;
       json["reader"] = read->reader->info.name;
-      // X and A are assumed if no axis is known; any other axis comes from the file or the caller.
+      // X and A are only assumed axes; any other axis was stated by the file or by the caller.
       if (read->axis != "X" && read->axis != "A") json["axis"] = read->axis;
       json["rotary"] = o.axes.front().rotary;
       json["readings"] = o.size();
       json["missing"] = o.missing;
       json["points"] = points(*read);
-      // Text that an operator entered in the file of an instrument.
       for (const Remark& note : o.notes)
         for (const auto& [name, words] : note.texts)
           if (name == "text") json["text"] = words;

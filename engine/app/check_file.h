@@ -10,14 +10,13 @@
 namespace nonio::app {
 
 struct FileWish {
-  std::vector<std::string> columns{};  ///< entries of option `columns`
-  std::string axis{};                  ///< axis that the readings probably belong to; empty:
-                                       ///< unknown
+  std::vector<std::string> columns{};  ///< entries of the reader option `columns`
+  std::string axis{};                  ///< probable axis of the readings; empty if unknown
 };
 
-/// Does `nonio check FILE`: reports the reader of a file of readings of one axis, and the readings.
-/// If no reader reads the file, reports the reason and the first rows of its table. Prints
-/// `nonio-check-file/1` with --json. Returns status 1 if the file cannot be read.
+/// Implements `nonio check FILE`: prints the reader that accepts the file and the number of
+/// readings, or the reason why no reader accepts it. Returns exit status 1 if the file cannot be
+/// read.
 int check_file(const std::filesystem::path& file, const FileWish& wish, const Common& common);
 
 }  // namespace nonio::app

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Implements `nonio check`: reports what `nonio run` would reject, without writing anything, or
-// what a file of readings contains.
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -28,7 +26,6 @@ struct CheckWish {
   bool only_templates = false;
 };
 
-/// Collects and prints the errors of a site or of one campaign.
 class Check {
  public:
   explicit Check(const Common& common) : common_(common), words_(common) {}
@@ -59,7 +56,6 @@ class Check {
       if (!e.column.empty()) json["column"] = e.column;
       errors_.push_back(std::move(json));
     } else {
-      // Files of the site are named relative to the site, others relative to the campaign.
       const bool below =
           !campaign.empty() && (e.file.empty() || fs::exists(campaign + "/" + e.file));
       std::cout << (below ? campaign + "/" : "") << text_of(e) << "\n";
@@ -129,7 +125,7 @@ class Check {
   const Common& common_;
   SiteWords words_;
   std::unique_ptr<reading::Workplace> place_{};
-  std::map<std::string, fs::path> folders_{};  ///< folders of the campaigns, by id
+  std::map<std::string, fs::path> folders_{};
   Json errors_ = Json::array(), warnings_ = Json::array();
   std::size_t campaigns_ = 0, invalid_ = 0, count_ = 0;
 };

@@ -33,7 +33,8 @@ CLI::Option* bind(CLI::App& app, const Argument& a) {
   if (auto* const* flag = std::get_if<bool*>(&a.target)) return app.add_flag(names, **flag);
   if (auto* const* list = std::get_if<Words*>(&a.target)) {
     CLI::Option* option = app.add_option(names, **list);
-    // Options take exactly one value, so that a following word is never taken for a second one.
+    // Each option takes one value, so that the word after its value is not taken for a second
+    // value.
     if (!a.is_positional()) option->take_all()->expected(1)->allow_extra_args(false);
     return option;
   }
@@ -105,17 +106,15 @@ Words names_of(const std::vector<Verb>& verbs) {
   return names;
 }
 
-/// The command that the typed words denote.
 struct Found {
   const Verb* verb = nullptr;
-  std::string path;              ///< path of the command, for example "nonio plan"
-  std::string typed;             ///< the path as typed, possibly with a former name
-  Words rest{};                  ///< the words after the command
-  std::string wrong{};           ///< error for a word that is not a command; empty: none
-  const Alias* alias = nullptr;  ///< the former name that was typed; null: none
+  std::string path;
+  std::string typed;
+  Words rest{};
+  std::string wrong{};  ///< error for a word that is not a command
+  const Alias* alias = nullptr;
 };
 
-/// Returns the longest former name at the beginning of the words; null if there is none.
 const Alias* alias_of(const Program& program, const Words& words) {
   const Alias* longest = nullptr;
   for (const Alias& alias : program.aliases) {
@@ -127,7 +126,6 @@ const Alias* alias_of(const Program& program, const Words& words) {
   return longest;
 }
 
-/// Returns a hint at the command that may be meant by an unknown word; empty if there is none.
 std::string hint_for(const Program& program, const std::string& word) {
   Words names;
   for (const Verb& v : program.verbs) {
@@ -185,7 +183,7 @@ bool is_option(const std::string& word) {
   return word.size() > 1 && word[0] == '-' && word.find_first_of("0123456789.") != 1;
 }
 
-/// Returns the options among the words, without their values.
+/// The values of the options are omitted.
 Words options_of(const Verb& verb, const Words& words) {
   Words options;
   for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
@@ -197,8 +195,6 @@ Words options_of(const Verb& verb, const Words& words) {
   return options;
 }
 
-/// Returns an error for the first option that the command does not have, with the nearest existing
-/// one; empty if all exist.
 std::string unknown_option(const Verb& verb, const Words& options, bool at_top) {
   Words own{"--help", "-h"}, accepted;
   if (at_top) own.emplace_back("--version");
@@ -220,8 +216,6 @@ bool has(const Words& options, const char* name) {
 
 bool asks_for_help(const Words& options) { return has(options, "--help") || has(options, "-h"); }
 
-/// Returns an error message for mistakes that CLI11 would report less clearly; empty if there is
-/// none.
 std::string complaint_about(const Found& found, const Words& options, const Program& program) {
   if (!found.wrong.empty()) return found.wrong;
   if (const std::string wrong = unknown_option(*found.verb, options, found.path == program.name);
@@ -380,7 +374,6 @@ void print_help(const Program& program, const Found& found, std::ostream& out, i
   found.path == program.name ? page.program(program) : page.command(found);
 }
 
-/// Parses the words into the targets of the arguments. Returns the exit status.
 int parse(const Found& found, const Words& options) {
   CLI::App cli;
   for (const Argument& a : found.verb->arguments) check(*bind(cli, a), a);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the manual page, the completion of bash and zsh, and JSON from the table of commands.
 #include <algorithm>
 #include <ostream>
 
@@ -10,7 +9,7 @@ namespace nonio::app {
 
 namespace {
 
-/// Calls `visit` for every command and group, with the words that denote it.
+/// `visit` receives the path of the command, such as "nonio plan triples", and the command.
 template <class Visit>
 void each(const std::vector<Verb>& verbs, const std::string& path, const Visit& visit) {
   for (const Verb& v : verbs) {
@@ -55,7 +54,6 @@ void write_roff_examples(std::ostream& out, const std::vector<std::string>& exam
   out << ".fi\n";
 }
 
-/// Writes the paragraphs of a footer; each line of the text begins a new line of the page.
 void write_roff_paragraphs(std::ostream& out, const std::string& text) {
   if (!text.empty()) out << ".PP\n" << roff(replaced(text, '\n', "\n.br\n")) << "\n";
 }
@@ -76,7 +74,6 @@ std::string in_words(const std::vector<std::string>& words) {
   return out;
 }
 
-/// Returns the options of compgen for the values that bash offers for the argument.
 std::string bash_values(const Argument& a) {
   const auto& words = a.choices.empty() ? a.offers : a.choices;
   if (!words.empty()) return "-W " + in_single_quotes(in_words(words));

@@ -21,7 +21,6 @@ struct CompareOptions {
   std::string model_of, zero = "free";
 };
 
-/// Writes the readings as CSV. Returns an error message; empty if the file was written.
 std::string write_csv(const std::string& file, const std::vector<modelling::Compared>& all) {
   const fs::path path = fs::path(file);
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -57,7 +56,6 @@ int compare(const std::string& folder, const std::string& csv, const Common& com
   return errors.empty() ? exit_done : exit_failed;
 }
 
-/// Applies the model of another campaign to this one, and prints the prediction.
 int predict(const std::string& folder, const CompareOptions& options, const Common& common) {
   auto unseen = open_campaign(folder, common, reading::TemplatesFor::terminal);
   if (!unseen) return unseen.error();

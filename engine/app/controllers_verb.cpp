@@ -37,8 +37,6 @@ const char* to_text(ControlTable::Confidence c) {
                                                    : "unsure";
 }
 
-/// Returns the statement about the sign of a control's table; null if the declaration contains
-/// none.
 const ControlTable::Fact* sign_fact(const ControlTable& t) {
   for (const ControlTable::Fact& f : t.facts)
     if (f.id == "sign") return &f;

@@ -22,8 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the campaigns at or below a folder, sorted by path. Links and hidden folders are not
-/// followed.
+/// Links to folders and hidden folders are not searched.
 std::vector<fs::path> campaigns_in(const fs::path& folder) {
   std::error_code error;
   if (fs::exists(folder / config::manifest_name, error)) return {folder};
@@ -84,8 +83,8 @@ class ExplainTogether {
     if (!common_.quiet) complain(text);
   }
 
-  /// Opens a campaign; campaigns of one folder share their plugins and templates. Returns an exit
-  /// status other than 0 if the command cannot continue.
+  /// Campaigns of the same parent folder share plugins and templates. Returns an exit status other
+  /// than 0 if the command cannot continue.
   int open(const fs::path& folder) {
     const fs::path whole = fs::weakly_canonical(folder);
     if (!seen_.insert(whole.string()).second) return exit_done;
@@ -130,12 +129,10 @@ class ExplainTogether {
   const Common& common_;
   std::uint64_t seed_;
   std::unique_ptr<reading::Workplace> place_;
-  std::vector<std::unique_ptr<reading::Workplace>> earlier_;  ///< workplaces of earlier folders,
-                                                              ///< kept because their effects are in
-                                                              ///< use
+  std::vector<std::unique_ptr<reading::Workplace>> earlier_;
   fs::path parent_;
   std::set<std::string> seen_;
-  std::map<std::string, std::string> folder_of_;  ///< folder of each campaign, by the campaign's id
+  std::map<std::string, std::string> folder_of_;
   std::vector<std::unique_ptr<reading::ReadCampaign>> read_;
   std::vector<Error> errors_;
   std::size_t passed_over_ = 0;

@@ -9,19 +9,17 @@
 
 namespace nonio::app {
 
-/// Campaigns that `model explain` fits together.
 struct TogetherOptions {
-  std::vector<std::string> folders;  ///< folders of campaigns, or folders that contain campaigns
-  std::string machine;               ///< asset, serial number or model of the machine; empty: all
-  std::string since, until;          ///< first and last day of the campaigns, YYYY-MM-DD; empty: no
-                                     ///< limit
+  std::vector<std::string> folders;  ///< campaigns, or folders that contain campaigns
+  std::string machine;               ///< asset, serial number or model; empty for every machine
+  std::string since, until;          ///< closed interval of dates, YYYY-MM-DD; empty if unlimited
 };
 
-/// Whether only one folder is given, without a machine or days, and it is a campaign or contains no
-/// campaigns.
+/// Whether the options denote one campaign: a single folder without campaigns below it, and no
+/// machine or dates.
 bool is_single(const TogetherOptions& options);
 
-/// Fits the campaigns together and prints the result. Returns the exit status.
+/// Fits the model to all campaigns together and prints the result. Returns the exit status.
 int explain_together(const TogetherOptions& options, const Common& common, std::uint64_t seed);
 
 }  // namespace nonio::app

@@ -16,11 +16,11 @@ namespace nonio::app {
 
 namespace {
 
-constexpr std::size_t most_steps = 24;  // largest number of added effects per part
+constexpr std::size_t most_steps = 24;  // limit of --auto per part
 
 struct ExplainOptions {
   TogetherOptions together;
-  std::string folder;  ///< folder of the campaign
+  std::string folder;
   bool automatic = false;
   bool what_if = false, all = false, library = false;
   std::uint64_t seed = 1;
@@ -65,8 +65,6 @@ class Explain {
     }
   }
 
-  /// Warns if a run would not fit the model, because the analyses listed in the manifest or in
-  /// site.toml do not include the model fit.
   void warn_of_run() {
     const reading::Context& context = open_.place->context;
     const auto& own = open_.read.manifest->run.analyses;
@@ -94,7 +92,6 @@ class Explain {
     if (parts->empty())
       tell(text_of(errors_.emplace_back(modelling::nothing_to_compare(open_.read))));
     for (modelling::PartModel& part : *parts) {
-      // The explanation of a part with an unchanged model is reused.
       const auto known = std::find_if(before.begin(), before.end(), [&](const auto& one) {
         return one.part.part.name == part.part.name && one.part.names() == part.names();
       });
@@ -148,8 +145,7 @@ class Explain {
   std::optional<modelling::ModelWords> words_;
   std::vector<modelling::Explained> all_;
   std::vector<modelling::ModelStep> steps_;
-  std::optional<modelling::Compared> known_;  ///< part that was changed last, with its model; none:
-                                              ///< nothing was changed yet
+  std::optional<modelling::Compared> known_;
   std::vector<std::string> warnings_;
   std::vector<Error> errors_;
   bool failed_ = false;

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Implements `nonio export`: writes the results of campaigns as spreadsheets, or the files of a run
-// into folders.
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -30,8 +28,7 @@ struct GetWish {
   bool all = false, list = false;
 };
 
-/// Returns whether the results in `folder` are stored in a pack, in which programs that read files
-/// do not find them.
+/// Results in a pack are not visible to programs that read files.
 bool is_packed(const fs::path& folder) { return storage::stored_in(folder) != folder; }
 
 Expected<std::vector<std::string>> ids_of(const GetWish& wish) {
@@ -82,8 +79,8 @@ void print_list(const std::string& id, const fs::path& folder,
     std::cout << "  " << f.sha256 << "  " << f.size << "  " << f.name << "\n";
 }
 
-/// Writes the files into a folder and returns the number of files written. An existing file with
-/// the same bytes is skipped; if one has other bytes, nothing is written.
+/// Returns the number of files written. An existing file with the same bytes is skipped; if an
+/// existing file has other bytes, nothing is written.
 Expected<std::size_t> write_out(const fs::path& from, const fs::path& to,
                                 const std::vector<evaluation::RecordedFile>& files) {
   const std::string below = std::string(evaluation::last_good_name) + "/";
@@ -110,8 +107,7 @@ Expected<std::size_t> write_out(const fs::path& from, const fs::path& to,
   return good.size() + own.size();
 }
 
-/// Exports one campaign, or prints its files with --list. Returns false, after printing an error,
-/// if a file is damaged or would replace a different file.
+/// Returns false, after printing an error, if a file is damaged or would replace a different file.
 bool get_one(const GetWish& wish, const std::string& id, const Common& common) {
   fs::path folder;
   const auto files = files_of(wish, id, folder);
@@ -131,18 +127,16 @@ bool get_one(const GetWish& wish, const std::string& id, const Common& common) {
                -1);
   else if (!common.quiet)
     std::cout << to.string() << ": " << *written << " of " << files->size() << " files written"
-              << (in_place ? ": the results lie there" : "") << "\n";
+              << (in_place ? ": this is the folder of the results" : "") << "\n";
   return true;
 }
 
-/// Returns the folder that an argument denotes: a campaign, its results, or with --out an id.
 fs::path named(const GetWish& wish, const std::string& id) {
   return wish.out.empty() || what_holds(results_at(id)) != Holds::nothing
              ? results_at(id)
              : storage::results_folder(wish.out, id);
 }
 
-/// Returns the folders of the campaigns that spreadsheets are requested for.
 Expected<std::vector<fs::path>> sources_of(const GetWish& wish) {
   std::vector<fs::path> out;
   const auto take_run = [&](const std::string& run) {
@@ -167,8 +161,6 @@ Expected<std::vector<fs::path>> sources_of(const GetWish& wish) {
   return out;
 }
 
-/// Writes a campaign's spreadsheet and returns its file name. An existing file with the same bytes
-/// is accepted; another one is an error.
 Expected<std::string> export_one(const fs::path& folder, const GetWish& wish,
                                  const Common& common) {
   NONIO_TRY(const auto shown, what_holds(folder) == Holds::campaign
@@ -230,7 +222,7 @@ int get(const GetWish& wish, const Common& common) {
   const auto ids = ids_of(wish);
   if (!ids) return complain(ids.error().message);
   std::optional<batch::OutputLock> lock;
-  // The output folder is locked, because exported results in OUT/ID replace those in the pack.
+  // The lock is needed because exported results in OUT/ID replace those in the pack.
   if (!wish.list && wish.to.empty()) {
     auto taken = batch::OutputLock::take(wish.out);
     if (!taken) return complain(taken.error().message);

@@ -25,7 +25,6 @@ namespace nonio::app {
 
 namespace {
 
-/// Texts in the language of the site, and the number of columns of the terminal.
 struct HistoryWords {
   const reports::Wording& words;
   std::size_t width;
@@ -36,9 +35,8 @@ using reports::HistoryPoint;
 using reports::HistorySeries;
 
 constexpr std::size_t least_bar = 15, most_bar = 41;
-constexpr double twice = 2.0;  // coverage factor k of U
+constexpr double twice = 2.0;
 
-/// Formats the numbers of one series.
 class Numbers {
  public:
   Numbers(const HistorySeries& s, std::string unit, std::string language)
@@ -54,8 +52,8 @@ class Numbers {
                      language_);
   }
 
-  /// Returns value and U, for example "-4.35 ± 0.27"; for a scatter "0.48 (0.35 to 0.66)" with both
-  /// ends of the interval.
+  /// Returns the value ± U (k = 2), for example "-4.35 ± 0.27", or for a scatter the ends of its
+  /// interval, for example "0.48 (0.35 to 0.66)".
   std::string value(double si, double u, const reports::Wording& words) const {
     if (is_log_) return reports::scatter_text(words, si, u);
     const double scale = unit_of(quantity_).per_si;
@@ -63,15 +61,15 @@ class Numbers {
     return rounded ? localised(rounded->value + " ± " + rounded->U, language_) : number(si);
   }
 
-  /// Returns U for comparing campaigns, rounded like the value; empty for a scatter, for which it
-  /// equals U of the value.
+  /// Returns U (k = 2) of the comparison of campaigns. Empty for a scatter, because both U are
+  /// equal.
   std::string comparison(double si, double u) const {
     const double scale = unit_of(quantity_).per_si;
     const auto rounded = rounded_result(si * scale, twice * u * scale);
     return is_log_ || !rounded ? "" : localised(rounded->U, language_);
   }
 
-  /// Returns the difference of two values; for a scatter, the factor between them.
+  /// For a scatter the difference of the logarithms is printed as a factor.
   std::string difference(double si, double u, const reports::Wording& words) const {
     if (!is_log_) return value(si, u, words) + blank_unit();
     return reports::factor_text(words, si, u);
@@ -88,8 +86,8 @@ class Numbers {
   std::string unit_, language_;
 };
 
-/// Returns the printed unit of a series. A scatter is followed as a logarithm without a unit; it is
-/// printed in the unit of the deviations of its axis.
+/// The scatter is evaluated as a logarithm, which has no unit, but printed in the unit of the
+/// deviations of its axis.
 std::string unit_of_series(const reports::MachineHistory& machine, const HistorySeries& s) {
   if (!reports::is_log_of_scatter(s.quantity)) return std::string(unit_of(s.unit).symbol);
   bool is_rotary = config::rotary_by_name(s.axis);
@@ -155,7 +153,6 @@ class SeriesChart {
   }
 
  private:
-  // Columns before the state: two blanks, a day, two blanks.
   static constexpr std::size_t before_state = 14;
 
   std::string line(const std::string& text) const { return wrapped(text, 2, width_, 2); }
@@ -213,14 +210,13 @@ class SeriesChart {
                                 : " (" + words_.get_or("site.not_joined." + p.why_not, p.why_not) +
                                       ")",
                       campaign = printable(p.campaign) + why;
-    // A long name is printed below its bar.
     if (columns_of(out) + 2 + columns_of(campaign) <= width_) return out + "  " + campaign + "\n";
     out.erase(out.find_last_not_of(' ') + 1);
     return out + "\n" + wrapped(campaign, before_state, width_);
   }
 
-  /// Returns whether the change is printed after point `i`: a change within a campaign if the next
-  /// point is of the same campaign, a change between campaigns otherwise.
+  /// A change within a campaign is printed between its two points, any other change after its last
+  /// point.
   bool is_last_of(std::size_t i, const HistoryChange& c) const {
     const bool left_follows = i + 1 < points_.size() && points_[i + 1].campaign == c.after_campaign;
     return (c.before_campaign == c.after_campaign) == left_follows;
@@ -289,8 +285,7 @@ class SeriesChart {
   Numbers numbers_;
   std::vector<HistoryPoint> points_;
   double low_ = 0.0, high_ = 0.0;
-  std::size_t states_ = 0, values_ = 0, bar_ = most_bar;  // widths of states, values and bars in
-                                                          // columns
+  std::size_t states_ = 0, values_ = 0, bar_ = most_bar;
 };
 
 std::size_t count_changes(const reports::MachineHistory& m, bool undeclared) {
@@ -300,8 +295,6 @@ std::size_t count_changes(const reports::MachineHistory& m, bool undeclared) {
   return n;
 }
 
-/// Returns a table with one line per machine: number of followed quantities, of undeclared changes,
-/// of changes with a known cause, and the due date.
 std::string machines_table(const reports::SiteHistory& site, const HistoryWords& with) {
   const reports::Wording& words = with.words;
   std::vector<std::array<std::string, 5>> rows{
@@ -317,7 +310,6 @@ std::string machines_table(const reports::SiteHistory& site, const HistoryWords&
       widths[i] = std::max(widths[i], columns_of(row[i]) + 2);
   std::size_t others = 0;
   for (std::size_t i = 1; i < widths.size(); ++i) others += widths[i];
-  // A name that is longer than its column gets a line of its own.
   const std::size_t names = std::min(widths[0], with.width > others ? with.width - others : 0);
   std::string out;
   for (const auto& row : rows) {
@@ -330,11 +322,6 @@ std::string machines_table(const reports::SiteHistory& site, const HistoryWords&
   return out;
 }
 
-/// Returns the name of a machine, the day of its next calibration unless this is empty, and the
-/// charts of its series that have points. Each campaign has one line with a bar of value ± U;
-/// changes and events are between them; slope, detection limit and forecast are below. The scatter
-/// of the readings is evaluated as a logarithm; it is printed as a standard deviation, and its
-/// changes as factors.
 std::string machine_chart(const reports::MachineHistory& machine, const HistoryWords& with) {
   std::string name = printable(machine.id);
   for (const std::string* more :
@@ -356,7 +343,6 @@ struct HistoryWish {
   std::string out, machine, axis, quantity;
 };
 
-/// Removes all machines and series that are not requested.
 void keep(const HistoryWish& wish, const std::string& machine, reports::SiteHistory& site) {
   if (!machine.empty())
     std::erase_if(site.machines, [&](const auto& m) { return m.id != machine; });

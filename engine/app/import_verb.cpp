@@ -24,7 +24,7 @@ struct ImportArguments {
   bool partial = false, dry_run = false;
 };
 
-/// Reads the rule from a file if its name ends in .toml; otherwise makes it from the pattern.
+/// `rule` is the name of a file in .toml, otherwise a pattern.
 config::Checked<importing::ImportRule> rule_of(const ImportArguments& arguments) {
   if (!arguments.rule.ends_with(".toml")) return importing::import_rule_of_pattern(arguments.rule);
   const auto text = storage::read_file(arguments.rule);
@@ -100,7 +100,6 @@ void print(const importing::ImportReport& report) {
       print_line(
           2, "belongs to no machine, so it has no history: state --asset, or --maker and --serial");
     for (const importing::ImportedFile& f : c.files) {
-      // A copy is reported once, without further messages about this file.
       if (!f.same_as.empty()) {
         print_line(2, f.file + ": " + f.lacks.front());
         continue;

@@ -87,8 +87,6 @@ int event(EventWish& wish, const Common& common) {
   return exit_done;
 }
 
-/// Parses an optional number; an empty text leaves `into` unchanged. Returns false if the text is
-/// not a number.
 bool take_number(const std::string& text, std::optional<double>& into) {
   if (text.empty()) return true;
   double x = 0.0;
@@ -103,8 +101,6 @@ void put_number(Json& json, const char* name, const std::optional<double>& value
   if (value) json[name] = *value;
 }
 
-/// Prints the entries of acknowledged.toml in the order of the file, or only those of the requested
-/// machine. Returns the exit status.
 int list_acknowledged(const AckWish& wish, const Common& common) {
   const auto logs = config::read_site_logs(wish.site);
   if (!logs) return refuse_all(logs.error());
@@ -161,6 +157,11 @@ int acknowledge(AckWish& wish, const Common& common) {
     if (text->empty()) return complain(std::string(name) + " is missing");
   if (!take_number(wish.value, a.value) || !take_number(wish.U, a.U))
     return complain("--value and --U: expected a number with a decimal point");
+  for (const char* kind : {"worklist.failed", "worklist.lost", "worklist.history"})
+    if (a.finding.starts_with(kind))
+      return complain("--finding " + a.finding +
+                      ": a failure or loss cannot be acknowledged; correct its cause, or record "
+                      "what was removed on purpose (nonio machine remove)");
   if (const auto added = config::add_acknowledgement(wish.site, a); !added)
     return refuse_all(added.error());
   say(common, wish.site, config::acknowledged_name,

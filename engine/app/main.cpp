@@ -13,8 +13,8 @@
 
 namespace {
 
-/// Makes every command start a separate process for plugins, so that the process that the user
-/// starts contains no plugin code.
+/// Runs the plugins of each command in a separate process, so that the process started by the user
+/// contains no plugin code.
 nonio::app::Verb apart(nonio::app::Verb verb) {
   for (nonio::app::Verb& part : verb.verbs) part = apart(std::move(part));
   if (verb.run)
@@ -26,8 +26,8 @@ nonio::app::Verb apart(nonio::app::Verb verb) {
 }
 
 /// Blocks SIGPIPE, so that a closed output is an error of `write` and does not end a process that
-/// stores results. It is blocked before plugins are loaded, because their libraries (Poco) set the
-/// same mask, which would otherwise be reported as a change by the plugin.
+/// stores results. This is done before plugins are loaded, because libraries (Poco) set the same
+/// mask, which would be reported as a change by the plugin.
 void block_pipe_signal() {
   sigset_t pipe;
   ::sigemptyset(&pipe);
@@ -35,8 +35,7 @@ void block_pipe_signal() {
   ::pthread_sigmask(SIG_BLOCK, &pipe, nullptr);
 }
 
-/// Called for exceptions that cannot be propagated, out of a destructor or a library: prints a
-/// message and ends the process.
+/// Terminate handler for exceptions that cannot be propagated, such as those of destructors.
 [[noreturn]] void give_up() noexcept {
   constexpr std::string_view words = "nonio: out of memory, or an unexpected error\n";
   [[maybe_unused]] const ssize_t n = ::write(STDERR_FILENO, words.data(), words.size());
@@ -45,8 +44,8 @@ void block_pipe_signal() {
 
 using namespace nonio::app;
 
-/// Former names of commands. Those with `false` are accepted without a message, because scripts use
-/// them; for all others a message states the new name.
+/// Names with `false` are accepted without a message, because scripts use them; all others print
+/// the new name.
 std::vector<Alias> former_names() {
   return {{"compare", "model compare", false},
           {"explain", "model explain", false},
@@ -78,7 +77,7 @@ std::vector<Alias> former_names() {
           {"open", "show --open"}};
 }
 
-/// Words of other programs, and the command for each.
+/// Commands that users of other programs may type, each with the Nonio command to suggest.
 std::vector<std::pair<std::string, std::string>> synonyms() {
   return {{"report", "show"},
           {"view", "show"},
@@ -159,9 +158,8 @@ std::vector<Verb> table_of_commands(Common& common, const Program& program) {
 }  // namespace
 
 #ifdef NONIO_SANITIZED
-/// Turns off the leak sanitizer: it would have to stop its own process, which a confined process
-/// with plugin code must not do, and would wait for ever. The programs of the unit tests check for
-/// leaks.
+/// Turns off the leak sanitizer, which would suspend its own process. A confined process with
+/// plugin code may not do so and would wait for ever. The unit tests check for leaks.
 // NOLINTNEXTLINE(bugprone-reserved-identifier): the sanitizer's name
 extern "C" int __lsan_is_turned_off() { return 1; }
 #endif

@@ -42,8 +42,6 @@ int show_model(const ModelOptions& options, const Common& common) {
   return errors.empty() ? exit_done : exit_failed;
 }
 
-/// Returns why the effect cannot be added or dropped; empty if it can. `there`: its entry in the
-/// model, null if there is none.
 std::string refusal(const OpenCampaign& open, const std::string& effect, const std::string* there,
                     bool add) {
   const std::vector<std::string>& model = open.campaign().model;
@@ -97,7 +95,6 @@ Verb change_verb(const std::shared_ptr<ModelOptions>& options, Common& common, b
       .run = [options, &common, add] { return change(*options, common, add); }};
 }
 
-/// Parses a list of line numbers from 1 on, such as "57,103"; empty if the text is not such a list.
 std::vector<std::uint32_t> lines_in(const std::string& text) {
   std::vector<std::uint32_t> out;
   for (std::size_t begin = 0; begin <= text.size();) {

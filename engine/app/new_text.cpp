@@ -17,7 +17,6 @@ namespace {
 
 constexpr const char* example_mark = "EXAMPLE, NOT MEASURED";
 
-/// Returns the text as a TOML basic string.
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -27,8 +26,8 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-/// Returns the line `key = "text"`; without a text, a comment with `example` in its place. A
-/// `comment` is appended, from column 44 on if the line is shorter.
+/// Without a text, the line is a TOML comment with `example`. `comment` starts in column 45 or
+/// later.
 std::string text_line(const std::string& key, const std::string& text, const std::string& example,
                       const std::string& comment = {}) {
   std::string line =
@@ -40,15 +39,12 @@ std::string text_line(const std::string& key, const std::string& text, const std
   return line + "\n";
 }
 
-/// Returns a key as a TOML comment, with an example and its description from the table of keys.
 std::string offered(const std::string& table, const std::string& key, const std::string& example) {
   std::string help = schema::campaign_key_help(table + "." + key);
   if (help.empty()) help = schema::site_key_help(table + "." + key);
   return "# " + key + " = " + example + "  # " + help + "\n";
 }
 
-/// Returns, as TOML comments with examples, the optional keys of a measurement that a certificate
-/// states.
 std::string test_text(const NewAxis& a) {
   const bool rotary = a.axis.rotary;
   const auto line = [](const char* key, const char* example) {
@@ -60,8 +56,6 @@ std::string test_text(const NewAxis& a) {
          line("compensation", "\"off\"");
 }
 
-/// Returns, as TOML comments with examples, optional keys of a campaign for further statements of
-/// its certificate.
 std::string certificate_text() {
   return "\n"
          "# Further statements of the certificate: docs/howto-certificate.md\n"
@@ -71,7 +65,6 @@ std::string certificate_text() {
          offered("certificate", "no_other_deviations_by", "\"B. Sample\"");
 }
 
-/// Returns the text of a field, marked if the readings are examples.
 std::string marked(const std::string& text, bool example) {
   if (!example) return text;
   return text.empty() ? example_mark : text + " (" + example_mark + ")";
@@ -141,11 +134,11 @@ std::string instrument_text(const NewCampaign& c) {
          offered("environment", "sensors", "\"on the table and on the column\"");
 }
 
-/// Random numbers that are the same on every host.
+/// Random numbers that are equal on every platform.
 class Noise {
  public:
   explicit Noise(std::uint64_t seed) : numbers_(seed) {}
-  /// Returns a number from -1 to 1, most often near 0.
+  /// Returns the scaled mean of three uniform numbers, from -1 to 1.
   double operator()() { return (even() + even() + even()) * 2.0 / 3.0 - 1.0; }
 
  private:
@@ -164,7 +157,7 @@ bool set_offered(std::string& text, const std::string& key, const std::string& v
   if (dot == std::string::npos) return false;
   const std::string wanted = key.substr(0, dot), name = key.substr(dot + 1) + " = ";
   std::string out, table;
-  std::size_t header = 0;  // position of the table's header in `out`
+  std::size_t header = 0;
   bool found = false;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
@@ -331,7 +324,7 @@ std::string example_readings(const Axis& axis, const std::string& campaign) {
                      "# deviation = actual - target. Blank or nan: not taken.\n"
                      "run,direction,target" +
                      position + ",deviation" + deviation + "\n";
-  std::uint64_t seed = 0xcbf29ce484222325U;  // start value of the FNV-1a hash
+  std::uint64_t seed = 0xcbf29ce484222325U;  // offset basis of FNV-1a
   for (const char c : campaign + '\n' + axis.name)
     seed = (seed ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
   Noise noise(seed);
@@ -343,8 +336,8 @@ std::string example_readings(const Axis& axis, const std::string& campaign) {
       for (int i = 0; i < targets; ++i) {
         const int k = direction > 0 ? i : targets - 1 - i;
         const double share = (target[k] - from) / (to - from);
-        // Values in um or arcsec. For a rotary axis they repeat after a turn, so that no finding
-        // has severity warning.
+        // Values in um or arcsec. For a rotary axis they are periodic in one turn, because a jump
+        // there would be a finding of severity warning.
         const double turn = 2.0 * std::numbers::pi * share;
         const double value =
             (axis.rotary ? 2.0 * std::sin(2.0 * turn) : 4.0 * share + std::sin(turn)) +

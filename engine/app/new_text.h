@@ -7,22 +7,21 @@
 
 #include "nonio/sdk/campaign.h"
 
-/// Makes the texts of the files that `nonio new` writes.
 namespace nonio::app {
 
 struct NewAxis {
   Axis axis;
-  std::string file;   ///< name of the file in the campaign's folder
-  std::string bytes;  ///< content of the file; empty: example readings are made
+  std::string file;
+  std::string bytes;  ///< content; empty if example readings are made
   bool example() const { return bytes.empty(); }
 };
 
 struct NewCampaign {
   std::string id, customer, operator_name, date, maker, machine, serial, asset, control, instrument;
   std::vector<NewAxis> axes;
-  std::string reader{};                ///< reader of all files, determined by `columns`; empty: the
-                                       ///< reader is chosen by the content of each file
-  std::vector<std::string> columns{};  ///< entries of option `columns`, as given with --column
+  /// Reader of all files; empty if it is chosen by the content of each file.
+  std::string reader{};
+  std::vector<std::string> columns{};  ///< entries of the reader option `columns`
   bool example() const;
 };
 
@@ -35,21 +34,22 @@ struct NewMachine {
   std::vector<Axis> axes;
 };
 
-/// Returns the record of a machine; keys without a known value are comments.
+/// Returns the TOML record of a machine. Keys without a value are written as comments.
 std::string machine_text(const NewMachine& machine);
 std::string site_text(const NewSite& site);
 std::string campaign_text(const NewCampaign& campaign);
 
-/// Replaces the example that a text offers for a key as a comment, such as "instrument.serial", by
-/// a value. A key with a quoted example gets a quoted value. Returns false if the text offers no
-/// such key.
+/// Replaces a commented example in the TOML text by a value, for example of the key
+/// "instrument.serial". The value is quoted if the example is. Returns false if the text contains
+/// no such example.
 bool set_offered(std::string& text, const std::string& key, const std::string& value);
 
-/// Returns invented readings as CSV, marked as examples: 5 runs in both directions over the travel.
-/// They differ for each campaign and axis, because equal readings of two campaigns are a finding.
+/// Returns synthetic readings as CSV, marked as examples: 5 runs in both directions over the
+/// travel. They differ between campaigns and axes, because equal readings of two campaigns are a
+/// finding.
 std::string example_readings(const Axis& axis, const std::string& campaign);
 
-/// Returns the nearest valid id of a campaign: "Rossi FP12" gives "rossi-fp12".
+/// Returns the nearest valid id of a campaign, for example "rossi-fp12" for "Rossi FP12".
 std::string valid_id(const std::string& name);
 
 }  // namespace nonio::app

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Implements `nonio new`: makes a site or a campaign that can be evaluated at once.
 #include <unistd.h>
 
 #include <algorithm>
@@ -35,14 +34,13 @@ struct NewWish {
   bool empty = false, defaults = false;
 };
 
-/// A new folder and its files.
 struct NewFiles {
   fs::path folder;
   std::vector<Artifact> files;
 };
 
-/// Returns the nearest folder above this one that contains a site.toml; otherwise the parent
-/// folder, if it contains another campaign; otherwise none.
+/// Returns the nearest parent folder with a site.toml, otherwise the direct parent folder if it
+/// contains another campaign.
 std::optional<fs::path> site_above(const fs::path& folder) {
   std::error_code error;
   for (fs::path up = folder.parent_path(); !up.empty(); up = up.parent_path()) {
@@ -54,11 +52,9 @@ std::optional<fs::path> site_above(const fs::path& folder) {
   return std::nullopt;
 }
 
-/// Returns the folder of the site's campaign with this id; empty if there is none, or if the folder
-/// has no site.toml.
 fs::path holder_of(const std::string& id, const fs::path& site) {
   std::error_code error;
-  // Without site.toml, the folder may be a home folder, which is not searched.
+  // A folder without site.toml is not searched, because it may be a home folder.
   if (!fs::exists(site / config::site_name, error)) return {};
   fs::recursive_directory_iterator it(site, fs::directory_options::skip_permission_denied, error);
   for (; !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
@@ -104,7 +100,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// Parses "X=path.csv" and assigns the file to the axis, which is added if it is new.
+/// `text` is AXIS=PATH, such as "X=path.csv". An axis that is not in `axes` is added.
 Expected<void> take_file(const std::string& text, std::vector<NewAxis>& axes) {
   const std::size_t equals = text.find('=');
   if (equals == 0 || equals == std::string::npos || equals + 1 == text.size())
@@ -127,14 +123,12 @@ Expected<void> take_file(const std::string& text, std::vector<NewAxis>& axes) {
   return {};
 }
 
-/// A key of a new file whose value is requested from the person or given with --set.
 struct Setting {
   const char *key, *question;
 };
 
-/// Keys that a certificate requires of a site, and of a campaign of a site that issues
-/// certificates. Contributions to the uncertainty are not included, because a person has to judge
-/// them in the file.
+/// Keys that a certificate requires, except the contributions to the uncertainty, which a person
+/// must judge.
 constexpr Setting for_certificates = {"laboratory.authoriser",
                                       "Person who approves certificates (empty: none are issued)"};
 constexpr Setting signing_settings[] = {
@@ -159,8 +153,6 @@ Expected<void> ask_for(const Setting& one, const std::string& otherwise, Values&
   return one_line(one.key, values[one.key]);
 }
 
-/// Sets these keys in the text of a new file, except those with an empty value. An error if the
-/// text does not offer a key.
 Expected<void> set_all(const Values& values, std::string& text) {
   for (const auto& [key, value] : values)
     if (!value.empty() && !set_offered(text, key, value))
@@ -169,8 +161,6 @@ Expected<void> set_all(const Values& values, std::string& text) {
   return {};
 }
 
-/// Returns the campaign with the latest date in the folders directly below the site's folder; its
-/// values are the defaults of the questions.
 std::optional<Campaign> last_campaign(const fs::path& site) {
   std::optional<Campaign> last;
   std::error_code error;
@@ -189,8 +179,6 @@ std::string um_text(const std::optional<double>& m) {
   return text;
 }
 
-/// Returns the values that describe the last campaign's instrument, by their keys; none if its
-/// model is not `model`.
 Values known_instrument(const std::optional<Campaign>& last, const std::string& model) {
   if (!last || last->instrument.model.empty() || last->instrument.model != model) return {};
   const Instrument& i = last->instrument;
@@ -202,8 +190,6 @@ Values known_instrument(const std::optional<Campaign>& last, const std::string& 
           {"instrument.U_per_m_um", um_text(i.U_per_length)}};
 }
 
-/// Asks for the keys that a certificate requires, only if the site issues certificates; for those
-/// of the instrument only if an instrument is stated.
 Expected<void> ask_for_certificate(const NewCampaign& c, const fs::path& site, Values& values,
                                    Questions& ask) {
   std::string digest;
@@ -221,7 +207,7 @@ Expected<void> ask_for_certificate(const NewCampaign& c, const fs::path& site, V
   return {};
 }
 
-/// Returns the id of the new campaign; the default is made from the folder's name.
+/// The default id is made from the name of the folder.
 Expected<std::string> id_of(const NewWish& wish, const fs::path& folder, Questions& ask) {
   std::string id = wish.id, near = valid_id(folder.filename().string());
   if (!config::is_campaign_id(near)) near = "campaign-" + near;
@@ -239,7 +225,6 @@ Expected<std::string> id_of(const NewWish& wish, const fs::path& folder, Questio
   return id;
 }
 
-/// Returns the axes with their files; an axis without a file gets example readings.
 Expected<std::vector<NewAxis>> axes_with_files(const NewWish& wish, Questions& ask) {
   std::vector<std::string> texts = wish.axes, files = wish.files;
   const bool asks = texts.empty() && files.empty();
@@ -269,7 +254,6 @@ Expected<std::vector<NewAxis>> axes_with_files(const NewWish& wish, Questions& a
   return axes;
 }
 
-/// Returns the values of the command line, and asks for the others.
 Expected<NewCampaign> settled(const NewWish& wish, const fs::path& folder, Questions& ask) {
   NewCampaign c{.id = {},
                 .customer = wish.customer,
@@ -305,7 +289,7 @@ Expected<NewCampaign> settled(const NewWish& wish, const fs::path& folder, Quest
   return c;
 }
 
-/// Determines the reader of files whose columns are stated.
+/// Chooses the reader of the files by their content. An error if two files need different readers.
 Expected<void> take_columns(const NewWish& wish, NewCampaign& c, const Common& common) {
   if (wish.columns.empty()) return {};
   for (const std::string& column : wish.columns)
@@ -330,13 +314,12 @@ std::vector<Artifact> files_of(const NewCampaign& c, std::string manifest) {
   std::vector<Artifact> files;
   for (const NewAxis& a : c.axes)
     files.push_back({a.file, a.example() ? example_readings(a.axis, c.id) : a.bytes});
-  // The manifest is the last file, because its presence makes the folder a campaign.
+  // The manifest is written last, because its presence makes the folder a campaign.
   files.push_back({config::manifest_name, std::move(manifest)});
   return files;
 }
 
-/// Returns the errors of the files, which are evaluated in a temporary folder as in a run, with the
-/// settings of the site.
+/// Evaluates the files in a temporary folder with the settings of the site, as a run does.
 std::vector<Error> mistakes(const std::vector<Artifact>& files, const std::string& id,
                             const std::optional<fs::path>& site, const Common& common) {
   const storage::ScratchFolder trial("new");
@@ -354,8 +337,6 @@ std::vector<Error> mistakes(const std::vector<Artifact>& files, const std::strin
       .results.errors;
 }
 
-/// Returns an error if the folder exists and is not empty, or is not a folder; otherwise an empty
-/// text.
 std::string in_the_way(const fs::path& folder) {
   std::error_code error;
   if (!fs::exists(fs::symlink_status(folder, error))) return {};
@@ -397,8 +378,7 @@ int write_new(const std::vector<NewFiles>& all, const NewWish& wish, const std::
   return exit_done;
 }
 
-/// Makes the files of the new campaign. They are evaluated once in a temporary folder; an error
-/// means that nothing is written.
+/// The files are evaluated in a temporary folder. An error means that nothing is written.
 Expected<NewFiles> campaign_files(const NewWish& wish, const fs::path& folder,
                                   const std::optional<fs::path>& site, Questions& ask,
                                   bool& example, const Common& common) {
@@ -417,8 +397,8 @@ Expected<NewFiles> campaign_files(const NewWish& wish, const fs::path& folder,
   return out;
 }
 
-/// Asks who approves certificates and which key signs them. If a key is stated, the outputs of the
-/// site include the certificate.
+/// Prompts for the person who approves certificates and for the signing key. With a key, the
+/// outputs of the site include the certificate.
 Expected<void> settle_certificates(const fs::path& folder, Values& values, Questions& ask) {
   if (auto done = ask_for(for_certificates, "", values, ask); !done) return done;
   if (values[for_certificates.key].empty()) return {};
@@ -426,7 +406,7 @@ Expected<void> settle_certificates(const fs::path& folder, Values& values, Quest
     if (auto done = ask_for(one, "", values, ask); !done) return done;
     std::string& file = values[one.key];
     if (file.empty()) return {};
-    // A typed path is relative to the current folder, but a path in the file is relative to the
+    // A typed path is relative to the current folder, but a path in site.toml is relative to the
     // site.
     const fs::path path = fs::absolute(file).lexically_normal(),
                    below = path.lexically_relative(folder);
@@ -475,7 +455,6 @@ int new_campaign(const NewWish& wish, const fs::path& folder, const Common& comm
   return write_new({*campaign}, wish, "campaign", example, common);
 }
 
-/// Writes the record SITE/machines/<asset>.toml. Returns the exit status.
 int new_machine(const NewWish& wish, const fs::path& path, const Common& common) {
   NewMachine machine{path.stem().string(), wish.maker, wish.machine, wish.serial, wish.control, {}};
   if (path.extension() != ".toml" || path.parent_path().filename() != config::machines_folder)

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Implements `nonio show --open`: opens the report of a campaign, or the summary of a run, on the
-// desktop.
 #include <fcntl.h>
 #include <spawn.h>
 #include <unistd.h>
@@ -37,8 +35,6 @@ Expected<Json> json_file(const fs::path& path) {
   return json;
 }
 
-/// Returns the PDF document of the results, a report first; otherwise an HTML page; otherwise
-/// results.json.
 Expected<fs::path> document_of(const fs::path& results) {
   NONIO_TRY(const auto json, json_file(results / evaluation::results_name));
   std::vector<std::string> files;
@@ -52,8 +48,6 @@ Expected<fs::path> document_of(const fs::path& results) {
   return results / evaluation::results_name;
 }
 
-/// Returns the document of the first campaign with status `attention`, otherwise of the first that
-/// has failed; if there is none, the summary. Lists all these campaigns on stderr, unless `quiet`.
 Expected<fs::path> document_of_night(const fs::path& out, const Common& common) {
   NONIO_TRY(const auto summary, json_file(out / "summary.json"));
   std::string first;
@@ -88,7 +82,6 @@ Expected<fs::path> document(const OpenWish& wish, const Common& common) {
   return fail(holds_nothing(folder));
 }
 
-/// Returns why no window can be opened; empty if one can.
 std::string no_desktop() {
   if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr)
     return "there is no desktop here (neither DISPLAY nor WAYLAND_DISPLAY is set)";
@@ -99,8 +92,7 @@ std::string no_desktop() {
   return "xdg-open is not installed (Debian: xdg-utils)";
 }
 
-/// Starts xdg-open in a session of its own, so that it outlives this program and its terminal.
-/// Returns whether it was started.
+/// xdg-open gets its own session, so that it outlives this program and its terminal.
 bool open_in_background(const std::string& path) {
   posix_spawn_file_actions_t files;
   posix_spawnattr_t attributes;

@@ -12,7 +12,6 @@ namespace nonio::app {
 
 namespace {
 
-/// Turns off the echo of the terminal during its lifetime.
 class Hidden {
  public:
   Hidden() {

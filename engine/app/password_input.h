@@ -7,8 +7,8 @@
 
 namespace nonio::app {
 
-/// Reads a password from the terminal without echo, or a line from standard input. `whose`: the
-/// person named in the prompt.
+/// Reads a password from the terminal without echo, or one line of standard input. The prompt names
+/// the person `whose`.
 Expected<std::string> read_password(const std::string& whose);
 
 }  // namespace nonio::app

@@ -12,18 +12,16 @@
 
 namespace nonio::app {
 
-/// Values of the options --pdf, --language and --stops, for printing a plan.
 struct SheetWish {
   std::string file, language = "en";
   std::int64_t stops = 1;
 };
 std::vector<Argument> sheet_arguments(SheetWish&, Common&);
 
-/// Returns a machine with axes X and Y and travels from 0 to x and y, in m.
+/// Returns a machine with axes X and Y and travels from 0 to x and y (m).
 Machine rectangle(double x, double y);
 
-/// Writes the sheet of these rows by the output plan-sheet with its options. Returns the exit
-/// status.
+/// Writes the rows as a PDF by the output plugin for sheets of stops. Returns the exit status.
 int write_sheet(const SheetWish&, const Machine&, const PointTable& rows,
                 std::map<std::string, std::string> options, const Common&);
 

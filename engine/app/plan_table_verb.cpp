@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Prints the table of right triples by the ratio of their legs, and for a machine's travels the
-// plan of each triple that fits, sorted by the time it takes.
 #include <unistd.h>
 
 #include <algorithm>
@@ -36,8 +33,8 @@ struct TableWish {
   bool fits() const { return !x.empty() || !y.empty(); }
 };
 
-/// A triple, and its plan if travels were given; otherwise the plan is empty (n = 0). An optional
-/// plan would cause a false warning of GCC 12.
+/// The plan is empty (n = 0) if no travels were given. It is not std::optional, because GCC 12
+/// would give a false warning.
 struct TableRow {
   math::Triple triple;
   math::TriplePlan plan{};
@@ -130,8 +127,8 @@ storage::Json json_of(const TableRow& row) {
   return out;
 }
 
-/// Writes the part programs of each row into a folder that is named by the number of the row and
-/// its triple a, b, c, for example 01-56-33-65. Returns the exit status.
+/// Each row gets a folder named by its number and its triple, for example 01-56-33-65. Returns the
+/// exit status.
 int write_row_programs(const std::vector<TableRow>& rows, const TableWish& wish,
                        const math::TripleRequest& w, const Common& common) {
   if (wish.control.empty()) return complain("part programs: --control is required");
@@ -163,7 +160,6 @@ int write_row_programs(const std::vector<TableRow>& rows, const TableWish& wish,
   return exit_done;
 }
 
-/// Returns the rows for the sheet: those of the planner, or the triples alone.
 PointTable sheet_rows(const std::vector<TableRow>& rows) {
   std::vector<math::TriplePlan> plans;
   for (const TableRow& row : rows) {
@@ -171,7 +167,6 @@ PointTable sheet_rows(const std::vector<TableRow>& rows) {
     plans.back().a = row.triple.a, plans.back().b = row.triple.b, plans.back().c = row.triple.c;
   }
   PointTable table = math::triple_table(plans);
-  // Keep only the columns a, b, c.
   if (!rows.empty() && !rows.front().fits()) table.columns.resize(3);
   return table;
 }

@@ -180,7 +180,6 @@ int plan_triples(Plan plan, const Common& common) {
       {{"plan", std::to_string(plan.choose)}, {"over_travel_mm", plan.mm.over_travel}});
 }
 
-/// Returns the row with the steps of the diagonals; empty if no steps are given.
 Expected<PointTable> grid_of(const ProgramWish& p) {
   PointTable rows;
   if (p.n.empty() && p.step_x.empty() && p.step_y.empty()) return rows;

@@ -20,7 +20,6 @@ struct CheckOptions {
   std::vector<std::string> cases;
 };
 
-/// Prints the checks of a plugin and counts them.
 class CheckReport {
  public:
   CheckReport(const CheckOptions& options, const Common& common)

@@ -75,7 +75,6 @@ void print_plugins_json(const loader::Plugins& plugins, const std::vector<Listed
       Json{{"abi", NONIO_ABI_TAG}, {"files", std::move(files)}, {"plugins", std::move(all)}});
 }
 
-/// Prints the version and the options of a plugin, and the columns of a method.
 void print_options(const Listed& p, std::size_t width) {
   std::cout << "    version " << p.info->version << "\n";
   for (const Option& o : p.info->options)
@@ -90,8 +89,6 @@ void print_options(const Listed& p, std::size_t width) {
               << wrapped(c.help, 8, width);
 }
 
-/// Prints the plugin files, or without `all` only the rejected ones, and how many files were
-/// loaded.
 void print_files(const std::vector<loader::PluginFile>& files, bool all) {
   std::size_t loaded = 0;
   for (const loader::PluginFile& f : files) {

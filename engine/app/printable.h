@@ -6,9 +6,8 @@
 
 namespace nonio::app {
 
-/// Returns text from other sources as one line that is safe on a terminal: control characters,
-/// marks that change the direction of writing, invisible characters and invalid UTF-8 become
-/// escapes such as \x1b or \u202e.
+/// Makes text from other sources safe for a terminal: control characters, direction marks,
+/// invisible characters and invalid UTF-8 become escapes such as \x1b or \u202e.
 std::string printable(std::string_view text);
 
 }  // namespace nonio::app

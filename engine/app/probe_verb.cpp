@@ -22,8 +22,8 @@ namespace {
 
 using storage::Json;
 
-/// Returns the output for part programs of a control: that of its family (heidenhain for
-/// heidenhain-tnc), or gcode if there is none.
+/// Returns the control family, such as "heidenhain" of heidenhain-tnc, if an output plugin writes
+/// its part programs, otherwise "gcode".
 std::string writer_for(const std::string& control, const loader::Plugins& plugins) {
   const std::string family = control.substr(0, control.find('-'));
   for (const Output& o : plugins.outputs())
@@ -31,15 +31,12 @@ std::string writer_for(const std::string& control, const loader::Plugins& plugin
   return "gcode";
 }
 
-/// Whether the control runs G-code; true for an unknown control.
 bool runs_gcode(const std::string& control, const loader::Plugins& plugins) {
   for (const Controller& c : plugins.controllers())
     if (c.info.name == control) return c.table.runs_gcode;
   return true;
 }
 
-/// Returns the table options of the campaign's control, with what the site, the manifest and the
-/// machine record state about its axes; empty if the control is unknown or the options are invalid.
 Settings said_of_axes(const OpenCampaign& open) {
   for (const Controller& o : open.place->plugins.controllers())
     if (o.info.name == open.campaign().machine.control)
@@ -50,8 +47,7 @@ Settings said_of_axes(const OpenCampaign& open) {
   return {};
 }
 
-/// Returns an error if the probe leaves the travel of the axis, as stated in the manifest and in
-/// option axes.
+/// An error unless the probe is within the travels of the manifest and of the option `axes`.
 Expected<void> within_travel(const tables::SignProbe& p, const Axis* axis, const Settings& said) {
   const double unit = p.rotary ? deg_per_rad : 1e3;
   const char* const suffix = p.rotary ? "_deg" : "_mm";
@@ -127,14 +123,14 @@ Expected<Artifact> program_of(const tables::SignProbe& p, const Machine& machine
     return fail("control " + machine.control +
                 " runs no part programs in G-code: enter the moves by hand (run without --out), or "
                 "name a writer with --control");
-  // G53 is used because an active zero offset would shift the moves.
+  // G53 selects machine coordinates; an active zero offset would shift the moves.
   const std::string control = w.control.empty() ? writer_for(machine.control, plugins) : w.control;
   if (control == "gcode" && !machine.control.empty()) settings.emplace("work_offset", "G53");
   auto files = planning::write_programs(plugins, control, with_axis, stops, settings);
   if (!files) return fail(files.error().front());
   Artifact& program = files->front();
   std::string ending = std::filesystem::path(program.name).extension().string();
-  if (ending == ".ngc") ending = ".nc";  // file ending that earlier versions used
+  if (ending == ".ngc") ending = ".nc";  // ending of earlier versions
   if (ending == ".h") ending = ".H";
   program.name = "sign-probe-" + p.axis + ending;
   return std::move(program);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Implements the commands help, version and completion.
 #include <iostream>
 #include <memory>
 

@@ -77,8 +77,8 @@ void Progress::planned(std::size_t campaigns, std::size_t to_do) {
 }
 
 void Progress::finished(const batch::CampaignState& c) {
-  to_do_ = std::max(to_do_, ++done_);  // a report that is written again because its history has
-                                       // changed was not planned
+  // Reports that are written again because of a changed history were not planned.
+  to_do_ = std::max(to_do_, ++done_);
   const bool failed = c.status == evaluation::Status::failed;
   if (failed) ++failed_;
   if (json_) {

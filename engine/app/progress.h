@@ -10,18 +10,15 @@
 
 namespace nonio::app {
 
-/// Shows the progress of a run on stderr: notes, one line for each failed campaign, and a bar if
-/// stderr is a terminal. With --quiet, only notes and failures; with --json one event per line on
-/// stdout instead.
+/// Shows the progress of a run on stderr: notes, failed campaigns, and a bar on a terminal. With
+/// --quiet the bar is omitted; with --json stdout gets one event per line instead.
 class Progress {
  public:
   Progress(const Common& common, bool quiet, bool json);
   batch::RunEvents events();
-  /// Returns the words for output, in English until the run has read site.toml.
+  /// English until the run has read site.toml.
   const config::TerminalWords& words() const { return words_.get(); }
-  /// Ends the line of the progress bar on stderr.
   void end();
-  /// Prints the campaigns that failed earlier and were not evaluated again.
   void still_failed(const batch::RunResult& run);
 
  private:

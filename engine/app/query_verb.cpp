@@ -32,7 +32,6 @@ struct QueryColumn {
   bool number = false;
 };
 
-/// Names of a point's members in CSV and JSON.
 constexpr auto query_columns = std::to_array<QueryColumn>({
     {"machine", &Point::machine},
     {"axis", &Point::axis},
@@ -107,8 +106,6 @@ void print_rows(const std::vector<std::vector<std::string>>& rows, const std::st
   }
 }
 
-/// Returns value and U as printed: U with two digits, the value rounded to the same place. Without
-/// U, returns the value and an empty text.
 std::pair<std::string, std::string> shown_result(const Point& p) {
   const double value = std::strtod(p.value.c_str(), nullptr);
   const double U = std::strtod(p.expanded.c_str(), nullptr);
@@ -117,8 +114,8 @@ std::pair<std::string, std::string> shown_result(const Point& p) {
   return {short_text(value), ""};
 }
 
-/// Returns U for comparing campaigns (2 u_repeat), rounded to two digits; empty for values that are
-/// not followed.
+/// Returns U = 2 u_repeat for the comparison of campaigns, rounded to two significant digits; empty
+/// unless the source is "followed".
 std::string shown_comparison(const Point& p) {
   const double u = std::strtod(p.u_repeat.c_str(), nullptr);
   const auto rounded = rounded_result(0.0, 2.0 * u);

@@ -10,17 +10,14 @@
 
 namespace nonio::app {
 
-/// Asks on stderr, with the default in brackets, for values that are still empty. A value is set to
-/// the default if the line is empty or the object does not ask. An error if the input has ended
-/// (^D).
+/// Prompts on stderr for values that are empty, with the default in brackets. An empty line, or an
+/// object without prompts, gives the default. An error if the input has ended (^D).
 class Questions {
  public:
   explicit Questions(bool asks) : asks_(asks) {}
-  /// Whether stdin and stderr are a terminal, so that a person can answer.
   static bool on_terminal() { return ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1; }
   bool asks() const { return asks_; }
-  /// Returns the exit status of a command that ends with an error: interrupted if the input has
-  /// ended, otherwise that of a usage error.
+  /// Returns the exit status after an error: interrupted if the input has ended, otherwise usage.
   int status() const { return ended_ ? exit_interrupted : exit_usage; }
 
   Expected<void> text(const char* question, std::string& to, const std::string& otherwise) {

@@ -30,12 +30,13 @@ std::string reason_of(const WaitingDraft& draft, const evaluation::KnownFinding&
   return given == draft.author->reasons.end() ? "" : given->second;
 }
 
-Json draft_json(const WaitingDraft& draft) {
+Json draft_json(const WaitingDraft& draft, bool waits = true) {
   Json json = {{"campaign", draft.campaign},
                {"folder", draft.folder},
                {"file", batch::file_of(draft).string()}};
   if (!draft.replaces.empty()) json["replaces"] = draft.replaces;
-  if (const std::string why = batch::why_stale(draft); !why.empty()) json["stale"] = why;
+  if (const std::string why = waits ? batch::why_stale(draft) : ""; !why.empty())
+    json["stale"] = why;
   if (draft.author) json["author"] = {{"name", draft.author->by}, {"at", draft.author->at}};
   Json findings = Json::array();
   for (const evaluation::KnownFinding& f : draft.findings) {
@@ -90,7 +91,7 @@ int list_drafts(const ReleaseVerbWish& wish, const Common& common) {
 Json released_json(const Released& done) {
   constexpr const char* states[] = {"refused", "lacking", "approved", "failed", "issued"};
   Json json = {{"schema", "nonio-release/1"}, {"state", states[static_cast<int>(done.state)]}};
-  if (done.draft) json["draft"] = draft_json(*done.draft);
+  if (done.draft) json["draft"] = draft_json(*done.draft, done.state != Released::State::issued);
   if (!done.without_reason.empty()) json["without_reason"] = done.without_reason;
   if (!done.why.empty()) json["why"] = done.why;
   if (done.state == Released::State::issued) {

@@ -22,7 +22,6 @@ fs::path results_at(const fs::path& folder) {
   fs::path path = fs::absolute(folder).lexically_normal();
   if (!path.has_filename()) path = path.parent_path();
   const fs::path above = path.parent_path();
-  // Parents of the layouts OUT/ID and OUT/ab/ID.
   for (const fs::path& out : {above, above.parent_path()}) {
     const std::string id = path.filename().string();
     if (storage::own_folder(out, id) != path) continue;

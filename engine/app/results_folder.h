@@ -8,19 +8,15 @@
 
 namespace nonio::app {
 
-/// Kind of a folder, determined by the files in it.
 enum class Holds { campaign, results, run, nothing };
 Holds what_holds(const std::filesystem::path& folder);
 
-/// Returns the path inside the pack that contains the results OUT/ID, if the folder itself contains
-/// none; otherwise returns the folder unchanged.
+/// Returns the path in the pack if the results of the folder OUT/ID are packed, otherwise `folder`.
 std::filesystem::path results_at(const std::filesystem::path& folder);
-/// Returns the error message for a folder that does not exist, or contains neither results.json,
-/// summary.json nor campaign.toml.
+/// Returns the error message for a folder without campaign.toml, results.json and summary.json.
 std::string holds_nothing(const std::filesystem::path& folder);
 
-/// Returns the id that a run would give to a campaign, even if other parts of the manifest have
-/// errors.
+/// Returns the id that a run gives to the campaign, even if its manifest has other errors.
 std::string id_of_campaign(const std::filesystem::path& folder);
 
 }  // namespace nonio::app

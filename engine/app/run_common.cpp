@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Returns the value of a worklist line about a conformity decision (out of tolerance or
-/// indeterminate), for example " 4.8 ± 1.0 um"; empty for all other lines.
+/// Returns the result that is out of tolerance or indeterminate with U, for example " 4.8 ± 1.0
+/// um". Empty for lines of other kinds.
 std::string judged_value(const Json& line, const std::string& language) {
   const std::string kind = line.value("kind", ""), unit = line.value("unit", "");
   if ((kind != "out" && kind != "undecided") || !line.contains("value")) return {};
@@ -32,22 +32,20 @@ std::string judged_value(const Json& line, const std::string& language) {
   return " " + localised(shown, language) + (unit.empty() ? "" : " " + unit);
 }
 
-/// Prints one line per campaign that has new actions other than failures and information: at most
-/// 20 campaigns, then the number of the others.
 void print_actions(const std::string& actions, const config::TerminalWords& words) {
   constexpr std::size_t most_campaigns = 20;
   const Json lines = storage::parse_or_discard(actions);
   if (!lines.is_array()) return;
   struct Campaign {
     std::string id, says;
-    std::vector<std::string> of{};  ///< axes and quantities of these actions
-    std::size_t more = 0;           ///< number of actions with other texts
+    std::vector<std::string> of{};
+    std::size_t more = 0;
   };
   std::vector<Campaign> campaigns;
   for (const Json& line : lines) {
     const std::string kind = line.value("kind", ""), id = line.value("campaign", "");
     if (line.value("state", "") != "new" || id.empty() || kind == "failed" || kind == "information")
-      continue;  // failed campaigns have been printed already
+      continue;
     const std::string axis = line.value("axis", ""), quantity = line.value("quantity", ""),
                       of = axis + (axis.empty() || quantity.empty() ? "" : " ") + quantity +
                            judged_value(line, words.language()),
@@ -86,7 +84,6 @@ void print_summary(const batch::RunResult& run, const fs::path& out,
       ++unchanged;
     if (c.status == evaluation::Status::attention) ++attention;
   }
-  // `attention` counts campaigns with findings, `decisions` lines of the worklist.
   if (json) {
     Json end = {{"event", "end"},         {"done", done},     {"unchanged", unchanged},
                 {"attention", attention}, {"failed", failed}, {"vanished", run.vanished.size()}};
@@ -110,9 +107,9 @@ void print_summary(const batch::RunResult& run, const fs::path& out,
 
 namespace {
 
-/// Catches signals: SIGINT, SIGTERM and SIGHUP interrupt the run, which the next run continues;
-/// under nohup SIGHUP is ignored. A closed output pipe or a limit of file sizes causes an error and
-/// does not end the process.
+/// SIGINT, SIGTERM and SIGHUP interrupt the run, which the next run continues; under nohup SIGHUP
+/// stays ignored. A closed output pipe and a limit of the file size cause an error instead of a
+/// signal.
 void catch_signals() {
   struct sigaction stop {};
   stop.sa_handler = [](int) { process::request_stop(); };

@@ -86,7 +86,6 @@ int plan_run(PartWish& wish, const Common& common) {
   return exit_done;
 }
 
-/// Reports that the run is merged already. Returns the exit status of the run.
 int already_merged(const batch::RunStatus& status, const Common& common) {
   const std::uint64_t failed = status.last ? status.last->failed : 0;
   if (!common.quiet)

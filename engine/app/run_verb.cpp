@@ -47,8 +47,8 @@ void print_run_plan(const batch::RunResult& run, const config::TerminalWords& wo
   }
 }
 
-// Distinguishes a missing --shard from an empty one, since an unset variable in --shard "$UNSET"
-// must not start a whole run on every host.
+// Value of --shard if the option is missing. An empty value, such as that of an unset variable in
+// --shard "$UNSET", is an error, because it must not start a whole run on every host.
 constexpr const char* not_given = "not given";
 
 struct RunWish {
@@ -57,7 +57,6 @@ struct RunWish {
   batch::RunOptions options;
 };
 
-/// Parses a shard such as "3/64" into the options. Returns an error message; empty if it is valid.
 std::string take_shard(RunWish& wish) {
   batch::RunOptions& options = wish.options;
   if (options.force || options.verify_results || options.dry_run || !options.date.empty() ||
@@ -75,7 +74,6 @@ std::string take_shard(RunWish& wish) {
   return {};
 }
 
-/// Runs one shard of a planned run. Returns the exit status.
 int run_part(const batch::RunOptions& options, const Common& common) {
   Progress progress(common, common.quiet, common.json);
   const batch::RunResult run = batch::run_shard(options, progress.events());
@@ -124,8 +122,7 @@ int run_site_again(RunWish& wish, const Common& common) {
   const batch::RunResult run = batch::run_site(options, progress.events());
   progress.end();
   if (const auto exit = exit_of_unfinished(run)) return *exit;
-  // Failures that an earlier run reported are reported again, so that no failed campaign is
-  // overlooked.
+  // Failures of earlier runs are reported again, so that no failed campaign is overlooked.
   if (!common.json && !options.dry_run) progress.still_failed(run);
   if (options.dry_run)
     print_run_plan(run, progress.words(), common.json);

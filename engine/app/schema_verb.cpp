@@ -15,10 +15,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Returns the declaration of a file of a site.
 using File = const config::Key& (*)();
 
-/// Writes the schema of a file, of campaign.toml if `file` is null.
+/// A null `file` selects campaign.toml, whose schema depends on the plugins.
 int write_schema(File file, const std::string& out, const Common& common) {
   loader::Plugins plugins;
   plugins.load(common.plugin_folders());

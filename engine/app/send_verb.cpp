@@ -6,6 +6,7 @@
 
 #include "batch/close/mail.h"
 #include "campaign/config/site_files.h"
+#include "certificates/certificate_list.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
@@ -32,13 +33,15 @@ int send(const SendWish& wish, const Common& common) {
   mail.to = {wish.to};
   const auto bytes = storage::read_file(wish.file);
   if (!bytes) return complain(text_of(bytes.error()));
+  const std::string sha256 = storage::sha256(*bytes);
+  if (const auto may = certificates::not_out_of_force(wish.site, sha256); !may)
+    return complain(may.error().message);
   const fs::path path(wish.file);
   const std::string name = path.filename().string(),
                     campaign = fs::absolute(path).parent_path().filename().string();
   const auto sent = batch::send_mail(
       mail, wish.site,
-      {campaign + ": " + name, name + "\nSHA-256 " + storage::sha256(*bytes) + "\n",
-       campaign + "-" + name, *bytes});
+      {campaign + ": " + name, name + "\nSHA-256 " + sha256 + "\n", campaign + "-" + name, *bytes});
   if (!sent) return complain(sent.error().message, exit_failed);
   if (common.json)
     print_json({{"schema", "nonio-send/1"}, {"file", wish.file}, {"to", wish.to}});

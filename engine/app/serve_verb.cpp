@@ -19,7 +19,6 @@ struct LiveOptions {
   bool edit = false, hash_password = false;
 };
 
-/// Reads a password and prints the line with its hash for users.toml.
 int print_hash() {
   const auto password = read_password("the user");
   if (!password) return complain(text_of(password.error()));

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Implements `nonio show`: prints results.json on the terminal, read from the folder of a run or
-// evaluated now.
 #include <unistd.h>
 
 #include <algorithm>
@@ -32,7 +30,6 @@ struct ShowWish {
   bool all = false, opens = false;
 };
 
-/// Joins the parts that are not empty, with `between` as separator.
 std::string joined_text(const std::vector<std::string>& parts, const char* between) {
   std::string text;
   for (const std::string& part : parts)
@@ -40,7 +37,6 @@ std::string joined_text(const std::vector<std::string>& parts, const char* betwe
   return text;
 }
 
-/// A finding of the campaign, with all measurements that have it.
 struct Grouped {
   std::string severity, title;
   std::vector<std::string> measurements{}, says{}, advice{};
@@ -51,8 +47,8 @@ void add_once(std::vector<std::string>& texts, const std::string& text) {
     texts.push_back(text);
 }
 
-/// Returns the rank of a result in the table: 0 does not conform, 1 indeterminate, 2 conforms, 3
-/// without tolerance.
+/// Returns 0 if the result does not conform, 1 if indeterminate, 2 if it conforms, 3 without
+/// tolerance.
 int rank_of(const Json& value) {
   const std::string decision = value.value("decision", "");
   if (decision.empty()) return 3;
@@ -102,8 +98,6 @@ class Page {
         {thing.value("maker", ""), thing.value("model", ""), thing.value("serial", "")}, " ");
   }
 
-  /// Whether the campaign is on the worklist: a result does not conform or is indeterminate, or a
-  /// table or certificate was withheld. Other findings do not require action.
   static bool requires_action(const Json& results) {
     for (const Json& value : results.value("conformity", Json::array()))
       if (rank_of(value) < 2) return true;
@@ -149,8 +143,8 @@ class Page {
     out_ << "\n" << paint(say_("error"), Colour::red) << "\n" << wrapped(text_of(error), 2, width_);
   }
 
-  /// Returns the range of targets of an axis or a diagonal, for example "0 to 1000 mm"; empty for
-  /// other measurements.
+  /// Returns the range of the targets (mm) that have a mean deviation, for example "0 to 1000 mm".
+  /// Empty if they have fewer than two different positions.
   std::string range(const Json& a) const {
     const Json points = a.value("points", Json::array());
     const std::string unit = a.value("point_units", Json::object()).value("target", "");
@@ -167,8 +161,6 @@ class Page {
     return say_("measurement.range", {{"from", text(least)}, {"to", text(most)}, {"unit", unit}});
   }
 
-  /// Returns the names of other measurements that an analysis used: at most 4, then the number of
-  /// the others.
   std::string others(const Json& a) const {
     constexpr std::size_t most = 4;
     auto names = a.value("uses", std::vector<std::string>());
@@ -205,20 +197,31 @@ class Page {
     notes(a);
   }
 
-  /// Returns a value rounded to the second significant digit of U; without U with three decimals,
-  /// or seven for values without a unit (a direction). An integer is not rounded; a missing value
-  /// gives an empty text.
+  /// Rounds to the second significant digit of U. Without U, the value gets three decimals, or
+  /// seven if it has no unit, such as a direction. Integers are not rounded; empty if the value is
+  /// missing.
   std::string number(const Json& of, const char* key) const {
     if (!of.contains(key)) return {};
     const double value = of.at(key), U = of.value("U", 0.0);
     if (of.at(key).is_number_integer()) return std::to_string(of.at(key).get<std::int64_t>());
     if (!(U > 0.0)) return local(fixed_text(value, of.value("unit", "").empty() ? 7 : 3));
-    return local(
-        fixed_text(value, std::clamp(1 - static_cast<int>(std::floor(std::log10(U))), 0, 12)));
+    constexpr int most = 12;
+    int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(U))), 0, most);
+    // As many as show on which side of its tolerance limit the value is.
+    if (const auto limit = of.find("tolerance"); limit != of.end() && limit->is_number()) {
+      const auto side = [&](double x) {
+        const double most_accepted = limit->get<double>();
+        return (std::fabs(x) > most_accepted) - (std::fabs(x) < most_accepted);
+      };
+      while (key == std::string_view("value") && digits < most &&
+             side(std::strtod(fixed_text(value, digits).c_str(), nullptr)) != side(value))
+        ++digits;
+    }
+    return local(fixed_text(value, digits));
   }
 
-  /// Returns value, U and unit, for example "4.82 ± 1.00 um". A value without U and unit is
-  /// returned as a whole number, or with four digits.
+  /// Example: "4.82 ± 1.00 um". A value without U and unit is printed as a whole number or with
+  /// four digits.
   std::string result(const Json& v) const {
     const std::string U = number(v, "U"), unit = v.value("unit", "");
     if (U.empty() && unit.empty() && v.at("value").is_number_float()) {
@@ -237,7 +240,7 @@ class Page {
       return rank_of(a.second) < rank_of(b.second);
     });
     table(rows);
-    // Values of a single direction are shown only with --all.
+    // Values of a single direction are shown only with --all, if the bidirectional value exists.
     std::erase_if(rest, [&](const auto& row) {
       return row.first.size() > 1 && (row.first.ends_with('+') || row.first.ends_with('-')) &&
              all.contains(row.first.substr(0, row.first.size() - 1));
@@ -303,8 +306,6 @@ class Page {
          << "\n";
   }
 
-  /// Adds the findings of an analysis or table to the list, joined with equal findings of other
-  /// measurements.
   void collect(const Json& of, const std::string& measurement) {
     if (!of.contains("findings")) return;
     for (const Json& json : of.at("findings")) {
@@ -325,8 +326,7 @@ class Page {
     }
   }
 
-  /// Prints each finding once. Without --all, findings with severity info are printed with their
-  /// title only.
+  /// Prints only the titles of findings of severity info, unless --all is given.
   void findings() {
     if (findings_.empty()) return;
     heading(say_("findings"));
@@ -368,8 +368,6 @@ class Page {
     }
   }
 
-  /// Prints the number of files of each table and its predicted result by measurement. Tables
-  /// without files are printed only with --all.
   void compensation(const Json& tables, const Json& written) {
     bool is_first = true;
     for (const Json& t : tables) {
@@ -420,12 +418,11 @@ class Page {
       out_ << "\n";
   }
 
-  static constexpr std::size_t most_values = 8;  ///< largest number of values of one analysis that
-                                                 ///< are shown without --all
+  static constexpr std::size_t most_values = 8;  ///< limit per analysis without --all
 
   config::TerminalWords say_;
   bool all_;
-  std::string folder_;  ///< folder of the results; empty: they are not stored, or in a pack
+  std::string folder_;
   std::ostream& out_;
   std::size_t width_;
   std::vector<Grouped> findings_{};

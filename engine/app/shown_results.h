@@ -13,24 +13,22 @@
 
 namespace nonio::app {
 
-/// The text of results.json, and the templates and the language for showing it.
 struct Shown {
   std::string text;
   Templates templates;
   std::string language = "en";
-  /// Readings of each measurement if the campaign was evaluated now; empty for stored results.
   std::vector<Observations> observations{};
 };
 
 enum class Documents { written, left_out };
 
-/// Evaluates a campaign as a run would, without assigning a certificate number. Nothing is written.
+/// Evaluates a campaign as a run does, without a certificate number; nothing is written.
 Expected<Shown> evaluated_now(const std::filesystem::path& folder, const Common& common,
                               Documents documents = Documents::written);
-/// Reads the results that a run has stored in a folder.
+/// Reads stored results and their language. An error if the folder contains no results.json.
 Expected<Shown> of_run(const std::filesystem::path& folder, const Common& common);
 
-/// Converts a finding of results.json; the values of its evidence are converted to SI.
+/// Converts a finding of results.json. The values of its evidence are converted to SI units.
 Finding finding_of(const nlohmann::ordered_json& json);
 
 }  // namespace nonio::app

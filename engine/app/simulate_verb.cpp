@@ -17,7 +17,6 @@ struct SimulateWish {
   std::string specification, out, truth;
 };
 
-/// Returns why the campaign must not be written to `out`; empty if it may.
 std::string not_to_be_written(const fs::path& out, const fs::path& truth) {
   const fs::path below = truth.lexically_relative(out);
   if (!below.empty() && *below.begin() != "..")

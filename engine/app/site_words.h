@@ -9,12 +9,11 @@
 
 namespace nonio::app {
 
-/// Texts for output on the terminal: English until the site is read, then in the language of the
-/// site. The object contains copies, because the templates of a run exist only until its end. Not
-/// copyable.
+/// Texts for the terminal: English until the site is read, then in the language of the site. The
+/// texts are copied, because the templates of a run are destroyed at its end.
 class SiteWords {
  public:
-  /// English is used if there are no texts in `language`, or if it is empty.
+  /// Uses English if there are no texts in `language`.
   explicit SiteWords(const Common& common, const std::string& language = "en");
   SiteWords(const SiteWords&) = delete;
   SiteWords& operator=(const SiteWords&) = delete;

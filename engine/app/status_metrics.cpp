@@ -4,9 +4,11 @@
 #include <simdjson.h>
 
 #include <chrono>
+#include <ctime>
 #include <map>
 
 #include "batch/state/run_status.h"
+#include "certificates/certificate_list.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/files.h"
 
@@ -15,7 +17,6 @@ namespace dom = simdjson::dom;
 
 namespace {
 
-/// Returns a label value with the quoting of OpenMetrics.
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -59,17 +60,20 @@ void put_lines(const dom::object& summary, Metrics& metrics) {
   dom::array lines;
   if (summary["lines"].get(lines) == simdjson::SUCCESS)
     for (const dom::object line : lines)
-      if (text_in(line, "state") != "fixed") ++kinds[text_in(line, "kind", "other")];
-  metrics.family("nonio_worklist_lines", "Lines of the worklist of the last run, by kind");
+      if (text_in(line, "state") == "new") ++kinds[text_in(line, "kind", "other")];
+  metrics.family("nonio_worklist_lines",
+                 "Lines of the worklist of the last run that are not acknowledged, by kind");
   for (const auto& [kind, count] : kinds) metrics.value(std::to_string(count), "kind", kind);
 }
 
-/// Counts the dates of OUT/due.ics: machines whose certificate needs a new calibration.
 void put_due(const std::filesystem::path& out, Metrics& metrics) {
   using namespace std::chrono;
   const auto file = storage::read_file(out / "due.ics");
   if (!file) return;
-  const sys_days today = floor<days>(system_clock::now());
+  const std::time_t now_s = system_clock::to_time_t(system_clock::now());
+  std::tm local{};  // days of a site are local
+  ::localtime_r(&now_s, &local);
+  const sys_days today = year(local.tm_year + 1900) / (local.tm_mon + 1) / local.tm_mday;
   const auto text_of_day = [](sys_days at) {
     const year_month_day day(at);
     return std::to_string(int(day.year()) * 10000 + unsigned(day.month()) * 100 +
@@ -91,10 +95,10 @@ void put_due(const std::filesystem::path& out, Metrics& metrics) {
 
 }  // namespace
 
-Expected<std::string> metrics_of(const std::filesystem::path& out) {
+Expected<std::string> metrics_of(const std::filesystem::path& out, const std::string& site) {
   const auto path = out / "summary.json";
   NONIO_TRY(const auto text, storage::read_file(path));
-  // By simdjson, because the summary of 100,000 campaigns may have 100 MB.
+  // simdjson is used because the summary of 100,000 campaigns can have 100 MB.
   dom::parser parser;
   dom::object summary, counts;
   if (parser.parse(text).get(summary) != simdjson::SUCCESS ||
@@ -127,7 +131,12 @@ Expected<std::string> metrics_of(const std::filesystem::path& out) {
       metrics.value(std::to_string(n), "state", std::string(count.key));
   put_lines(summary, metrics);
   metrics.family("nonio_drafts_waiting", "Certificates that wait for an approval");
-  metrics.value(std::to_string(length_of(summary, "drafts")));
+  std::size_t waiting = length_of(summary, "drafts");
+  if (!site.empty()) {
+    NONIO_TRY(const auto drafts, certificates::waiting_campaigns(site));
+    waiting = drafts.size();
+  }
+  metrics.value(std::to_string(waiting));
   metrics.family("nonio_certificates_issued", "Certificates that the last run has seen issued");
   metrics.value(std::to_string(length_of(summary, "issued")));
   put_due(out, metrics);

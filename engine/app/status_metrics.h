@@ -8,10 +8,10 @@
 
 namespace nonio::app {
 
-/// Returns the state of an output folder as OpenMetrics text (version 1.0.0) for monitoring
-/// systems: time and age of the last complete run, its campaigns by state, the lines of the
-/// worklist by kind, drafts. The source is OUT/summary.json; an error if it does not exist or
-/// cannot be read.
-Expected<std::string> metrics_of(const std::filesystem::path& out);
+/// Returns OpenMetrics text (version 1.0.0) about the last complete run of an output folder: its
+/// age, the numbers of campaigns, worklist lines and drafts. An error if OUT/summary.json cannot be
+/// read.
+/// With `site`, drafts are those that wait now.
+Expected<std::string> metrics_of(const std::filesystem::path& out, const std::string& site);
 
 }  // namespace nonio::app

@@ -21,7 +21,7 @@ namespace {
 
 struct StatusWish {
   std::string out;
-  double max_age = 36.0;  ///< largest accepted age of the last complete run in h; 0: no limit
+  double max_age = 36.0;  ///< limit of the age of the last complete run, h; 0 means no limit
   WorklistWish list{};
 };
 
@@ -37,7 +37,7 @@ std::string hours_text(double hours, const TerminalWords& say) {
   return localised(fixed_text(hours, 1), say.language()) + " h";
 }
 
-/// Returns what is wrong with the runs; empty if nothing is.
+/// Returns the reason for exit status 1; empty for status 0.
 std::string trouble(const RunStatus& s, const StatusWish& wish, const TerminalWords& say) {
   if (s.state == RunStatus::State::cut_short)
     return say("state.cut-short", {{"run", run_text(s.run, say)}});
@@ -68,7 +68,7 @@ std::string line_of(const RunStatus& s, const std::string& wrong, const Terminal
   return line + (wrong.empty() ? "" : "; " + say("state.wrong", {{"what", wrong}}));
 }
 
-/// Returns the language of --language, otherwise that of the last run; empty before the first run.
+/// Returns the language of --language, otherwise of the last run; empty before the first run.
 std::string language_of(const StatusWish& wish) {
   if (!wish.list.language.empty()) return wish.list.language;
   const auto last_run = assessment::last_run_in(wish.out);
@@ -137,11 +137,12 @@ Verb status_verb(Common& common) {
            {"--language", &list.language, "de, en or it; else that of the run's summary.txt"},
            existing(Takes::folder,
                     {"--site", &list.site,
-                     "The site: acknowledgements, withdrawals and events that were entered after "
-                     "the run are applied already"}),
+                     "The site: acknowledgements, withdrawals, events, removals and approvals that "
+                     "were entered after the run are applied already"}),
            {"--page", &list.page,
             "Print one of the pages instead: index.html, due.html, due.ics, instruments.html, "
-            "compare.html, machines/NAME.html; with --json, add the first five to the actions"}},
+            "compare.html, machines/NAME.html; with --json, add the first five to the actions. -: "
+            "read the names from stdin, and print each page as one line of JSON"}},
           common_arguments(common)),
       .footer =
           "The first line states number, date and age of the last run and its campaigns; with "
@@ -158,7 +159,7 @@ Verb status_verb(Common& common) {
       .run = [wish, &common] {
         wish->list.out = wish->out;
         if (wish->metrics) {
-          const auto text = metrics_of(wish->out);
+          const auto text = metrics_of(wish->out, wish->list.site);
           if (!text) return complain(text_of(text.error()));
           std::cout << *text;
           return exit_done;

@@ -104,7 +104,8 @@ Expected<Loaded> understood(
   if (!options) return tl::unexpected<Error>(options.error().front());
   auto tables = tables::tables_in(*found, files, campaign, *options);
   if (tables) return Loaded{found, std::move(*tables), std::move(files)};
-  if (tables.error().line != 0) return fail(tables.error().message);  // the message names the file
+  // The message contains the file name.
+  if (tables.error().line != 0) return fail(tables.error().message);
   std::string names;
   for (const Artifact& f : files) names += (names.empty() ? "" : ",") + f.name;
   return fail(names + ": " + tables.error().message);

@@ -31,15 +31,14 @@ struct TableWish {
   bool active = false;
 };
 
-/// Returns a campaign whose machine has these axes, in the order of their numbers.
 Campaign machine_of(const std::vector<std::string>& axes) {
   Campaign campaign;
   for (const std::string& name : axes) campaign.machine.axes.push_back(axis_named(name));
   return campaign;
 }
 
-/// Sets the number of each axis to its position in `names`, which `--axis` states, unless its
-/// number is stated already. Does nothing if the control has no option `axes`.
+/// Numbers the axes in the order of --axis, unless the options state a number. Does nothing if the
+/// control has no option `axes`.
 void number_axes(const std::vector<std::string>& names, Settings& options) {
   if (!options.has("axes")) return;
   NumberTables axes = options.tables("axes");
@@ -60,8 +59,6 @@ int tell_differences(const std::string& control, const std::vector<tables::Table
   return exit_done;
 }
 
-/// Compares the tables in the control with those that the campaign would write, for the axes of the
-/// campaign only. Returns the exit status.
 int diff_with_campaign(const std::string& backup, const std::string& folder, const TableWish& w,
                        const Texts& settings, const Common& common) {
   auto opened = open_campaign(folder, common);
@@ -88,8 +85,8 @@ int diff_with_campaign(const std::string& backup, const std::string& folder, con
   return tell_differences(present->control->info.name, all, common);
 }
 
-/// Gives both tables the same axis if each side has a single table that is named by its file,
-/// because the file states no axis.
+/// A file without the name of an axis names its table after the file. If each side has one such
+/// table, both get the same name.
 void join_unnamed(const Loaded& was, Loaded& will) {
   const auto only_unnamed = [](const Loaded& l) {
     return l.tables.size() == 1 &&
@@ -101,7 +98,7 @@ void join_unnamed(const Loaded& was, Loaded& will) {
   will.tables.front().input = was.tables.front().input;
 }
 
-/// Pairs of --axis X=Y: X of the present table, Y of the new one. Both are axes of the control.
+/// Pairs "X=Y" of --axis: axis X of the present table is compared with axis Y of the new table.
 struct AxisPairs {
   std::vector<std::string> axes;
   std::vector<std::pair<std::string, std::string>> pairs;
@@ -116,8 +113,8 @@ struct AxisPairs {
     }
   }
 
-  /// Keeps only the tables of the pairs that depend on their own position, and names them by the
-  /// pair; without pairs, all tables are kept. An error if a pair has no such table.
+  /// Keeps only tables of the pairs whose input is the axis itself and names them by the pair.
+  /// Without pairs, all tables are kept. An error if a table of a pair is missing.
   Expected<void> join(std::vector<LoadedTable>& was, std::vector<LoadedTable>& will) const {
     if (pairs.empty()) return {};
     std::vector<LoadedTable> of[2];
@@ -203,9 +200,9 @@ int tell(const Applied& a, const std::string& control, const OpenCampaign& open,
   return std::any_of(a.forecast.begin(), a.forecast.end(), worse) ? exit_failed : exit_done;
 }
 
-/// A value of --active-backlash: "0.012", "none", "X=0.012"; mm or deg.
+/// Value of --active-backlash, such as "0.012", "none" or "X=0.012", in mm or deg.
 struct BacklashWas {
-  std::string axis;  ///< name of the axis; empty: the only axis
+  std::string axis;  ///< empty for the only axis
   double value = 0.0;
 };
 
@@ -230,8 +227,8 @@ Expected<std::vector<BacklashWas>> backlash_was(const std::vector<std::string>& 
   return all;
 }
 
-/// Sets the backlash value of tables whose files do not contain it. An error if the value is not
-/// stated elsewhere, because 0 would be a guess.
+/// Sets the active backlash value of tables whose files lack it. An error if no value is stated,
+/// because 0 would be a guess.
 Expected<void> settle_backlash(const TableWish& w, const Loaded& present, Settings& options) {
   const auto said = backlash_was(w.backlash_was);
   if (!said) return fail(said.error().message);
@@ -267,7 +264,6 @@ Expected<void> settle_backlash(const TableWish& w, const Loaded& present, Settin
   return {};
 }
 
-/// Returns an error if both --active-table and the campaign state the active table of an axis.
 Expected<void> active_unless_stated(const TableWish& w, const Loaded& present, const Campaign& c) {
   for (const LoadedTable& t : present.tables) {
     const Axis* axis = c.machine.axis(t.output);

@@ -30,7 +30,7 @@ namespace {
 
 constexpr std::size_t bar_width = 40;
 
-/// Returns `part` of `whole` as a bar in a text of `width` columns, with "|" at `mark`.
+/// Returns part / whole as a bar of `width` columns, with "|" at the value `mark`.
 std::string bar(double part, double whole, std::size_t width, std::optional<double> mark = {}) {
   const auto cells = [&](double value) {
     const double share = whole > 0.0 ? std::clamp(value / whole, 0.0, 1.0) : 0.0;
@@ -49,20 +49,17 @@ std::string p_text(double p, const TerminalWords& say) {
   return p < 1e-4 ? "< " + say.number("0.0001") : say.number(short_text(p, 2));
 }
 
-/// Returns a text of an object; "" if the object lacks it.
 std::string text_in(const Json& json, const char* name) { return json.value(name, ""); }
 
 std::string list_in(const Json& json, const char* name) {
   return storage::listed(json.at(name).get<std::vector<std::string>>());
 }
 
-/// Returns a value of an object in SI; 0 if the object lacks it.
 double size_in(const Json& json, const std::string& name) {
   const auto found = storage::get(json, name);
   return found ? found->value : 0.0;
 }
 
-/// Prints sentences, which are texts or the `says` of objects, with the same label before each.
 void sentences(std::ostream& out, const Json& list, const std::string& label = {}) {
   for (const Json& one : list)
     sentence(out, 2, label + (one.is_string() ? one : one.at("says")).get<std::string>());
@@ -85,7 +82,6 @@ void print_head(std::ostream& out, const Json& part, const TerminalWords& say) {
                                      {"model", effects.empty() ? say("head.empty") : effects}}));
 }
 
-/// Prints a parameter: its value, as it is written if the model fixes it, and its uncertainty.
 void print_parameter(std::ostream& out, const Json& p, const TerminalWords& say) {
   out << padded(text_in(p, "name"), 8) << " ";
   if (p.contains("held")) {
@@ -104,7 +100,6 @@ void print_parameter(std::ostream& out, const Json& p, const TerminalWords& say)
   out << "\n";
 }
 
-/// Prints the parameters of a model; curves are represented by their RMS.
 void print_parameters(std::ostream& out, const Json& model, const TerminalWords& say) {
   if (model.at("parameters").empty()) return;
   out << "  " << say("parameters") << "\n";
@@ -125,7 +120,6 @@ void print_parameters(std::ostream& out, const Json& model, const TerminalWords&
   }
 }
 
-/// Returns a place such as "direction x position" in the language of the words, with its line.
 std::string where_text(const Json& place, const TerminalWords& say) {
   const std::string names = place.at("where");
   const std::size_t by = names.find(" x ");
@@ -134,7 +128,6 @@ std::string where_text(const Json& place, const TerminalWords& say) {
   return place.contains("line") ? text + " (" + text_in(place, "line") + ")" : text;
 }
 
-/// Prints where the model does not fit; each place is fitted together with those above it.
 void print_places(std::ostream& out, const Json& part, const TerminalWords& say) {
   if (part.at("fails").empty()) return line(out, say("fails"), say("fails.nowhere"));
   out << "  " << say("fails") << "\n";
@@ -143,8 +136,7 @@ void print_places(std::ostream& out, const Json& part, const TerminalWords& say)
         << wrapped(text_in(place, "says"), 33, sentence_width(STDOUT_FILENO)).substr(33);
 }
 
-/// Prints the predicted result of a compensation table in the control; nothing if the model has no
-/// effect that a table can compensate.
+/// Prints the error predicted after compensation, if a table can compensate an effect of the model.
 void print_after_table(std::ostream& out, const Json& part, const TerminalWords& say) {
   if (!part.contains("after_table")) return;
   const Json& predicted = part.at("after_table");
@@ -178,7 +170,6 @@ std::string largest_text(const Json& largest, const TerminalWords& say) {
   return largest.contains("line") ? text + ":" + largest.at("line").dump() : text;
 }
 
-/// Prints the candidates with evidence as bars; without `all`, only the best ones.
 void print_candidates(std::ostream& out, const Json& part, bool all, const TerminalWords& say) {
   std::vector<Json> shown;
   std::size_t left = 0;
@@ -205,8 +196,8 @@ void print_candidates(std::ostream& out, const Json& part, bool all, const Termi
   if (left > 0) out << "  " << say("show.more", {{"count", std::to_string(left)}}) << " (--all)\n";
 }
 
-/// Prints the effects that the best explanation adds, if they are several. If the verdict is that
-/// the cause is unknown, prints those of them that are not significant.
+/// Prints the effects that the best explanation adds, if there are several; for the verdict
+/// "unknown" only those that are not significant.
 void print_set(std::ostream& out, const Json& part, const TerminalWords& say) {
   const bool unknown = part.at("verdict").at("kind") == "unknown";
   const Json& significant = part.at("significant");
@@ -219,7 +210,6 @@ void print_set(std::ostream& out, const Json& part, const TerminalWords& say) {
              say(unknown ? "together.unknown" : "together") + ": " + storage::listed(names));
 }
 
-/// Prints the reason, the recommended action, and the command to continue with.
 void print_advice(std::ostream& out, const Json& part, const std::string& folder,
                   const TerminalWords& say) {
   const Json& verdict = part.at("verdict");
@@ -235,14 +225,12 @@ void print_advice(std::ostream& out, const Json& part, const std::string& folder
     out << "  " << say("command") << ": nonio model add " << folder << " " << effect << "\n";
 }
 
-/// Prints the limitations of the verdict. Without `all`, effects that could not be tested are
-/// listed by name only; those that need a longer test are left out.
 void print_limits(std::ostream& out, const Json& part, bool all, const TerminalWords& say) {
   sentence(out, 2, text_in(part, "false_alarms"));
   sentence(out, 2, text_in(part, "no_sign"));
   std::vector<std::string> untested;
   for (const Json& one : part.at("unseen")) {
-    // Effects that need a longer test are stated in the JSON only.
+    // Effects that need a longer test are listed in the JSON output only.
     if (one.at("why_not") == "short-test") continue;
     if (all)
       sentence(out, 2, text_in(one, "says"));
@@ -253,8 +241,6 @@ void print_limits(std::ostream& out, const Json& part, bool all, const TerminalW
     sentence(out, 2, say("untested", {{"effects", storage::listed(untested)}}));
 }
 
-/// Prints how one more run, or other further readings, would change the uncertainties of the model
-/// and the evidence.
 void print_foresight(std::ostream& out, const Json& what_if, const TerminalWords& say) {
   out << "  " << say("what-if") << (what_if.empty() ? ": -" : "") << "\n";
   const auto number = [&](const Json& value) {
@@ -277,8 +263,7 @@ void print_foresight(std::ostream& out, const Json& what_if, const TerminalWords
   }
 }
 
-/// Returns an RMS of a step as a bar, in which "|" marks the noise floor, and as text; "-" if the
-/// step lacks it.
+/// The bar marks the noise floor with "|". Returns "-" if the step lacks the RMS.
 std::string bar_of(const Json& step, const std::string& name, double whole,
                    const TerminalWords& say) {
   if (!storage::get(step, name)) return "-";

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Implements `nonio upgrade`: replaces former names of keys in site.toml, causes/*.toml and
-// campaign.toml.
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -44,8 +42,7 @@ class Upgrade {
   }
 
  private:
-  /// Writes the file atomically and keeps its permissions. For a link, the file that it names is
-  /// changed.
+  /// If `path` is a symbolic link, its target is written.
   static Expected<void> write(const fs::path& path, const std::string& text) {
     std::error_code error;
     const fs::path real = fs::canonical(path, error);

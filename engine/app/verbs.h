@@ -3,14 +3,14 @@
 
 #include "common.h"
 
-/// The commands of the program. `common` is set before a command is run.
+/// The commands. `common` contains the values of the common arguments when a command runs.
 namespace nonio::app {
 
 Verb new_verb(Common& common);
 Verb import_verb(Common& common);
 Verb check_verb(Common& common);
 Verb run_verb(Common& common);
-/// Returns the commands below `run`: plan, merge, cancel, unlock.
+/// Returns plan, merge, cancel and unlock, which are subcommands of `run`.
 std::vector<Verb> run_parts(Common& common);
 Verb status_verb(Common& common);
 Verb show_verb(Common& common);
@@ -21,7 +21,7 @@ Verb history_verb(Common& common);
 Verb event_verb(Common& common);
 Verb ack_verb(Common& common);
 Verb remove_verb(Common& common);
-/// Returns the commands about the register: list, withdraw, audit.
+/// Returns the commands list, withdraw and audit of the certificate register.
 std::vector<Verb> register_verbs(Common& common);
 Verb approve_verb(Common& common);
 Verb send_verb(Common& common);
@@ -47,25 +47,23 @@ Verb upgrade_verb(Common& common);
 Verb backup_verb(Common& common);
 Verb restore_verb(Common& common);
 Verb version_verb(Common& common);
-/// Return the commands `help` and `completion`. They print from the table of commands in `program`,
-/// which must outlive them.
+/// `program` must outlive the commands, which print its table of commands.
 Verb help_verb(const Program& program);
 Verb completion_verb(const Program& program);
 
-/// Prints the history of a machine, or of all (`machine` empty), on stdout. Returns the exit
+/// Prints the history of a machine, or of all machines if `machine` is empty. Returns the exit
 /// status.
 int show_machine(const std::string& out, const std::string& machine, const Common& common);
-/// Opens the report of a campaign, or of the first one of a run with status `attention`, on the
-/// desktop. Returns the exit status.
+/// Opens the report of a campaign on the desktop; of a run, that of the first campaign with status
+/// `attention`. Returns the exit status.
 int open_document(const std::string& folder, const std::string& out, const Common& common);
-/// Checks the templates of a site, or the installed ones. Returns the exit status.
 int check_templates(const std::string& site, const Common& common);
 
 struct WorklistWish {
   std::string out, since, customer, language, site, page;
 };
-/// Prints the actions that the last run requires, one line each, or the page that `wish` names.
-/// Returns the exit status: 1 if action is required.
+/// Prints the actions that the last run requires, one per line, or the page `wish.page`. Returns
+/// exit status 1 if action is required.
 int print_worklist(const WorklistWish& wish, const Common& common);
 
 }  // namespace nonio::app

@@ -54,8 +54,6 @@ Json to_json(const std::string& file, const sign::Verified& v) {
           {"checks", std::move(checks)}};
 }
 
-/// Returns the names of checks that were not made, such as "time stamp" and "revocation", each
-/// once.
 std::vector<std::string> check_names(const std::vector<std::string>& checks) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 6> names{
       {{".time", "time stamp"},
@@ -74,7 +72,6 @@ std::vector<std::string> check_names(const std::vector<std::string>& checks) {
   return out;
 }
 
-/// Returns the exit status of the most severe verdict.
 int exit_of(const std::vector<Verdict>& verdicts) {
   constexpr std::array<std::pair<Verdict, int>, 8> statuses{{{Verdict::altered, exit_failed},
                                                              {Verdict::untrusted, 4},
@@ -89,8 +86,8 @@ int exit_of(const std::vector<Verdict>& verdicts) {
   return exit_failed;
 }
 
-/// Prints the verdict first, so that no text of the file can precede or imitate it; then the failed
-/// checks, or all of them if `verbose`. If `quiet`, prints only the verdict.
+/// The verdict is printed first, so that no text of the file can precede or imitate it. `quiet`
+/// omits the checks, `verbose` includes those that passed.
 void print(std::ostream& out, const std::string& file, const sign::Verified& v, bool quiet,
            bool verbose) {
   const std::string name = printable(file);
@@ -119,8 +116,8 @@ int verify(const VerifyWish& wanted, const Common& common) {
     for (const Error& e : verifier.error()) complain(text_of(e));
     return exit_usage;
   }
-  // Read the register before the process is confined, because a confined process cannot connect to
-  // a server.
+  // The register is read before the process is confined, because a confined process cannot connect
+  // to a server.
   const auto rows = certificates::register_rows(wanted.site);
   process::step_aside();  // an untrusted file is read in a confined process, like plugin code
   std::unique_ptr<reading::Workplace> place;

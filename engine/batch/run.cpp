@@ -40,9 +40,8 @@ using Action = CampaignState::Action;
 
 bool is_todo(const CampaignState& c) { return c.action == Action::todo; }
 
-/// Returns why `out` cannot be the output folder: it is the site itself, or it is a campaign's
-/// folder or inside one, where results could replace the campaign's files. Returns an empty text if
-/// `out` can be used.
+/// Returns an error message, or an empty string. The site itself is refused, and any folder in a
+/// campaign, because results could replace files of the campaign.
 std::string unfit_output(const fs::path& site, const fs::path& out) {
   std::error_code error;
   const fs::path root = fs::weakly_canonical(site, error);
@@ -55,9 +54,8 @@ std::string unfit_output(const fs::path& site, const fs::path& out) {
   return {};
 }
 
-/// Checks that the site folder exists and that the output folder is allowed. Returns the canonical
-/// path of the site, which the record of the run states. Runs in a child process, because the disk
-/// may hang.
+/// Checks both folders in a child process, because the disk may hang. Returns the canonical path of
+/// the site.
 Expected<std::string> look_at_site(const RunOptions& options) {
   const fs::path& site = options.site;
   return read_apart<std::string>("the site " + site.string(), config::Limits{}.disk_seconds,
@@ -73,14 +71,13 @@ Expected<std::string> look_at_site(const RunOptions& options) {
                                  });
 }
 
-/// Lists in `run` the certificates issued since the previous run, and the drafts of campaigns of
-/// this run that have not failed. If the register is locked, this is noted and the next run lists
-/// them. Any other failure to read the register is an error: otherwise the summary would wrongly
-/// state that nothing was issued.
+/// Lists the certificates issued since the previous run and the drafts of this run. A locked
+/// register is noted, and the next run lists them. Any other error of the register ends the run,
+/// because the summary would wrongly state that nothing was issued.
 Expected<void> note_certificates(RunResult& run, const RunOptions& options,
                                  const reading::Context& context, RunState& state) {
   NONIO_TRY(auto known, known_of(options, context, Look::again));
-  if (!known) {  // the next run lists the certificates
+  if (!known) {
     run.notes.push_back("the register of certificates is locked: what was issued is not listed");
     return {};
   }
@@ -100,7 +97,6 @@ Expected<void> note_certificates(RunResult& run, const RunOptions& options,
 
 bool is_campaign(const Vanished& v) { return config::is_campaign_id(v.id); }
 
-/// Removes the campaigns that forgotten.toml names from the list of vanished campaigns.
 void leave_out_forgotten(RunResult& run, const Expected<store::SiteRecords>& records) {
   if (!records) return;
   std::erase_if(run.vanished, [&](const Vanished& v) {
@@ -110,8 +106,8 @@ void leave_out_forgotten(RunResult& run, const Expected<store::SiteRecords>& rec
   });
 }
 
-/// Makes the worklist and its pages. A failure does not end the run: unless a stop is requested, it
-/// is noted in the summary, and the next run makes the worklist from the results.
+/// An error is noted in the summary without ending the run; the next run makes the worklist from
+/// the results.
 WorklistPages worklist_of(RunResult& run, const RunOptions& options, const RunEvents& events,
                           const reading::Context& context) {
   auto made = make_worklist(options, context, last_run_of(run, options.out, context.templates));
@@ -127,8 +123,7 @@ WorklistPages worklist_of(RunResult& run, const RunOptions& options, const RunEv
   return {};
 }
 
-/// Sends the mail of the run, unless the mail has no text or a stop is requested. If the mail
-/// cannot be sent, the error is noted in the summary.
+/// Sends the mail, unless its text is empty. An error is noted in the summary.
 void write_mail(RunResult& run, const RunOptions& options, const RunEvents& events,
                 const reading::Context& context, const WorklistPages& worklist) {
   if (worklist.mail.empty() || process::is_stop_requested()) return;
@@ -142,11 +137,10 @@ void write_mail(RunResult& run, const RunOptions& options, const RunEvents& even
   events.note(run.notes.back());
 }
 
-constexpr const char* webhook_failed = "webhook-failed";  // why it did not take the last lines
+constexpr const char* webhook_failed = "webhook-failed";
 
-/// Sends new lines that require action to the webhook, each once: OUT/.nonio/webhook.json contains
-/// the ids of lines that were accepted. It is tried once, after the run has ended; the next run
-/// tries again, and its summary names the failure.
+/// Sends new lines that require action once; OUT/.nonio/webhook.json contains the ids of accepted
+/// lines. After an error, the next run sends them again, and its summary states the error.
 void post_news(const RunResult& run, const RunOptions& options, const RunEvents& events,
                const reading::Context& context) {
   using storage::Json;
@@ -186,8 +180,8 @@ void post_news(const RunResult& run, const RunOptions& options, const RunEvents&
     events.note(kept.error().message);
 }
 
-/// Removes leftovers, lists the certificates, makes the worklist, sends the mail (not for a reopened
-/// run, as the webhook), writes the summary, records that the run has ended, and calls the webhook.
+/// A reopened run sends neither mail nor webhook. The webhook is called last, because the run has
+/// ended then.
 Expected<void> close_run(RunResult& run, const RunOptions& options, const RunEvents& events,
                          const SetUp& place, RunState& state) {
   const reading::Context& context = place.context;
@@ -206,8 +200,7 @@ Expected<void> close_run(RunResult& run, const RunOptions& options, const RunEve
   return ended;
 }
 
-/// Reports campaigns and parts of the site that have vanished, with at most 100 messages;
-/// summary.json lists all.
+/// Reports at most 100 missing campaigns and parts of the site; summary.json lists all.
 void tell_vanished(const RunResult& run, const RunEvents& events) {
   constexpr std::size_t most = 100;
   for (std::size_t i = 0; i < std::min(most, run.vanished.size()); ++i) {
@@ -220,7 +213,6 @@ void tell_vanished(const RunResult& run, const RunEvents& events) {
                 " more have vanished: see the summary");
 }
 
-/// Fills `run` with the campaigns of the site, each with its action and the reason.
 Expected<void> survey_site(const RunOptions& options, const reading::Context& context,
                            const RunState& state, const std::optional<Known>& known,
                            RunResult& run) {
@@ -246,8 +238,6 @@ Expected<void> survey_site(const RunOptions& options, const reading::Context& co
   return {};
 }
 
-/// Reports keys with former names in manifests: the first 20 one by one, then the number of the
-/// others.
 void report_former_keys(const RunResult& run, const RunEvents& events) {
   constexpr std::size_t most = 20;
   std::size_t count = 0;
@@ -268,19 +258,16 @@ void tell_plan(const RunResult& run, const RunEvents& events) {
                                            run.campaigns.begin(), run.campaigns.end(), is_todo)));
 }
 
-/// Facts that are known before the first campaign is evaluated.
+/// Data that are available before the first evaluation.
 struct Plan {
   Expected<store::SiteRecords> records;
-  std::string only;                              ///< id of the campaign of a reopened run; empty
-                                                 ///< otherwise
-  std::optional<std::uint64_t> history_known{};  ///< number of the run up to which the store was
-                                                 ///< complete according to the plan of a run in
-                                                 ///< shards; empty if there is no such plan or it
-                                                 ///< states no run
+  /// Id of the campaign of a reopened run, otherwise empty.
+  std::string only;
+  /// Last run that the store contained completely, according to the plan of a run in shards.
+  std::optional<std::uint64_t> history_known{};
 };
 
-/// Surveys the site and reports the result. An error ends the run; its message is empty if a stop
-/// was requested.
+/// An error ends the run; its message is empty if a stop was requested.
 Expected<Plan> plan_run(const RunOptions& options, const RunEvents& events, const SetUp& place,
                         const RunState& state, const std::optional<Known>& known, RunResult& run) {
   const reading::Context& context = place.context;
@@ -306,9 +293,8 @@ void tell_stage(const RunEvents& events, const char* name) {
   if (events.stage) events.stage(name);
 }
 
-/// Restores the plan of a run that was done in shards; `run` contains the results of the shards
-/// already. Checks the certificate numbers if the register could not be read when the plan was
-/// made, and enters failures into the register.
+/// Continues a run in shards after their results were gathered in `run`. Checks the certificate
+/// numbers if the plan was made without the register, and enters failures into the register.
 Expected<Plan> planned_run_of(const RunOptions& options, const RunEvents& events,
                               const SetUp& place, const RunPlan& planned,
                               const std::optional<Known>& known, RunResult& run) {
@@ -325,8 +311,8 @@ Expected<Plan> planned_run_of(const RunOptions& options, const RunEvents& events
   return plan;
 }
 
-/// Evaluates every campaign that is to be evaluated, then updates the history and the reports that
-/// show it. An error ends the run; its message is empty if a stop was requested.
+/// Evaluates the planned campaigns, then updates the history and the reports that contain it. An
+/// error ends the run; its message is empty if a stop was requested.
 Expected<void> do_planned(const RunOptions& options, const RunEvents& events, SetUp& place,
                           const Plan& plan, bool register_known, RunState& state, RunResult& run) {
   const reading::Context& context = place.context;
@@ -344,8 +330,8 @@ Expected<void> do_planned(const RunOptions& options, const RunEvents& events, Se
       if (!state.issued_before) state.issued_before = issued_so_far(numbers);
       return check_numbers(options.out, run.campaigns, numbers);
     };
-  RunOptions numbered = options;  // merge with one job, so that certificates are numbered in the
-                                  // order of the campaign ids
+  // One job at the merge, so that certificates are numbered in the order of the ids.
+  RunOptions numbered = options;
   if (options.step == RunOptions::Step::merge && context.site.numbering.automatic)
     numbered.jobs = 1;
   bool well = do_campaigns(numbered, events, context, state, desk, run.campaigns);
@@ -368,8 +354,8 @@ Expected<void> do_planned(const RunOptions& options, const RunEvents& events, Se
   return fail("");
 }
 
-/// Prepares the output folder before results are looked up in it: checks the layout of the results
-/// folders and the catalogue of packs, and accepts the packs of a plan that is replaced.
+/// Checks the layout of the results folders and the catalogue of packs before results are read, and
+/// accepts the packs of a plan that is replaced.
 Expected<void> make_ready(const RunOptions& options, const reading::Context& context) {
   auto ready = settle_folders(options.out, context.site.hashed_folders, options.dry_run);
   if (ready) ready = storage::check_catalogue(options.out);
@@ -377,7 +363,7 @@ Expected<void> make_ready(const RunOptions& options, const reading::Context& con
   return ready;
 }
 
-/// Does the run in an output folder that no other process uses, and stores its outcome in `run`.
+/// The caller has locked the output folder. The outcome is stored in `run`.
 void do_run(const RunOptions& options, const RunEvents& events, const std::string& site_text,
             SetUp& place, const std::optional<Known>& known, RunResult& run) {
   const reading::Context& context = place.context;
@@ -473,7 +459,7 @@ RunResult run_site(const RunOptions& options, const RunEvents& events) {
         "campaigns that need a number wait for it");
   for (const std::string& note : run.notes) events.note(note);
   if (!(*place)->unstamped.empty()) run.notes.push_back((*place)->unstamped);
-  // Memory that is freed if memory runs out, so that the error can be reported.
+  // Memory that is released if none is left, so that the error can be reported.
   auto reserve = std::make_unique<std::array<char, 1 << 18>>();
   try {
     do_run(options, events, *site_text, **place, *known, run);

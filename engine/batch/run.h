@@ -5,11 +5,10 @@
 
 namespace nonio::batch {
 
-/// Evaluates the campaigns of a site that are new or changed, and updates the history, the worklist
-/// and the summary. Returns when the run is complete or when it was stopped by `request_stop`; the
-/// end is `refused` if the site or the output folder cannot be used. With the step `plan` or
-/// `merge`, only this part of the run is done, and the run remains in progress after `plan`. With
-/// `dry_run`, the site is only surveyed.
+/// Evaluates new and changed campaigns of a site and updates history, worklist and summary. Returns
+/// when the run is complete or was stopped by `request_stop`; the end is `refused` if the site or
+/// the output folder cannot be used. The steps `plan` and `merge` are the first and the last part
+/// of a run in shards; `dry_run` only surveys the site.
 RunResult run_site(const RunOptions& options, const RunEvents& events);
 
 }  // namespace nonio::batch

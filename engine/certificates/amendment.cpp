@@ -89,9 +89,8 @@ void compare_keys(const Keys& before, const Keys& after, FileChange& out) {
     if (key != amendment_key && !after.contains(key)) list.add({key, 0, value, std::nullopt});
 }
 
-/// Lists the differences between two files. Equal lines at the beginning and at the end are left
-/// out; between them, lines are compared one by one if both files have the same number of lines,
-/// otherwise all removed and all new lines are listed.
+/// Between the equal lines at both ends, lines are compared one by one if the files have the same
+/// number of lines; otherwise all removed and all new lines are listed.
 void compare_lines(const std::vector<std::string>& a, const std::vector<std::string>& b,
                    FileChange& out) {
   ChangeList list(out);

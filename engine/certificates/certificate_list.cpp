@@ -19,6 +19,30 @@ Expected<config::Numbering> numbering_of(const fs::path& site) {
   return std::move(read->numbering);
 }
 
+Expected<std::set<std::string>> waiting_campaigns(const fs::path& site) {
+  NONIO_TRY(const auto numbering, numbering_of(site));
+  NONIO_TRY(const auto drafts, Register::drafts(site, numbering));
+  std::set<std::string> campaigns;
+  for (const WaitingDraft& draft : drafts) campaigns.insert(draft.campaign);
+  return campaigns;
+}
+
+Expected<void> not_out_of_force(const fs::path& site, const std::string& sha256) {
+  NONIO_TRY(const auto numbering, numbering_of(site));
+  NONIO_TRY(const auto entries, Register::entries(site, numbering));
+  if (entries.empty()) return {};
+  NONIO_TRY(auto opened, Register::open_to_read(site, numbering));
+  NONIO_TRY(const auto issued, opened.issued_digests());
+  const auto found = issued.find(sha256);
+  if (found == issued.end()) return {};
+  for (const RegisterEntry& e : entries)
+    if (e.number == found->second && !e.in_force())
+      return fail("certificate " + e.number + " is not in force" +
+                  (e.replaced_by.empty() ? "" : "; it was replaced by " + e.replaced_by) +
+                  (e.reason.empty() ? "" : ": " + e.reason) + "; it is not sent");
+  return {};
+}
+
 Expected<std::vector<RegisterEntry>> certificates_of(const fs::path& site,
                                                      const config::Numbering& numbering) {
   auto entries = Register::entries(site, numbering);
@@ -55,8 +79,6 @@ Expected<Audit> audit(const fs::path& site, const config::Numbering& numbering) 
 
 namespace {
 
-/// Returns the name of an exported file: NUMBER.pdf or NUMBER-dcc.xml for files of the output
-/// `own`, otherwise NUMBER-OUTPUT-NAME.
 std::string export_name(const std::string& number, const evaluation::IssuedFile& file,
                         const std::string& own) {
   if (file.output == own && file.name.ends_with(".pdf")) return number + ".pdf";

@@ -21,8 +21,8 @@ bool is_asked(const Results& results) {
   });
 }
 
-/// A PDF to be signed, which is removed from the list of artifacts while its attachments are made,
-/// since results.json cannot state the digest of a file that contains it.
+/// A PDF to be signed. It is removed from the artifacts while its attachments are made, because
+/// results.json cannot state the digest of a file that contains it.
 struct Draft {
   std::size_t output, place;
   Artifact artifact;
@@ -38,7 +38,6 @@ Expected<evaluation::IssuedFile> signed_by(const SignWith& how, Artifact& a,
   return evaluation::IssuedFile{output, a.name, a.bytes, std::move(done->no_time_stamp)};
 }
 
-/// Signs the files other than PDFs that are to be signed, and adds them to the attachments.
 Expected<void> sign_documents(evaluation::Evaluated& evaluated, const SignWith& how,
                               std::vector<evaluation::IssuedFile>& done, Attachments& attachments) {
   for (Results::Written& w : evaluated.results.outputs)
@@ -52,7 +51,6 @@ Expected<void> sign_documents(evaluation::Evaluated& evaluated, const SignWith& 
   return {};
 }
 
-/// Moves the PDFs that are to be signed out of the artifacts.
 std::vector<Draft> take_drafts(evaluation::Evaluated& evaluated) {
   std::vector<Draft> drafts;
   auto& outputs = evaluated.results.outputs;
@@ -78,7 +76,6 @@ void put_back(evaluation::Evaluated& evaluated, std::vector<Draft>& drafts) {
   }
 }
 
-/// Returns the manifest or a file of readings as an attachment, with the bytes that were evaluated.
 Expected<pdf::Attachment> attached_input(const std::string& input, const std::string& digest,
                                          CampaignFiles& files) {
   const bool is_manifest = input == config::manifest_name;
@@ -94,8 +91,6 @@ Expected<pdf::Attachment> attached_input(const std::string& input, const std::st
       is_manifest ? "the campaign: what was measured, and how it is evaluated" : "readings"};
 }
 
-/// Attaches the data that the results were made from: campaign, machine, settings of the site,
-/// templates.
 Expected<void> attach_sources(const evaluation::Evaluated& evaluated, CampaignFiles& files,
                               const reading::Context& context, Attachments& to) {
   for (const auto& [input, digest] : evaluated.inputs) {
@@ -134,8 +129,7 @@ Expected<void> attach_results(const evaluation::Evaluated& evaluated,
   return {};
 }
 
-/// Attaches the sources and, as the last attachment, results.json. `to`: contains the signed
-/// documents already.
+/// The last attachment is results.json.
 Expected<void> attach_all(const evaluation::Evaluated& evaluated, CampaignFiles& files,
                           const reading::Context& context, const SignWith& how, Attachments& to) {
   if (auto done = attach_sources(evaluated, files, context, to); !done) return done;
@@ -155,8 +149,7 @@ Expected<void> sign_drafts(std::vector<Draft>& drafts, const evaluation::Evaluat
   return {};
 }
 
-/// Stores in `certificate` all files of the numbered output, and the files of other outputs that
-/// were signed with it.
+/// Keeps all files of the numbered output, and those of other outputs that were signed.
 Expected<void> keep_for_register(const evaluation::Evaluated& evaluated,
                                  std::vector<evaluation::IssuedFile> done, std::string results,
                                  evaluation::Certificate& certificate) {
@@ -181,7 +174,7 @@ Expected<void> keep_for_register(const evaluation::Evaluated& evaluated,
   return {};
 }
 
-/// Signs the documents first, because the PDFs contain them as attachments, then the PDFs.
+/// Documents are signed first, because the PDFs contain them as attachments.
 Expected<void> sign_all(evaluation::Evaluated& evaluated, CampaignFiles& files,
                         const reading::Context& context, const SignWith& how, sign::Time now) {
   std::vector<evaluation::IssuedFile> signed_files;
@@ -217,9 +210,7 @@ void remove_unsigned(evaluation::Evaluated& evaluated) {
 
 namespace {
 
-/// Keeps only the PDFs of the certificate's output, unsigned and with names that mark them as
-/// drafts, and removes the files of other outputs that are to be signed. Signed files are made only
-/// when the certificate has a number.
+/// Keeps only the PDFs of the certificate's output, with names that mark drafts.
 void keep_draft(evaluation::Evaluated& evaluated) {
   for (Results::Written& w : evaluated.results.outputs) {
     auto& artifacts = w.result.artifacts;

@@ -41,7 +41,7 @@ namespace {
 
 using State = sign::Check::State;
 
-/// Writes the campaign's folder from the attachments. An error if a name leads out of the folder.
+/// Returns an error if the name of an attachment leads out of the folder.
 Expected<void> unpack(const sign::Verified& v, const fs::path& folder) {
   for (const pdf::Attachment& a : v.attachments) {
     const fs::path name = fs::path(a.name).lexically_normal();
@@ -57,8 +57,6 @@ Expected<void> unpack(const sign::Verified& v, const fs::path& folder) {
   return {};
 }
 
-/// Statements of an attached results.json: the certificate, if one was issued, and the version of
-/// the program.
 struct Stated {
   std::optional<evaluation::Certificate> certificate;
   std::string nonio;
@@ -66,8 +64,6 @@ struct Stated {
   std::vector<std::pair<std::string, std::string>> shared;
 };
 
-/// Reads from the findings which files another campaign had too, since only the run could determine
-/// this.
 void put_shared(const storage::Json& analyses, Stated& stated) {
   const auto text = [](const storage::Json& of, const char* key) {
     return of.is_object() && of.contains(key) && of[key].is_string() ? of[key].get<std::string>()
@@ -106,8 +102,7 @@ struct Content {
   sign::Check values, attachments, templates, words, printed;
 };
 
-/// Evaluates the content of a signed PDF again, in a process of its own, because plugins read the
-/// attachments.
+/// Runs in a process of its own, because plugins read the attachments.
 class Again {
  public:
   Again(const sign::Verified& v, std::string_view pdf, const fs::path& folder,
@@ -164,8 +159,7 @@ class Again {
     return twins;
   }
 
-  /// Takes over the attached templates if the file was made by this version. Incomplete templates,
-  /// or templates that do not match results.json, do not end the other checks.
+  /// Incomplete or different templates do not end the other checks.
   sign::Check take_templates() {
     constexpr const char* id = "content.templates";
     if (stated_.nonio != context_.version)
@@ -186,8 +180,7 @@ class Again {
     return {id, State::holds, "the attached ones are those that results.json names"};
   }
 
-  /// Checks that the attached templates are the installed ones: words state whether a value
-  /// conforms, so other words could state the opposite for the same readings and signer.
+  /// Other words could state the opposite for the same readings and signer.
   sign::Check same_words() const {
     if (!strange_) return not_checked(words_check, "needs the templates of this version");
     if (strange_->empty())
@@ -197,7 +190,7 @@ class Again {
                 storage::listed(*strange_)};
   }
 
-  /// Returns why the file cannot be made again; returns an empty text if it can.
+  /// Returns an empty text if the file can be made again.
   std::string why_not_drawn(const sign::Check& templates) const {
     if (stated_.nonio != context_.version)
       return "was made by version \"" + stated_.nonio + "\", this is " + context_.version;
@@ -215,8 +208,7 @@ class Again {
     return number;
   }
 
-  /// Checks that the attachments are exactly the manifest, the readings that it names, the files
-  /// that Nonio adds, and documents that results.json lists.
+  /// Accepts only attachments that the manifest, Nonio or results.json requires.
   Expected<std::string> check_names(const evaluation::Evaluated& again) const {
     std::vector<std::string> wanted = {evaluation::results_name};
     const std::string prefix = reading::input_name("");
@@ -238,7 +230,6 @@ class Again {
     return std::to_string(wanted.size()) + " files, each with its place in the campaign";
   }
 
-  /// Whether results.json lists the attachment with its digest.
   bool is_listed(const pdf::Attachment& a) const {
     const storage::Json json = storage::parse_once(results_);
     if (!json.is_object() || !json.contains("outputs") || !json["outputs"].is_array()) return false;
@@ -249,8 +240,7 @@ class Again {
         });
   }
 
-  /// Repeats the steps of a run up to the signature, and compares the bytes to be signed with those
-  /// of the file.
+  /// Repeats the steps of a run up to the signature, and compares the bytes to be signed.
   Expected<std::string> same_file(evaluation::Evaluated& again) {
     if (again.status == evaluation::Status::failed)
       return fail("the attached readings cannot be evaluated: " +
@@ -309,17 +299,14 @@ class Again {
   reading::Context context_;
   const std::string& results_;
   Stated stated_;
-  std::optional<std::vector<std::string>> strange_;  ///< attached templates that differ from the
-                                                     ///< installed ones; none: not compared
-  std::string missing_;                              ///< name of a font that is missing or differs,
-                                                     ///< so that nothing can be drawn; empty: none
+  /// Attached templates that differ from the installed ones; nullopt if not compared.
+  std::optional<std::vector<std::string>> strange_;
+  std::string missing_;  ///< name of a missing or different font, or empty
 };
 
 constexpr std::array check_ids = {"content.values", "content.attachments", "content.templates",
                                   words_check, "content.printed"};
 
-/// Returns the result of a check as one line for the waiting process; its text is cut after 900
-/// bytes.
 std::string line_of(const sign::Check& check) {
   constexpr std::size_t most = 900;
   std::string text = check.says.substr(0, most);
@@ -330,7 +317,6 @@ std::string line_of(const sign::Check& check) {
          text + "\n";
 }
 
-/// Removes one line from the answer and returns it as a check.
 sign::Check check_of(const char* id, std::string& answer) {
   const std::size_t end = answer.find('\n');
   const std::string line = answer.substr(0, end);

@@ -10,17 +10,16 @@
 namespace nonio::certificates {
 
 /// Evaluates the attachments of a signed PDF again with the installed plugins. Checks:
-/// `content.values`, whether the readings give the attached results; `content.attachments`, whether
-/// all attachments belong to the certificate; `content.templates`, whether its templates are those
-/// that results.json names; `content.words`, whether these are the installed ones;
-/// `content.printed`, whether the readings give exactly this file, object by object, when it is
-/// made again as in the run.
+/// `content.values`, the readings give the attached results; `content.attachments`, all attachments
+/// belong to the certificate; `content.templates`, its templates are those that results.json names;
+/// `content.words`, these are the installed ones; `content.printed`, the readings give exactly this
+/// file, object by object.
 std::vector<sign::Check> check_content(const sign::Verified& verified, std::string_view pdf,
                                        const reading::Context& context);
 
 inline constexpr const char* words_check = "content.words";
 
-/// Whether an attachment is a DCC, according to its name (*.xml) and its media type.
+/// Whether the attachment is a DCC: an XML file with media type application/xml.
 bool is_document(const pdf::Attachment& attachment);
 const pdf::Attachment* find_attachment(const sign::Verified& verified, std::string_view name);
 

@@ -48,7 +48,8 @@ std::string own_account() {
 }
 
 bool is_own_account_certain() {
-  // Fewest user ids in the namespace of a container that an administrator has set up.
+  // Number of user ids in a namespace that an administrator set up; a namespace of a single person
+  // has fewer.
   constexpr std::uint64_t few = 65536;
   std::ifstream map("/proc/self/uid_map");
   std::uint64_t inside = 0, outside = 0, count = 0, all = 0;

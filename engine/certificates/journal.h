@@ -17,25 +17,24 @@ class Journal {
  public:
   struct Entry {
     std::int64_t place = 0;  ///< position in the journal, counted from 1 without gaps
-    std::string at;          ///< time in UTC, for example "2026-11-22T14:21:33Z"
-    std::string what;        ///< kind of the event: made, drawn, approved, issued, withdrawn, or
-                             ///< second (a second approval, which has no effect)
-    std::string number;      ///< certificate number that the entry concerns; empty: none
-    std::string says;        ///< details as JSON
+    std::string at;          ///< UTC, for example "2026-11-22T14:21:33Z"
+    /// Kind of the event: made, drawn, approved, issued, withdrawn, or second (a second approval,
+    /// which has no effect).
+    std::string what;
+    std::string number;  ///< certificate number; may be empty
+    std::string says;    ///< details, a JSON object
     std::string sha256;
   };
   static const char* const schema;
 
   explicit Journal(storage::Database& database) : database_(database) {}
 
-  /// Appends an entry, in the transaction of the change that it records. Every entry states the
-  /// account that wrote it.
+  /// Must be called in the transaction of the change that the entry records. Adds the account.
   Entry add(const char* what, const std::string& number, storage::Json says);
   std::vector<Entry> all();
   std::optional<Entry> last();
-  /// Returns the last entry of this kind for this number; none if there is no such entry.
   std::optional<Entry> last_of(const char* what, const std::string& number);
-  /// Returns the digest that an entry must have if it follows an entry with the digest `before`.
+  /// Returns the digest of an entry that follows an entry with the digest `before`.
   static std::string digest(const Entry& entry, const std::string& before);
 
  private:
@@ -44,12 +43,11 @@ class Journal {
   storage::Database& database_;
 };
 
-/// Returns the account of this process' real user according to the operating system, and the host:
-/// "lab@measuring-room".
+/// Returns the account of this process' real user and the host, for example "lab@measuring-room".
 std::string own_account();
 /// Returns false in a user namespace of one person, in which that person can choose any account.
 bool is_own_account_certain();
-/// Returns the present time as the journal writes it.
+/// Returns, for example, "2026-11-22T14:21:33Z".
 std::string utc_now();
 
 }  // namespace nonio::certificates

@@ -22,15 +22,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Whether an input belongs to another campaign or to the machine's record. Such inputs are not
-/// data of the certificate, which must not change when other campaigns or the tables in the control
-/// change.
+/// A certificate must not change with other campaigns or with the machine's record.
 bool is_foreign(const std::string& input) {
   return input.starts_with(reading::shared_name("")) || input.starts_with(config::machine_prefix);
 }
 
-/// Returns the data that a certificate is made from: the campaign's own files, and the parts of
-/// site.toml that affect the results.
+/// Returns the campaign's own files and the parts of site.toml that affect the results.
 reading::Inputs data_of(const evaluation::Evaluated& evaluated, const reading::Context& context) {
   reading::Inputs data = evaluated.inputs;
   std::erase_if(data, [](const auto& one) { return is_foreign(one.first); });
@@ -38,8 +35,7 @@ reading::Inputs data_of(const evaluation::Evaluated& evaluated, const reading::C
   return data;
 }
 
-/// Returns how long a worker waits for the register, in s. If the register is locked longer, the
-/// campaign is evaluated again later.
+/// Returns a time in s. If the register is locked longer, the campaign is evaluated again later.
 double short_wait(const config::Numbering& numbering) {
   constexpr double seconds = 5.0;
   return std::min(seconds, numbering.patience);
@@ -53,8 +49,7 @@ const std::string* find_file(const Files& files, const std::string& name) {
   return nullptr;
 }
 
-/// Returns the files that an issued certificate was made from: manifest, readings, settings of the
-/// site.
+/// Returns the manifest, the readings and the settings of the site from an issued certificate.
 Expected<Files> attached_files(const std::vector<evaluation::IssuedFile>& issued) {
   Files files;
   for (const evaluation::IssuedFile& f : issued) {
@@ -84,8 +79,7 @@ Expected<Files> current_files(const evaluation::Evaluated& evaluated,
   return files;
 }
 
-/// Returns the changes in the order of `now`, followed by removed files. TOML files in which only
-/// comments or the reason for the amendment have changed are left out.
+/// TOML files in which only comments or the reason for the amendment have changed are left out.
 std::vector<FileChange> changes_of(const Files& then, const Files& now) {
   std::vector<FileChange> all;
   for (const auto& [name, bytes] : now) {
@@ -100,8 +94,7 @@ std::vector<FileChange> changes_of(const Files& then, const Files& now) {
   return all;
 }
 
-/// Replaces the files that were made now by those in the register, and removes the others that were
-/// to be signed.
+/// Replaces new files by those in the register, and removes the others that were to be signed.
 void take_issued(evaluation::Evaluated& evaluated) {
   for (Results::Written& w : evaluated.results.outputs)
     for (const evaluation::IssuedFile& f : evaluated.certificate->files) {
@@ -113,8 +106,7 @@ void take_issued(evaluation::Evaluated& evaluated) {
   remove_unsigned(evaluated);
 }
 
-/// Puts the reasons for accepting an expired calibration, which the certificate states, into
-/// `issue`. If two persons gave different reasons for the same finding, both are stated.
+/// If two persons gave different reasons for the same finding, the certificate states both.
 void put_reasons(const Releasing& releasing, Issue& issue) {
   for (const evaluation::KnownFinding& f : releasing.draft.findings) {
     if (!reading::is_expired_calibration(f.id)) continue;
@@ -136,8 +128,7 @@ void put_reasons(const Releasing& releasing, Issue& issue) {
 
 const config::AcceptedRule* rule_for(const config::Numbering& numbering,
                                      const evaluation::KnownFinding& finding) {
-  if (finding.id.starts_with(reading::plausibility_prefix))
-    return nullptr;  // requires a person's reason each time
+  if (finding.id.starts_with(reading::plausibility_prefix)) return nullptr;
   for (const config::AcceptedRule& rule : numbering.accepted) {
     const bool all_of_a_kind = rule.finding.ends_with(".*");
     if (all_of_a_kind ? finding.id.starts_with(rule.finding.substr(0, rule.finding.size() - 1))
@@ -158,8 +149,7 @@ Expected<Register> Numbers::open() const {
 
 namespace {
 
-/// Whether a finding with severity warning is not accepted by a rule, so that a person has to
-/// decide.
+/// Whether a person has to decide, because no rule accepts a finding with severity warning.
 bool any_unruled(const std::vector<evaluation::KnownFinding>& findings,
                  const config::Numbering& numbering) {
   return std::any_of(findings.begin(), findings.end(), [&](const evaluation::KnownFinding& f) {
@@ -179,7 +169,6 @@ reading::Inputs made_from(const evaluation::Evaluated& evaluated, const reading:
 
 }  // namespace
 
-/// Whether the certificate may be issued: a person approves it, or the rules of the site allow it.
 bool Numbers::may_issue(const evaluation::Evaluated& evaluated) const {
   if (releasing_ != nullptr) return true;
   const config::Numbering& numbering = context_.site.numbering;
@@ -207,8 +196,7 @@ bool Numbers::held_up(const evaluation::Evaluated& evaluated) const {
   return certificate && !certificate->issued && !certificate->draft && !may_issue(evaluated);
 }
 
-/// Returns an error if a draft is approved and the present inputs `now` differ from those from
-/// which it was made.
+/// Returns an error if the approved draft was made from other inputs than `now`.
 Expected<void> Numbers::check_release(const reading::Inputs& now) const {
   if (releasing_ == nullptr) return {};
   std::string other;
@@ -281,8 +269,7 @@ Expected<evaluation::Certificate> Numbers::find_or_draw(const evaluation::Evalua
   if (*found) return std::move(**found);
   if (auto same = check_release(made_from(evaluated, context_)); !same) return fail(same.error());
   NONIO_TRY(const auto before, opened.last_number(campaign));
-  // Another run may have issued a certificate for the same data in the meantime; then nothing is
-  // amended.
+  // Another run may have issued a certificate for the same data in the meantime.
   if (before) found = opened.find(campaign, data);
   if (!found) return fail(found.error());
   if (*found) return std::move(**found);
@@ -404,8 +391,7 @@ Expected<void> Numbers::issue(evaluation::Evaluated& evaluated, const std::strin
   return {};
 }
 
-/// Adds a finding if this version would print other values than the issued certificate, which
-/// remains unchanged.
+/// Adds a finding if this version would print other values than the issued certificate.
 void Numbers::note_differences(evaluation::Evaluated& evaluated) const {
   auto outputs = std::exchange(evaluated.results.outputs, {});
   const auto same = same_values(evaluated.certificate->results,

@@ -18,8 +18,7 @@ namespace {
 constexpr std::uint32_t passes = 3, kibibytes = 1U << 16U, lanes = 1;
 constexpr std::size_t salt_bytes = 16, hash_bytes = 32;
 
-/// Removes `name`, for example "m=", and a number from 1 to `most` from the beginning of the text.
-/// Returns whether the text began with both.
+/// Removes `name`, for example "m=", and a number from 1 to `most` from the beginning of `text`.
 bool takes_number(std::string_view& text, std::string_view name, std::uint32_t most,
                   std::uint32_t& number) {
   if (!text.starts_with(name)) return false;

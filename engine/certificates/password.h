@@ -13,19 +13,15 @@ namespace nonio::certificates {
 
 inline constexpr std::size_t shortest_password = 12, longest_password = 200;
 
-/// Returns a new hash. An error if the password does not have 12 to 200 bytes, or contains a
-/// control character.
+/// Returns an error unless the password has 12 to 200 bytes and no control characters.
 Expected<std::string> password_hash(std::string_view password);
-/// Largest product of memory (KiB) and passes of a hash. The hash of a new password has 192 MiB; the
-/// limit is five times as much, so that its check takes at most about half a second: no other
-/// user can sign in meanwhile.
+/// Largest product of memory (KiB) and passes of a hash, about five times that of a new hash (192
+/// MiB). Its check takes about half a second, in which no other user can sign in.
 inline constexpr std::uint32_t most_hash_kibibytes = 1U << 20U;
-/// Returns whether the text has the form of a hash that `password_hash` returns, within
-/// `most_hash_kibibytes`.
+/// Whether the text is an Argon2id hash within `most_hash_kibibytes`.
 bool is_password_hash(const std::string& text);
-/// Whether the password matches the hash. Takes a tenth of a second, even for an empty hash, which
-/// matches no password, so that the time does not show whether a user exists. Passwords of more
-/// than 200 bytes are rejected at once.
+/// Takes about 0.1 s even for an empty hash, which matches no password, so that the time does not
+/// show whether a user exists. Passwords of more than 200 bytes are rejected at once.
 bool fits_password(std::string_view password, const std::string& hash);
 
 }  // namespace nonio::certificates

@@ -63,8 +63,7 @@ Alphabet alphabet_of(Code c) {
   return Alphabet::none;
 }
 
-/// Small Greek and Cyrillic letters and the dotless i, each with the Latin letter that it or its
-/// capital looks like.
+/// Small Greek and Cyrillic letters and the dotless i, each with a Latin letter of this shape.
 constexpr std::array<std::pair<Code, char>, 37> look_alikes{
     {{0x3B1, 'a'}, {0x3B2, 'b'}, {0x3B5, 'e'}, {0x3B6, 'z'}, {0x3B7, 'h'}, {0x3B9, 'i'},
      {0x3BA, 'k'}, {0x3BC, 'm'}, {0x3BD, 'n'}, {0x3BF, 'o'}, {0x3C1, 'p'}, {0x3C4, 't'},
@@ -74,8 +73,7 @@ constexpr std::array<std::pair<Code, char>, 37> look_alikes{
      {0x458, 'j'}, {0x4AF, 'y'}, {0x4BB, 'h'}, {0x501, 'd'}, {0x51B, 'q'}, {0x51D, 'w'},
      {0x131, 'i'}}};
 
-/// Returns the small letter of a Latin, Greek or Cyrillic letter; other characters are returned
-/// unchanged.
+/// Converts Latin, Greek and Cyrillic letters; other characters are returned unchanged.
 Code small(Code c) {
   if (c >= 'A' && c <= 'Z') return c + 32;
   if (c >= 0xC0 && c <= 0xDE && c != 0xD7) return c + 32;

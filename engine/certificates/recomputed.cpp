@@ -17,8 +17,7 @@ namespace {
 constexpr const char* no_results =
     "the attached results.json is none, or has a key twice in one object";
 
-/// Whether two numbers differ by no more than 1e-9 plus 1e-9 of the larger one, because their last
-/// printed digits may depend on the processor.
+/// Tolerance 1e-9 plus 1e-9 of the larger number: last printed digits may depend on the processor.
 bool same(double a, double b) {
   return std::fabs(a - b) <= 1e-9 + 1e-9 * std::max(std::fabs(a), std::fabs(b));
 }
@@ -63,8 +62,6 @@ class Comparison {
   }
 };
 
-/// Returns the members of an analysis that contain its numbers and their units; missing ones are
-/// left out.
 storage::Json values_of(const storage::Json& analysis) {
   storage::Json out = storage::Json::object();
   for (const char* key :
@@ -125,8 +122,8 @@ Expected<std::string> same_values(std::string_view attached_text, std::string_vi
 
 namespace {
 
-/// Returns the text of a JSON document without parts that may depend on the processor: numbers, and
-/// digests of files with such numbers. Equal shapes are read alike by every JSON parser.
+/// Replaces numbers and SHA-256 digests, which may depend on the processor. Texts with the same
+/// shape have the same keys in the same order, so every JSON parser reads them in the same way.
 std::string shape_of(std::string_view json) {
   constexpr std::string_view number = "+-.0123456789eE";
   constexpr std::size_t digest = 64;
@@ -151,7 +148,7 @@ std::string shape_of(std::string_view json) {
   return shape;
 }
 
-/// Removes the digests of files that are not attached, because they may depend on the processor.
+/// Digests of files that are not attached may depend on the processor.
 void forget_digests(storage::Json& results, const std::vector<std::string>& attached) {
   if (!results.contains("outputs") || !results["outputs"].is_array()) return;
   for (storage::Json& file : results["outputs"])
@@ -185,8 +182,8 @@ bool is_number(const storage::Json& value, const char* key) {
   return value.is_object() && value.contains(key) && value[key].is_number();
 }
 
-/// Whether a value of a DCC equals the result. A DCC states printed digits, rounded according to U;
-/// DCCs of earlier versions stated all digits. `U` is NaN if there is none.
+/// A DCC states digits rounded according to U; DCCs of earlier versions stated all digits. `U`: NaN
+/// without an uncertainty.
 bool same_when_rounded(const sign::DccValue& v, double value, double U) {
   if (v.U.has_value() != std::isfinite(U)) return false;
   const double stated_U = v.U.value_or(0.0);
@@ -196,7 +193,7 @@ bool same_when_rounded(const sign::DccValue& v, double value, double U) {
          std::strtod(rounded->U.c_str(), nullptr) == stated_U;
 }
 
-/// Returns what is wrong with a value of a DCC compared with results.json; empty if it agrees.
+/// Returns an empty text if the value agrees with results.json.
 std::string contradiction(const sign::DccValue& v, const storage::Json& results) {
   const storage::Json* analysis = find(results, v.analysis);
   const std::string who = v.analysis + " " + v.name;

@@ -122,7 +122,7 @@ Expected<std::map<std::string, std::string>> Register::issued_digests() {
 
 namespace {
 
-/// Opens the register; none if it does not exist, since reading must not create it.
+/// Returns nullopt if the register does not exist, because reading must not create it.
 Expected<std::optional<Register>> open_if_there(const fs::path& site,
                                                 const config::Numbering& numbering,
                                                 double patience) {
@@ -211,7 +211,6 @@ reading::Inputs Register::inputs_of(std::int64_t id) {
 
 namespace {
 
-/// Returns what the journal states about the issue of a number.
 Expected<storage::Json> issued_as_noted(storage::Database& database, const std::string& number) {
   const auto entry = Journal(database).last_of("issued", number);
   if (auto well = database.take_error(); !well) return fail(well.error());
@@ -301,7 +300,6 @@ Expected<evaluation::Certificate> Register::load(std::int64_t id) {
 
 namespace {
 
-/// SQL for the last issued entry of a campaign.
 constexpr const char* last_of_campaign =
     "SELECT id, state, number, date, reason FROM certificates WHERE campaign = ? AND issued IS NOT "
     "NULL ORDER BY issued DESC LIMIT 1";
@@ -409,9 +407,8 @@ Expected<evaluation::Certificate> Register::draw(const std::string& campaign,
 
 namespace {
 
-/// Returns subject, SHA-256 and validity of the signer's certificate in the first signed PDF of the
-/// files; an empty object if there is none. They are recorded because keys are replaced while their
-/// signatures remain valid.
+/// Returns the signer's certificate in the first signed PDF; empty without one. It is recorded
+/// because keys are replaced while their signatures remain valid.
 storage::Json signer_json(const std::vector<evaluation::IssuedFile>& files) {
   for (const evaluation::IssuedFile& f : files) {
     if (!f.bytes.starts_with("%PDF-")) continue;

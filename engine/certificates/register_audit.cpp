@@ -25,8 +25,7 @@ class Auditor {
     for (const Journal::Entry& e : entries_) last_[{e.number, e.what}] = &e;
   }
 
-  /// Checks the chain of the journal and, with `numbers`, compares the numbers with it; the files
-  /// are not checked.
+  /// Checks the chain of digests and, with `numbers`, the numbers, but not the files.
   std::vector<std::string> run_journal(bool numbers) {
     audit_.id = database_.first("SELECT id FROM site");
     check_chain();
@@ -123,7 +122,7 @@ class Auditor {
     check_anchor(id, number, noted.contains("carried_over"), drawn);
   }
 
-  /// Compares the journal with what the signed file states about it.
+  /// The signed file states the journal entry with which its number was drawn.
   void check_anchor(std::int64_t id, const std::string& number, bool carried_over,
                     const Journal::Entry& drawn) {
     for (const storage::Database::Row& row :
@@ -154,8 +153,7 @@ class Auditor {
 
   storage::Database& database_;
   const std::vector<Journal::Entry> entries_;
-  std::map<std::pair<std::string, std::string>, const Journal::Entry*> last_;  ///< last entry by
-                                                                               ///< number and kind
+  std::map<std::pair<std::string, std::string>, const Journal::Entry*> last_;
   Audit audit_;
   bool look_at_files_ = true;
 };

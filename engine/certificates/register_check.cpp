@@ -21,12 +21,11 @@ using State = sign::Check::State;
 
 struct StatedNumber {
   std::string number, register_id;
-  bool by_register = true;  ///< whether the number comes from a register; false: it may come from
-                            ///< another source
+  bool by_register = true;  ///< false if the number may come from another source
 };
 
-/// Returns the identifier of a DCC; empty if it has none. It may come from another source than a
-/// register, except in DCCs of the output `certificate`.
+/// Returns an empty number if the DCC has no identifier. Only the output `certificate` takes it
+/// from a register.
 StatedNumber stated_in_dcc(std::string_view xml) {
   constexpr std::string_view open = "<dcc:uniqueIdentifier>", close = "</dcc:uniqueIdentifier>";
   const std::size_t begin = xml.find(open);

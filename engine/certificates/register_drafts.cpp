@@ -35,7 +35,7 @@ storage::Json draft_json(const WaitingDraft& d) {
   return json;
 }
 
-/// Parses a draft; throws exceptions of nlohmann::json if `json` was not written by `draft_json`.
+/// Throws exceptions of nlohmann::json if `json` was not written by `draft_json`.
 WaitingDraft draft_of(const std::string& campaign, const storage::Json& json) {
   WaitingDraft d;
   d.campaign = campaign;

@@ -18,8 +18,7 @@ std::string what_of(const RegisterPlace& place) {
   return std::string("the register of certificates ") + (place.server ? "in " : "");
 }
 
-/// Returns an error unless the server writes confirmed transactions to its disk, and to that of a
-/// standby that may take over.
+/// Confirmed transactions must be on the disks of the server and of a standby that may take over.
 Expected<void> check_durable(Database& database) {
   const auto rows = database.rows(
       "SELECT current_setting('fsync'), current_setting('full_page_writes'), "
@@ -41,15 +40,14 @@ Expected<void> check_durable(Database& database) {
 }
 
 struct Identity {
-  std::string id;          ///< id of the register; empty: the site has no register yet
-  std::int64_t place = 0;  ///< position of the last journal entry that the site has seen; 0: none
-  std::string sha256{};    ///< digest of that entry
+  std::string id;          ///< empty if the site has no register yet
+  std::int64_t place = 0;  ///< position of the last known journal entry, or 0
+  std::string sha256{};
 };
 
 constexpr std::string_view entry_key = "entry ";
 
-/// Reads the identity file: "UUID", and on a second line "entry 17 SHA-256". Without a file,
-/// returns an empty identity.
+/// Format: "UUID", and on a second line "entry 17 SHA-256"; without a file, an empty identity.
 Expected<Identity> identity_in(const RegisterPlace& place) {
   NONIO_TRY(const auto there, storage::is_there(place.identity));
   if (!there) return Identity{};
@@ -76,8 +74,7 @@ Error is_gone(const RegisterPlace& place, const std::string& identity) {
                "site"};
 }
 
-/// Returns an error if the site has a register of the other kind (file or server), because a new
-/// register would begin with number 1 again.
+/// A new register next to one of the other kind (file or server) would begin with number 1 again.
 Expected<void> check_is_first(const RegisterPlace& place) {
   NONIO_TRY(const auto there, storage::is_there(place.other));
   if (!there) return {};
@@ -87,8 +84,7 @@ Expected<void> check_is_first(const RegisterPlace& place) {
               "numbering, and keep that file outside the site");
 }
 
-/// Writes the identity file. Must be called inside a transaction, so that only one process writes
-/// at a time.
+/// Must be called inside a transaction, so that only one process writes at a time.
 Expected<void> write_identity(const RegisterPlace& place, const Identity& identity) {
   std::string text = identity.id + "\n";
   if (identity.place > 0)
@@ -97,7 +93,7 @@ Expected<void> write_identity(const RegisterPlace& place, const Identity& identi
                           {{place.identity.filename().string(), std::move(text)}});
 }
 
-/// Checks that the journal still contains the last entry that the site has seen.
+/// Checks that the journal still contains the last entry known to the site.
 Expected<void> check_state(Database& database, const RegisterPlace& place, const Identity& known) {
   if (known.place == 0) return {};
   const std::string sha256 =
@@ -111,9 +107,9 @@ Expected<void> check_state(Database& database, const RegisterPlace& place, const
               "Numbers would be given a second time; restore the newest state of the register");
 }
 
-/// Checks that the register belongs to this site, so that two sites, or a site and a copy of it,
-/// never draw numbers from one register. If the site has no identity file yet, an empty register,
-/// or any register that is a file, is accepted; with `may_write`, the identity file is written.
+/// Two sites, or a site and a copy of it, must never draw numbers from one register. If the site
+/// has no identity file yet, an empty register, or any register that is a file, is accepted; with
+/// `may_write`, the identity file is then written.
 Expected<void> check_identity(Database& database, const RegisterPlace& place, bool may_write) {
   const std::string id = database.first("SELECT id FROM site");
   const bool is_new = database.first("SELECT count(*) FROM certificates") == "0";

@@ -48,8 +48,7 @@ CREATE TABLE files(
   PRIMARY KEY(certificate, place)
 );
 )";
-constexpr std::int64_t application = 0x4e6f6e69;  // SQLite application_id that identifies a
-                                                  // register
+constexpr std::int64_t application = 0x4e6f6e69;  // SQLite application_id of a register
 
 /// Tables that version 2 of the format adds.
 constexpr const char* additions = R"(
@@ -65,7 +64,7 @@ CREATE TABLE drafts(
 constexpr const char* this_version = "2";
 constexpr const char* of_newer_version = "was written by a newer version of Nonio";
 
-/// Returns a random UUID (RFC 9562, version 4).
+/// Returns a UUID (RFC 9562, version 4).
 std::string random_id() {
   std::random_device random;
   std::array<unsigned, 4> part{};
@@ -97,8 +96,8 @@ void carry_over(storage::Database& database) {
 
 std::int64_t integer(const std::string& text) { return std::strtoll(text.c_str(), nullptr, 10); }
 
-/// Whether the schema has the tables. Reads the catalogue instead of calling to_regclass, which may
-/// answer from the cache of this connection and miss tables that another process has just made.
+/// Reads the catalog, because to_regclass may answer from the cache of this connection and miss
+/// tables that another process has just made.
 bool has_tables(storage::Database& database) {
   return database.first(
              "SELECT count(*) FROM pg_catalog.pg_class c JOIN pg_catalog.pg_namespace n ON n.oid = "
@@ -122,8 +121,7 @@ void note_made(storage::Database& database) {
   Journal(database).add("made", "", {{"register", id}});
 }
 
-/// Returns the SQL for the tables in a schema of a server. Row numbers are drawn in the transaction
-/// that holds the lock, so that their order is that of the certificate numbers.
+/// Row numbers are drawn inside the lock, so that their order is that of the certificate numbers.
 std::string server_tables() {
   constexpr std::string_view row_number = "  id INTEGER PRIMARY KEY";
   std::string sql = std::string(schema) + additions + Journal::schema +
@@ -139,9 +137,7 @@ Expected<void> make_server_tables(storage::Database& database, const std::string
   const bool made = is_of_this_version(database);
   if (auto well = database.take_error(); !well || made) return well;
   storage::Database::Transaction transaction(database);
-  if (is_of_this_version(database))
-    return transaction.end();  // another process has made the
-                               // tables in the meantime
+  if (is_of_this_version(database)) return transaction.end();  // another process made the tables
   if (has_tables(database)) return fail(of_newer_version);
   if (database.first("SELECT count(*) FROM pg_catalog.pg_class c JOIN pg_catalog.pg_namespace n ON "
                      "n.oid = c.relnamespace WHERE n.nspname = ?",
@@ -161,9 +157,7 @@ Expected<void> make_tables(storage::Database& database) {
   const bool made = is_of_this_version(database);
   if (auto well = database.take_error(); !well || made) return well;
   storage::Database::Transaction transaction(database);
-  if (is_of_this_version(database))
-    return transaction.end();  // another process has made the
-                               // tables in the meantime
+  if (is_of_this_version(database)) return transaction.end();  // another process made the tables
   const bool is_marked = integer(database.first("PRAGMA application_id")) == application;
   const bool is_old = is_marked && database.first("PRAGMA user_version") == "1";
   if (!is_old && !database.failed() && database.first("SELECT count(*) FROM sqlite_schema") != "0")

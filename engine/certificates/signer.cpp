@@ -36,7 +36,6 @@ Expected<std::string> password_of(const config::Signing& s, const fs::path& site
       site);
 }
 
-/// Returns the path relative to the site; an empty path remains empty.
 std::string in_site(const fs::path& site, const std::string& path) {
   return path.empty() ? path : (site / path).string();
 }
@@ -70,10 +69,9 @@ Expected<sign::TimeStamping> stamping_of(const config::Signing& s, const fs::pat
 
 constexpr const char* signing_process = "the process that signs";
 
-/// Answers one request of a worker on a stream of its own. Waits for the request; the main process
-/// ends a worker that hangs, and thereby its stream. An empty request is answered with the identity
-/// of the signer. The answer consists of an error (or ""), a message about a missing time stamp,
-/// and the signed bytes.
+/// An empty request is answered with the identity of the signer. The answer consists of an error
+/// (or ""), a message about a missing time stamp, and the signed bytes. The main process ends a
+/// worker that does not finish its request.
 void answer(int stream, const Expected<sign::Key>& key,
             const Expected<sign::TimeStamping>& stamping) {
   std::string request;
@@ -95,8 +93,8 @@ void answer(int stream, const Expected<sign::Key>& key,
   done ? reply("", *done) : reply(done.error().message, {});
 }
 
-/// Sends bytes to the signer and returns them signed. `go_on`, which may be empty, is called
-/// repeatedly until the answer begins; if it returns false, the request is given up.
+/// `go_on`, which may be empty, is called repeatedly until the answer begins; if it returns false,
+/// the request is given up.
 Expected<sign::Signed> ask(int channel, std::string_view bytes,
                            const std::function<bool()>& go_on = {}) {
   NONIO_TRY(auto ends, process::channel_pair(SOCK_STREAM, signing_process));
@@ -131,7 +129,7 @@ Expected<void> Signer::fork_process() {
 }
 
 void Signer::serve() {
-  ::prctl(PR_SET_DUMPABLE, 0);  // no other process may read its memory
+  ::prctl(PR_SET_DUMPABLE, 0);  // no other process can read the key from memory
   to_ = process::Handle();
   constexpr int most_deaths = 5;
   const auto key = process::guarded("the signing key", [&]() -> Expected<sign::Key> {

@@ -14,16 +14,16 @@
 namespace nonio::certificates {
 
 /// Controls the only process of a run that has the key. Workers send it finished bytes and receive
-/// them signed. It is started before plugins are loaded, so that it contains none of their code,
-/// and opens the key once. If the key cannot be opened, each request is answered with the error.
+/// them signed. It is started before plugins are loaded, so that it contains none of their code. If
+/// the key cannot be opened, each request is answered with the error.
 class Signer {
  public:
-  /// `disk_seconds`: time limit for a disk or share that does not answer.
+  /// `disk_seconds`: time limit in s for a disk or share that does not answer.
   Signer(const config::Signing& signing, std::filesystem::path site, double disk_seconds);
   Signer(const Signer&) = delete;
   Signer& operator=(const Signer&) = delete;
 
-  /// Starts the process. Returns the identity of its key, or an error if it has none.
+  /// Returns the identity of the key, or an error if the key cannot be opened.
   Expected<sign::Identity> start();
   /// Starts the process again if it has died; requests made in the meantime are not lost.
   void revive();
@@ -38,8 +38,7 @@ class Signer {
   const config::Signing& signing_;
   const std::filesystem::path site_;
   const double disk_seconds_;
-  std::string given_up_{};  ///< why the key is not opened again after a restart; empty: it may be
-                            ///< opened
+  std::string given_up_{};  ///< why the key is not opened again; otherwise empty
   int deaths_ = 0;
   process::Handle to_, from_;  ///< both ends of the channel for requests
   process::Child child_{};

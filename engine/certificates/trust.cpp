@@ -15,7 +15,7 @@ namespace {
 
 constexpr sign::Time day = 86400;
 
-/// Returns the time at which a day (YYYY-MM-DD) begins in UTC.
+/// `date`: YYYY-MM-DD, UTC.
 sign::Time begin_of(const std::string& date) {
   namespace chrono = std::chrono;
   const auto number = [&](std::size_t from, std::size_t size) {
@@ -38,8 +38,7 @@ std::vector<sign::ExpectedSigner> signers_of(const config::Signing& signing) {
   return signers;
 }
 
-/// Reads a file of roots; an empty path gives an empty text. An empty file is an error, because it
-/// cannot be intended.
+/// An empty path gives an empty text; an empty file is an error, because it cannot be intended.
 Expected<std::string> text_at(const fs::path& path) {
   if (path.empty()) return std::string();
   auto text = storage::read_file(path);
@@ -48,8 +47,7 @@ Expected<std::string> text_at(const fs::path& path) {
   return text;
 }
 
-/// Reads the file of option trust, which serves for signers and time servers. It must contain only
-/// one root, because a root that is trusted for time stamps must not be able to certify signers.
+/// A root that is trusted for time stamps must not be able to certify signers.
 Expected<std::string> single_root(const fs::path& path) {
   auto text = text_at(path);
   if (!text) return text;

@@ -20,8 +20,8 @@ struct VerifyOptions {
 };
 
 /// Reads trusted roots, revocation lists and expected signers; arguments take precedence over the
-/// site. An error if a file contains none of the required objects, or if one file with several
-/// roots would serve for both signers and time servers.
+/// site. An error if a file contains none of these, or if several roots would serve for both
+/// signers and time servers.
 config::Checked<sign::Verifier> verifier_of(const VerifyOptions& options);
 
 }  // namespace nonio::certificates

@@ -46,7 +46,7 @@ sign::Verified refused(std::string_view check, const std::string& why) {
   return v;
 }
 
-/// Returns why these bytes cannot be a certificate; none if the signature has to be checked.
+/// Returns nullopt if the signature has to be checked.
 std::optional<std::string> why_no_certificate(std::string_view bytes) {
   const auto has = [&](std::string_view text) { return bytes.find(text) != bytes.npos; };
   if (bytes.starts_with("%PDF-")) {
@@ -97,7 +97,7 @@ Expected<std::string> read_bounded(const fs::path& path) {
   };
   std::error_code error;
   if (fs::is_directory(path, error)) return fail(path.string() + " is a folder, expected a file");
-  // A pipe could block for ever.
+  // A pipe could block forever.
   if (const auto kind = fs::status(path, error).type();
       kind != fs::file_type::regular && kind != fs::file_type::not_found)
     return fail(path.string() + " is not a regular file");
@@ -127,8 +127,7 @@ Expected<sign::Verified> verify_file(const fs::path& path, const sign::Verifier&
   const bool is_xml = bytes->starts_with("<?xml");
   sign::Verified v =
       is_xml ? sign::verify_xml(*bytes, verifier) : sign::verify_pdf(*bytes, verifier);
-  // Without the register there is no verdict, because it may state that the file was issued with an
-  // earlier signer.
+  // The register may state that the file was issued with an earlier signer.
   if (verdict_of(v) == Verdict::untrusted && !rows.no_answer.empty())
     return fail(no_verdict(rows, path.string()));
   if (is_xml) {

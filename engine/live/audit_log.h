@@ -12,13 +12,13 @@ namespace nonio::live {
 
 inline constexpr const char* audit_name = "audit.jsonl";
 
-/// Writes SITE/audit.jsonl: one line for each request that may change something, including refused
-/// ones. Lines are only appended.
+/// Appends to SITE/audit.jsonl one line for each request that may change something, including
+/// rejected requests.
 class AuditLog {
  public:
   explicit AuditLog(const std::filesystem::path& site) : file_(site / audit_name) {}
-  /// Appends the entry with the time in UTC. If this fails, the caller must not carry out the
-  /// request, because it would not be recorded.
+  /// Adds the time in UTC. After an error, the caller must not carry out the request, because it
+  /// would not be recorded.
   Expected<void> write(storage::Json entry);
   /// Returns the content of the file; empty if it does not exist.
   Expected<std::string> text() const;

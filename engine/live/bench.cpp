@@ -30,7 +30,6 @@ using storage::Json;
 
 namespace {
 
-/// Memory shared with child processes that contains one number per reading of a part.
 class SharedColumn {
  public:
   explicit SharedColumn(std::size_t size) : size_(size) {
@@ -50,7 +49,6 @@ class SharedColumn {
   double* data_ = nullptr;
 };
 
-/// Residuals of the last eight fits of one part, by the key of the trial; the oldest are dropped.
 class FittedBefore {
  public:
   std::shared_ptr<SharedColumn> find(const std::string& key) const {
@@ -65,8 +63,8 @@ class FittedBefore {
   }
 
  private:
-  // Largest number of stored entries. Several are stored, so that calculations with the residuals
-  // need no new fit after undo and redo. An entry takes 8 MB for 1,000,000 readings.
+  // Calculations with residuals need no new fit after undo and redo. An entry takes 8 MB for
+  // 1,000,000 readings.
   static constexpr std::size_t most = 8;
   std::deque<std::pair<std::string, std::shared_ptr<SharedColumn>>> all_;
 };
@@ -85,10 +83,10 @@ struct Running {
   process::Handle pipe{};
   std::string received{};
   std::shared_ptr<SharedColumn> residual{};
-  bool fills = false;     ///< whether this job writes `residual`
-  bool is_begun = false;  ///< whether the first state was reported
+  bool fills = false;
+  bool is_begun = false;  ///< whether the first part of the answer was sent
   Clock::time_point begun = Clock::now();
-  int reported = 0;  ///< elapsed time that was reported last, s
+  int reported = 0;
 };
 
 bool write_all(int fd, std::string_view bytes) {
@@ -106,8 +104,8 @@ std::string words_of(const Error& e) {
          e.message;
 }
 
-/// First byte of what a child sends: `answers` before an answer, `refuses` before the reason of a
-/// refusal. A first part of the answer may precede it: `begins`, its length, and its text.
+/// First byte of the output of a child: `answers` precedes an answer, `refuses` the reason of a
+/// rejection. Before them, `begins`, a length and a text may contain the first part of the answer.
 constexpr char begins = '1', answers = '+', refuses = '-';
 constexpr std::size_t before_first = 1 + sizeof(std::uint64_t);
 
@@ -118,7 +116,8 @@ void send_first(int pipe, const std::string& text) {
   write_all(pipe, bytes + text);
 }
 
-/// Removes the first part of the answer from `received` and returns it; none until it is complete.
+/// Returns std::nullopt until the first part of the answer is complete, then removes it from
+/// `received`.
 std::optional<std::string> take_first(std::string& received) {
   std::uint64_t size = 0;
   if (received.size() < before_first || received.front() != begins) return std::nullopt;
@@ -145,11 +144,10 @@ std::string answer_of(Bench& bench, const Job& job, std::span<double> residual, 
 
 bool is_slow(const Job& job) { return job.kind == "explain" || job.kind == "without"; }
 
-/// Returns the nice value of a job: 10 for slow jobs, 5 for jobs that no person has requested and
-/// for fits of parts with more than 100,000 readings, otherwise 0.
+/// Returns the nice value: 10 for slow jobs, 5 for jobs without a waiting user and for fits of more
+/// than 100,000 readings, otherwise 0.
 int niceness(const Job& job, const Bench& bench) {
-  constexpr std::size_t takes_seconds = 100000;  // number of readings from which on a fit takes
-                                                 // seconds
+  constexpr std::size_t takes_seconds = 100000;  // a fit of more readings takes seconds
   if (is_slow(job)) return 10;
   if (job.number == 0) return 5;
   for (const auto& part : bench.parts)
@@ -179,7 +177,6 @@ class Loop {
         channel_(std::move(channel)),
         seconds_(bench_.place->context.site.limits.seconds) {}
 
-  /// Serves jobs until the server has ended.
   void run() {
     tell(0, job_state::opened, storage::dump(described(bench_)));
     if (!bench_.has_catalogue) {
@@ -202,8 +199,8 @@ class Loop {
       gone_ = true;
   }
 
-  /// Returns whether a person waits for this fit. Slow jobs are started when such a fit is ready,
-  /// or when it has taken longer than a second.
+  /// Whether a user waits for this fit. Slow jobs are started when the fit is ready or has taken
+  /// longer than a second.
   bool is_awaited(const Running& one) const {
     constexpr auto long_time = std::chrono::seconds(1);
     return one.job.kind == "fit" && !one.is_begun && niceness(one.job, bench_) == 0 &&
@@ -262,8 +259,8 @@ class Loop {
     one.residual = std::move(residual), one.fills = fills;
   }
 
-  /// Returns whether this process itself has to prepare matrices (groundwork) that all later
-  /// requests need. It does so only while no other than slow jobs are running.
+  /// Whether this process must prepare matrices that all later requests need. It does so only while
+  /// no other jobs than slow ones are running.
   bool has_work() const {
     return without_groundwork(bench_) != nullptr &&
            std::all_of(running_.begin(), running_.end(),
@@ -296,7 +293,7 @@ class Loop {
     for (const std::uint64_t number : ended) finish(number);
   }
 
-  /// Reads what the child has sent. Returns false at the end of the stream.
+  /// Returns false at the end of the stream.
   static bool read_from(Running& one) {
     std::array<char, 1 << 16> bytes;
     const ssize_t n = ::read(one.pipe.get(), bytes.data(), bytes.size());
@@ -361,7 +358,6 @@ class Loop {
     bench_.read.inputs.front().second = saved.at("manifest_sha256").get<std::string>();
   }
 
-  /// Ends jobs that exceed their time limit, and reports the elapsed time of the others.
   void look_after() {
     std::vector<std::uint64_t> overdue;
     for (auto& [number, one] : running_) {

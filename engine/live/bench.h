@@ -5,20 +5,17 @@
 #include "platform/process/channel.h"
 
 /// The bench process keeps a campaign and its plugins in memory. It has one thread, reads the
-/// campaign once, and makes a child process for each request. So readings are shared, a crash costs
-/// one answer, and a request is cancelled by ending its child.
+/// campaign once and forks for each request, so that readings are shared, a crash affects one
+/// answer, and ending the child cancels a request.
 namespace nonio::live {
 
-/// Messages from the bench process to the server, packed: number of the job, state, text. Job 0 is
-/// the campaign itself: "opened" with `described`, then "catalogue" if `described` does not contain
-/// the catalogue, or "failed".
+/// Messages to the server, packed: number of the job, state, text. Job 0 is the campaign: "opened"
+/// with `described`, then "catalogue" if `described` lacks the catalogue; or "failed".
 namespace job_state {
 inline constexpr const char* opened = "opened";
 inline constexpr const char* catalogue = "catalogue";
-inline constexpr const char* running = "running";  ///< state of a job that is still running; text:
-                                                   ///< elapsed seconds
-inline constexpr const char* begun = "begun";      ///< state of a job with an incomplete answer;
-                                                   ///< text: first part of the answer
+inline constexpr const char* running = "running";  ///< the text is the elapsed time in s
+inline constexpr const char* begun = "begun";      ///< the text is the first part of the answer
 inline constexpr const char* done = "done";
 inline constexpr const char* failed = "failed";
 }  // namespace job_state

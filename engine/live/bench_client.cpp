@@ -81,7 +81,7 @@ bool BenchClient::connect() {
     return false;
   }
   const std::lock_guard lock(mutex_);
-  if (over_) return false;  // the destructor has begun already, so nothing would end this process
+  if (over_) return false;  // the destructor has begun, so nothing would end this process
   channel_ = std::move(*channel);
   for (const auto& [job, text] : unsent_) send("do", job, text);
   unsent_.clear();
@@ -101,7 +101,7 @@ void BenchClient::hear() {
     if (job != 0) {
       const bool goes_on = state == job_state::running || state == job_state::begun;
       const std::lock_guard lock(mutex_);
-      // The job was cancelled.
+      // The job was canceled.
       if (goes_on ? !open_.contains(job) : open_.erase(job) == 0) continue;
     }
     tell_(job, state, text);

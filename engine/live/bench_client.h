@@ -15,14 +15,14 @@
 
 namespace nonio::live {
 
-/// Controls a bench process from the server: numbers the requests, and receives the answers in a
-/// thread of its own. If the bench process dies, its requests fail and it is restarted; one that
-/// died within 2 s of its start is restarted only by the next request.
+/// Controls a bench process from the server; a separate thread receives the answers. If the process
+/// ends, its requests fail and it is restarted, or only by the next request if it ended within 2 s
+/// of its start.
 class BenchClient {
  public:
-  /// Receives the number of the job (0: the campaign itself), one of `job_state`, and a text. It is
-  /// called without a lock, always by the same thread. State "ended" of job 0: the process has
-  /// died; text "again": it is restarted.
+  /// Receives the number of the job (0 is the campaign), a `job_state` and a text, without a lock
+  /// and always in the same thread. After the end of the process, job 0 gets the state "ended",
+  /// with the text "again" if the process is restarted.
   using Tell = std::function<void(std::uint64_t, const std::string&, std::string)>;
 
   BenchClient(Launcher& launcher, std::filesystem::path campaign, Tell tell);
@@ -30,7 +30,7 @@ class BenchClient {
   BenchClient& operator=(const BenchClient&) = delete;
   ~BenchClient();
 
-  /// Sends a request and returns its number; `tell` may be called before this returns.
+  /// Sends a request and returns its number. `tell` may be called before this function returns.
   std::uint64_t ask(const storage::Json& request);
   void cancel(std::uint64_t job);
   /// Starts a new bench process, which reads the files again.
@@ -49,8 +49,8 @@ class BenchClient {
   std::mutex mutex_;
   std::condition_variable wanted_;
   process::Handle channel_;
-  std::set<std::uint64_t> open_;                 ///< jobs that are not answered yet
-  std::map<std::uint64_t, std::string> unsent_;  ///< requests made while there was no process
+  std::set<std::uint64_t> open_;
+  std::map<std::uint64_t, std::string> unsent_;
   std::uint64_t last_ = 0;
   bool again_ = true, over_ = false;
   std::thread listener_;

@@ -51,8 +51,8 @@ Json machine_json(const Machine& machine) {
   return json;
 }
 
-/// Returns the ends of each measured line in the volume, in mm: its readings with the lowest and
-/// the highest position along the line.
+/// Returns the end points of each measured line in the volume (mm), at its lowest and highest
+/// position.
 Json lines_in_space(const model::Part& part) {
   struct Ends {
     std::size_t low = 0, high = 0;
@@ -90,7 +90,6 @@ Json card_of(const modelling::ModelWords& words, const std::string& effect) {
   return card;
 }
 
-/// Adds the causes of the library that apply to the axis, so that they can be added to the model.
 void put_library(const PartModel& part, const modelling::ModelWords& words, Json& list) {
   if (part.library == nullptr) return;
   const Axis& axis = part.part.axes.front();
@@ -131,7 +130,6 @@ Json catalogue_json(const Bench& bench) {
   return list;
 }
 
-/// Rows of each measurement's table that are kept; empty: all.
 using Kept = std::vector<std::vector<std::uint32_t>>;
 
 Expected<Kept> exclude(Bench& bench, const Json& request) {
@@ -171,11 +169,11 @@ Expected<void> try_periods(Bench& bench, const Json& request) {
   return {};
 }
 
-/// A part with the tried model: that of the bench, or a copy if readings or periods differ.
+/// A part with the tried model: the part of the bench, or a copy if readings or periods differ.
 struct Tried {
   std::unique_ptr<PartModel> own;
   PartModel* of_bench = nullptr;
-  std::vector<std::size_t> row;  ///< row of each reading in the part with all readings
+  std::vector<std::size_t> row;  ///< row of each reading in the complete part
   const PartModel& part() const { return own ? *own : *of_bench; }
 };
 
@@ -226,8 +224,8 @@ Expected<Tried> tried(Bench& bench, const Json& request) {
   return out;
 }
 
-/// Returns the readings that the page gets; they do not depend on the model. For large parts the
-/// page draws columns of pixels and needs only a sample for quantiles and tables.
+/// The readings on the page do not depend on the model. For large parts the page draws columns of
+/// pixels and needs only a sample for quantiles and tables.
 workbench::Kept kept_of(const PartModel& part) {
   constexpr std::size_t sample = 5000;
   const std::vector<double> measured = part.measured();
@@ -235,7 +233,7 @@ workbench::Kept kept_of(const PartModel& part) {
   return workbench::kept_readings(measured, is_drawn ? workbench::most_readings : sample);
 }
 
-/// Returns the data that model-html embeds, with the rows counted as in the files.
+/// Returns the data embedded by model-html, with rows counted as in the files.
 Expected<std::string> page_data(const Bench& bench, const PartModel& part, const ModelFit& fit,
                                 const std::vector<std::size_t>& rows) {
   const reports::Wording words(bench.place->context.templates, bench.language(), {"pictures"});
@@ -248,15 +246,13 @@ Expected<std::string> page_data(const Bench& bench, const PartModel& part, const
   return data;
 }
 
-/// Returns the prepared matrices of the part; null if they are for other readings, or not prepared
-/// yet.
+/// Returns null if the matrices are not prepared or are for other readings.
 const model::Groundwork* groundwork_of(const Bench& bench, const Tried& tried) {
   if (tried.own) return nullptr;
   const auto found = bench.groundwork.find(tried.part().part.name);
   return found == bench.groundwork.end() ? nullptr : &found->second;
 }
 
-/// Returns all members of a fit's answer except the page.
 std::string head_of(const Bench& bench, const PartModel& part, const model::Comparison& c,
                     modelling::Extent extent) {
   const modelling::Compared both{part, c};
@@ -285,14 +281,13 @@ Expected<std::string> fit(Bench& bench, const Json& request, std::span<double> r
   return storage::pack(head_of(bench, one.part(), compared, modelling::Extent::whole), *page);
 }
 
-/// Returns the page with the readings as measured, which is shown until there is a fit.
+/// Returns the page with the readings alone, which is shown before the first fit.
 Expected<std::string> look(Bench& bench, const PartModel& part) {
   const auto data = page_data(bench, part, modelling::measured_value(part), {});
   if (!data) return data;
   return "{\"page\":" + *data + "}";
 }
 
-/// Returns the printed values of a column for the rows that the page has.
 Json column(const std::vector<double>& values, const std::vector<std::size_t>& rows, Quantity q) {
   Json list = Json::array();
   for (const std::size_t row : rows) {
@@ -302,8 +297,8 @@ Json column(const std::vector<double>& values, const std::vector<std::size_t>& r
   return list;
 }
 
-/// Returns, for each of the first 40 ranked candidates, its contribution to the fit if it is added
-/// to the model, at the readings that the page shows.
+/// Returns the contribution to the fit of each of the first 40 candidates, at the readings on the
+/// page.
 Json fingerprints_of(const PartModel& part, const model::Explanation& e) {
   constexpr std::size_t most = 40;
   const std::vector<std::size_t> rows = kept_of(part).rows;
@@ -375,8 +370,8 @@ Expected<Bench> open_bench(const BenchWish& wish) {
     modelling::set_model(part, {}, bench.read);
     readings += part.part.table.size();
   }
-  constexpr std::size_t many = 50000;  // number of readings below which the catalogue takes less
-                                       // than 0.1 s
+  // Number of readings for which the catalog takes less than 0.1 s.
+  constexpr std::size_t many = 50000;
   if (readings <= many) fill_catalogue(bench);
   return bench;
 }
@@ -436,7 +431,8 @@ bool needs_residual(const Json& request) {
 }
 
 const PartModel* without_groundwork(const Bench& bench) {
-  // Groundwork for fewer readings takes milliseconds, and for more it would delay other requests.
+  // With fewer readings the preparation takes milliseconds, with more it would delay other
+  // requests.
   constexpr std::size_t fewest = 5000, most = 200000;
   for (const PartModel& part : bench.parts)
     if (part.part.table.size() >= fewest && part.part.table.size() <= most &&

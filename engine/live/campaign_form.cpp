@@ -22,8 +22,6 @@ namespace {
 
 enum class Form { text, day, number };
 
-/// A member of `values` in the form: key of campaign.toml, and the option of `nonio new campaign`
-/// that sets it if that is not --set.
 struct Field {
   const char* key;
   Form form = Form::text;
@@ -75,8 +73,6 @@ bool is_number(std::string& text) {
   return true;
 }
 
-/// Whether the name is used by one of the program's own files, in any case of letters, or is a
-/// device name of Windows.
 bool is_taken_name(std::string name) {
   for (char& c : name)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 32);
@@ -110,7 +106,6 @@ bool has_form(Form form, std::string& text) {
   return is_one_line(text);
 }
 
-/// Returns a text member; empty if it is missing or not a text.
 std::string text_of(const Json& json, const std::string& name) {
   const auto found = json.find(name);
   return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
@@ -127,7 +122,6 @@ bool is_axis(const std::string& name) {
          std::all_of(name.begin() + 1, name.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Converts the members of a form to options; only the first error is kept.
 class FormOptions {
  public:
   explicit FormOptions(const Json& form)
@@ -177,7 +171,6 @@ class FormOptions {
     if (!text.empty() && !is_number(text)) refuse(key);
     return text;
   }
-  /// Adds travel, limits, expansion and active compensation, whose keys begin with "axis.".
   void put_axis() {
     // The letters A to C denote rotary axes, as on the command line.
     const bool rotary = !axis_.empty() && axis_[0] >= 'A' && axis_[0] <= 'C';
@@ -256,8 +249,8 @@ std::string proposed_id(const Json& form) {
   }
   out.resize(std::min(out.size(), most));
   while (!out.empty() && out.back() == '-') out.pop_back();
-  // Avoids names of the site's own folders, such as "machines", and names that Windows refuses,
-  // such as "con".
+  // The prefix avoids names of folders of the site, such as "machines", and device names of
+  // Windows, such as "con".
   return out.empty() || out[0] < '0' || out[0] > '9' ? "campaign-" + out : out;
 }
 

@@ -8,9 +8,12 @@
 #include <chrono>
 
 #include "campaign/config/manifest.h"
+#include "campaign/config/site_files.h"
 #include "campaign/evaluation/record.h"
+#include "certificates/register.h"
 #include "laboratory/store/identity.h"
 #include "live/campaign_service.h"
+#include "live/site_news.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
@@ -90,13 +93,12 @@ std::map<std::string, std::string> values_of(const Campaign& c) {
   return to;
 }
 
-/// Returns the severity of a decision: 0 none, 1 conforms, 2 indeterminate, 3 does not conform.
 int severity(std::string_view decision) {
   return decision.empty() ? 0 : decision == "conforms" ? 1 : decision == "does not conform" ? 3 : 2;
 }
 
-/// Returns the worst decision in results.json, empty if there is none; if there are tests before
-/// and after an adjustment, those before it are ignored.
+/// Returns the worst decision in results.json. Measurements before an adjustment are ignored if
+/// there are measurements after it.
 std::string verdict_of(const std::string& results, const Campaign* campaign) {
   bool has_after = false;
   std::vector<std::string> before;
@@ -147,10 +149,18 @@ void take_manifest(const std::string& text, ListedCampaign& c,
   out = std::move(*read);
 }
 
-void take_record(const fs::path& results, const std::string& manifest_sha256,
+/// Returns false if the results are those of another folder with the same id.
+bool take_record(const fs::path& site, const fs::path& results, const std::string& manifest_sha256,
                  const Campaign* campaign, ListedCampaign& c) {
   const auto record = evaluation::read_record(results);
-  if (!record) return;
+  if (!record) return true;
+  std::error_code error;
+  if (record->folder != c.folder &&
+      fs::exists(site / record->folder / config::manifest_name, error)) {
+    c.state = "failed";
+    c.message = "expected an id of its own, found \"" + c.id + "\", the id of " + record->folder;
+    return false;
+  }
   if (const char* word = evaluation::to_text(record->status); *word != '\0') c.state = word;
   c.certificate = record->certificate;
   c.draft = record->draft;
@@ -163,6 +173,19 @@ void take_record(const fs::path& results, const std::string& manifest_sha256,
     if (name == config::manifest_name) c.changed = digest != manifest_sha256;
   if (const auto text = storage::read_file(results / evaluation::results_name))
     c.verdict = verdict_of(*text, campaign);
+  return true;
+}
+
+/// The register knows since when a certificate is not in force, and of which campaign it is if its
+/// successor is withheld.
+void take_certificate(const std::map<std::string, std::string>& in_force, ListedCampaign& c) {
+  const auto found = in_force.find(c.id);
+  const std::string number = found == in_force.end() ? std::string() : found->second;
+  if (!c.certificate.empty() && c.certificate != number) {
+    std::erase_if(c.files, [](const std::string& file) { return file.starts_with("certificate"); });
+    if (c.message.empty()) c.message = "certificate " + c.certificate + " is not in force";
+  }
+  c.certificate = number;
 }
 
 bool fits(const ListedCampaign& c, const std::string& state) {
@@ -237,8 +260,49 @@ std::string CampaignIndex::stamp_of(const std::string& folder, const std::string
                                                evaluation::record_name));
 }
 
+/// Reads aliases of machines and the register again after a change, and then all campaigns that
+/// depend on them.
+void CampaignIndex::look_at_site() {
+  std::string stamp = file_stamp(site_ / config::site_name);
+  const fs::path file = register_of(site_);
+  if (!file.empty()) stamp += file_stamp(file) + file_stamp(file.string() + "-wal");
+  std::shared_ptr<const SiteFacts> before;
+  {
+    const std::lock_guard lock(mutex_);
+    before = facts_;
+  }
+  if (before->stamp == stamp) return;
+  auto now = std::make_shared<SiteFacts>();
+  now->stamp = std::move(stamp);
+  std::string digest;
+  if (const auto site = config::read_site(site_, digest)) {
+    for (const config::Alias& alias : site->aliases) now->asset_of_alias[alias.name] = alias.asset;
+    const auto entries = certificates::Register::entries(site_, site->numbering);
+    now->has_register = entries && !entries->empty();
+    if (entries)
+      for (const certificates::RegisterEntry& e : *entries)
+        if (e.in_force()) now->certificate_in_force[e.campaign] = e.number;
+  }
+  const std::lock_guard lock(mutex_);
+  for (auto& [folder, seen] : seen_) {
+    const auto of = [&](const SiteFacts& facts) {
+      const auto found = facts.certificate_in_force.find(seen.campaign.id);
+      return found == facts.certificate_in_force.end() ? std::string() : found->second;
+    };
+    if (now->asset_of_alias != before->asset_of_alias || of(*now) != of(*before) ||
+        now->has_register != before->has_register)
+      seen.stamp = "-";
+  }
+  facts_ = std::move(now);
+}
+
 CampaignIndex::Seen CampaignIndex::read(const std::string& folder) const {
   Seen seen;
+  std::shared_ptr<const SiteFacts> facts;
+  {
+    const std::lock_guard lock(mutex_);
+    facts = facts_;
+  }
   ListedCampaign& c = seen.campaign;
   c.folder = folder;
   c.state = "new";
@@ -249,9 +313,14 @@ CampaignIndex::Seen CampaignIndex::read(const std::string& folder) const {
   else
     c.message = text.error().message;
   seen.stamp = stamp_of(folder, c.id);
+  bool is_own = true;
   if (!out_.empty() && text && config::is_campaign_id(c.id))
-    take_record(storage::results_folder(out_, c.id), storage::sha256(*text),
-                manifest ? &manifest->campaign : nullptr, c);
+    is_own = take_record(site_, storage::results_folder(out_, c.id), storage::sha256(*text),
+                         manifest ? &manifest->campaign : nullptr, c);
+  if (const auto alias = facts->asset_of_alias.find(c.machine);
+      alias != facts->asset_of_alias.end())
+    c.machine = alias->second;
+  if (facts->has_register && is_own) take_certificate(facts->certificate_in_force, c);
   const auto value = [&](const char* key) {
     const auto found = c.values.find(key);
     return found == c.values.end() ? std::string() : found->second;
@@ -290,6 +359,7 @@ void CampaignIndex::look_if_old() {
 
 bool CampaignIndex::look_at_all() {
   bool is_new = false;
+  look_at_site();
   const auto folders = campaigns_in(site_);
   for (const std::string& folder : folders) {
     if (is_over()) return false;
@@ -317,7 +387,7 @@ bool CampaignIndex::look_at_all() {
 
 void CampaignIndex::run() {
   using Clock = std::chrono::steady_clock;
-  constexpr double share = 20.0;  // the pause is at least this many times the duration of a check
+  constexpr double share = 20.0;  // smallest ratio of the pause to the duration of a check
   std::chrono::duration<double> pause = pause_;
   while (true) {
     {

@@ -13,7 +13,6 @@ using storage::Json;
 
 namespace {
 
-/// Returns the values whose keys begin with one of these prefixes, as an object.
 Json values_with(const ListedCampaign& c, std::initializer_list<const char*> beginnings) {
   Json out = Json::object();
   for (const auto& value : c.values)
@@ -55,7 +54,7 @@ void take_machine(const ListedCampaign& c, CampaignLists::Machine& m) {
             {"state", c.state},       {"verdict", c.verdict}};
 }
 
-/// Takes the newest calibration, and at most 20 of the newest campaigns that used the instrument.
+/// Keeps the newest calibration and at most 20 campaigns, the newest first.
 void take_instrument(const ListedCampaign& c, const std::string& name, Instrument& i) {
   constexpr std::size_t most = 20;
   const std::string calibrated = value_of(c, "instrument.calibrated");
@@ -71,7 +70,6 @@ void take_instrument(const ListedCampaign& c, const std::string& name, Instrumen
         {{"folder", c.folder}, {"id", c.id}, {"day", c.day}, {"machine", c.machine}});
 }
 
-/// Values for forms, each of the newest campaign that states them.
 class Records {
  public:
   void take(const ListedCampaign& c, const std::string& instrument) {
@@ -121,7 +119,7 @@ std::string stamp_of_records(const fs::path& site) {
 
 CampaignLists campaign_lists(const CampaignIndex& index, const fs::path& site) {
   CampaignLists out;
-  // Taken before the campaigns and files are read, so that a change meanwhile is noticed.
+  // The version is read before the campaigns, so that a change in between is detected.
   out.version = index.version();
   out.stamp = stamp_of_records(site);
   std::map<std::string, Instrument> instruments;

@@ -11,24 +11,24 @@
 
 namespace nonio::live {
 
-/// Lists of all that the campaigns of a site name, made from one version of the index.
+/// Machines and instruments of the campaigns, from one version of the index.
 struct CampaignLists {
   struct Machine {
     storage::Json json;   ///< the machine with its newest campaign
-    std::string words{};  ///< searchable words of its newest campaign
+    std::string words{};  ///< searchable words of the newest campaign
     std::size_t campaigns = 0;
   };
   std::uint64_t version = 0;
-  std::string stamp{};  ///< stamp of the records of the machines
+  std::string stamp{};
   std::map<std::string, Machine> machines{};
   Answer instruments{}, records{};
 };
 
-/// Returns a text that changes with each file in SITE/machines.
+/// Returns a text that changes with any file in SITE/machines.
 std::string stamp_of_records(const std::filesystem::path& site);
 
-/// Makes the lists: each machine, instrument and customer with its newest campaign, and for forms
-/// the values of that campaign, and machines that have only a record.
+/// Lists each machine, instrument and customer with its newest campaign and the values of this
+/// campaign for forms. Machines with a record but without campaigns are included.
 CampaignLists campaign_lists(const CampaignIndex& index, const std::filesystem::path& site);
 
 }  // namespace nonio::live

@@ -17,7 +17,6 @@ namespace {
 
 constexpr const char* api = "/api/";
 
-/// Serves the page of one campaign at the root path.
 class CampaignService : public Starting {
  public:
   CampaignService(LiveWish wish, Launcher launcher, Shells shells)
@@ -51,8 +50,7 @@ class CampaignService : public Starting {
   std::unique_ptr<Desk> desk_;
 };
 
-/// Reads the page's texts in the language of the site, or in English if the page has none in that
-/// language.
+/// Texts are in the language of the site, or in English if they are not translated.
 Expected<Shells> shells_of(const LiveWish& wish) {
   const fs::path site = config::site_of(wish.folder);
   std::string digest;
@@ -71,8 +69,8 @@ Expected<Shells> shells_of(const LiveWish& wish) {
                 Sentences(workbench::words(templates, language)), settings->limits.seconds};
 }
 
-/// Whether users sign in at this server and not at a proxy; false also if there is no users.toml.
-/// An error if users.toml cannot be read, or if it is needed for signing in and states no password.
+/// Whether users sign in at this server. False without users.toml or with a proxy. An error if
+/// users.toml cannot be read or contains no password.
 Expected<bool> requires_sign_in(const LiveWish& wish) {
   if (!certificates::has_users(wish.folder) && wish.user_header.empty()) return false;
   NONIO_TRY(const auto users, certificates::read_users(wish.folder));

@@ -12,9 +12,8 @@ using storage::Json;
 
 namespace {
 
-/// A column with one printed value per reading.
 struct Column {
-  std::vector<double> own;  ///< values that are not a column of the table
+  std::vector<double> own;
   std::span<const double> si;
   Quantity quantity = Quantity::number;
   double from = 0.0;
@@ -110,15 +109,13 @@ Range range_of(const Column& x, const Column& y, const Json& request) {
   return range;
 }
 
-/// Readings with the least and the largest value in one column of pixels.
 struct Extremes {
   std::size_t least = 0, most = 0, count = 0;
 };
 
-/// Readings of a range: reduced to columns of pixels, and as single readings if they are few.
 struct Binned {
   std::vector<Extremes> columns;
-  std::vector<std::size_t> rows;  ///< rows in the range, at most `few` + 1 of them
+  std::vector<std::size_t> rows;
   std::size_t count = 0;
 };
 
@@ -145,7 +142,6 @@ Json number(double value, Quantity q) {
   return std::isfinite(out) ? Json(out) : Json(nullptr);
 }
 
-/// Adds each reading as a separate point.
 void put_points(Json& out, const std::vector<std::size_t>& rows, const Column& x, const Column& y) {
   for (const std::size_t i : rows) {
     out["x"].push_back(number(x.shown(i), x.quantity));

@@ -13,7 +13,6 @@ namespace {
 constexpr auto fit_patience = std::chrono::seconds(2);
 constexpr const char* json_type = "application/json";
 
-/// Returns the JSON object with the version added as its first member.
 std::string with_version(std::uint64_t version, const std::string& object) {
   return "{\"version\":" + std::to_string(version) + "," + object.substr(1);
 }
@@ -99,8 +98,6 @@ Answer Desk::answer(const std::string& what, const std::string& part, const Requ
   return asked(last, part, request);
 }
 
-// Answers to GET requests.
-
 Json Desk::part_state(const PartState& state) const {
   Json json = {{"fit", state.fit.state}, {"explain", state.explain.state}};
   const std::string& error = state.fit.error.empty() ? state.explain.error : state.fit.error;
@@ -141,8 +138,6 @@ Json Desk::steps() const {
   return list;
 }
 
-/// Returns the command that makes the trial on a terminal; if the trial is saved already, the
-/// command that compares its models.
 std::string Desk::command() const {
   const std::string change = command_of(name_, session_.saved(), session_.trial());
   return change.empty() ? "nonio model compare " + quoted_for_shell(name_) : change;
@@ -194,9 +189,8 @@ Answer Desk::state(bool may_write) {
   return {200, json_type, storage::dump_line(json)};
 }
 
-/// Returns the fit of a part and waits for it, at most 2 s; the status is 409 if it is not ready
-/// then. If `picture`, an answer is accepted as soon as the curves are fitted, before the residuals
-/// have been tested for remaining structure (member `places`).
+/// Waits at most 2 s for the fit; status 409 if it is not ready. If `picture`, the fitted curves
+/// are sufficient, before the residuals have been tested for remaining structure (member `places`).
 Answer Desk::fit(const std::string& part, const Request& request, bool picture) {
   std::unique_lock lock(mutex_);
   const auto is_known = [&] {
@@ -295,7 +289,8 @@ Answer Desk::document(const std::string& kind, const std::string& part) {
   for (char& c : name)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '.' && c != '_')
       c = '_';
-  // Sent as an attachment: if it were shown, its script would run with the address of this server.
+  // Sent as an attachment, because a displayed page could run its script with the address of this
+  // server.
   return {200,
           page ? "application/octet-stream" : "application/pdf",
           done.text,

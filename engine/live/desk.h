@@ -14,29 +14,28 @@
 
 namespace nonio::live {
 
-/// State of one part for the present trial.
 struct PartState {
   struct Work {
-    std::string state = "none";  ///< state of the calculation: none, queued, running, done, failed
+    std::string state = "none";  ///< none, queued, running, done or failed
     std::uint64_t job = 0;
     std::string error;
     int seconds = 0;
-    /// First part and rest of the answer. For a fit, they contain the members "compare" and "text",
-    /// and the value of "page"; the places are missing until the fit is done. For an explanation,
-    /// they are {"explain": ...} and {"fingerprints": ...}; the second may come later.
+    /// The answer in two parts. For a fit they are the members "compare" and "text", and the value
+    /// of "page"; before the fit is done, the test of the residuals is missing. For an explanation
+    /// they are {"explain": ...} and, possibly later, {"fingerprints": ...}.
     std::string head, rest;
   };
-  std::string key;  ///< key of the trial to which `fit` and `explain` belong
+  std::string key;  ///< trial_key of `fit` and `explain`
   Work fit, explain;
 };
 
-/// Cache of calculated answers by the data that they depend on; the newest 64 MB are kept.
+/// Answers by the data on which they depend; the newest 64 MB are kept.
 class Remembered {
  public:
   struct Text {
     std::string head, rest;
-    storage::Json figures = storage::Json::object();  ///< for a fit: RMS, cross-validation RMS and
-                                                      ///< noise floor, by names with units
+    /// RMS, cross-validation RMS and noise floor of a fit, by names with units.
+    storage::Json figures = storage::Json::object();
     std::size_t size() const { return head.size() + rest.size(); }
   };
   void put(const std::string& key, Text text);
@@ -50,27 +49,26 @@ class Remembered {
   std::size_t bytes_ = 0;
 };
 
-/// A search that adds effects one after the other, as `nonio model explain --auto` does.
 struct Searching {
   std::uint64_t job = 0;
-  std::string kind;  ///< kind of the search: suggest or finish
+  std::string kind;  ///< suggest or finish
   std::vector<std::string> added;
-  std::vector<std::string> failed_before;  ///< parts that could not be explained at the start
+  std::vector<std::string> failed_before;  ///< parts without an explanation at the start
 };
 
-/// One campaign with its page: session, bench process, events. Its functions are called by the
-/// threads of the server, `tell` by the thread of the bench.
+/// A campaign with its page: session, bench process and events. The threads of the server call its
+/// functions, the thread of the bench calls `tell`.
 class Desk {
  public:
-  /// `name`: the folder as the person wrote it, for use in commands.
+  /// `name` is the folder as stated by the user, for use in commands.
   Desk(Launcher& launcher, const std::filesystem::path& folder, std::string name, bool edit,
        std::string engine);
   ~Desk();
 
-  /// Answers a request. `what`: the path after "/api/" with placeholders, for example "state" or
+  /// Answers a request. `what` is the path after "/api/" with placeholders, such as
   /// "parts/{part}/fit".
   Answer answer(const std::string& what, const std::string& part, const Request& request);
-  /// Whether the model, the excluded readings or the periods differ from what was saved.
+  /// Whether model, excluded readings or periods differ from the saved ones.
   bool has_unsaved() const;
   void close();
 
@@ -84,7 +82,6 @@ class Desk {
     std::string text;
   };
 
-  // Answers to GET requests.
   Answer state(bool may_write);
   Answer fit(const std::string& part, const Request& request, bool picture);
   Answer explain(const std::string& part, bool fingerprints);
@@ -93,7 +90,6 @@ class Desk {
   Answer difference();
   Answer events(const Request& request);
 
-  // Answers to POST requests.
   Answer post(const std::string& what, const Json& body, const Request& request);
   Answer exclude(const Json& body);
   Answer search(const std::string& kind);
@@ -105,7 +101,6 @@ class Desk {
   Done change_model(const Json& body);
   Done known(const std::vector<std::string>& effects) const;
 
-  // Messages of the bench process.
   void tell(std::uint64_t job, const std::string& state, std::string text);
   void take_campaign(const std::string& state, const std::string& text);
   void take_work(const std::string& part, PartState::Work& work, bool is_fit,
@@ -116,7 +111,6 @@ class Desk {
                         bool is_done);
   bool take_waiting(std::uint64_t job, const std::string& state, std::string& text);
 
-  // Requests to the bench process, and the search.
   Json request_for(const std::string& kind, const std::string& part) const;
   void refresh();
   void forget_parts();
@@ -126,11 +120,12 @@ class Desk {
   void search_on();
   bool is_explained() const;
   void search_ended(const std::string& state, const std::string& says);
-  /// Ends the search with an error: a text of the program, or the name of a sentence of the page.
+  /// Ends the search with an error: a message of the program, or the name of a sentence of the
+  /// page.
   void fail_search(const std::string& words, const std::string& name = "");
   void end_search();
-  /// Cancels an older request with the key `replaces`, sends this one and waits for its answer, at
-  /// most 120 s; `lock` is released meanwhile.
+  /// Cancels an earlier request with the key `replaces`, sends the request and waits at most 120 s
+  /// for its answer. `lock` is released during the wait.
   Waiting wait_for(std::unique_lock<std::mutex>& lock, const Json& request,
                    const std::string& replaces);
   void publish(const char* type, const std::string& about, Json data);
@@ -151,9 +146,9 @@ class Desk {
   Events events_;
   Session session_;
   std::string bench_state_ = "opening", bench_error_, read_at_;
-  Json campaign_ = Json::object();  ///< result of `described`
+  Json campaign_ = Json::object();
   bool read_again_ = false, changed_on_disk_ = false, over_ = false;
-  std::vector<std::string> order_;  ///< names of the parts in their order
+  std::vector<std::string> order_;
   std::map<std::string, PartState> parts_;
   Remembered fits_, explanations_;
   std::map<std::uint64_t, Waiting> waiting_;
@@ -161,8 +156,8 @@ class Desk {
   std::optional<Searching> searching_;
   std::uint64_t searches_ = 0;
   std::unique_ptr<Watch> watch_;
-  std::unique_ptr<BenchClient> bench_;  ///< declared last, because its thread uses all other
-                                        ///< members
+  /// Declared last, because its thread uses all other members.
+  std::unique_ptr<BenchClient> bench_;
 };
 
 }  // namespace nonio::live

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Changes that a person makes on the page of a campaign: model, excluded readings, steps, saving,
-// and the search for effects.
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -14,8 +12,7 @@ using storage::Json;
 
 namespace {
 
-constexpr std::size_t most_added = 12;  // largest number of added effects, as in `nonio model
-                                        // explain --auto`
+constexpr std::size_t most_added = 12;
 constexpr std::size_t longest_text = 2000;
 
 }  // namespace
@@ -40,8 +37,6 @@ Answer Desk::post(const std::string& what, const Json& body, const Request& requ
   return changed(done, shown_command);
 }
 
-/// Publishes a change and answers with the new version and command; if the change failed, answers
-/// with its error.
 Answer Desk::changed(const Done& done, const std::string& command_now) {
   if (!done) return refused(422, done.error().name, done.error().places);
   refresh();
@@ -133,8 +128,6 @@ void Desk::read_again() {
   forget_parts();
 }
 
-/// Returns a request that contains the excluded readings with their reasons, by measurement, in
-/// addition to everything that a fit depends on.
 Json Desk::save_request(const std::string& kind) const {
   std::map<std::string, std::pair<Json, std::string>> of;
   for (const Excluded& e : session_.trial().excluded) {
@@ -209,8 +202,6 @@ Answer Desk::save(const Request& request) {
                            {"command", shown_command}});
 }
 
-// Search that adds effects one after the other.
-
 Answer Desk::search(const std::string& kind) {
   const std::lock_guard lock(mutex_);
   if (bench_state_ != "open") return refused(409, "not_read");
@@ -224,7 +215,7 @@ Answer Desk::search(const std::string& kind) {
   const std::uint64_t job = searching_->job;
   search_on();
   answer["version"] = session_.version();
-  // All explanations were known, so that the search has ended already.
+  // All explanations were in the cache, so the search has ended already.
   if (!searching_) return json_answer(200, answer);
   answer["job"] = job;
   return json_answer(202, answer);
@@ -258,8 +249,8 @@ void Desk::end_search() {
   if (searching_) search_ended("cancelled", "");
 }
 
-/// When all parts are explained, adds the next effect or ends the search. If a part fails that had
-/// not failed before, the last effect is removed and the search ends.
+/// When all parts are explained, adds the next effect or ends the search. If an effect makes the
+/// explanation of a part fail, it is removed and the search ends.
 void Desk::search_on() {
   while (searching_ && is_explained()) {
     std::vector<modelling::PartVerdict> verdicts;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sends the requests of a desk to its bench process, and receives the answers.
 #include <chrono>
 #include <ctime>
 
@@ -23,8 +22,6 @@ std::string now() {
   return text;
 }
 
-/// Returns the RMS values, cross-validation RMS values and noise floor of a fit's answer, by names
-/// that contain the units.
 Json figures_of(const std::string& head) {
   Json out = Json::object();
   const Json all = storage::parse_or_discard("{" + head + "}");
@@ -62,8 +59,6 @@ const Remembered::Text* Remembered::find(const std::string& key) const {
 
 void Remembered::clear() { *this = Remembered(); }
 
-// Requests to the bench process.
-
 Json Desk::request_for(const std::string& kind, const std::string& part) const {
   const Trial& trial = session_.trial();
   Json request = {{"kind", kind}, {"part", part}, {"model", trial.model}};
@@ -76,8 +71,6 @@ Json Desk::request_for(const std::string& kind, const std::string& part) const {
   return request;
 }
 
-/// Cancels the requests of other trials, and requests the answers for the present trial that are
-/// not known yet.
 void Desk::refresh() {
   for (const std::string& part : order_) {
     PartState& state = parts_[part];
@@ -114,7 +107,7 @@ void Desk::ask_explanation(const std::string& part, PartState& state) {
     state.explain.head = known->head;
     state.explain.rest = known->rest;
     publish("explain", part, {{"part", part}});
-    if (!known->rest.empty()) return;  // otherwise the request for the fingerprints was cancelled
+    if (!known->rest.empty()) return;  // otherwise the request for the fingerprints was canceled
   }
   if (bench_state_ == "open") state.explain.job = bench_->ask(request_for("explain", part));
 }
@@ -124,8 +117,6 @@ void Desk::publish(const char* type, const std::string& about, Json data) {
   all.update(data);
   events_.publish({session_.version(), type, about, storage::dump_line(all)});
 }
-
-// Messages of the bench process.
 
 void Desk::tell(std::uint64_t job, const std::string& state, std::string text) {
   const std::lock_guard lock(mutex_);
@@ -182,7 +173,7 @@ void Desk::take_campaign(const std::string& state, const std::string& text) {
   answered_.notify_all();
 }
 
-/// Requests everything again, because requests were lost with the bench process.
+/// Requests all answers again, because the bench process has ended with its requests.
 void Desk::forget_parts() {
   for (const std::string& part : order_) {
     parts_[part].fit.job = parts_[part].explain.job = 0;
@@ -249,14 +240,14 @@ bool Desk::take_waiting(std::uint64_t job, const std::string& state, std::string
   return true;
 }
 
-/// Returns the key of a request; a newer request with the same key replaces an older one.
+/// A newer request replaces an older one with the same key.
 std::string Desk::replaced_by(const Json& request) {
   std::string out;
   for (const char* name : {"kind", "part", "x", "y"}) out += request.value(name, "") + "\n";
   return out;
 }
 
-/// Cancels the older request with this key; the thread that waits for it gets an error.
+/// The thread that waits for the older request gets an error.
 void Desk::cancel_waiting(const std::string& replaces) {
   const auto older = replaces.empty() ? replaceable_.end() : replaceable_.find(replaces);
   if (older == replaceable_.end()) return;

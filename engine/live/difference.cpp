@@ -18,7 +18,7 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return out;
 }
 
-/// Returns the head of a hunk such as "@@ -3,7 +3,8 @@"; an empty side begins at the line before.
+/// Example: "@@ -3,7 +3,8 @@". An empty side begins at the previous line.
 std::string hunk_head(std::size_t from, std::size_t before, std::size_t after) {
   const auto side = [from](std::size_t count) {
     return std::to_string(count == 0 ? from : from + 1) + "," + std::to_string(count);

@@ -6,7 +6,7 @@
 
 namespace nonio::live {
 
-/// Returns the unified difference of two texts that differ in one place; empty if they are equal.
+/// Returns the unified difference of two texts as one hunk; empty if they are equal.
 std::string unified_difference(const std::string& name, std::string_view before,
                                std::string_view after);
 

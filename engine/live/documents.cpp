@@ -20,8 +20,8 @@ std::vector<std::string> model_in(const Json& request) {
   return request.at("model").get<std::vector<std::string>>();
 }
 
-/// Converts excluded rows into lines of the file. An error if only a part of a line's readings is
-/// excluded, because campaign.toml can exclude whole lines only, or if the reader states no line.
+/// Converts excluded rows to lines of the file. An error if a line contains other readings too,
+/// because campaign.toml excludes whole lines, or if the reader states no lines.
 Expected<modelling::Exclusion> exclusion_of(const Bench& bench, const Json& one) {
   modelling::Exclusion out{
       one.at("measurement").get<std::string>(), {}, one.at("why").get<std::string>()};
@@ -47,7 +47,6 @@ Expected<modelling::Exclusion> exclusion_of(const Bench& bench, const Json& one)
   return out;
 }
 
-/// Returns the changes from campaign.toml to the trial.
 Expected<modelling::CampaignEdit> edit_of(const Bench& bench, const Json& request) {
   modelling::CampaignEdit edit{
       .model = modelling::edits_between(bench.campaign().model, model_in(request)),
@@ -113,7 +112,7 @@ Expected<std::string> document(Bench& bench, const Json& request) {
     if (written.plugin != output) continue;
     std::size_t k = 0;
     for (const Artifact& artifact : written.result.artifacts) {
-      // A page of models has one file for each fitted model, in their order.
+      // A page of models has one file per fitted model, in the same order.
       if (!page || (k < done.results.models.size() && done.results.models[k].part == wanted))
         return artifact.bytes;
       ++k;

@@ -7,7 +7,6 @@ namespace nonio::live {
 
 namespace {
 
-/// Appends the event and removes an older one that it replaces.
 void replace_in(std::deque<Event>& events, const Event& event) {
   std::erase_if(events,
                 [&](const Event& e) { return e.type == event.type && e.about == event.about; });

@@ -12,17 +12,15 @@
 #include <string>
 #include <vector>
 
-/// An event that the server sends to open pages. Only the newest of several events with the same
-/// type and subject is kept, so a slow page needs no queue, and a page that reconnects gets
-/// everything that it missed.
+/// An event for open pages. A newer event of the same type and subject replaces an older one, so
+/// that slow pages need no queue and a page that reconnects gets the present state.
 namespace nonio::live {
 
 struct Event {
   std::uint64_t version = 0;  ///< version of the state, sent as `id:`
-  std::string type;           ///< type of the event, for example "state", "fit" or "progress"
-  std::string about;          ///< subject, for example a part: a newer event of this type with the
-                              ///< same subject replaces it
-  std::string data;           ///< content of the event: JSON on one line
+  std::string type;           ///< for example "state", "fit" or "progress"
+  std::string about;          ///< subject, for example a part
+  std::string data;           ///< JSON on one line
 };
 
 /// Returns the event as sent, for example "id: 17\nevent: fit\ndata: {...}\n\n".
@@ -31,8 +29,7 @@ std::string event_text(const Event& event);
 /// The connection of one open page.
 class Listener {
  public:
-  /// Waits for events and returns the events since the last call, oldest first; empty if none came
-  /// within `patience`.
+  /// Returns the events since the last call, oldest first; empty if none arrives within `patience`.
   std::vector<Event> wait(std::chrono::milliseconds patience);
   bool closed() const;
 
@@ -52,13 +49,12 @@ class Events {
   static constexpr std::size_t most_listeners = 8;
 
   void publish(Event event);
-  /// Returns a listener that gets the events of `since` and later first. Null if there are
-  /// `most_listeners` already, or the server ends. An unknown version belongs to an earlier start
-  /// of the server: then all events are sent.
+  /// Returns a listener that first gets the events of version `since` and later, or all events if
+  /// this version is unknown because the server was restarted. Null if there are `most_listeners`
+  /// or the server ends.
   std::shared_ptr<Listener> listen(std::uint64_t since);
   void leave(const std::shared_ptr<Listener>& listener);
   std::size_t listeners() const;
-  /// Ends all listeners.
   void close();
 
  private:

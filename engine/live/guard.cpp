@@ -21,10 +21,10 @@ Verdict denied(int status, std::string name,
 }
 
 struct Authority {
-  std::string name, port;  ///< name and port; the port is without ":" and empty if not stated
+  std::string name, port;  ///< without ":"; the port may be empty
 };
 
-/// Parses "NAME:PORT", "[::1]:PORT" or "NAME"; none if it is something else.
+/// Parses "NAME:PORT", "[::1]:PORT" or "NAME"; std::nullopt for other texts.
 std::optional<Authority> authority_of(std::string_view text) {
   if (text.empty() || text.find_first_of("@/\\ \t,%?#") != std::string_view::npos)
     return std::nullopt;
@@ -38,16 +38,15 @@ std::optional<Authority> authority_of(std::string_view text) {
         out.port.find_first_not_of("0123456789") != std::string::npos)
       return std::nullopt;
   }
-  // A name may end with a dot, an address may not.
+  // A name may end with a dot, but an address may not.
   if (out.name.size() > 1 && out.name.back() == '.' &&
       out.name.find_first_not_of("0123456789.") != std::string::npos)
     out.name.pop_back();
   return out;
 }
 
-/// Returns whether the authority is an address of this server or a host stated with --host.
-/// `scheme` is that of an Origin header, in which the default port is left out; it is empty for a
-/// Host header.
+/// Whether the authority is this server or a host of --host. `scheme` is that of an Origin header,
+/// in which the default port is omitted; empty for a Host header.
 bool is_ours(std::string_view text, const Post& post, std::string_view scheme) {
   const auto given = authority_of(text);
   if (!given) return false;
@@ -106,7 +105,6 @@ Verdict judge_sender(const Head& head, const Post& post) {
 
 bool is_name_step(std::string_view step) { return step.starts_with('{') && step.ends_with('}'); }
 
-/// Whether the path matches the pattern; `names` then has the values of its placeholders.
 bool fits(std::string_view path, std::string_view pattern, std::vector<std::string>& names) {
   names.clear();
   while (true) {
@@ -126,7 +124,7 @@ bool fits(std::string_view path, std::string_view pattern, std::vector<std::stri
   }
 }
 
-/// Finds the route of a path. The status states whether path or method is wrong.
+/// The status distinguishes a wrong path from a wrong method.
 Verdict route_of(const Head& head, const std::vector<Route>& routes) {
   Verdict out;
   const std::string_view path =
@@ -145,7 +143,6 @@ Verdict route_of(const Head& head, const std::vector<Route>& routes) {
   return denied(404, "nothing");
 }
 
-/// Whether `type` is in the list `all`, which is separated by blanks.
 bool is_one_of(std::string_view type, std::string_view all) {
   while (!all.empty()) {
     const std::size_t end = std::min(all.find(' '), all.size());
@@ -200,7 +197,7 @@ int request_line_status(std::string_view line) {
   return target.size() > most_target ? 414 : 200;
 }
 
-/// Whether the line is a valid field, within the lengths that Poco's reader accepts.
+/// Lengths are limited to those that Poco accepts.
 bool is_field(std::string_view line) {
   constexpr std::size_t longest_name = 200, longest_value = 8000;
   const std::size_t colon = line.find(':');
@@ -302,7 +299,7 @@ Verdict judge(const Head& head, const Post& post, const std::vector<Route>& rout
     if (Verdict v = judge_body(head, *found.route); v.status != 200) return v;
     return found;
   }
-  // The token is checked before the path, so that a client without it does not learn which paths
+  // The token is checked before the path, so that a client without it cannot find out which paths
   // exist.
   std::vector<std::string> tokens = head.all("X-Nonio-Token");
   // Programs that collect metrics send the token in this header (RFC 6750).

@@ -14,10 +14,10 @@ namespace nonio::live {
 
 namespace {
 
-/// This program, even if its file was replaced after the start.
+/// Path that executes this program even if its file was replaced after the start.
 constexpr const char* own_program = "/proc/self/exe";
 
-/// Starts one process for a campaign or a command. Returns false if the server has ended.
+/// Returns false if the server has ended.
 bool launch(const BenchWish& common, const storage::Json& what, int to_server) {
   auto ends = process::channel_pair(SOCK_STREAM, "a process of its own");
   if (!ends) return process::send_descriptors(to_server, '-', {});
@@ -25,6 +25,9 @@ bool launch(const BenchWish& common, const storage::Json& what, int to_server) {
     ::signal(SIGCHLD, SIG_DFL);
     ::close(to_server);
     (*ends)[0] = process::Handle();
+    if (what.contains("partner"))
+      run_partner(own_program, what["partner"].get<std::vector<std::string>>(),
+                  std::move((*ends)[1]));
     if (what.contains("arguments"))
       run_tool(own_program, what["arguments"].get<std::vector<std::string>>(),
                what.value("input", ""), what.value("seconds", 0.0), std::move((*ends)[1]));
@@ -63,6 +66,10 @@ Expected<process::Handle> Launcher::open(const std::filesystem::path& campaign) 
 Expected<process::Handle> Launcher::run(const std::vector<std::string>& arguments, double seconds,
                                         const std::string& input) {
   return ask({{"arguments", arguments}, {"seconds", seconds}, {"input", input}});
+}
+
+Expected<process::Handle> Launcher::partner(const std::vector<std::string>& arguments) {
+  return ask({{"partner", arguments}});
 }
 
 Expected<process::Handle> Launcher::ask(const storage::Json& what) {

@@ -8,19 +8,21 @@
 
 namespace nonio::live {
 
-/// Starts processes for the server, which has threads and so must not fork. The launcher is a
-/// process with one thread that is made before the first thread.
+/// A process with one thread that starts processes for the server, which has threads and therefore
+/// must not fork. It must be made before the first thread.
 class Launcher {
  public:
-  /// Starts the launcher; it ends with this process.
+  /// The launcher ends with this process.
   static Expected<Launcher> start(const BenchWish& common);
 
   /// Starts a bench process for this campaign and returns the channel to it.
   Expected<process::Handle> open(const std::filesystem::path& campaign);
-  /// Runs this program with other arguments (tool.h) and returns the channel to it. The program is
-  /// terminated after `seconds` (s). `input`: a line for its standard input.
+  /// Runs this program with other arguments (tool.h), terminates it after `seconds` (s), and
+  /// returns the channel to it. `input` is a line for standard input.
   Expected<process::Handle> run(const std::vector<std::string>& arguments, double seconds,
                                 const std::string& input = {});
+  /// Runs this program with `run_partner` (tool.h) and returns the channel to it.
+  Expected<process::Handle> partner(const std::vector<std::string>& arguments);
 
  private:
   Expected<process::Handle> ask(const storage::Json& what);

@@ -14,7 +14,6 @@ namespace nonio::live {
 
 inline constexpr std::size_t token_digits = 32;
 
-/// Returns 128 random bits from the kernel as 32 hexadecimal digits.
 inline Expected<std::string> random_token() {
   std::array<unsigned char, token_digits / 2> bits{};
   if (::getrandom(bits.data(), bits.size(), 0) != static_cast<ssize_t>(bits.size()))

@@ -47,20 +47,19 @@ namespace net = Poco::Net;
 
 namespace {
 
-/// Accepts connections on 127.0.0.1 and passes each on when the complete head of its request has
-/// arrived, so that a slow sender occupies no thread. Uses one thread.
+/// Accepts connections on 127.0.0.1 and passes each on when the head of its request is complete, so
+/// that a slow client occupies no thread.
 class Front {
  public:
   static constexpr std::size_t most_waiting = 128;
   static constexpr std::chrono::seconds head_patience{5};
 
-  /// Binds the port; 0: the kernel chooses one.
   static Expected<Front> open(std::uint16_t port);
   std::uint16_t port() const { return port_; }
 
   /// Passes each socket to `take` with its complete head still unread, or with the status of a
-  /// refusal (400: not a request, 408: too slow, 414 or 431: too large). Runs until `is_over`,
-  /// which is called several times per second, returns true.
+  /// rejection (400, 408, 414 or 431). Runs until `is_over`, which is called several times per
+  /// second, returns true.
   void serve(const std::function<void(process::Handle, int refused)>& take,
              const std::function<bool()>& is_over);
 
@@ -68,8 +67,8 @@ class Front {
   using Clock = std::chrono::steady_clock;
   Front(process::Handle socket, std::uint16_t port) : socket_(std::move(socket)), port_(port) {}
   void accept_all();
-  /// Returns 200 if the head is complete, the status of a refusal, 0 if it is incomplete, or -1 if
-  /// the connection was closed.
+  /// Returns 200 for a complete head, the status of a rejection, 0 for an incomplete head, or -1
+  /// for a closed connection.
   int look_at(int socket) const;
 
   struct Visitor {
@@ -79,7 +78,7 @@ class Front {
   };
   process::Handle socket_;
   std::uint16_t port_;
-  std::map<std::uint64_t, Visitor> waiting_{};  ///< connections in the order of their arrival
+  std::map<std::uint64_t, Visitor> waiting_{};
   std::uint64_t last_ = 0;
 };
 
@@ -132,7 +131,7 @@ void Front::serve(const std::function<void(process::Handle, int)>& take,
   while (!is_over()) {
     std::vector<pollfd> all{{socket_.get(), POLLIN, 0}};
     for (const auto& [number, visitor] : waiting_) all.push_back({visitor.socket.get(), POLLIN, 0});
-    // A socket with an incomplete head is always readable, so wait a moment before looking again.
+    // A socket with an incomplete head is always readable, so the loop pauses.
     if (::poll(all.data(), all.size(), tick) > 0 && all.front().revents == 0) ::usleep(soon * 1000);
     accept_all();
     std::vector<std::pair<std::uint64_t, int>> ready;
@@ -167,8 +166,8 @@ Expected<std::string> read_token(const std::string& file, int fd) {
   return token;
 }
 
-/// Returns the token in a file that only its owner can read; if the file does not exist, creates it
-/// with a new token. The address of the page then remains the same after a restart.
+/// Creates the file with a new token if it does not exist, so that the address of the page remains
+/// the same after a restart. An error unless only this user can read the file.
 Expected<std::string> token_in(const std::string& file) {
   const process::Handle old(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
   if (old) return read_token(file, old.get());
@@ -185,12 +184,10 @@ Expected<std::string> token_in(const std::string& file) {
 
 constexpr std::size_t threads = 16, most_queued = 64;
 constexpr auto heartbeat = std::chrono::seconds(15);
-constexpr auto between_events = std::chrono::milliseconds(100);  // shortest time between two
-                                                                 // events, so that at most 10 per
-                                                                 // second are sent
+// Waiting events are sent at most 10 times per second.
+constexpr auto between_events = std::chrono::milliseconds(100);
 constexpr auto body_patience = std::chrono::seconds(30);
 
-/// Data that all connections share.
 struct House {
   const Post& post;
   Service& service;
@@ -237,12 +234,12 @@ class Handler : public net::HTTPRequestHandler {
     return house_.service.answer(one);
   }
 
-  /// Reads a body of at most `most` bytes; false if it is larger or takes too long.
+  /// Returns false if the body is larger than `most` bytes or takes too long.
   static bool read_body(std::istream& from, std::size_t most, std::string& body) {
     const auto deadline = std::chrono::steady_clock::now() + body_patience;
     std::array<char, 1 << 14> part;
-    // Read only what has arrived, so that a slow sender does not block the thread beyond the
-    // deadline.
+    // Only bytes that have arrived are read, so that a slow client does not block the thread after
+    // the deadline.
     while (from.peek() != std::istream::traits_type::eof()) {
       const std::streamsize here = std::max<std::streamsize>(from.rdbuf()->in_avail(), 1);
       from.read(part.data(), std::min(here, static_cast<std::streamsize>(part.size())));
@@ -267,7 +264,7 @@ class Handler : public net::HTTPRequestHandler {
     out << answer.body << std::flush;
   }
 
-  /// Sends events until the page or the server closes the connection, or the user's session ends.
+  /// Sends events until one side closes the connection or the session of the user ends.
   void stream(const Answer& answer, net::HTTPServerResponse& response) {
     response.setChunkedTransferEncoding(true);
     std::ostream& out = response.send();
@@ -294,7 +291,7 @@ class Handlers : public net::HTTPRequestHandlerFactory {
  public:
   explicit Handlers(House& house) : house_(house) {}
   net::HTTPRequestHandler* createRequestHandler(const net::HTTPServerRequest&) override {
-    return new Handler(house_);  // Poco deletes the handler
+    return new Handler(house_);
   }
 
  private:
@@ -306,8 +303,8 @@ void set_timeout(int socket, int option, long seconds, long microseconds) {
   ::setsockopt(socket, SOL_SOCKET, option, &time, sizeof time);
 }
 
-/// Reads what the client still sends, because otherwise the connection could be reset before the
-/// client has read the answer. Ends after 64 reads, or if nothing arrives within 0.2 s.
+/// Reads the rest of the request, because otherwise the connection could be reset before the client
+/// has read the answer. Ends after 64 reads or 0.2 s without data.
 void part_from(int socket) {
   constexpr int most = 64;
   constexpr long soon = 200'000;  // time limit of one read, us
@@ -318,8 +315,7 @@ void part_from(int socket) {
     ;
 }
 
-/// Answers bytes that are not a request, and requests that came too slowly or have a too large
-/// head.
+/// Answers requests that were rejected because of their head.
 void refuse(int socket, int status, const Sentences& sentences) {
   const Answer answer = sentences.spelled(
       status == 431
@@ -338,7 +334,6 @@ void refuse(int socket, int status, const Sentences& sentences) {
   [[maybe_unused]] const ssize_t n = ::send(socket, text.data(), text.size(), MSG_NOSIGNAL);
 }
 
-/// A fixed number of threads that answer connections.
 class Pool {
  public:
   explicit Pool(House& house) : house_(house), params_(new net::HTTPServerParams) {
@@ -397,7 +392,7 @@ class Pool {
     const int fd = socket.get();
     ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) & ~O_NONBLOCK);
     if (refused != 0) return refuse(fd, refused, house_.service.sentences());
-    // Poco closes its descriptor while bytes are unread, so Poco gets a copy.
+    // Poco closes its descriptor while bytes are unread, so it gets a copy.
     const int copy = ::fcntl(fd, F_DUPFD_CLOEXEC, 0);
     if (copy < 0) return;
     try {
@@ -408,7 +403,6 @@ class Pool {
     }
   }
 
-  /// Wraps a connection that was accepted by `Front`.
   class Socket : public net::StreamSocketImpl {
    public:
     explicit Socket(int fd) : net::StreamSocketImpl(fd) {}
@@ -424,7 +418,7 @@ class Pool {
   std::vector<std::thread> all_;
 };
 
-/// Blocks SIGINT, SIGTERM and SIGHUP, for which one thread waits, and ignores SIGPIPE.
+/// Blocks the signals for which `serve_here` waits, and ignores SIGPIPE.
 sigset_t block_signals() {
   sigset_t ends;
   ::sigemptyset(&ends);
@@ -438,10 +432,9 @@ sigset_t block_signals() {
 
 Expected<void> serve_here(const LiveWish& wish) {
   NONIO_TRY(auto front, Front::open(wish.port));
-  auto service = service_of(wish);  // starts processes, and therefore must be called before the
-                                    // first thread is created
+  auto service = service_of(wish);  // starts processes, so it must precede the first thread
   if (!service) return fail(service.error());
-  std::string token;  // secret token; empty if people sign in
+  std::string token;  // empty if users sign in
   if (!(*service)->signs_in()) {
     auto made = wish.token_file.empty() ? random_token() : token_in(wish.token_file);
     if (!made) return fail(made.error());

@@ -9,33 +9,30 @@
 
 namespace nonio::live {
 
-/// Options of `nonio serve`.
 struct LiveWish {
-  std::filesystem::path folder;  ///< folder of a campaign or of a site
-  std::string name;              ///< the folder as the person wrote it
+  std::filesystem::path folder;
+  std::string name;  ///< the folder as stated by the user
   std::vector<std::filesystem::path> plugin_folders, template_folders;
-  std::vector<std::string> plugin_paths, template_paths;  ///< plugin and template folders as given
-                                                          ///< on the command line
+  std::vector<std::string> plugin_paths, template_paths;  ///< as stated on the command line
   std::filesystem::path own_plugins, program;
   std::string version;
-  std::filesystem::path out;       ///< for a site: output folder of its runs; empty: none
-  std::string token_file;          ///< file with the token; empty: a new token at each start
-  std::vector<std::string> hosts;  ///< names of this server under which a proxy calls it (--host)
-  std::string user_header;         ///< header in which the proxy states the user; empty: there is
-                                   ///< no such proxy
+  std::filesystem::path out;
+  std::string token_file;          ///< empty for a new token at each start
+  std::vector<std::string> hosts;  ///< names under which a proxy calls this server (--host)
+  /// Header with the user of the proxy; empty without such a proxy.
+  std::string user_header;
   std::uint16_t port = 0;
   bool edit = false, quiet = false;
-  bool sign_in = false;  ///< whether users sign in at this server: a site with users.toml and
-                         ///< without `user_header`; set by service_of
+  /// Whether users sign in at this server: a site with users.toml and without `user_header`.
+  bool sign_in = false;
 };
 
-/// Serves the page until SIGINT, SIGTERM or SIGHUP. Prints one line: the address, with the token
-/// unless users sign in. An error states why it could not start. Must be called by a process with
-/// one thread and without plugins.
+/// Serves the page until SIGINT, SIGTERM or SIGHUP. Prints the address, with the token unless users
+/// sign in. An error if the server cannot start. Must be called in a process with one thread and
+/// without plugins.
 Expected<void> serve(const LiveWish& wish);
 
-/// The implementation of `serve`, exported as `nonio_serve` by a library that is loaded late
-/// (late_library.h).
+/// Type of `nonio_serve` in a library that is loaded on demand (late_library.h).
 using Serve = Expected<void> (*)(const LiveWish& wish);
 
 }  // namespace nonio::live

@@ -10,42 +10,42 @@
 #include "live/guard.h"
 #include "nonio/sdk/error.h"
 
-/// The work of a person on the page of a campaign, as a value without files, processes or clock.
+/// Work of the user on the page of a campaign, without files, processes or clock.
 namespace nonio::live {
 
-/// An excluded reading; `row` counts the readings of its part in the order of the files.
+/// `row` counts the readings of the part in the order of the files.
 struct Excluded {
   std::string part;
   std::size_t row = 0;
   std::string measurement, file;
-  std::uint32_t measurement_row = 0;  ///< row of the reading in the table of the measurement
-  std::uint64_t line = 0;             ///< line of the reading in its file; 0: unknown
+  std::uint32_t measurement_row = 0;  ///< row in the table of the measurement
+  std::uint64_t line = 0;             ///< line in the file; 0 if unknown
   std::string why;
   bool operator==(const Excluded&) const = default;
 };
 
-/// Everything that a fit depends on apart from the files.
+/// Data on which a fit depends, apart from the files.
 struct Trial {
   std::vector<std::string> model;           ///< effects in the order in which they would be saved
-  std::vector<Excluded> excluded;           ///< excluded readings, sorted by part and row
-  std::map<std::string, double> period_mm;  ///< tried periods in mm, by axis
+  std::vector<Excluded> excluded;           ///< sorted by part and row
+  std::map<std::string, double> period_mm;  ///< tried periods by axis
   bool operator==(const Trial&) const = default;
 };
 
 struct Step {
   std::size_t n = 0;
-  std::string name;  ///< name given by a person
-  std::string what;  ///< change of this step, for example "+ backlash:X"
+  std::string name;
+  std::string what;  ///< for example "+ backlash:X"
   Trial trial;
 };
 
-/// Success, or a sentence for the person; its name is without the prefix "refused.".
+/// Success, or a sentence for the user; its name is without the prefix "refused.".
 using Done = tl::expected<void, Said>;
 
 class Session {
  public:
   Session() = default;
-  /// Starts with the model of campaign.toml.
+  /// Starts with the model in campaign.toml.
   explicit Session(std::vector<std::string> saved);
 
   std::uint64_t version() const { return version_; }
@@ -56,8 +56,8 @@ class Session {
   bool can_undo() const { return at_ > 0; }
   bool can_redo() const { return at_ + 1 < steps_.size(); }
 
-  // Changes of the trial. An error leaves it unchanged. The caller has to check that an effect
-  // exists.
+  // The following functions change the trial, unless they return an error. The caller must check
+  // that an effect exists.
   Done add(const std::string& effect);
   Done drop(const std::string& effect);
   Done set(const std::vector<std::string>& model);
@@ -65,16 +65,16 @@ class Session {
   Done redo();
   Done go_to(std::size_t n);
   Done name(std::size_t n, const std::string& name);
-  /// Excludes readings; those that are excluded already get the new reason.
+  /// Readings that are already excluded get the new reason.
   Done exclude(const std::vector<Excluded>& readings);
   Done include(const std::string& part, const std::vector<std::size_t>& rows);
-  /// Sets the period of an axis; 0: that of campaign.toml.
+  /// Sets the period of an axis; 0 restores that of campaign.toml.
   Done period(const std::string& axis, double period_mm);
 
-  /// Has to be called when the model was written to campaign.toml.
+  /// Must be called after the model was written to campaign.toml.
   void was_saved(const std::vector<std::string>& model);
-  /// Has to be called when the files were read again. No reading is excluded any more, because
-  /// readings may have changed; model and periods are those of the file.
+  /// Must be called after the files were read again. Exclusions are removed, because readings may
+  /// have changed; model and periods are those of the file.
   void was_read_again(const std::vector<std::string>& model);
   /// Marks a change of the page that does not affect the trial.
   void touch() { ++version_; }
@@ -90,14 +90,11 @@ class Session {
   std::vector<std::string> saved_;
 };
 
-/// Returns the commands that change campaign.toml with the model `saved` to the trial; empty if
-/// they are equal.
+/// Returns the commands that change the model `saved` to the trial; empty if they are equal.
 std::string command_of(const std::string& campaign, const std::vector<std::string>& saved,
                        const Trial& trial);
-/// Returns the commands from one trial to the next. Changes that no command can make, such as
-/// including readings again, are left out.
+/// Omits changes that no command can make, such as including readings again.
 std::string command_between(const std::string& campaign, const Trial& from, const Trial& to);
-/// Quotes a word for the shell if necessary.
 std::string quoted_for_shell(const std::string& word);
 
 }  // namespace nonio::live

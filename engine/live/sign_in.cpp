@@ -19,7 +19,6 @@ std::size_t place_of(const std::string& account) {
   return std::stoul(storage::sha256(account).substr(0, 2), nullptr, hexadecimal);
 }
 
-/// Returns the value of a cookie; empty if it is missing or stated twice.
 std::string cookie_of(const Head& head, const std::string& name) {
   std::string found;
   for (const std::string& line : head.all("Cookie"))

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Carries out what people do on the page of a site: entries, approvals, verifications, runs.
 #include "certificates/certificate_list.h"
 #include "certificates/person_name.h"
 #include "live/site_service.h"
@@ -12,7 +11,7 @@ using storage::Json;
 
 namespace {
 
-/// Adds the members `names` of the body as options; missing members are skipped.
+/// Missing members are skipped.
 void add_options(std::vector<std::string>& arguments, const Json& body,
                  std::initializer_list<const char*> names) {
   for (const char* name : names)
@@ -54,7 +53,6 @@ bool is_by_proxy(const Head& head) {
   return !host.starts_with("127.0.0.1") && !host.starts_with("localhost");
 }
 
-/// Returns whether two names denote one person according to `likeness_of`.
 bool is_same_name(const std::string& one, const std::string& other) {
   return certificates::likeness_of(one) == certificates::likeness_of(other);
 }
@@ -90,7 +88,7 @@ Answer SiteService::begin_session(const Request& request) {
 }
 
 Answer SiteService::end_session(const Request& request, const User& user) {
-  // The session ends even if that cannot be recorded.
+  // The session ends even if this cannot be recorded.
   const std::string cookie = sign_in_.end(request.head);
   if (!audit_.write({{"account", user.account},
                      {"name", user.name},
@@ -102,9 +100,9 @@ Answer SiteService::end_session(const Request& request, const User& user) {
   return out;
 }
 
-/// Approves a certificate. A person with a password has to repeat it, and the command takes the
-/// name from users.toml. A person who is logged in at a proxy and has no password has to type the
-/// name, which is no authentication: if the site requires two persons, the request is refused.
+/// A user with a password must repeat it, and the command takes the name from users.toml. A user of
+/// a proxy without a password must type the name, which is no authentication: if the site requires
+/// two persons, the request is rejected.
 Answer SiteService::release(const Json& body, const User* user) {
   const auto folder = folder_of(body.at("campaign").get<std::string>());
   if (!folder)
@@ -137,7 +135,6 @@ Answer SiteService::release(const Json& body, const User* user) {
   return out;
 }
 
-/// Sends a file of a campaign's results to an address of the site's [mail].
 Answer SiteService::mail(const Json& body) {
   const fs::path file =
       result_file(body.at("campaign").get<std::string>(), body.at("file").get<std::string>());
@@ -163,8 +160,8 @@ Answer SiteService::verify(const Request& request) {
                    (folder.path() / name).string()}));
 }
 
-/// Starts `nonio run`: with `campaign` for that campaign only (--only), otherwise for all changed
-/// campaigns. The first run of a site includes all campaigns in any case.
+/// Starts `nonio run` for `campaign` alone (--only), otherwise for all changed campaigns. The first
+/// run of a site includes all campaigns in any case.
 Answer SiteService::run(const Json& body) {
   if (wish_.out.empty()) return refused(409, "no_out");
   std::vector<std::string> arguments{"run", verb_option("out", wish_.out.string())};

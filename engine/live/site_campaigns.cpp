@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* of_file = "application/octet-stream";
 constexpr std::size_t most_dropped = 32 << 20;
-constexpr std::size_t most_lines = 200;  // lines of one page of a list
+constexpr std::size_t most_lines = 200;  // limit per page
 
 Json to_json(const ListedCampaign& c) {
   Json json = {{"folder", c.folder}, {"id", c.id}, {"state", c.state}};
@@ -56,7 +56,7 @@ SiteCampaigns::SiteCampaigns(fs::path site, fs::path out, Call call, std::functi
       index_(
           site_, out_,
           [this, changed = std::move(changed)] {
-            lists();  // so that no page waits for them
+            lists();
             changed();
           },
           std::move(is_watched)) {}
@@ -99,8 +99,8 @@ Answer SiteCampaigns::list(const Request& request) const {
                            {"campaigns", std::move(all)}});
 }
 
-/// Returns the lists of the present campaigns. They are made again only after a change, because this
-/// takes half a second at 100,000 campaigns.
+/// The lists are made again only after a change, because this takes half a second for 100,000
+/// campaigns.
 std::shared_ptr<const CampaignLists> SiteCampaigns::lists() {
   const std::lock_guard lock(listing_);
   if (!lists_ || lists_->version != index_.version() || lists_->stamp != stamp_of_records(site_))
@@ -108,7 +108,6 @@ std::shared_ptr<const CampaignLists> SiteCampaigns::lists() {
   return lists_;
 }
 
-/// Lists one page of the matching machines by name, each with its newest campaign.
 Answer SiteCampaigns::machines(const Request& request) {
   const auto all = lists();
   const auto words = words_of(request.query("search").value_or(""));
@@ -138,7 +137,6 @@ Answer SiteCampaigns::machines(const Request& request) {
 
 namespace {
 
-/// A file that was dropped on the page with its form, as a copy that is removed at the end.
 struct Taken {
   DroppedFile dropped;
   std::vector<std::string> options;
@@ -146,8 +144,7 @@ struct Taken {
   std::string path() const { return (folder.path() / dropped.name).string(); }
 };
 
-/// Stores the request's file in `taken`; returns the answer if the request is refused, otherwise
-/// none.
+/// Stores the file of the request in `taken`. Returns the rejection of an invalid request.
 std::optional<Answer> take(const Request& request, decltype(file_options)& options_of,
                            Taken& taken) {
   auto file = dropped_file(request.body);
@@ -166,7 +163,6 @@ std::optional<Answer> take(const Request& request, decltype(file_options)& optio
 
 }  // namespace
 
-/// Runs `nonio check FILE --json` on the copy.
 Answer SiteCampaigns::preview(const Request& request) {
   Taken taken;
   if (auto refusal = take(request, file_options, taken)) return *std::move(refusal);
@@ -178,8 +174,8 @@ Answer SiteCampaigns::preview(const Request& request) {
   return out.is_object() ? json_answer(200, out) : refusal(422, end.errors);
 }
 
-/// Makes a new empty folder of the site with this name, or the name with a number if it exists.
-/// Making the folder reserves it, so that a simultaneous request gets the next number.
+/// Makes a new folder with this name, or with a number appended if it exists. Making the folder
+/// reserves it, so that a simultaneous request gets the next number.
 tl::expected<std::string, Answer> SiteCampaigns::take_folder(const std::string& id) {
   constexpr int most = 1000;
   for (int n = 1; n <= most; ++n) {
@@ -193,7 +189,7 @@ tl::expected<std::string, Answer> SiteCampaigns::take_folder(const std::string& 
   return tl::unexpected(refused(409, "folder_taken", {{"campaign", id}}));
 }
 
-/// Runs `nonio new campaign`. If the command fails, the new folder is removed.
+/// If the command fails, the new folder is removed.
 Answer SiteCampaigns::create(const Request& request) {
   Taken taken;
   if (auto refusal = take(request, campaign_options, taken)) return *std::move(refusal);
@@ -211,7 +207,7 @@ Answer SiteCampaigns::create(const Request& request) {
   const ToolEnd end = call_(std::move(arguments));
   if (end.status != 0) {
     std::error_code ignored;
-    fs::remove(site_ / *name, ignored);  // removes the folder only if it is empty
+    fs::remove(site_ / *name, ignored);
     return refusal(422, end.errors);
   }
   index_.look_at(*name);

@@ -13,8 +13,8 @@
 
 namespace nonio::live {
 
-/// The campaigns on the page of a site: lists, known values for a form, preview of a dropped file,
-/// and new campaigns. May be called by several threads.
+/// Campaigns on the page of a site: lists, values for forms, preview of a dropped file, new
+/// campaigns. Thread-safe.
 class SiteCampaigns {
  public:
   /// `call` runs a command of this program; `changed` is called when a list has changed;
@@ -24,7 +24,7 @@ class SiteCampaigns {
                 std::function<void()> changed, std::function<bool()> is_watched);
 
   static std::vector<Route> routes();
-  /// Answers a request. `what`: the path after /api/.
+  /// `what` is the path after "/api/".
   Answer answer(const std::string& what, const Request& request);
   CampaignIndex& index() { return index_; }
 

@@ -26,14 +26,14 @@ RunNow run_now(const fs::path& out) {
   return now;
 }
 
+}  // namespace
+
 fs::path register_of(const fs::path& site) {
   const auto numbering = certificates::numbering_of(site);
   if (!numbering) return {};
   const auto place = certificates::register_place(site, *numbering);
   return place ? place->file : fs::path();
 }
-
-}  // namespace
 
 std::string worklist_stamp(const fs::path& site, const fs::path& out) {
   std::string stamp;

@@ -12,24 +12,26 @@
 
 namespace nonio::live {
 
-/// State of the runs in an output folder.
 struct RunNow {
-  std::string state{};       ///< state of the last run as in `nonio status`, or none
-  std::uint64_t number = 0;  ///< number of the last run that began
+  std::string state{};       ///< as in `nonio status`, or "none"
+  std::uint64_t number = 0;  ///< last run that began
   std::string date{};
-  std::uint64_t last = 0;  ///< number of the last complete run; 0: none
+  std::uint64_t last = 0;  ///< last complete run; 0 if there is none
   std::string last_date{};
   bool operator==(const RunNow&) const = default;
 };
 
-/// Returns a text that changes when the results or entries of the worklist change.
+/// Returns a text that changes with the results or the logs.
 std::string worklist_stamp(const std::filesystem::path& site, const std::filesystem::path& out);
 
-/// Checks once per second whether the worklist of a site has changed by a run, by an entry made on
-/// a page or on a terminal, or by an approval.
+/// Returns the file of the register of certificates; empty if it is not a file.
+std::filesystem::path register_of(const std::filesystem::path& site);
+
+/// Checks once per second whether a run, an entry on a page or a terminal, or an approval has
+/// changed the worklist.
 class SiteNews {
  public:
-  /// `what`: run (a run began or ended), worklist (results or entries changed), drafts.
+  /// `what` is "run" (a run began or ended), "worklist" (results or logs changed) or "drafts".
   using Tell = std::function<void(const std::string& what)>;
   SiteNews(std::filesystem::path site, std::filesystem::path out, Tell tell);
   SiteNews(const SiteNews&) = delete;
@@ -37,7 +39,6 @@ class SiteNews {
   ~SiteNews();
 
   RunNow run() const;
-  /// Requests an immediate check.
   void look_now();
 
  private:

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers requests that only read: output of commands, pages of the run, files of results.
 #include "campaign/config/manifest.h"
 #include "campaign/config/site_files.h"
 #include "campaign/evaluation/record.h"
@@ -25,7 +24,6 @@ ToolEnd SiteService::call(const std::vector<std::string>& arguments, const std::
   return end;
 }
 
-/// Adds the plugin and template folders of this server to the arguments.
 std::vector<std::string> SiteService::with_places(std::vector<std::string> arguments) const {
   for (const std::string& folder : wish_.plugin_paths)
     arguments.push_back(verb_option("plugin-path", folder));
@@ -34,7 +32,6 @@ std::vector<std::string> SiteService::with_places(std::vector<std::string> argum
   return arguments;
 }
 
-/// Runs a command and returns what it prints with --json, with the command line added.
 Answer SiteService::of_verb(const std::vector<std::string>& arguments, const std::string& input) {
   const ToolEnd end = call(arguments, input);
   return of_end(end, storage::parse_or_discard(end.out), command_line(arguments));
@@ -54,25 +51,44 @@ Answer SiteService::of_end(const ToolEnd& end, Json out, const std::string& comm
   return json_answer(end.status == 2 ? 422 : 200, out);
 }
 
-/// Runs a command that makes an entry, then notifies the other pages at once.
 Answer SiteService::entered(const std::vector<std::string>& arguments, const std::string& input) {
   Answer out = of_verb(arguments, input);
   if (news_) news_->look_now();
   return out;
 }
 
-/// Returns the worklist and its pages. They are computed again only if their files have changed,
-/// because this takes seconds at 100,000 campaigns.
+/// Requests a page from the process that makes the pages. Status -1 if this process has ended.
+ToolEnd SiteService::ask_pages(const process::Handle& partner, const std::string& name) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (over_ || !partner) return {};
+    channels_.insert(partner.get());
+  }
+  const auto line = ask_partner(partner, name, shells_.seconds);
+  const std::lock_guard lock(mutex_);
+  channels_.erase(partner.get());
+  const Json json = storage::parse_or_discard(line.value_or(""));
+  if (!json.is_object()) return {};
+  constexpr int error_status = 2;
+  return {json.value("status", error_status), json.value("page", ""), json.value("error", "")};
+}
+
+/// The worklist is computed again only if its files have changed, because this takes seconds for
+/// 100,000 campaigns.
 std::shared_ptr<const SiteService::Shown> SiteService::shown() {
   const std::lock_guard lock(showing_);
-  auto next = std::make_shared<Shown>(Shown{worklist_stamp(wish_.folder, wish_.out)});
-  if (shown_ && shown_->stamp == next->stamp) return shown_;
-  std::vector<std::string> arguments{"status", "--actions", "--json",
-                                     verb_option("site", wish_.folder.string()),
-                                     wish_.out.string()};
-  const std::string command = command_line(arguments);
-  arguments.push_back(verb_option("page", "all"));
-  const ToolEnd end = call(arguments);
+  std::string stamp = worklist_stamp(wish_.folder, wish_.out);
+  if (shown_ && shown_->stamp == stamp) return shown_;
+  auto next = std::make_shared<Shown>();
+  next->stamp = std::move(stamp);
+  const std::vector<std::string> arguments{"status", "--actions", "--json",
+                                           verb_option("site", wish_.folder.string()),
+                                           wish_.out.string()};
+  std::vector<std::string> all = arguments;
+  all.push_back(verb_option("page", "-"));
+  if (auto channel = launcher_.partner(all)) next->partner = std::move(*channel);
+  ToolEnd end = ask_pages(next->partner, "all");
+  if (end.status < 0) end = call(arguments);  // to get the error message
   Json out = storage::parse_or_discard(end.out);
   const bool is_whole = out.is_object() && out.contains("pages");
   if (is_whole) {
@@ -80,7 +96,7 @@ std::shared_ptr<const SiteService::Shown> SiteService::shown() {
       next->pages[name] = std::move(text.get_ref<std::string&>());
     out.erase("pages");
   }
-  next->lines = of_end(end, std::move(out), command);
+  next->lines = of_end(end, std::move(out), command_line(arguments));
   if (is_whole) shown_ = next;
   return next;
 }
@@ -91,7 +107,8 @@ Answer SiteService::worklist() {
 
 Answer SiteService::metrics() {
   if (wish_.out.empty()) return refused(409, "no_out");
-  const ToolEnd end = call({"status", "--metrics", wish_.out.string()});
+  const ToolEnd end =
+      call({"status", "--metrics", verb_option("site", wish_.folder.string()), wish_.out.string()});
   if (end.status != 0) return refusal(503, end.errors);
   return {200, "application/openmetrics-text; version=1.0.0; charset=utf-8", end.out};
 }
@@ -118,23 +135,20 @@ Answer SiteService::state(const User* user) {
     json["user"] = {{"account", user->account},
                     {"name", user->name},
                     {"role", certificates::to_text(user->role)},
-                    // How the user confirms an approval.
                     {"confirms", user->password.empty() ? "name" : "password"},
                     {"signs_out", wish_.sign_in}};
   if (Json now = run_->now(); !now.is_null()) json["run"] = std::move(now);
   return json_answer(200, json);
 }
 
-/// Returns the settings of site.toml without secrets; for administrators, also the users of
-/// users.toml.
+/// Secrets are omitted; administrators also get the users of users.toml.
 Answer SiteService::settings(const User* user) const {
   std::string digest;
   const auto site = config::read_site(wish_.folder, digest);
   if (!site) return refusal(422, site.error().front().message);
   const Laboratory& lab = site->laboratory;
   const auto list = [](const std::optional<std::vector<std::string>>& all) {
-    return all ? Json(*all) : Json(nullptr);  // null: site.toml states no list, so all that apply
-                                              // are used
+    return all ? Json(*all) : Json(nullptr);  // null: all that apply
   };
   Json json = {{"schema", "nonio-live-settings/1"},
                {"laboratory",
@@ -173,8 +187,7 @@ Answer SiteService::settings(const User* user) const {
 
 namespace {
 
-/// Returns whether `name` is a plain file directly in `folder`. Links are refused, because they may
-/// lead to any file.
+/// Links are rejected, because they may lead to any file.
 bool is_plain_file_in(const fs::path& folder, const std::string& name) {
   std::error_code error;
   return name == fs::path(name).filename() && !name.starts_with('.') &&
@@ -184,7 +197,7 @@ bool is_plain_file_in(const fs::path& folder, const std::string& name) {
 
 }  // namespace
 
-/// Returns a page of the site with its present content. Status 404 if no run has written this page.
+/// Status 404 if no run has written this page.
 Answer SiteService::page(const std::string& name) {
   const bool below = name.starts_with("machines/");
   const fs::path folder = below ? wish_.out / "machines" : wish_.out;
@@ -192,21 +205,25 @@ Answer SiteService::page(const std::string& name) {
   if (wish_.out.empty() || !(plain.ends_with(".html") || plain == "due.ics") ||
       !is_plain_file_in(folder, plain))
     return refused(404, "no_page");
+  const auto all = shown();
   if (!below) {
-    const auto all = shown();
     const auto found = all->pages.find(name);
     return found != all->pages.end()  ? Answer{200, "application/octet-stream", found->second, {}}
            : all->lines.status != 200 ? all->lines
                                       : refused(404, "no_page");
   }
-  const ToolEnd end = call({"status", "--actions", verb_option("site", wish_.folder.string()),
-                            verb_option("page", name), wish_.out.string()});
-  if (end.status != 0) return refusal(422, end.errors);
-  // Not sent as HTML: the page's own script would otherwise run with the address of this server.
+  const std::lock_guard lock(showing_);
+  ToolEnd end = ask_pages(all->partner, name);
+  if (end.status < 0) {
+    if (shown_ == all) shown_.reset();  // the next request starts the process again
+    end = call({"status", "--actions", verb_option("site", wish_.folder.string()),
+                verb_option("page", name), wish_.out.string()});
+  }
+  if (end.status != 0 && end.status != 1) return refusal(422, end.errors);
+  // Not sent as HTML, because a script in the page would run with the address of this server.
   return {200, "application/octet-stream", end.out, {}};
 }
 
-/// Returns the path of a file of a campaign's results; empty if there is no such file.
 fs::path SiteService::result_file(const std::string& campaign, const std::string& file) const {
   if (wish_.out.empty() || !config::is_campaign_id(campaign)) return {};
   const fs::path folder = storage::results_folder(wish_.out, campaign);
@@ -215,7 +232,6 @@ fs::path SiteService::result_file(const std::string& campaign, const std::string
   return is_link || !is_plain_file_in(folder, file) ? fs::path() : folder / file;
 }
 
-/// Returns a file of a campaign's results as a download.
 Answer SiteService::result(const std::string& campaign, const std::string& file) {
   const fs::path path = result_file(campaign, file);
   if (path.empty()) return refused(404, "no_result");

@@ -27,11 +27,9 @@ ResultsNow results_now(const std::filesystem::path& out, const std::string& id) 
 
 namespace {
 
-/// Time limit of a run in s. Each campaign of a run has its own limit, so this ends only a run that
-/// hangs.
+/// Ends only a run that hangs, because each campaign has its own limit.
 constexpr double longest_run_s = 24.0 * 3600.0;
 
-/// Returns the elements of `all` that are not in `other`.
 Json only_in(const std::vector<std::string>& all, const std::vector<std::string>& other) {
   Json out = Json::array();
   for (const std::string& one : all)
@@ -54,7 +52,7 @@ Expected<bool> SiteRun::begin(const std::vector<std::string>& arguments, const s
   std::unique_lock lock(mutex_);
   if (running_ || over_) return false;
   NONIO_TRY(auto channel, launcher_.run(arguments, longest_run_s));
-  if (thread_.joinable()) thread_.join();  // the previous thread has reported its end
+  if (thread_.joinable()) thread_.join();
   running_ = true;
   cancelled_ = false;
   id_ = id;
@@ -90,7 +88,7 @@ Json SiteRun::now() const {
 void SiteRun::close() {
   const std::lock_guard lock(mutex_);
   over_ = true;
-  // A run that is interrupted here is resumed by the next one.
+  // The next run resumes an interrupted run.
   if (channel_ >= 0) ::shutdown(channel_, SHUT_RDWR);
 }
 

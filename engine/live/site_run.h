@@ -13,16 +13,16 @@
 
 namespace nonio::live {
 
-/// Results of a campaign at one moment, to compare them before and after a run.
 struct ResultsNow {
-  std::string status;                 ///< status of the campaign; empty: there are no results
+  std::string status;                 ///< empty without results
   std::string sha256;                 ///< digest of results.json
-  std::vector<std::string> findings;  ///< findings with severity warning
+  std::vector<std::string> findings;  ///< findings of severity warning
 };
 ResultsNow results_now(const std::filesystem::path& out, const std::string& id);
 
-/// A `nonio run` started from a page: one at a time, for one campaign or for all changed ones. Its
-/// state is JSON: state, stage, done, to_do, and the differences in the results afterwards.
+/// A `nonio run` that was started from a page: one at a time, for one campaign or for all changed
+/// campaigns. Its state is JSON: progress (`state`, `stage`, `done`, `to_do`), messages and, at the
+/// end, the differences of the results.
 class SiteRun {
  public:
   /// `changed` is called when `now()` has changed.
@@ -31,16 +31,15 @@ class SiteRun {
   SiteRun& operator=(const SiteRun&) = delete;
   ~SiteRun();
 
-  /// Starts a run. `id` is the campaign that is run alone; empty for a run of all changed
-  /// campaigns. Returns false if a run is in progress already.
+  /// Starts a run of the campaign `id`, or of all changed campaigns if `id` is empty. Returns false
+  /// if a run is in progress.
   Expected<bool> begin(const std::vector<std::string>& arguments, const std::string& command,
                        const std::string& id);
-  /// Ends the present run. Returns false if there is none.
+  /// Returns false if no run is in progress.
   bool cancel();
   bool is_running() const;
-  /// Returns the state of the last run; null if there was none.
+  /// Returns the state of the last run, or null.
   storage::Json now() const;
-  /// Ends the present run and prevents new ones.
   void close();
 
  private:

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Serves the page of a site: checks who may make a request, and selects what answers it.
 #include "live/site_service.h"
 
 #include <sys/socket.h>
@@ -21,10 +20,8 @@ using storage::Json;
 namespace {
 
 constexpr const char* of_json = "application/json";
-/// Largest number of open campaigns in memory, and largest number if they have unsaved changes.
 constexpr std::size_t most_desks = 4, most_unsaved = 32;
 
-/// Returns the role that a request requires.
 Role needed(const Route& route) {
   if (route.path == "/api/audit") return Role::administer;
   if (route.path == "/api/release" || route.path == "/api/mail") return Role::approve;
@@ -68,7 +65,7 @@ void SiteService::close() {
   for (const int channel : channels_) ::shutdown(channel, SHUT_RDWR);
 }
 
-/// Reads again the campaign that was run last, and soon all others.
+/// Reads the campaign that was run last at once, and all others soon.
 void SiteService::look_at_campaign() {
   std::string folder;
   {
@@ -81,7 +78,12 @@ void SiteService::look_at_campaign() {
 
 void SiteService::tell(const std::string& what) {
   campaigns_->index().look_soon();
-  if (what == "worklist" && !wish_.out.empty()) shown();  // so that no page waits for it
+  if (what == "drafts") {  // the worklist counts them
+    const std::lock_guard lock(showing_);
+    shown_.reset();
+    publish("worklist");
+  }
+  if (what == "worklist" && !wish_.out.empty()) shown();  // no page waits for the result
   publish(what);
 }
 
@@ -90,8 +92,7 @@ void SiteService::publish(const std::string& what) {
   events_.publish({version, what, "", storage::dump_line({{"version", version}})});
 }
 
-/// Returns the folder, relative to the site, of a campaign that is named by its folder or by the id
-/// of its results; none if there is no such campaign.
+/// `campaign` is a folder or the id of results. Returns the folder relative to the site, if any.
 std::optional<std::string> SiteService::folder_of(const std::string& campaign) const {
   if (is_campaign(campaign)) return campaign;
   if (wish_.out.empty() || !config::is_campaign_id(campaign)) return std::nullopt;
@@ -100,8 +101,8 @@ std::optional<std::string> SiteService::folder_of(const std::string& campaign) c
   return std::nullopt;
 }
 
-/// Returns whether the folder is below the site, also after links are resolved, contains no "..",
-/// and has a manifest.
+/// Whether the folder is inside the site, also after links are resolved, contains no "..", and has
+/// a manifest.
 bool SiteService::is_campaign(const std::string& folder) const {
   if (folder.empty() || folder.ends_with('/') || !is_utf8(folder)) return false;
   if (campaigns_->index().has(folder)) return true;
@@ -111,7 +112,6 @@ bool SiteService::is_campaign(const std::string& folder) const {
   return fs::is_regular_file(*path / config::manifest_name, error);
 }
 
-/// Returns the id that the manifest states; empty if it states none or cannot be read.
 std::string SiteService::id_of(const std::string& folder) const {
   const auto text = storage::read_small_file(wish_.folder / folder / config::manifest_name);
   return text ? config::extract_id(*text) : "";
@@ -140,8 +140,8 @@ std::shared_ptr<Desk> SiteService::desk(const std::string& campaign) {
   return desks_[campaign];
 }
 
-/// Returns the user stated by the proxy or by the session. users.toml is read each time, so that
-/// changes apply at once.
+/// Returns the user of the proxy or of the session. users.toml is read each time, so that changes
+/// apply at once.
 tl::expected<certificates::User, Answer> SiteService::user_of(const Head& head) {
   const auto users = certificates::read_users(wish_.folder);
   if (!users) return tl::unexpected(refused(503, "users"));
@@ -168,7 +168,7 @@ Answer SiteService::answer(const Request& request) {
   if (path == "/api/sign-in") return begin_session(request);
   if (request.route.open) return shell_file(request, path == "/" ? shells_.site : shells_.campaign);
   if (wish_.user_header.empty() && !wish_.sign_in) {
-    // users.toml was added after the start, so requests without a user are refused
+    // users.toml was added after the start, so requests without a user are rejected
     return certificates::has_users(wish_.folder) ? refused(503, "users_new")
                                                  : answer_to(request, nullptr);
   }
@@ -184,8 +184,8 @@ Answer SiteService::answer(const Request& request) {
   return out;
 }
 
-/// Records in the audit log a request that may change something or that the user's role forbids,
-/// and carries it out if `may`. If it cannot be recorded, the request is refused.
+/// Records the request in the audit log and carries it out if `may`. A request that cannot be
+/// recorded is rejected.
 Answer SiteService::recorded(const Request& request, const User& user, bool may) {
   const std::string& path = request.route.path;
   Json entry = {{"account", user.account},

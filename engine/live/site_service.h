@@ -24,8 +24,7 @@
 
 namespace nonio::live {
 
-/// Returns an option with its value, for example "--by=B. Sample". With "=", a value that begins
-/// with "-" remains a value.
+/// Example: "--by=B. Sample". With "=", a value that begins with "-" remains a value.
 inline std::string verb_option(const std::string& name, const std::string& value) {
   return "--" + name + "=" + value;
 }
@@ -36,8 +35,8 @@ inline std::string command_line(const std::vector<std::string>& arguments) {
   return out;
 }
 
-/// The service of a site: runs commands of this program as a terminal would, and contains the
-/// workbench of each open campaign.
+/// The service of a site: runs commands of this program like a terminal and contains the workbench
+/// of each open campaign.
 class SiteService : public Starting {
  public:
   SiteService(LiveWish wish, Launcher launcher, Shells shells)
@@ -81,13 +80,16 @@ class SiteService : public Starting {
   Answer get(const std::string& path, const Request& request, const User* user);
   Answer post(const std::string& what, const Request& request, const User* user);
   Answer worklist();
-  /// The worklist and the pages over all machines, as they were at a state of the site.
+  /// Worklist and pages of all machines at one state of the site. `partner` is the channel to the
+  /// process that makes the pages of single machines at this state.
   struct Shown {
     std::string stamp;
+    process::Handle partner{};
     Answer lines{};
     std::map<std::string, std::string> pages{};
   };
   std::shared_ptr<const Shown> shown();
+  ToolEnd ask_pages(const process::Handle& partner, const std::string& name);
   Answer metrics();
   Answer page(const std::string& name);
   Answer result(const std::string& campaign, const std::string& file);
@@ -123,15 +125,14 @@ class SiteService : public Starting {
   std::vector<Route> routes_;
   std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Desk>> desks_;
-  std::vector<std::string> order_;  ///< keys of the desks, the one used last at the end
-  std::string run_folder_;          ///< folder of the campaign that was run last; empty: all
-                                    ///< campaigns
+  std::vector<std::string> order_;  ///< keys of the desks, most recently used last
+  std::string run_folder_;
   Events events_;
   std::atomic<std::uint64_t> version_ = 1;
-  std::set<int> channels_;  ///< channels of running commands
+  std::set<int> channels_;
   std::atomic<bool> over_ = false;
   std::mutex showing_;
-  std::shared_ptr<const Shown> shown_;  ///< as it was computed last
+  std::shared_ptr<const Shown> shown_;
   std::unique_ptr<SiteCampaigns> campaigns_;
   std::unique_ptr<SiteRun> run_;
   std::unique_ptr<SiteNews> news_;  ///< declared last, because its thread uses all other members

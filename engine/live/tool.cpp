@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -23,7 +24,6 @@ namespace {
 constexpr bool is_line = true;
 constexpr std::size_t most_input = 4096, most_printed = 64 << 20, most_errors = 1 << 16;
 
-/// Appends what can be read to `into`. Returns false at the end of the stream.
 bool take_from(int fd, std::string& into) {
   std::array<char, 1 << 16> bytes;
   const ssize_t n = ::read(fd, bytes.data(), bytes.size());
@@ -41,8 +41,7 @@ int exit_status_of(const process::Child& child) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : by_signal;
 }
 
-/// Sends the complete lines of `text` from `sent` on, and advances `sent` to the first line that is
-/// not complete.
+/// Sends the complete lines from `sent` on and advances `sent`.
 void tell_lines(const std::string& text, std::size_t& sent, int channel) {
   for (std::size_t end; (end = text.find('\n', sent)) != std::string::npos; sent = end + 1) {
     process::write_text(channel, storage::pack(is_line, text.substr(sent, end - sent)));
@@ -70,7 +69,7 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
   if (!child) ::_exit(1);
   ::close(out[1]);
   ::close(errors[1]);
-  // Each line that a run prints is an event; the output of other commands is sent as one answer.
+  // Each line of a run is an event; the output of other commands is sent as one answer.
   const bool tells = !arguments.empty() && arguments.front() == "run";
   std::string printed, said;
   std::size_t sent_printed = 0, sent = 0;
@@ -113,6 +112,33 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
   said.erase(0, said.size() - std::min(said.size(), most_errors));
   process::write_text(channel.get(), storage::pack(!is_line, status, printed, said));
   ::_exit(0);
+}
+
+void run_partner(const std::string& program, const std::vector<std::string>& arguments,
+                 process::Handle channel) {
+  std::vector<char*> all{const_cast<char*>(program.c_str())};
+  for (const std::string& one : arguments) all.push_back(const_cast<char*>(one.c_str()));
+  all.push_back(nullptr);
+  if (::dup2(channel.get(), STDIN_FILENO) < 0 || ::dup2(channel.get(), STDOUT_FILENO) < 0)
+    ::_exit(1);
+  ::execv(program.c_str(), all.data());
+  ::_exit(1);
+}
+
+std::optional<std::string> ask_partner(const process::Handle& channel, const std::string& line,
+                                       double seconds) {
+  const std::string sent = line + "\n";
+  if (::send(channel.get(), sent.data(), sent.size(), MSG_NOSIGNAL) !=
+      static_cast<ssize_t>(sent.size()))
+    return std::nullopt;
+  constexpr double ms = 1000.0;
+  for (std::string got; got.size() < most_printed;) {
+    pollfd one{channel.get(), POLLIN, 0};
+    if (::poll(&one, 1, static_cast<int>(seconds * ms)) <= 0 || !take_from(channel.get(), got))
+      return std::nullopt;
+    if (got.ends_with('\n')) return got;
+  }
+  return std::nullopt;
 }
 
 void stop_tool(const process::Handle& channel) {

@@ -11,8 +11,8 @@
 
 namespace nonio::live {
 
-/// Checks once per second whether files still have the content that was read. Size and time of a
-/// file only determine when it is read again; its SHA-256 determines whether it has changed.
+/// Checks once per second whether files have changed since they were read. Size and time of a file
+/// only determine when its SHA-256 is computed again.
 class Watch {
  public:
   using Tell = std::function<void(bool changed)>;
@@ -37,7 +37,7 @@ class Watch {
   std::mutex mutex_;
   std::condition_variable over_or_new_;
   std::map<std::string, std::string> expected_;
-  std::map<std::string, Seen> seen_;  ///< files as they were last read; used by the thread only
+  std::map<std::string, Seen> seen_;  ///< as last read; used by the thread only
   bool over_ = false, changed_ = false;
   std::thread thread_;
 };

@@ -37,7 +37,7 @@ using kit::Verdict;
 using CheckState = PluginCheck::State;
 
 constexpr double scan_seconds = 1.0;
-// Number of checks of one plugin that may reach the time limit before its other checks are skipped.
+// Number of timeouts after which the remaining checks of a plugin are skipped.
 constexpr std::size_t most_hanging = 2;
 
 bool went_well(const PluginCheck& c) {
@@ -51,7 +51,6 @@ constexpr const char* of_files[][2] = {
     {"pure", "The result depends on the input only; no file, socket or process is used."},
     {"time", "At most one of its checks hangs; after two the others are skipped."}};
 
-/// Collects the plugins that one file registers.
 struct Brought final : Registry {
   std::vector<Method> methods;
   std::vector<Reader> readers;
@@ -76,7 +75,6 @@ double processor_seconds(int who = RUSAGE_SELF) {
   return of(usage.ru_utime) + of(usage.ru_stime);
 }
 
-/// Shared memory into which the child of the check `pure` writes the forbidden call that it made.
 process::SharedStatus* impure_answer = nullptr;
 
 [[noreturn]] void tell_impurity(const char* call) {
@@ -93,21 +91,16 @@ void set_zone(const char* zone) {
   ::tzset();
 }
 
-/// Sets the environment variables HOME, TMPDIR, USER and PWD to a path that does not exist, and
-/// changes the working folder to /usr.
 void go_elsewhere() {
   for (const char* name : {"HOME", "TMPDIR", "USER", "PWD"}) ::setenv(name, "/elsewhere", 1);
   if (::chdir("/usr") != 0) throw std::runtime_error("no folder /usr");
 }
 
-/// Sets the first installed locale that writes a decimal comma; without such a locale nothing
-/// changes.
 void speak_otherwise() {
   for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "it_IT.UTF-8", "es_ES.UTF-8"})
     if (std::setlocale(LC_ALL, name) != nullptr) return;
 }
 
-/// Returns `own` followed by those of `others` whose name `own` does not contain.
 template <class Plugin>
 std::vector<Plugin> joined(std::vector<Plugin> own, const std::vector<Plugin>& others) {
   const std::size_t n = own.size();
@@ -128,8 +121,6 @@ std::vector<fs::path> files_with(const fs::path& folder, const std::string& endi
   return found;
 }
 
-/// Reads all campaigns below a folder, with the files next to each campaign.toml and its
-/// expected/values.csv.
 Expected<std::vector<kit::Source>> sources_below(const fs::path& folder) {
   std::vector<kit::Source> sources;
   for (const fs::path& manifest : files_with(folder, std::string("/") + config::manifest_name)) {
@@ -188,18 +179,16 @@ class Checker {
     pure_again();
   }
 
-  /// Returns the names of all plugins of the files that were loaded.
   const std::vector<std::string>& names() const { return names_; }
 
  private:
-  /// Makes and reads the samples of this seed unless they exist, and selects the seed.
   void seed(std::uint64_t number) {
     const auto [place, anew] = made_.try_emplace(number);
     Made& made = place->second;
     if (anew) {
       made.sources = kit::made_sources(number);
-      // a reader under test may not recognize the samples that are made for the program's own
-      // readers
+      // A reader under test may not recognize the samples that are made for the program's own
+      // readers.
       for (const kit::Source& s : made.sources)
         if (auto sample = kit::open_source(s, own_.readers(), own_.methods()))
           made.samples.push_back(std::move(*sample));
@@ -207,8 +196,8 @@ class Checker {
     bench_.seed = number;
   }
 
-  /// Evaluates the samples of the current seed with the program's own plugins. The parent does
-  /// this, because each check runs in a child process of its own and would have to repeat it.
+  /// Evaluates the samples in the parent process, because each check runs in its own child process
+  /// and would have to repeat the evaluation.
   void evaluate() {
     Made& made = made_.at(bench_.seed);
     if (std::exchange(made.evaluated, true)) return;
@@ -218,8 +207,6 @@ class Checker {
     for (kit::Sample& s : made.samples) s.results = kit::results_of(s, own);
   }
 
-  /// Runs all checks of one plugin, which is stated as kind and name, "reader csv". `at` contains,
-  /// for each kind, the number of plugins checked so far.
   void check_plugin(const std::string& plugin, std::size_t (&at)[6]) {
     hung_ = 0;
     const std::string kind = plugin.substr(0, plugin.find(' '));
@@ -253,9 +240,8 @@ class Checker {
          [this, kind, index](Bench& b) { return kit::fingerprint((brought_.*kind)[index], b); });
   }
 
-  /// Runs the check `pure` for the first time. The check runs the same work twice, the second time
-  /// later, in another environment, and without files, sockets or processes. A passed result is
-  /// kept for `pure_again`.
+  /// First run of the check `pure`, which runs the same work twice: the second time later, in
+  /// another environment, and without files, sockets or processes.
   void pure(const std::string& plugin, std::function<Verdict(Bench&)> digest) {
     if ((!request_.only.empty() && request_.only != "pure") || hung_ >= most_hanging) return;
     zone_ = first_zone;
@@ -268,8 +254,8 @@ class Checker {
       tell_(result);
   }
 
-  /// Runs the check `pure` again for all plugins of the file. They are repeated together, because
-  /// each repetition must start at least a second after the first.
+  /// Second runs of the check `pure`. They are made together, because each must start at least a
+  /// second after the first run.
   void pure_again() {
     for (const Once& once : std::exchange(once_, {})) {
       hung_ = 0;
@@ -279,8 +265,8 @@ class Checker {
       const PluginCheck result = in_child(once.plugin, "pure", [&](Bench& b) {
         std::string why;
         b.only_plugin = [&] {
-          // The environment is changed only here, because calls of the host before this point
-          // restore the working folder.
+          // Calls of the host before this point restore the working folder, so the environment is
+          // changed only here.
           go_elsewhere();
           speak_otherwise();
           why = process::confine_pure(tell_impurity);
@@ -305,9 +291,9 @@ class Checker {
       run(plugin, c.name, [&](Bench& b) { return c.run((brought_.*kind)[index], b); });
   }
 
-  /// Runs one check in a child process, for a plugin once per seed until it fails. `list` receives
-  /// the text of a passed check. With `always` the check runs although it was not requested,
-  /// because others need it; then only a failure is reported.
+  /// Runs one check in a child process, for each seed until it fails. `list` receives the text of a
+  /// passed check. With `always` the check also runs if it was not requested, because other checks
+  /// need its result; then only a failure is reported.
   bool run(const std::string& plugin, const std::string& name,
            const std::function<Verdict(Bench&)>& work, std::string* list = nullptr,
            bool always = false) {
@@ -350,8 +336,8 @@ class Checker {
     const process::ChildEnd end = child ? child->wait(10.0 * request_.seconds)
                                         : process::ChildEnd{false, child.error().message};
     const std::string words = answer.get();
-    // a check that waits until the time limit costs most time, so no further check of the plugin is
-    // run
+    // A check that waits until the time limit costs most time, so no further check of the plugin is
+    // run.
     if (end.overdue) hung_ = most_hanging;
     if (!end.well && processor_seconds(RUSAGE_CHILDREN) - before > 0.9 * request_.seconds) ++hung_;
     if (!end.well || words.empty()) {
@@ -372,7 +358,6 @@ class Checker {
     ::setrlimit(RLIMIT_CPU, &limit);
   }
 
-  /// Runs `work` in the child and returns its verdict: a letter (p, f or s) and the text.
   std::string told(bool first, process::SharedStatus& stage,
                    const std::function<Verdict(Bench&)>& work) {
     Verdict v;
@@ -394,8 +379,6 @@ class Checker {
     return letter + v.says;
   }
 
-  /// Loads the plugin file in the child and fills `bench_`. Plugins of the file replace the
-  /// program's plugins of the same name.
   void set_up() {
     if (const auto entry = loader::open_entry(path_)) (*entry)->add_to(brought_);
     bench_.methods = joined(brought_.methods, own_.methods());
@@ -406,7 +389,6 @@ class Checker {
     bench_.sources = std::move(made_.at(bench_.seed).sources);
     bench_.samples = std::move(made_.at(bench_.seed).samples);
     if (!brought_.analyses.empty() || !brought_.effects.empty())
-      // the file's own plugins may lead to other results
       for (kit::Sample& s : bench_.samples) s.results.reset();
     for (const kit::Source& s : cases_)
       if (auto sample = kit::open_source(s, bench_.readers, bench_.methods))
@@ -461,14 +443,13 @@ class Checker {
     std::vector<kit::Sample> samples;
     bool evaluated = false;
   };
-  std::map<std::uint64_t, Made> made_;  ///< samples and their results, by seed
-  bool wants_results_ = false;          ///< the plugin under test needs the results of the samples
+  std::map<std::uint64_t, Made> made_;
+  bool wants_results_ = false;
   std::vector<kit::Source> cases_;
   std::vector<std::string> names_;
-  fs::path path_, shown_path_;  ///< path of the plugin file, and this path as the user stated it
-  std::size_t hung_ = 0;        ///< checks of the current plugin that reached the time limit
-  const char* zone_ = nullptr;  ///< time zone of the next child; null: unchanged
-  /// Result of the first run of `pure` for one plugin.
+  fs::path path_, shown_path_;
+  std::size_t hung_ = 0;
+  const char* zone_ = nullptr;  ///< time zone of the next child; unchanged if null
   struct Once {
     std::string plugin;
     std::function<Verdict(Bench&)> digest;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks of analyses: how results must change, or must not change, if the readings are changed.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -14,8 +13,8 @@ namespace nonio::plugin_check::kit {
 
 namespace {
 
-/// Results of an analysis for one sample as a list of numbers. Numbers that are evidence of
-/// findings are stored separately, because a finding appears or disappears at a threshold.
+/// Results of an analysis for one sample as a list of numbers. Evidence of findings is separate,
+/// because a finding appears or disappears at a threshold.
 struct Said {
   struct One {
     std::string name;
@@ -23,9 +22,9 @@ struct Said {
     Quantity quantity = Quantity::number;
   };
   std::vector<One> values, evidence;
-  std::string texts;    ///< ids and texts of findings and notes; error messages
-  std::string error;    ///< first error message
-  std::string unsound;  ///< why the host would refuse a result; otherwise empty
+  std::string texts;
+  std::string error;
+  std::string unsound;
   std::size_t evaluations = 0;
   bool failed() const { return !error.empty(); }
 };
@@ -92,22 +91,20 @@ bool only_kinds(const Sample& s, const std::vector<std::string>& kinds) {
                      });
 }
 
-/// Whether all readings of the sample are deviations, not coordinates.
 bool of_deviations(const Sample& s) {
   return only_kinds(s, {"axis", "straightness", "angle", "diagonal", "step-diagonal"});
 }
 
-/// Whether the zero of all readings is unknown. It is known for step diagonals, which begin with 0.
+/// The zero of step diagonals is known, because they begin with 0.
 bool of_unknown_zero(const Sample& s) {
   return only_kinds(s, {"axis", "straightness", "angle", "diagonal"});
 }
 
-/// Reason for a skipped check: the analysis evaluates no sample of the kind that the check needs.
 const std::string no_sample =
     "no sample of a kind that it evaluates; put a campaign into cases/<name>/campaign.toml";
 
-/// Calls `law` with each sample that the analysis evaluates and `wanted` accepts. Fails with the
-/// first non-empty text that `law` returns; `otherwise` is the reason if no sample fits.
+/// Fails with the first non-empty text that `law` returns. `otherwise` is the reason for skipping
+/// the check if no sample fits.
 Verdict each_sample(const Analysis& a, const Bench& bench, bool (*wanted)(const Sample&),
                     const std::function<std::string(const Sample&)>& law,
                     const std::string& otherwise = no_sample) {
@@ -144,8 +141,6 @@ double size_of(const Sample& s) {
   return size;
 }
 
-/// Returns the first difference between the names in two lists in words, or that only one of the
-/// two evaluations failed; empty if there is no difference.
 std::string same_names(const Said& one, const Said& two) {
   if (one.failed() != two.failed())
     return "it fails on one of both: " + (one.failed() ? one : two).error;
@@ -158,7 +153,6 @@ std::string same_names(const Said& one, const Said& two) {
   return {};
 }
 
-/// Returns the scale relative to which a difference of this quantity is regarded as rounding.
 double scale_of(Quantity q, double deviation) {
   switch (q) {
     case Quantity::deviation:
@@ -183,7 +177,6 @@ std::string same_values(const Said& one, const Said& two, double deviation) {
   return {};
 }
 
-/// Calls `change` for the observations of each measurement and returns the changed sample.
 Sample changed(Sample s, const std::function<void(Observations&, const Measurement&)>& change) {
   for (std::size_t i = 0; i < s.observations.size(); ++i)
     change(s.observations[i], s.campaign.measurements[i]);
@@ -236,8 +229,8 @@ Sample shifted(const Sample& s, double by) {
   });
 }
 
-/// Check: a constant that is added to all deviations leaves each result unchanged or moves it by
-/// the same amount, because the zero of the deviations belongs to the instrument.
+/// A constant that is added to all deviations may move a result by this constant, because the zero
+/// of the deviations is arbitrary.
 Verdict analysis_shift(const Analysis& a, const Bench& bench) {
   return each_sample(a, bench, of_unknown_zero, [&](const Sample& s) -> std::string {
     const double c = 20.0 * size_of(s);
@@ -255,8 +248,6 @@ Verdict analysis_shift(const Analysis& a, const Bench& bench) {
   });
 }
 
-/// Returns the power with which a quantity scales with the deviations, 1 or 0; none if it is not
-/// fixed.
 std::optional<int> power_of(Quantity q) {
   switch (q) {
     case Quantity::deviation:
@@ -283,8 +274,8 @@ std::optional<int> power_of(Quantity q) {
   }
 }
 
-/// Check: for an instrument without uncertainty, doubling all deviations doubles results that are
-/// deviations, slopes or drifts, and leaves positions, times and numbers of readings unchanged.
+/// Without instrument uncertainty, doubled deviations double results that are deviations, slopes or
+/// drifts, and leave positions, times and numbers of readings unchanged.
 Verdict analysis_scale(const Analysis& a, const Bench& bench) {
   return each_sample(a, bench, of_deviations, [&](const Sample& given) -> std::string {
     Sample s = given;
@@ -302,7 +293,7 @@ Verdict analysis_scale(const Analysis& a, const Bench& bench) {
       const auto power = power_of(v.quantity);
       if (!power) continue;
       const double wanted = *power == 1 ? by * v.value : v.value;
-      // a deviation moves the position of the next reading, which is an effect of second order
+      // A deviation moves the position of the next reading, which is an effect of second order.
       if (!near(two.values[i].value, wanted, 100.0 * scale_of(v.quantity, size_of(s)), 1e-4))
         return "with twice the deviations " + v.name + " is " + number(v, two.values[i].value) +
                ": expected " + number(v, wanted);
@@ -322,8 +313,6 @@ std::vector<double> sizes(const Said& said) {
 
 bool of_one_axis(const Sample& s) { return only_kinds(s, {"axis", "straightness", "angle"}); }
 
-/// Check: if the positive direction of the axis is reversed, the sizes of all results stay the
-/// same; signs and positions may differ.
 Verdict analysis_mirror(const Analysis& a, const Bench& bench) {
   if (a.analyse_campaign) return skipped("it is of the campaign as a whole");
   return each_sample(
@@ -367,8 +356,8 @@ Verdict analysis_renamed(const Analysis& a, const Bench& bench) {
       "it evaluates no runs of one axis");
 }
 
-/// Returns variants of a sample with unusual readings, each with its name. The huge values are too
-/// small for a reader to regard as blank and too large for any machine.
+/// Variants of a sample with unusual readings. Huge deviations and positions are too small for a
+/// reader to regard as blank, but too large for any machine.
 std::vector<std::pair<std::string, Sample>> odd_samples(const Sample& s) {
   std::vector<std::pair<std::string, Sample>> all;
   const auto with = [&](const char* name, auto change) {
@@ -407,8 +396,7 @@ std::vector<std::pair<std::string, Sample>> odd_samples(const Sample& s) {
   return all;
 }
 
-/// Check: no value, series or finding of an unusual sample contains a number that is not finite. A
-/// table may contain blanks (NaN).
+/// A table may contain blanks (NaN).
 Verdict analysis_hostile(const Analysis& a, const Bench& bench) {
   for (const Sample& s : bench.samples)
     for (const auto& [name, odd] : odd_samples(s)) {
@@ -429,7 +417,6 @@ Verdict analysis_hostile(const Analysis& a, const Bench& bench) {
   return passed();
 }
 
-/// Check: the analysis returns a result for at least one sample to which it applies.
 Verdict analysis_says(const Analysis& a, const Bench& bench) {
   if (!a.analyse_campaign && (!a.applies || !a.analyse))
     return failed("applies or analyse is missing");

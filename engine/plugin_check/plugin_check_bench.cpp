@@ -46,7 +46,7 @@ Expected<Sample> open_source(const Source& source, const std::vector<Reader>& re
       config::parse_manifest(source.manifest, source.name + "/" + config::manifest_name, methods);
   if (!manifest) return fail(manifest.error().front());
   Sample s{source.name, std::move(manifest->campaign), std::move(manifest->options), {}};
-  for (Axis& axis : s.campaign.machine.axes) {  // without these data no controller writes a table
+  for (Axis& axis : s.campaign.machine.axes) {  // controllers require these data
     if (!axis.active_table) axis.active_table.emplace();
     if (!axis.active_backlash) axis.active_backlash = 0.0;
   }
@@ -100,8 +100,6 @@ std::vector<std::pair<std::string, Observations>> odd_tables(const Observations&
 
 namespace {
 
-/// Returns a machine record that numbers the axes in order, so that every controller can write
-/// tables.
 config::MachineRecord record_for(const Sample& sample) {
   config::MachineRecord record;
   for (const Axis& a : sample.campaign.machine.axes)
@@ -110,8 +108,8 @@ config::MachineRecord record_for(const Sample& sample) {
   return record;
 }
 
-/// Adds the encoder counts of each axis to options of controllers whose table entries are in
-/// counts, because only the machine builder knows them. On a linear axis, 1/16 count is then 1 nm.
+/// Sets encoder resolutions for controllers whose table entries are in counts: 62500 counts per mm,
+/// so that 1/16 count is 1 nm, and 3600 counts per degree.
 void add_encoders(Settings& settings, const Info& info, const Machine& machine) {
   for (const Option& o : info.options) {
     if (o.name != "axes" || o.help.find("counts_per_mm") == o.help.npos) continue;

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks of tables: a table that is read back as the control would use it must compensate the
-// error.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -15,10 +13,9 @@ namespace nonio::plugin_check::kit {
 
 namespace {
 
-/// A planted error of one axis, in SI units.
 struct KnownError {
   bool rotary = false;
-  /// Targets, and actual minus nominal position at each target (mean of both directions).
+  /// Target positions, and mean of the error of both directions at each of them.
   std::vector<double> targets, error;
   double reversal = 0.0;
 
@@ -30,8 +27,8 @@ struct KnownError {
   }
 };
 
-/// Returns a random error of three waves and a slope, 0 at the first target. A rotary axis has no
-/// slope, so that the error closes over a turn.
+/// The error is 0 at the first target. A rotary axis has no slope, so that the error is periodic
+/// over a revolution.
 KnownError random_error(storage::Random& random, bool rotary, double size, double first) {
   KnownError k{.rotary = rotary, .targets = {}, .error = {}};
   const int n = rotary ? 36 : 40;
@@ -54,7 +51,6 @@ KnownError random_error(storage::Random& random, bool rotary, double size, doubl
   return k;
 }
 
-/// Returns a campaign with three bidirectional runs of an axis that has this error.
 Sample sample_of(const KnownError& k) {
   Sample s;
   s.name = k.rotary ? "planted C" : "planted X";
@@ -83,12 +79,11 @@ Sample sample_of(const KnownError& k) {
   return s;
 }
 
-/// Files of a controller, and the tables that the control contains once these files are loaded.
 struct Written {
   std::vector<Artifact> files;
   std::vector<LoadedTable> tables;
-  std::string refused;  ///< reason why no table was written
-  bool unable = false;  ///< the plugin failed without stating what it lacks
+  std::string refused;
+  bool unable = false;
 };
 
 Written written_table(const Controller& o, const Sample& s, const Settings& options, const Bench&) {
@@ -107,8 +102,8 @@ Written written_table(const Controller& o, const Sample& s, const Settings& opti
   return {r->artifacts, std::move(*tables), {}};
 }
 
-/// Returns the option settings to try: each choice of `sign`, which the user states if the
-/// control's sign is undocumented, and one table per direction if the control supports this.
+/// Option settings to be tested: each choice of `sign`, which the user must state if the control's
+/// sign is undocumented, and one table per direction if the control supports this.
 std::vector<Settings> set_ups(const Controller& o, const Sample& s) {
   const Settings defaults = settings_for(o, s);
   std::vector<Settings> all{defaults};
@@ -126,8 +121,8 @@ std::vector<Settings> set_ups(const Controller& o, const Sample& s) {
   return all;
 }
 
-/// Options with which the controller writes a table of one axis alone, and the position of the
-/// first target (m). Some controls only accept positions from zero downwards.
+/// Settings for a table of one axis, and position of the first target, m. Some controls accept only
+/// positions from zero downwards.
 struct SetUp {
   Settings options;
   double first = 0.0;
@@ -150,9 +145,9 @@ std::vector<SetUp> settings_that_write(const Controller& o, const Bench& bench, 
   return all;
 }
 
-/// Returns the range of the error that remains at the targets if the control adds the tables, m or
-/// rad; none if no table belongs to the axis. If the files state the reversal, the range includes
-/// both directions.
+/// Returns the range of the remaining error at the targets if the control adds the tables, m or
+/// rad; std::nullopt without a table of the axis. If the files state the reversal, the range
+/// includes both directions.
 std::optional<double> left(const KnownError& k, const std::vector<LoadedTable>& tables) {
   const std::string axis = k.rotary ? "C" : "X";
   const auto c = math::correction_of(tables, axis);
@@ -188,8 +183,6 @@ std::string in_um(double si) { return short_text(si * 1e6, 4) + " um or urad"; }
 
 double step_of(const Controller& o, bool rotary) { return o.table.value_step.of(rotary); }
 
-/// Returns what is wrong with a table written for this error; empty if it is correct. `refused`
-/// receives the reason if no table is written, which may be correct.
 std::string wrong_table(const Controller& o, const KnownError& k, const Settings& options,
                         const Bench& bench, std::string& refused) {
   const Written w = written_table(o, sample_of(k), options, bench);
@@ -203,7 +196,7 @@ std::string wrong_table(const Controller& o, const KnownError& k, const Settings
     refused = "no table of that axis alone";
     return {};
   }
-  // the control adds the correction at a position where the error already differs
+  // The control adds the correction at a position where the error already differs.
   const double allowed =
       0.05 * range(k) + 3.0 * step_of(o, k.rotary) + 2.0 * steepest(k) * range(k);
   if (*after <= allowed) return {};
@@ -258,7 +251,6 @@ Verdict table_cancels(const Controller& o, const Bench& bench) {
   });
 }
 
-/// Check: for an error that rises linearly the correction in the table falls, and vice versa.
 Verdict table_sign(const Controller& o, const Bench& bench) {
   return each_setting(o, bench, [&](const SetUp& s) -> std::string {
     for (const double slope : {40e-6, -40e-6}) {
@@ -279,8 +271,6 @@ Verdict table_sign(const Controller& o, const Bench& bench) {
   });
 }
 
-/// Returns the range of the error that remains at the points of the tables in one direction, m or
-/// rad.
 double left_at_points(const KnownError& k, const std::vector<LoadedTable>& tables,
                       const math::Correction& added, int direction) {
   double low = 1e9, high = -1e9;
@@ -295,8 +285,8 @@ double left_at_points(const KnownError& k, const std::vector<LoadedTable>& table
   return high - low;
 }
 
-/// Check: the remaining error is within half a step at every point of the table, so that rounding
-/// errors of increments do not accumulate.
+/// The remaining errors at the points of the table must differ by at most 1.05 steps, so that
+/// rounding errors of increments do not accumulate.
 Verdict table_rounding(const Controller& o, const Bench& bench) {
   return each_setting(o, bench, [&](const SetUp& s) -> std::string {
     storage::Random random = bench.random(12);
@@ -315,7 +305,6 @@ Verdict table_rounding(const Controller& o, const Bench& bench) {
   });
 }
 
-/// Check: tables for growing errors are correct until the controller refuses an error as too large.
 Verdict table_limits(const Controller& o, const Bench& bench) {
   return each_setting(o, bench, [&](const SetUp& s) -> std::string {
     storage::Random random = bench.random(13);

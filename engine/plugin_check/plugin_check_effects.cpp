@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks of effects: properties of their columns, and whether a planted effect is found again.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -16,10 +15,8 @@ namespace {
 
 using Columns = Effect::Columns;
 
-// Size of the planted effect and standard deviation of the noise, m or rad
 constexpr double planted_size = 10e-6, planted_noise = 0.5e-6;
 
-/// One term of the effect, in a part of a sample that can show it.
 struct Shown {
   std::string sample;
   model::Part part;
@@ -48,8 +45,6 @@ std::vector<Shown> shown(const Effect& effect, const Bench& bench) {
 constexpr const char* unseen =
     "no sample shows this effect; put a campaign that does into cases/<name>/campaign.toml";
 
-/// Returns one value per shape parameter, at the fraction `share` (0 to 1) of its grid; none if a
-/// grid is empty.
 std::optional<std::vector<double>> shape_at(const Effect& e, const Shown& s, double share) {
   std::vector<double> shape;
   for (const auto& one : e.shapes) {
@@ -60,8 +55,8 @@ std::optional<std::vector<double>> shape_at(const Effect& e, const Shown& s, dou
   return shape;
 }
 
-/// Returns the columns as these readings sense them: in space, an effect of one axis is multiplied
-/// by the component of the direction of sensing along that axis.
+/// In space, the columns of an effect of one axis are multiplied by the component of the direction
+/// of sensing along that axis.
 Expected<Columns> sensed_columns(const Effect& e, const Shown& s,
                                  const std::vector<double>& shape) {
   auto columns = e.columns(s.table(), s.term.axis, shape);
@@ -76,7 +71,7 @@ double norm(const std::vector<double>& v) {
   return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0));
 }
 
-/// Subtracts from `v` its mean over each line, because the zero of each line is unknown.
+/// Subtracts the mean of each line, because the zero of each line is unknown.
 std::vector<double> without_zeros(const Observations& o, std::vector<double> v) {
   std::vector<double> sum(std::max<std::size_t>(o.lines.size(), 1)), count(sum.size());
   const auto line = [&](std::size_t i) { return o.line.empty() ? 0U : o.line[i]; };
@@ -85,7 +80,7 @@ std::vector<double> without_zeros(const Observations& o, std::vector<double> v) 
   return v;
 }
 
-/// Subtracts from `v` its projection onto an orthonormal basis; twice, because of rounding.
+/// Subtracts the projection onto an orthonormal basis, twice because of rounding errors.
 void take_away(const Columns& basis, std::vector<double>& v) {
   for (int twice = 0; twice < 2; ++twice)
     for (const auto& b : basis) {
@@ -94,8 +89,8 @@ void take_away(const Columns& basis, std::vector<double>& v) {
     }
 }
 
-/// Returns an orthonormal basis of the columns after subtraction of the zeros of the lines. `least`
-/// receives the smallest share of a column's norm that is independent of the columns before it.
+/// `least` receives the smallest share of a column's norm that is linearly independent of the
+/// preceding columns.
 Columns basis_of(const Observations& o, const Columns& columns, double& least) {
   Columns basis;
   least = 1.0;
@@ -127,8 +122,8 @@ std::string wrong_columns(const Effect& e, const Columns& columns, const Shown& 
   return {};
 }
 
-/// Calls `law` for each term that a sample shows, with shape parameters in the middle of their
-/// grids. Fails with the first non-empty text that `law` returns.
+/// Calls `law` for each term, with shape parameters in the middle of their grids. Fails with the
+/// first non-empty text that `law` returns.
 Verdict everywhere(
     const Effect& e, const Bench& bench,
     const std::function<std::string(const Shown&, const std::vector<double>&)>& law) {
@@ -162,7 +157,6 @@ Verdict effect_again(const Effect& e, const Bench& bench) {
   });
 }
 
-/// Check: in an added row in which the axis is stationary and far away, all columns are 0.
 Verdict effect_still(const Effect& e, const Bench& bench) {
   if (e.instances) return skipped("an effect in space: a stationary axis is included");
   return everywhere(e, bench, [&](const Shown& s, const std::vector<double>& shape) -> std::string {
@@ -183,8 +177,8 @@ Verdict effect_still(const Effect& e, const Bench& bench) {
   });
 }
 
-/// Check: columns do not depend on the order of the rows. Effects of one axis need samples with
-/// times, because without times the order of the rows is the order of time.
+/// Effects of one axis need samples with times, because without times the order of the rows is the
+/// order of time.
 Verdict effect_rows(const Effect& e, const Bench& bench) {
   storage::Random random = bench.random(2);
   std::size_t seen = 0;
@@ -198,8 +192,8 @@ Verdict effect_rows(const Effect& e, const Bench& bench) {
         if (!one || !two || one->size() != two->size()) return "it gives other columns";
         const Observations other = rearranged(s.table(), order);
         for (std::size_t k = 0; k < one->size(); ++k) {
-          // a column may start at 0 in the first row of a line; the zero of the line absorbs the
-          // difference
+          // A column may be relative to the first row of a line; this difference is part of the
+          // zero of the line.
           const auto a = without_zeros(s.table(), (*one)[k]), b = without_zeros(other, (*two)[k]);
           const double size = norm((*one)[k]) + 1e-300;
           for (std::size_t i = 0; i < order.size(); ++i)
@@ -227,7 +221,6 @@ Verdict effect_grid(const Effect& e, const Bench& bench) {
   });
 }
 
-/// Returns the share (0 to 1) of the sum of squares of `columns` that is in the span of `others`.
 double alike(const Observations& o, const Columns& columns, const Columns& others) {
   double least = 0.0, whole = 0.0, left = 0.0;
   const Columns basis = basis_of(o, others, least);
@@ -240,8 +233,8 @@ double alike(const Observations& o, const Columns& columns, const Columns& other
   return whole > 0.0 ? 1.0 - left / whole : 1.0;
 }
 
-/// Check: each value of the grid has similar columns to one of its neighbors; otherwise the search
-/// misses an effect between two values.
+/// If the columns of neighboring grid values differ too much, the search misses an effect between
+/// both values.
 Verdict effect_neighbours(const Effect& e, const Bench& bench) {
   const bool any = std::any_of(e.shapes.begin(), e.shapes.end(),
                                [](const Effect::Shape& s) { return s.continuous; });
@@ -267,8 +260,8 @@ Verdict effect_neighbours(const Effect& e, const Bench& bench) {
   });
 }
 
-/// Check: in at least one sample the columns are independent of each other and of a constant. If
-/// readings do not separate effects in other samples, the engine handles this.
+/// One sample is sufficient, because the engine detects in other samples that readings do not
+/// separate effects.
 Verdict effect_independent(const Effect& e, const Bench& bench) {
   const auto all = shown(e, bench);
   if (all.empty()) return skipped(unseen);
@@ -294,7 +287,6 @@ Verdict effect_independent(const Effect& e, const Bench& bench) {
                 where + " comes nearest)");
 }
 
-/// Readings that contain only the effect, with random parameters, and noise.
 struct Planted {
   model::Part part;
   std::vector<double> parameters, shape, truth;
@@ -309,7 +301,7 @@ std::optional<Planted> plant(const Effect& e, const Shown& s, storage::Random& r
   if (!columns) return std::nullopt;
   double least = 0.0;
   basis_of(s.table(), *columns, least);
-  if (!(least > 1e-3)) return std::nullopt;  // these readings do not determine the parameters
+  if (!(least > 1e-3)) return std::nullopt;
   for (const auto& c : *columns) {
     const double size = norm(without_zeros(s.table(), c));
     const double factor = random.uniform(0.5, 1.0) * (random.uniform() < 0.5 ? -1.0 : 1.0) *
@@ -322,8 +314,6 @@ std::optional<Planted> plant(const Effect& e, const Shown& s, storage::Random& r
   return p;
 }
 
-/// Compares the fitted effect with the planted one. Returns the difference in words; empty if it is
-/// within the uncertainty.
 std::string missed(const Effect& e, const Planted& p, const model::Fit& fit) {
   const auto n = static_cast<double>(p.truth.size());
   const auto planted = without_zeros(p.part.table, p.truth);
@@ -364,7 +354,6 @@ Verdict effect_planted(const Effect& e, const Bench& bench) {
   return tried == 0 ? skipped("no sample determines its parameters") : passed();
 }
 
-/// Whether the explanation names this effect, or one that the readings do not separate from it.
 bool named(const model::Explanation& x, const std::string& name) {
   const auto has = [&](const std::vector<std::string>& names) {
     return std::find(names.begin(), names.end(), name) != names.end();
@@ -378,8 +367,6 @@ bool named(const model::Explanation& x, const std::string& name) {
   });
 }
 
-/// Whether this effect cannot be seen in the readings, because terms that every model contains
-/// describe the same columns.
 bool unseen_in(const model::Explanation& x, const std::string& name) {
   return std::any_of(x.candidates.begin(), x.candidates.end(), [&](const model::Candidate& c) {
     return c.term.name() == name && !c.visible;
@@ -391,8 +378,8 @@ bool describes(const model::Explanation& x, const std::string& name) {
                      [&](const model::Description& d) { return d.term.name() == name; });
 }
 
-/// Check: `explain` names a planted effect, or uses it to describe the deviations, in the first
-/// sample that determines the parameters of the effect.
+/// Passes if `explain` names the effect, or describes the deviations by it, in the first sample
+/// that determines its parameters.
 Verdict effect_explained(const Effect& e, const Bench& bench) {
   if (e.is_nuisance) return skipped("it is in every model and never a candidate");
   if (e.of_channels)
@@ -411,8 +398,8 @@ Verdict effect_explained(const Effect& e, const Bench& bench) {
     if (!x) return failed(s.where() + ": " + x.error().message);
     if (named(*x, s.term.name()) || describes(*x, s.term.name())) return passed();
     if (unseen_in(*x, s.term.name())) continue;
-    // A similar cause is named before a description, and a free curve of time may look like
-    // readings that do not repeat.
+    // A similar cause has priority over a description, and a free curve of time may resemble poor
+    // repeatability.
     if (e.description && x->verdict.kind != model::Verdict::Kind::nothing) continue;
     return failed(s.where() + ": planted alone, explain states " +
                   (x->verdict.effect.empty() ? "nothing" : x->verdict.effect) + " instead");
@@ -420,8 +407,6 @@ Verdict effect_explained(const Effect& e, const Bench& bench) {
   return skipped("no sample determines its parameters");
 }
 
-/// Calls the effect with readings `o`, for `axis` or for each instance of an effect in space.
-/// Returns what is wrong with its columns; empty if they are correct.
 std::string survives(const Effect& e, const Observations& o, const Axis& axis) {
   std::vector<std::string> names{axis.name};
   if (e.instances) names = e.instances(o);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks of what every plugin declares: name, version and options.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -11,8 +10,6 @@ namespace nonio::plugin_check::kit {
 
 namespace {
 
-/// Whether `name` has at most 60 characters: a letter, then letters, digits and characters of
-/// `also`. Capital letters are accepted with `capitals` only.
 bool is_plain(std::string_view name, bool capitals, std::string_view also) {
   const auto letter = [&](char c) {
     return (c >= 'a' && c <= 'z') || (capitals && c >= 'A' && c <= 'Z');
@@ -47,7 +44,7 @@ Verdict check_names(const Info& info, const Bench&) {
   return passed();
 }
 
-/// Returns the unit with which a name ends: "mm" for "depth_mm"; empty if it ends with none.
+/// "mm" for "depth_mm"; empty if the name ends with no unit.
 std::string unit_in_name(std::string_view name) {
   static constexpr std::string_view units[] = {"mm",   "um",     "deg", "arcsec", "urad", "s",
                                                "degC", "kelvin", "K",   "rad",    "m",    "h"};

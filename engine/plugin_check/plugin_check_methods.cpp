@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks of measuring methods.
 #include <algorithm>
 #include <cmath>
 
@@ -17,7 +16,6 @@ const char* const no_columns = "it declares no columns: readers of their own rea
 const char* const no_measurement =
     "no sample of its kind; put a campaign with one into cases/<name>/campaign.toml";
 
-/// A measurement of the method under test, with its sample and its observations.
 struct Measured {
   const Sample& sample;
   const Measurement& measurement;
@@ -80,7 +78,6 @@ bool nearly_equal(double a, double b) {
   return std::fabs(a - b) <= 1e-9 * std::max({std::fabs(a), std::fabs(b), 1e-6});
 }
 
-/// Returns the name and value of each number of observation `i`; NaN for a missing column.
 std::vector<std::pair<const char*, double>> values_of_row(const Observations& o, std::size_t i) {
   std::vector<std::pair<const char*, double>> row{
       {"deviation", o.deviation[i]}, {"run", o.run_of(i)}, {"line", o.line_of(i)}};
@@ -97,7 +94,6 @@ std::vector<std::pair<const char*, double>> values_of_row(const Observations& o,
   return row;
 }
 
-/// Returns the first difference between two sets of observations in words; empty if there is none.
 std::string difference_of(const Observations& wanted, const Observations& found) {
   if (found.size() != wanted.size())
     return std::to_string(found.size()) + " observations; expected " +
@@ -123,8 +119,8 @@ std::string round_trip_of(const Method& m, const Measured& one, const Observatio
   return difference_of(truth, *found);
 }
 
-/// Check: readings that are simulated from observations lead to the same observations again, with
-/// the deviations of the sample and with random ones.
+/// Simulated readings must give the original observations again, for the deviations of the sample
+/// and for random deviations.
 Verdict method_round_trip(const Method& m, const Bench& bench) {
   storage::Random random = bench.random(11);
   return each_measured(m, bench, [&](const Measured& one) -> std::string {
@@ -136,7 +132,6 @@ Verdict method_round_trip(const Method& m, const Bench& bench) {
   });
 }
 
-/// Returns readings with one column removed, or one value blank or extreme, as in a damaged file.
 Readings with_odd_value(Readings readings, const Method& m, storage::Random& random) {
   static constexpr double odd[] = {0.0, -1.0, 1e-300, 1e300, -1e300, 4294967296.0, 0.5};
   const auto any = [&](std::size_t n) {
@@ -202,7 +197,7 @@ Verdict fingerprint(const Method& m, const Bench& bench) {
     const auto o = readings ? observe(m, {one.sample.campaign, one.measurement, *readings})
                             : Expected<Observations>(fail(readings.error()));
     text += one.where() + (o ? std::string("\n") : ": " + o.error().message + "\n");
-    if (readings)  // readings too, because a wrong term in both functions cancels in observations
+    if (readings)  // a wrong term in both functions cancels in the observations
       for (const auto& [name, column] : readings->columns)
         for (const double value : column) text += exact_text(value) + " ";
     for (std::size_t i = 0; o && i < o->size(); ++i)

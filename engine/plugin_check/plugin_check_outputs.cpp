@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks of everything that writes files: outputs and controllers. More checks of tables are in
-// plugin_check_controllers.cpp.
 #include <algorithm>
 #include <charconv>
 #include <set>
@@ -36,7 +34,6 @@ void prepare(const Output& o, const Bench& bench) {
 }
 void prepare(const Controller&, const Bench&) {}
 
-/// Returns why the host would refuse the written files; empty if it accepts them.
 std::string unsound_output(const OutputResult& r) {
   std::set<std::string> names;
   for (const Artifact& a : r.artifacts) {
@@ -49,8 +46,6 @@ std::string unsound_output(const OutputResult& r) {
   return unsound(r);
 }
 
-/// Writes the files of one sample and returns why the host would refuse them; empty if it accepts
-/// them, or if the plugin returns an error, which is allowed.
 template <class Plugin>
 std::string complaint(const Plugin& o, const Sample& s, const Results& results,
                       const Settings& options, const Bench& bench) {
@@ -106,7 +101,6 @@ Verdict output_again(const Plugin& o, const Bench& bench) {
   });
 }
 
-/// Check: the plugin writes a file for at least one sample, unless it must be requested (`opt_in`).
 template <class Plugin>
 Verdict output_writes(const Plugin& o, const Bench& bench) {
   std::size_t files = 0;
@@ -152,8 +146,8 @@ void replace_texts(Campaign& c, const std::string& text) {
     *t = text;
 }
 
-/// Returns the part of a text that the host accepts as id of a measurement: at most 50 bytes,
-/// without slashes and control characters, and without points and blanks at the beginning.
+/// Returns the part of a text that the host accepts as a measurement id: at most 50 bytes, without
+/// slashes and control characters, and without leading points and blanks.
 std::string id_of(const std::string& text) {
   std::string id;
   for (const char c : text)
@@ -185,7 +179,7 @@ template <class Plugin>
 Verdict output_hostile(const Plugin& o, const Bench& bench) {
   std::size_t at = 0;
   return each_output(o, bench, [&](const Sample& s, const Results&) -> std::string {
-    // each sample is tried with the next two texts, so that all samples together use all texts
+    // Each sample is tested with the next two texts, so that all samples together use all texts.
     const auto texts = hostile_texts();
     for (std::size_t k = 0; k < 2; ++k) {
       const auto& [name, text] = texts[(at + k) % texts.size()];
@@ -200,7 +194,6 @@ Verdict output_hostile(const Plugin& o, const Bench& bench) {
   });
 }
 
-/// Returns the values of an option to try: all choices, the ends of its range, or hostile texts.
 std::vector<Setting> ends_of(const Option& option) {
   std::vector<Setting> ends;
   if (std::holds_alternative<bool>(option.default_value)) return {Setting(true), Setting(false)};
@@ -234,8 +227,7 @@ std::vector<Setting> ends_of(const Option& option) {
   return ends;
 }
 
-/// Check: tries each value of each option, one option at a time, on the sample for which the plugin
-/// writes the most files.
+/// Tests one option at a time, on the sample for which the plugin writes the most files.
 template <class Plugin>
 Verdict output_options(const Plugin& o, const Bench& bench) {
   if (o.info.options.empty()) return skipped("it has no options");

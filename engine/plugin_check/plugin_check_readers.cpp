@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks of readers: a file is read completely or refused, and only readings become readings.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -20,12 +19,9 @@ char any_byte(storage::Random& random) {
   return static_cast<char>(static_cast<unsigned char>(random.uniform() * 256.0));
 }
 
-/// At most 120 numbers of a file are replaced, one at a time; 300 random damages are tried per
-/// file.
 constexpr std::size_t most_tokens = 120, damages = 300;
-constexpr double no_reading = 1e6;  // deviation that no machine can have, m or rad
+constexpr double no_reading = 1e6;  // larger than any deviation, m or rad
 
-/// A sample file that the reader recognizes, with the campaign and measurement that it belongs to.
 struct ReadFile {
   std::string sample;
   Campaign campaign;
@@ -68,8 +64,6 @@ Expected<Observations> read(const Reader& r, const ReadFile& f, std::string_view
 const char* const no_file =
     "no sample file of its format; put a campaign with one into cases/<name>/campaign.toml";
 
-/// Calls `law` with each file of the reader and the observations read from it. Fails with the first
-/// non-empty text that `law` returns.
 Verdict each_file(const Reader& r, const Bench& bench,
                   const std::function<std::string(const ReadFile&, const Observations&)>& law) {
   if (!r.recognises || !r.reads || !r.read) return failed("recognises, reads or read is missing");
@@ -84,12 +78,11 @@ Verdict each_file(const Reader& r, const Bench& bench,
   return passed();
 }
 
-/// The numbers of one reading without its row number, to find the same reading in another file.
 using Row = std::vector<double>;
 
 Row row_of(const Observations& o, std::size_t i, bool placed = true) {
-  // the name of the line is used, because its number changes if the file ends before the first row
-  // of another line
+  // The name of the line is used, because its index changes if the file ends before the first row
+  // of another line.
   const double line =
       o.lines.empty() ? 0.0
                       : static_cast<double>(std::hash<std::string>()(o.lines[o.line_of(i)].name));
@@ -112,8 +105,6 @@ std::string words_of(const Row& row) {
          (row.size() > 3 ? short_text(row[3] * 1e3, 6) + " mm or mrad" : std::string("?"));
 }
 
-/// Returns the first reading of `o` that `base` does not contain, in words; empty if there is none.
-/// `lost` receives the number of the `n` readings of `base` that `o` lacks.
 std::string strangers(const std::map<Row, int>& base, std::size_t n, const Observations& o,
                       std::size_t& lost, bool placed = true) {
   auto left = base;
@@ -155,11 +146,9 @@ Verdict reader_empty(const Reader& r, const Bench& bench) {
   });
 }
 
-/// Check: a file that is cut off is refused, or results only in readings of the whole file. The
-/// last reading may be cut, too.
 Verdict reader_truncated(const Reader& r, const Bench& bench) {
   return each_file(r, bench, [&](const ReadFile& f, const Observations& whole) -> std::string {
-    // the position of a step is not compared: it depends on the number of steps in the file
+    // The position of a step depends on the number of steps in the file, so it is not compared.
     const bool placed = f.campaign.measurements[f.measurement].kind != "step-diagonal";
     const auto base = rows_of(whole, placed);
     for (std::size_t k = 1; k < 50; ++k) {
@@ -168,8 +157,8 @@ Verdict reader_truncated(const Reader& r, const Bench& bench) {
       if (!o) continue;
       const std::string cut = "cut off after " + std::to_string(length) + " bytes: ";
       if (const std::string why = unsound(*o); !why.empty()) return cut + why;
-      // The reading of the last source line may be cut, so it is left out. It need not be the last
-      // observation, because a reader may reorder lines.
+      // The reading of the last source line may be incomplete, so it is excluded. It need not be
+      // the last observation, because a reader may reorder lines.
       const std::uint32_t last =
           o->source_line.empty() ? 0
                                  : *std::max_element(o->source_line.begin(), o->source_line.end());
@@ -208,8 +197,6 @@ struct Token {
   std::size_t at, length;
 };
 
-/// Finds the numbers in a text file. If there are more than `most_tokens`, returns a random choice
-/// from all parts of the file.
 std::vector<Token> numbers_of(std::string_view bytes, storage::Random& random) {
   const auto digit = [&](std::size_t i) {
     return i < bytes.size() && bytes[i] >= '0' && bytes[i] <= '9';
@@ -249,16 +236,13 @@ std::string line_words(const std::string& bytes, std::size_t at) {
              1 + std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
 }
 
-/// Returns how many readings a number at byte `at` can affect: those of its source line.
 std::size_t readings_of_line(const Observations& o, const std::string& bytes, std::size_t at) {
-  if (o.source_line.empty()) return 3;  // at most the three coordinates of a ball
+  if (o.source_line.empty()) return 3;  // up to three coordinates of a ball
   const auto line = static_cast<std::uint32_t>(
       1 + std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
   return static_cast<std::size_t>(std::count(o.source_line.begin(), o.source_line.end(), line));
 }
 
-/// Check: a code for "not measured" results in a missing reading or an error, and leaves all other
-/// readings unchanged.
 Verdict reader_sentinels(const Reader& r, const Bench& bench) {
   storage::Random random = bench.random(7);
   return each_file(r, bench, [&](const ReadFile& f, const Observations& whole) -> std::string {
@@ -301,8 +285,7 @@ Verdict reader_signs(const Reader& r, const Bench& bench) {
   });
 }
 
-/// Check: if an option of the reader states the unit of the file, `inch` results in 25.4 times the
-/// positions of `mm`. Readers without such an option take the unit from the file.
+/// Applies only to readers with an option that states the unit of the file.
 Verdict reader_inch(const Reader& r, const Bench& bench) {
   const auto has = [](const Option& o, const char* choice) {
     return std::find(o.choices.begin(), o.choices.end(), choice) != o.choices.end();
@@ -319,7 +302,7 @@ Verdict reader_inch(const Reader& r, const Bench& bench) {
       for (std::size_t axis = 0; axis < one->axes.size(); ++axis)
         for (std::size_t i = 0; i < one->size(); ++i) {
           const double a = one->axes[axis].position[i], b = two->axes[axis].position[i];
-          const double times = one->axes[axis].rotary ? 1.0 : 25.4;  // angles do not change
+          const double times = one->axes[axis].rotary ? 1.0 : 25.4;
           if (std::fabs(times * a - b) > 1e-9 * std::fabs(b))
             return "a target of " + short_text(a * 1e3, 6) + " mm or mrad is one of " +
                    short_text(b * 1e3, 6) + " in inch: expected " + short_text(times, 3) + " times";
@@ -330,8 +313,8 @@ Verdict reader_inch(const Reader& r, const Bench& bench) {
   return skipped("no option has the choices mm and inch");
 }
 
-/// Check: the readings equal those that a person wrote into readings.csv, because a file alone does
-/// not show whether it was read correctly.
+/// A person wrote readings.csv, because a data file alone does not show whether it was read
+/// correctly.
 Verdict reader_truth(const Reader& r, const Bench& bench) {
   std::size_t compared = 0;
   Verdict v = each_file(r, bench, [&](const ReadFile& f, const Observations& o) -> std::string {
@@ -346,8 +329,8 @@ Verdict reader_truth(const Reader& r, const Bench& bench) {
   return v;
 }
 
-/// Check: the reader does not recognize files of other formats. If it reads such a file
-/// nevertheless, it returns an error or sound observations.
+/// If a reader does not reject a file of another format, it must return an error or valid
+/// observations.
 Verdict reader_foreign(const Reader& r, const Bench& bench) {
   storage::Random random = bench.random(9);
   if (!r.recognises || !r.reads || !r.read) return failed("recognises, reads or read is missing");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the samples of `nonio plugin check`: one machine with smooth errors, measured by all kinds
-// of measurement.
+// Generates the samples of `nonio plugin check`: one machine with smooth errors and all kinds of
+// measurement.
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -16,7 +16,7 @@ using Vector = std::array<double, 3>;
 constexpr double um = 1e-6;
 constexpr double turn = 2.0 * std::numbers::pi;
 
-/// A smooth error: the sum of three sine waves over `over` meters, or over a turn (rad).
+/// The sum of three sine waves with the base period `over` (m, or rad for a revolution).
 struct Waves {
   std::array<double, 3> size{}, phase{};
   double over = 1.0;
@@ -39,8 +39,8 @@ Waves waves(storage::Random& random, double size, double over) {
   return w;
 }
 
-/// How a line is measured: number of intervals and runs, directions, and reversal and noise (m; rad
-/// on a rotary axis).
+/// Number of intervals and runs, directions, reversal and noise of a line; m, or rad on a rotary
+/// axis.
 struct Pass {
   int intervals = 20, runs = 3;
   bool plus = true, minus = true, timed = false, uneven = false;
@@ -57,9 +57,6 @@ class MadeMachine {
     turning_ = waves(random_, 20e-6, turn);
   }
 
-  /// Returns rows of a file for a line from `from` to `to`: the error (m) that is sensed along
-  /// `sense`, relative to the start. `target` converts the fraction of the way into the unit of the
-  /// file.
   template <class Target>
   std::string line(const Vector& from, const Vector& to, const Vector& sense, const Pass& pass,
                    const Target& target) {
@@ -80,8 +77,6 @@ class MadeMachine {
         [&](double share) { return turning_(turn * share); });
   }
 
-  /// Returns a file with readings after each step of X, Y and Z in turn, along the four body
-  /// diagonals of the volume `size` (m).
   std::string step_diagonals(const Vector& size, int steps) {
     std::string out = "diagonal,step,moved,deviation_um\n";
     const double length = std::sqrt(size[0] * size[0] + size[1] * size[1] + size[2] * size[2]);
@@ -106,7 +101,6 @@ class MadeMachine {
     return out;
   }
 
-  /// Returns a file with the centres of a ball that a rotary axis turns about Z, or about Y.
   std::string ball(double first_deg, double step_deg, int n, bool about_y) {
     std::string out = "angle_deg,x_mm,y_mm,z_mm\n";
     for (int i = 0; i < n; ++i) {
@@ -121,8 +115,6 @@ class MadeMachine {
     return out;
   }
 
-  /// Returns a file with the centres of a ball on table C, which is mounted on B, at positions of
-  /// both.
   std::string balls_of_two_axes() {
     std::string out = "angle_deg,B_deg,x_mm,y_mm,z_mm\n";
     for (const double b : {-40.0, 0.0, 40.0})
@@ -139,8 +131,8 @@ class MadeMachine {
     return out;
   }
 
-  /// Returns a file with readings of a gauge on a table, along its radius and along its axis: 20 um
-  /// and 40 um times 1 - cos(angle), with noise.
+  /// Readings of a gauge on a table along its radius and along its axis: 20 um and 40 um times 1 -
+  /// cos(angle), with noise.
   std::string tool_centre(int n) {
     std::string out = "angle_deg,x_mm,y_mm,z_mm,tx,ty,tz,deviation_um,line\n";
     for (const bool along : {false, true})
@@ -231,8 +223,6 @@ Vector along(std::size_t axis, double length) {
   return v;
 }
 
-/// Adds a measurement along `axis`: positioning if `sensed` is the same axis, otherwise
-/// straightness.
 void add_run(Source& s, MadeMachine& machine, const std::string& id, std::size_t axis,
              std::size_t sensed, double length, const Pass& pass) {
   const char letter = "XYZ"[axis];
@@ -326,8 +316,7 @@ Source step_diagonals(MadeMachine& machine) {
   return s;
 }
 
-/// Returns a campaign with a circle in both directions, of a machine with a squareness error and
-/// lost motion.
+/// A circle in both directions, with squareness error and lost motion.
 Source circle() {
   Source s{"circle",
            head("circle") + linear_axis('X') + linear_axis('Y') +
@@ -348,7 +337,6 @@ Source circle() {
   return s;
 }
 
-/// Returns a campaign with a spindle that warms up for two hours, measured by two sensors.
 Source thermal() {
   Source s{"thermal", head("thermal") + linear_axis('Z') + measured("T", "thermal", ""), {}};
   std::string rows = "time_s,speed_rpm,y_um,z_um,air_c\n";
@@ -363,8 +351,8 @@ Source thermal() {
   return s;
 }
 
-/// Returns a campaign with eight turns of a ball between two sensors, with errors of an oval
-/// journal and of a bearing cage.
+/// Eight revolutions of a ball between two sensors, with errors of an oval journal and of a bearing
+/// cage.
 Source spindle() {
   Source s{"spindle", head("spindle") + linear_axis('Z') + measured("S", "spindle", ""), {}};
   std::string rows = "angle_deg,x_um,y_um\n";
@@ -380,7 +368,6 @@ Source spindle() {
   return s;
 }
 
-/// Returns a campaign with five lengths in seven positions, measured three times each.
 Source lengths() {
   Source s{"lengths",
            head("lengths") + linear_axis('X') + "[options.lengths]\nmpe_E0_um = 3.0\n" +

@@ -17,9 +17,8 @@ namespace nonio::plugin_check::kit {
 
 namespace {
 
-/// A row of a table: its fields by column name. Blank fields are left out.
 struct TableRow {
-  std::string where;  ///< file and line of the row: "readings.csv:3"
+  std::string where;
   std::map<std::string, std::string> fields;
 
   const std::string* find(const std::string& column) const {
@@ -38,7 +37,6 @@ const Artifact* file_of(const Source& source, const std::string& name) {
   return nullptr;
 }
 
-/// Returns the rows of a CSV file of the case; none if there is no such file.
 std::vector<TableRow> rows_of_table(const Source& source, const std::string& name) {
   std::vector<TableRow> rows;
   const Artifact* file = file_of(source, name);
@@ -67,7 +65,7 @@ std::vector<TableRow> rows_of_table(const Source& source, const std::string& nam
   return rows;
 }
 
-/// A number as it is written in a file, which is correct to half a unit of its last digit.
+/// A number in a file, which is correct to half a unit of its last digit.
 struct WrittenNumber {
   double value = 0.0, half = 0.0;
   bool holds(double found) const {
@@ -89,8 +87,6 @@ std::optional<WrittenNumber> written_number(const std::string& text) {
   return t;
 }
 
-/// A column of readings.csv, its factor from SI units, and the column of the observations that it
-/// is compared with.
 struct Compared {
   const char* column;
   double per_si;
@@ -116,7 +112,6 @@ constexpr Compared compared_columns[] = {
     {"material_degC", 1.0, material_of},
     {"air_degC", 1.0, air_of}};
 
-/// Returns the first column in which observation `i` differs from the row; "" if none differs.
 std::string other_column(const TableRow& row, const Observations& o, std::size_t i) {
   if (const std::string* run = row.find("run"); run != nullptr)
     if (o.run.empty() || std::to_string(o.run[i]) != *run) return "run";
@@ -156,8 +151,7 @@ std::string differs_from_truth(const Observations& o, const Measurement& m, cons
       if (used[i] != 0) continue;
       const std::string other = other_column(row, o, i);
       if (other.empty()) break;
-      // `nearest` names the column in which a reading with the same run, direction and target
-      // differs.
+      // `nearest` is the column in which a reading with the same run, direction and target differs.
       if (other != "run" && other != "direction" && !other.starts_with("target")) nearest = other;
     }
     if (i == o.size())
@@ -218,8 +212,6 @@ double length_of(const std::vector<double>& v) {
   return std::sqrt(sum);
 }
 
-/// Compares the columns of an effect with those of a formula at the same shapes. Returns the
-/// difference in words; "" if there is none.
 std::string other_columns(const Effect& e, const Effect& formula, const Observations& o,
                           const Axis& axis) {
   for (const double share : {0.5, 0.0, 1.0}) {
@@ -246,8 +238,8 @@ std::string other_columns(const Effect& e, const Effect& formula, const Observat
   return {};
 }
 
-/// Reads formulas.toml of a case, which contains [[model.formula]] as in a manifest. The manifest
-/// itself must not contain these formulas, because they predict an effect that already exists.
+/// formulas.toml contains [[model.formula]] as in a manifest. The manifest itself must not contain
+/// these formulas, because they predict an effect that already exists.
 Expected<std::vector<Formula>> formulas_of(const Source& source,
                                            const std::vector<Method>& methods) {
   const Artifact* file = file_of(source, "formulas.toml");
@@ -258,7 +250,6 @@ Expected<std::vector<Formula>> formulas_of(const Source& source,
   return std::move(manifest->campaign.formulas);
 }
 
-/// Compares a formula of a case with the effect of the same name, on every part of a sample.
 Verdict same_as(const Formula& formula, const Effect& e, const Sample& s, const Bench& bench,
                 std::size_t& compared) {
   for (const model::Part& part : model::parts_of(s.campaign, s.observations))
@@ -297,8 +288,6 @@ Verdict truth(const Effect& e, const Bench& bench) {
 
 namespace {
 
-/// Compares one direction of entry `i` of a table with a row of table.csv. Returns the difference
-/// in words; "" if there is none.
 std::string other_entry(const TableRow& row, const LoadedTable& t, std::size_t i, bool plus) {
   const std::string* text = row.find(plus ? (t.rotary ? "plus_arcsec" : "plus_um")
                                           : (t.rotary ? "minus_arcsec" : "minus_um"));

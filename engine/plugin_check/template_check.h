@@ -10,8 +10,8 @@
 namespace nonio::plugin_check {
 
 struct TemplateCheck {
-  std::vector<Error> errors;         ///< errors in the templates; each names a file and a key
-  std::vector<std::string> outputs;  ///< names of the outputs that checked their templates
+  std::vector<Error> errors;
+  std::vector<std::string> outputs;
 };
 
 /// Returns what every output reports about its templates: layouts, words of all languages, letters

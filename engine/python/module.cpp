@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The extension module nonio._nonio, which the Python package calls. The package documents it
-// (nonio/__init__.py).
+// The extension module nonio._nonio; nonio/__init__.py documents it.
 #include <dlfcn.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -26,8 +25,8 @@ namespace nonio::python {
 
 namespace {
 
-/// An error that becomes the Python exception nonio.Error. Unlike a Python exception, it can also
-/// be thrown while the global interpreter lock of Python is released.
+/// Becomes the Python exception nonio.Error. Unlike a Python exception, it can be thrown while the
+/// global interpreter lock of Python is released.
 struct Failure {
   Error error;
 };
@@ -38,7 +37,7 @@ T valued(Expected<T> expected) {
   return *std::move(expected);
 }
 
-/// Returns the folder of libnonio_engine; the plugins are in a folder next to it.
+/// Folder of libnonio_engine; the plugins are in a folder next to it.
 fs::path library_folder() {
   Dl_info found{};
   const auto address =
@@ -59,8 +58,6 @@ Quantity quantity_of(const std::string& unit) {
 
 using Columns = std::map<std::string, std::vector<double>>;
 
-/// Returns the readings of one axis as named columns in printed units, for the Python function of
-/// an effect.
 Columns readings_columns(const Observations& o, const AxisReadings& r, const Axis& axis) {
   Columns out;
   const auto put = [&](const char* name, const std::vector<double>& values, Quantity quantity) {
@@ -76,10 +73,9 @@ Columns readings_columns(const Observations& o, const AxisReadings& r, const Axi
   return out;
 }
 
-/// An effect whose columns a function of Python computes.
 struct OwnEffect {
   std::string name;
-  std::vector<std::pair<std::string, std::string>> parameters;  ///< name and unit
+  std::vector<std::pair<std::string, std::string>> parameters;
   std::vector<std::tuple<std::string, std::string, std::vector<double>>> shapes;
   py::function columns;
 };
@@ -145,8 +141,8 @@ Effect effect_of(OwnEffect given) {
   return effect;
 }
 
-/// A campaign that was read. The constructor and the methods evaluate, compare and explain release
-/// the global interpreter lock while they run.
+/// The constructor and the methods evaluate, compare and explain release the global interpreter
+/// lock.
 class OpenedCampaign {
  public:
   OpenedCampaign(const fs::path& folder, std::vector<fs::path> plugins,
@@ -177,8 +173,8 @@ class OpenedCampaign {
     return out;
   }
 
-  /// Returns the columns of a measurement, named with their units, in the order of a file of
-  /// readings; NaN for a missing value.
+  /// Columns are named with their units and ordered as in a file of readings; NaN for a missing
+  /// value.
   std::vector<std::pair<std::string, std::vector<double>>> readings(const std::string& id) const {
     const auto found = std::find_if(campaign().measurements.begin(), campaign().measurements.end(),
                                     [&](const Measurement& m) { return m.id == id; });
@@ -219,7 +215,7 @@ class OpenedCampaign {
         place_->context);
   }
 
-  /// Returns the comparison as JSON (nonio-compare/1), and as CSV with one row per reading.
+  /// Returns JSON (nonio-compare/1), and CSV with one row per reading.
   std::pair<std::string, std::string> compare(const std::vector<std::string>& model,
                                               const std::vector<OwnEffect>& effects) const {
     const reading::ReadCampaign read = with(effects);

@@ -17,7 +17,6 @@ namespace {
 
 using storage::Json;
 
-/// Random numbers of one measurement, by purpose; each has a stream of its own.
 enum Stream : std::uint64_t { offsets, noise, misreadings, streams };
 
 storage::Random stream_of(const Specification& s, std::size_t cycle, Stream stream) {
@@ -37,20 +36,19 @@ std::vector<double> shifted_targets(const CycleSpec& c, storage::Random random) 
   return targets;
 }
 
-/// Readings of the campaign to which an effect is applied together, and their origin.
+/// Readings to which an effect is applied jointly.
 struct Seen {
   Observations table;
   std::vector<std::pair<std::size_t, std::size_t>> from;  ///< cycle and row of each reading
   const model::Part* part = nullptr;  ///< null for a measurement of kind ball-centres or rtcp
-  double sign = 1.0;                  ///< sign with which the effects are added
+  double sign = 1.0;                  ///< sign of the effects in the readings
 };
 
-/// Returns the axis or place of the effect in these readings; none if it does not affect these
-/// readings.
+/// Returns the axis or instance of the effect; std::nullopt if it does not affect these readings.
 std::optional<Axis> place_in(const Seen& seen, const EffectSpec& e, const Machine& machine) {
   Effect effect = e.effect;
   if (seen.part != nullptr) {
-    effect.is_nuisance = false;  // the orientation of a straightedge may also be simulated
+    effect.is_nuisance = false;  // The orientation of a straightedge may also be simulated.
     const auto terms = model::terms_of(*seen.part, machine, {e.name}, {effect});
     if (!terms || terms->empty()) return std::nullopt;
     return terms->front().axis;
@@ -64,8 +62,7 @@ std::optional<Axis> place_in(const Seen& seen, const EffectSpec& e, const Machin
   return place;
 }
 
-/// Returns the tables to which effects are applied: parts as in `explain`, and each measurement of
-/// kind ball-centres or rtcp.
+/// The parts are those of `explain`, and each measurement of kind ball-centres or rtcp.
 std::vector<Seen> seen_of(const Specification& s, const std::vector<Observations>& rows,
                           const std::vector<model::Part>& parts) {
   std::vector<Seen> all;
@@ -80,8 +77,8 @@ std::vector<Seen> seen_of(const Specification& s, const std::vector<Observations
   for (std::size_t k = 0; k < s.cycles.size(); ++k) {
     const CycleSpec& c = s.cycles[k];
     if (!c.is("ball-centres") && !c.is("rtcp")) continue;
-    // Ball centres: with the axes at P, the reading of a ball is P - e. RTCP: axes commanded to P
-    // are at P + e. e is the error of the axes.
+    // Ball centers: with the axes at P, the reading is P - e. RTCP: axes commanded to P are at P +
+    // e. e is the error of the axes.
     Seen seen{rows[k], {}, nullptr, c.is("rtcp") ? -1.0 : 1.0};
     for (std::size_t i = 0; i < rows[k].size(); ++i) seen.from.emplace_back(k, i);
     all.push_back(std::move(seen));
@@ -95,10 +92,10 @@ double rms(const std::vector<double>& values) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// Returns the deviation of each reading caused by all columns, m or rad. The coefficients of a
-/// curve are random, and are scaled so that the curve has the specified RMS over the readings. For
-/// a curve in space, which not every reading senses, the coefficients alone are scaled, because its
-/// basis functions are orthogonal over the positions and have an RMS of 1.
+/// Deviation of each reading due to all columns, m or rad. The coefficients of a curve are random,
+/// and are scaled so that the curve has the specified RMS over the readings. For a curve in space,
+/// the coefficients are scaled instead, because not every reading senses it, and its basis
+/// functions are orthogonal over the positions and have an RMS of 1.
 std::vector<double> deviation_of_columns(const EffectSpec& e, const Effect::Columns& columns,
                                          storage::Random random) {
   std::vector<double> factor = e.linear, sum(columns.empty() ? 0 : columns[0].size(), 0.0);
@@ -122,8 +119,8 @@ std::vector<double> deviation_of_columns(const EffectSpec& e, const Effect::Colu
   return sum;
 }
 
-/// Returns the shapes as specified; a shape that is not given has the only value that readings and
-/// manifest allow, otherwise its usual value. An error if a shape has neither.
+/// A shape parameter that is not specified has the only value that readings and manifest allow,
+/// otherwise its usual value. An error if there is neither.
 Expected<std::vector<double>> shape_of(const EffectSpec& e, const Observations& o,
                                        const Axis& place) {
   std::vector<double> shape;
@@ -158,9 +155,8 @@ Json quantity_json(double value, bool rotary) {
           {"unit", unit_of(deviation_of(rotary)).symbol}};
 }
 
-/// Returns the factor with which reading i senses the error along the axis `place`: the component
-/// of its direction of sensing, or 1 with a single axis, on a rotary axis and for effects in space,
-/// as in `explain`.
+/// Returns the component of the direction of sensing of reading i along the axis `place`; 1 with a
+/// single axis, on a rotary axis and for effects in space, as in `explain`.
 double sensed(const Seen& seen, const EffectSpec& e, const Axis& place, std::size_t i) {
   const std::size_t k = coordinate_of(place.name);
   if (seen.part == nullptr || e.effect.instances || seen.table.axes.size() < 2 || place.rotary ||
@@ -169,7 +165,6 @@ double sensed(const Seen& seen, const EffectSpec& e, const Axis& place, std::siz
   return seen.table.sense_of(i)[k];
 }
 
-/// Adds the effect to the rows that it affects, and records it in `truth`.
 Expected<void> add_effect(const EffectSpec& e, const Specification& s, const std::vector<Seen>& all,
                           std::vector<Observations>& rows, Json& truth, storage::Random random) {
   std::vector<double> whole;
@@ -215,8 +210,6 @@ void preset(const CycleSpec& c, Observations& o) {
   for (std::size_t i = o.size(); i-- > 0;) o.deviation[i] -= o.deviation[i - i % each];
 }
 
-/// Returns the content of the file of one measurement, with noise and misreadings; records its id,
-/// its file, its noise and its misreadings in `truth`.
 Expected<std::string> readings(const Specification& s, std::size_t k, const Observations& o,
                                Json& truth) {
   const CycleSpec& c = s.cycles[k];
@@ -254,7 +247,6 @@ Expected<std::string> readings(const Specification& s, std::size_t k, const Obse
   return std::string(simulated_mark) + "\n" + table_of(*c.method, written);
 }
 
-/// Records the simulated rotary axes and squares, in mm and urad.
 void tell_things(const Specification& s, Json& truth) {
   const auto mm = [](const std::array<double, 3>& v) {
     return Json{printed(v[0], Quantity::length), printed(v[1], Quantity::length),
@@ -271,8 +263,6 @@ void tell_things(const Specification& s, Json& truth) {
         {{"name", q.name}, {"error_urad", q.error * 1e6}, {"set_up_urad", q.set_up * 1e6}});
 }
 
-/// Returns `simulated_mark` and the manifest lines of the specification, with at most one empty
-/// line in a row.
 std::string manifest_text(const std::string& lines) {
   std::string text = std::string(simulated_mark) + "\n";
   for (const char c : lines)
@@ -302,7 +292,7 @@ config::Checked<Simulated> simulate(std::string_view specification, const std::s
     rows.push_back(made ? std::move(*made) : Observations{});
   }
   if (!errors.empty()) return tl::unexpected(std::move(errors));
-  // ball-centres and rtcp are left out, because `seen_of` adds them separately
+  // Ball-centres and rtcp are excluded, because `seen_of` adds them separately.
   std::vector<Observations> linear = rows;
   for (std::size_t k = 0; k < rows.size(); ++k)
     if (s->cycles[k].is("ball-centres") || s->cycles[k].is("rtcp")) linear[k] = {};

@@ -11,7 +11,6 @@
 namespace nonio::simulation {
 namespace {
 
-/// Reads one [[cycle]] into a CycleSpec in SI units and reports its errors.
 class CycleReader {
  public:
   CycleReader(config::TableReader& reader, const Specification& s)
@@ -85,7 +84,6 @@ class CycleReader {
     return true;
   }
 
-  /// The feed of a circle is that of the measurement, and its dwell is 0 unless it is stated.
   void set_defaults() {
     c_.feed = c_.axis.rotary ? 0.1 : 0.05;
     if (!c_.is("circle")) return;
@@ -175,7 +173,7 @@ class CycleReader {
   const Campaign& campaign_;
   const std::vector<Method>& methods_;
   CycleSpec c_;
-  double unit_ = 1e-3;  ///< SI value of one unit of the targets
+  double unit_ = 1e-3;
   config::TableReader& reader_;
 };
 

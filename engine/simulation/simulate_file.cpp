@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Writes the rows of the files of a simulated campaign.
 #include <charconv>
 #include <cmath>
 
@@ -21,7 +19,6 @@ bool of_ball(const CycleSpec& c) { return c.is("ball-centres") || c.is("rtcp"); 
 std::string millimetres(double si) { return fixed_text(printed(si, Quantity::length), 5); }
 std::string micrometres(double si) { return fixed_text(printed(si, Quantity::deviation), 3); }
 
-/// Returns the distance of reading i from the first end of a diagonal, m.
 double along(const CycleSpec& c, const Observations& o, std::size_t i) {
   double square = 0.0;
   for (const auto& axis : o.axes) {
@@ -48,7 +45,7 @@ std::string ball_row(const CycleSpec& c, const Observations& o, std::size_t i,
   for (std::size_t k = 0; k < 3; ++k)
     text += "," + millimetres(c.is("rtcp") ? o.axes[1 + k].position[i] : e[k]);
   if (!c.is("rtcp")) return text;
-  if (probe)  // a probe reports the found minus the commanded position
+  if (probe)  // A probe reports the measured minus the commanded position.
     return text + "," + micrometres(-e[0]) + "," + micrometres(-e[1]) + "," + micrometres(-e[2]) +
            "," + o.lines[o.line[i]].name.substr(0, o.lines[o.line[i]].name.size() - 2);
   const auto& sense = c.sensor == "turns" ? o.lines[o.line[i]].sense : o.sense_of(i);
@@ -56,8 +53,7 @@ std::string ball_row(const CycleSpec& c, const Observations& o, std::size_t i,
   return text + "," + micrometres(e[0]) + "," + o.lines[o.line[i]].name;
 }
 
-/// Returns the row of a circle; angles are measured from the first axis of the plane toward the
-/// second.
+/// Angles are measured from the first axis of the plane toward the second.
 std::string circle_row(const Observations& o, std::size_t i, double e) {
   const auto& n = o.sense_of(i);
   const double x = n[coordinate_of(o.axes[0].axis)], y = n[coordinate_of(o.axes[1].axis)];

@@ -13,7 +13,7 @@ using Course = TemperatureCourse;
 
 constexpr Range from_0 = from(0.0, "expected a number from 0");
 constexpr Unit percent{"%", 0.01}, degC{"degC"}, K_per_h{"K/h", 1.0 / 3600.0};
-// Lists of kinds of cycles in which a key is allowed. The kind follows from measurement and axis.
+// Kinds of cycles in which a key is allowed. The kind follows from measurement and axis.
 constexpr Words with_mm[] = {"linear", "straightness", "diagonal"};
 constexpr Words with_deg[] = {"rotary", "ball-centres", "rtcp"};
 constexpr Words in_um[] = {"linear",       "straightness", "diagonal", "step-diagonal",
@@ -46,7 +46,6 @@ constexpr Choice directions[] = {choice(1, "+"), choice(-1, "-")};
 constexpr Choice sensors[] = {
     {"turns"}, {"stationary"}, {"probe"}, {"stands", "former name of stationary"}};
 constexpr Choice carried[] = {{"table"}, {"head"}};
-/// Allows a key only in cycles of these kinds.
 constexpr auto of(std::span<const Words> kinds) { return only({config::cycle_axis, kinds}); }
 
 constexpr Key cycle_keys[] = {
@@ -146,7 +145,6 @@ constexpr Key simulation_keys[] = {
      formula_keys},
 };
 
-/// All other keys of the table are parameters of the named effect.
 constexpr Key effect_keys[] = {
     {"name", into<&EffectSpec::name>, "The effect, \"kind:axis\".", required},
 };

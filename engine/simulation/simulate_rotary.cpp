@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Simulates balls on rotary axes that rotate without error.
 #include <cmath>
 
 #include "simulation/simulate_rows.h"
@@ -18,7 +16,7 @@ Vector cross(const Vector& a, const Vector& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// Returns v rotated about n (Rodrigues).
+/// Rotates v about n (Rodrigues).
 Vector rotated(const Vector& v, const Vector& n, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   const Vector across = cross(n, v);
@@ -28,7 +26,6 @@ Vector rotated(const Vector& v, const Vector& n, double angle) {
   return out;
 }
 
-/// Builds the observations of one measurement: axes and lines first, then one row after the other.
 class Rows {
  public:
   explicit Rows(const CycleSpec& c) : c_(c), clock_(c) {
@@ -39,8 +36,8 @@ class Rows {
   }
   void line(std::string name, const Vector& sense) { o_.lines.push_back({std::move(name), sense}); }
 
-  /// Visits each angle; put(angle) adds the readings of one position with `add`. If there is a
-  /// carrier, each run repeats this at each position of the carrier.
+  /// For each angle, `put(angle)` adds the readings of one position with `add`. With a carrier,
+  /// each run is repeated at each position of the carrier.
   template <class Put>
   void sweep(Put put) {
     last_ = c_.targets.front();
@@ -67,7 +64,7 @@ class Rows {
     o_.run.push_back(run_);
     if (first) {
       clock_.reading(o_, way_);
-    } else {  // further readings at the same position
+    } else {
       o_.time.push_back(o_.time.back());
       o_.material.push_back(o_.material.back());
     }
@@ -100,9 +97,10 @@ class Rows {
 
 constexpr std::array<Vector, 3> units{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
-/// Returns the positions of the linear axes when the probe is at the ball. A table moves the ball,
-/// and its carrier moves table and ball. A head moves the stylus, which is at the ball with the
-/// heads at 0, and its carrier moves head and stylus; the linear axes compensate that movement.
+/// The deviations are the positions of the linear axes when the probe is at the ball. A table moves
+/// the ball, and its carrier moves table and ball. A head moves the stylus, which is at the ball if
+/// the heads are at 0, and its carrier moves head and stylus; the linear axes compensate this
+/// movement.
 Observations centres(const RotarySpec& r, const RotarySpec* carrier, const CycleSpec& c) {
   Rows rows(c);
   for (std::size_t k = 0; k < 3; ++k) rows.line(c.measurement.id + " " + "xyz"[k], units[k]);
@@ -120,10 +118,10 @@ Observations centres(const RotarySpec& r, const RotarySpec* carrier, const Cycle
   return rows.done();
 }
 
-/// Returns the readings of kind rtcp: along each direction of sensing, the position of the tool
-/// relative to the workpiece, minus the one that the control computes, while the axis turns. Table:
-/// the axis moves the ball, and the tool follows the computed position. Head: the axis moves the
-/// tool, and the linear axes compensate the computed movement.
+/// Readings of kind rtcp: position of the tool relative to the workpiece along each direction of
+/// sensing, minus the position computed by the control, while the axis rotates. Table: the axis
+/// moves the ball, and the tool follows the computed position. Head: the axis moves the tool, and
+/// the linear axes compensate the computed movement.
 Observations with_tool_centre(const RotarySpec& r, const CycleSpec& c) {
   const Vector centre = r.control_centre.value_or(r.centre),
                direction = r.control_direction.value_or(r.direction);
@@ -142,7 +140,7 @@ Observations with_tool_centre(const RotarySpec& r, const CycleSpec& c) {
                    is = turned(sum(c.balls[b], 1.0, c.ball_offset), r.centre, r.direction, angle);
       const Vector moved = sum(is, -1.0, meant);
       // Position of the linear axes. Table: the computed position of the ball. Head: the ball minus
-      // the computed vector from the head's centre to the tool.
+      // the computed vector from the head's center to the tool.
       const Vector at = head ? sum(sum(c.balls[b], 1.0, centre), -1.0, meant) : meant;
       for (std::size_t k = 0; k < senses; ++k) {
         const Vector sense = probe                 ? units[k]

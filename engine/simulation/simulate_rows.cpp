@@ -15,7 +15,6 @@ double material(const TemperatureCourse& c, double t) {
   return std::round((c.start + c.drift * t + swing) * 100.0) / 100.0;
 }
 
-/// One axis of a diagonal, and its movement per unit of movement along the diagonal.
 struct Side {
   std::string axis;
   std::size_t coordinate = 0;
@@ -43,8 +42,6 @@ Expected<std::vector<Side>> sides_of(const Measurement& m) {
   return sides;
 }
 
-/// Calls put(target, direction, run) for each reading of all passes, and pauses before each further
-/// run.
 template <class Put>
 void sweep(const CycleSpec& c, const std::vector<double>& targets, Clock& clock, Put put) {
   const auto pass = [&](std::uint32_t run, double direction) {
@@ -124,7 +121,6 @@ Expected<Observations> in_steps(const Specification& s, const CycleSpec& c) {
         for (std::size_t k = 0; k < 3; ++k) {
           const Side& side = sides[k];
           const double whole = c.measurement.to.at(side.axis) - side.from;
-          // the axes move in the order X, Y, Z
           const std::uint32_t moved = (step + 2 - static_cast<std::uint32_t>(k)) / 3;
           o.axes[k].position.push_back((sign[k] > 0.0 ? side.from : side.from + whole) +
                                        sign[k] * whole * moved / c.steps);
@@ -141,9 +137,8 @@ Expected<Observations> in_steps(const Specification& s, const CycleSpec& c) {
   return o;
 }
 
-/// Returns the readings of a circle: each run in the specified direction, then, if `pendulum`, in
-/// the opposite one. Lines are named as the reader of the file names them. No reading is exactly at
-/// a reversal.
+/// Each run is in the specified direction, and then, if `pendulum`, in the opposite one. Lines have
+/// the names that the reader of the file uses. No reading is exactly at a reversal.
 Expected<Observations> on_circle(const CycleSpec& c) {
   Observations o;
   o.measurement = c.measurement.id;
@@ -191,9 +186,8 @@ Expected<Observations> on_circle(const CycleSpec& c) {
 }
 
 /// Adds the slope measured against the square of the measurement: on the line of the first axis the
-/// set-up angle, on the line of the other axis the error of the square (negative if it was turned
-/// over) minus the set-up angle (math/square.h: b1 + b2 = t + g). Nothing is added without a
-/// square.
+/// setup angle, on the line of the other axis the error of the square (negative if it was reversed)
+/// minus the setup angle (math/square.h: b1 + b2 = t + g).
 void put_square(const Specification& s, const CycleSpec& c, Observations& o) {
   for (const SquareSpec& q : s.squares) {
     if (q.name != c.measurement.square) continue;
@@ -210,7 +204,7 @@ void Clock::reading(Observations& o, double way) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   if (!first_) t_ += way / c_.feed + c_.dwell;
   first_ = false;
-  const double ticks = c_.is("circle") ? 1000.0 : 10.0;  // per second
+  const double ticks = c_.is("circle") ? 1000.0 : 10.0;  // resolution of the times, 1/s
   o.time.push_back(c_.timed ? std::round(t_ * ticks) / ticks : unknown);
   o.material.push_back(c_.temperature ? material(*c_.temperature, t_) : unknown);
 }

@@ -20,7 +20,7 @@ std::string key_of(const Effect::Parameter& parameter, bool rotary) {
 
 namespace {
 
-using Headers = std::map<std::uint64_t, std::string>;  // line number -> name of its top-level table
+using Headers = std::map<std::uint64_t, std::string>;
 
 void collect_headers(const toml::node& node, const std::string& top, Headers& headers) {
   if (const toml::table* table = node.as_table()) {
@@ -32,8 +32,8 @@ void collect_headers(const toml::node& node, const std::string& top, Headers& he
   }
 }
 
-/// Returns the manifest in the specification: its own lines, with empty lines in place of the
-/// simulation's tables and of comments, which may reveal hidden effects.
+/// Returns the specification with empty lines in place of the simulation's tables and of comments,
+/// which may reveal hidden effects.
 std::string manifest_of(std::string_view text, const toml::table& root) {
   Headers headers;
   for (const auto& [key, node] : root) collect_headers(node, std::string(key.str()), headers);
@@ -53,7 +53,6 @@ std::string manifest_of(std::string_view text, const toml::table& root) {
   return out;
 }
 
-/// Declaration of the keys of an [[effect]]: its name, and a number for each parameter.
 class ParameterKeys {
  public:
   ParameterKeys(const Effect& effect, bool rotary) {
@@ -71,8 +70,8 @@ class ParameterKeys {
   config::Key table_{"effect", config::Key::Holds::table, {}};
 };
 
-/// Returns the effect whose kind its name contains, and sets its axis, except for an effect in
-/// space; null after an error is reported.
+/// Sets the axis of the effect, except for an effect in space; returns null after an error is
+/// reported.
 const Effect* find_effect(config::TableReader& reader, EffectSpec& e, const Specification& s) {
   const std::size_t colon = e.name.find(':');
   const std::string kind = e.name.substr(0, colon),
@@ -90,7 +89,7 @@ const Effect* find_effect(config::TableReader& reader, EffectSpec& e, const Spec
   else if (found == nullptr)
     reader.error("name", "no effect is called \"" + kind + "\"" + storage::suggestion(kind, kinds));
   else if (found->instances)
-    return found;  // an effect in space: straightness:EYX
+    return found;
   else if (machine.axis(on) == nullptr)
     reader.error("name", "the machine has no axis \"" + on + "\"" + storage::suggestion(on, axes));
   else
@@ -98,7 +97,6 @@ const Effect* find_effect(config::TableReader& reader, EffectSpec& e, const Spec
   return e.axis.name.empty() ? nullptr : found;
 }
 
-/// Adds formulas as effects; errors of invalid formulas were reported before.
 void add_formulas(const std::vector<Formula>& formulas, Specification& s,
                   config::TableReader& reader) {
   for (const Formula& f : formulas) {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Reads the rotary axes and squares of a specification.
 #include <algorithm>
 #include <cmath>
 
@@ -33,7 +31,6 @@ void read_directions(config::TableReader& reader, const config::Key& key, std::v
 
 namespace {
 
-/// Reads one vector with a function for several.
 template <class To>
 void read_one(void (*read)(config::TableReader&, const config::Key&, std::vector<Vector>&),
               config::TableReader& reader, const config::Key& key, To& to) {

@@ -53,7 +53,8 @@ Style style() {
   return out;
 }
 
-/// A single image for screen readers; a group if it has links, so that these are accessible.
+/// For screen readers, a chart is one image or, if it has links, a group, so that these are
+/// accessible.
 Html picture(const Page& page, const std::string& label, const Plot& plot) {
   const Drawing drawn = drawing_of(plot, width, style(), *page.fonts, named);
   return {"<svg class=\"chart\" role=\"" + std::string(drawn.has_links ? "group" : "img") +
@@ -63,7 +64,6 @@ Html picture(const Page& page, const std::string& label, const Plot& plot) {
 
 double days(Day day) { return static_cast<double>(day.time_since_epoch().count()); }
 
-/// The range of all values passed to `show`.
 struct Range {
   double low = INFINITY, high = -INFINITY;
   void show(double v) {
@@ -77,7 +77,6 @@ struct Range {
   std::pair<double, double> ends() const { return {low, high}; }
 };
 
-/// Ticks at years, half-years, quarters or months, by the length of the range.
 std::vector<std::pair<double, std::string>> calendar(const Page& page, const Range& range) {
   using namespace std::chrono;
   std::vector<std::pair<double, std::string>> out;
@@ -97,7 +96,6 @@ std::vector<std::pair<double, std::string>> calendar(const Page& page, const Ran
 
 double scaled(double v, Quantity q) { return v * unit_of(q).per_si; }
 
-/// Plot of one series in printed units over days.
 class HistoryPlot {
  public:
   HistoryPlot(const Page& page, const MachineHistory& machine, const HistorySeries& series)
@@ -130,7 +128,6 @@ class HistoryPlot {
                    plot_);
   }
 
-  /// The line without axes and texts.
   Html spark() const {
     if (x_.empty()) return {};
     const auto y = [this](double v) {
@@ -188,7 +185,6 @@ class HistoryPlot {
     std::erase_if(limits_, [this](double limit) { return limit < y_.low || limit > y_.high; });
   }
 
-  /// Each limit with its guard band U.
   void add_limits() {
     const double U = value(2 * series_.points.back().u);
     for (const double limit : limits_) {
@@ -278,7 +274,6 @@ std::vector<double> in_units(const std::vector<double>& si, Quantity q) {
   return out;
 }
 
-/// Error curves of an axis, and an empty plot for them.
 struct Curves {
   std::vector<const ErrorCurve*> all;
   Quantity position = Quantity::length, deviation = Quantity::deviation;

@@ -12,7 +12,7 @@ namespace nonio::reports::site {
 /// prediction, forecast.
 Html history_chart(const Page&, const MachineHistory&, const HistorySeries&);
 
-/// The same data as a line without axes, for a table.
+/// A line without axes, for a table.
 Html spark_line(const Page&, const HistorySeries&);
 
 /// Error curves of one axis from all campaigns, older ones in gray.

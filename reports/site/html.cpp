@@ -55,9 +55,10 @@ Expected<std::string> written(const Page& page, const std::string& name, const V
   return page_text("site/" + name, view, page.words);
 }
 
-std::string value_text(const Page& page, double value, std::optional<double> u, Quantity q) {
-  const Printed shown =
-      printed_result(value, u ? std::optional(2.0 * *u) : std::nullopt, q, page.words.language());
+std::string value_text(const Page& page, double value, std::optional<double> u, Quantity q,
+                       std::optional<double> limit) {
+  const Printed shown = printed_result(value, u ? std::optional(2.0 * *u) : std::nullopt, q,
+                                       page.words.language(), limit);
   std::string out = shown.value;
   if (!shown.U.empty()) out += " ± " + shown.U;
   const std::string unit = unit_text(q);
@@ -68,6 +69,12 @@ std::string short_number(const Page& page, double value, Quantity q) {
   std::string out = localised(short_text(value * unit_of(q).per_si), page.words.language());
   if (out.starts_with('-')) out.replace(0, 1, "\u2212");
   return out;
+}
+
+/// The limit as it was stated.
+std::string limit_number(const Page& page, double limit, Quantity q) {
+  constexpr int most = 6;
+  return printed_number(limit, q, decimals_for({limit}, q, most), page.words.language());
 }
 
 std::string interval_text(const Page& page, const std::string& months) {
@@ -105,11 +112,11 @@ std::string also_text(const Page& page, const WorkItem& l) {
       std::string name = quantity_text(page, v.quantity);
       if (v.axis.empty() && !v.measurement.empty()) name = v.measurement + " " + name;
       const std::string limit =
-          page.words.get("site.limit", {{"limit", short_number(page, v.limit, v.unit)}});
-      values +=
-          (values.empty() ? "" : "; ") + name + " " +
-          (v.value ? value_text(page, *v.value, v.u, v.unit) : page.words.get("site.no_value")) +
-          " (" + limit + ")";
+          page.words.get("site.limit", {{"limit", limit_number(page, v.limit, v.unit)}});
+      values += (values.empty() ? "" : "; ") + name + " " +
+                (v.value ? value_text(page, *v.value, v.u, v.unit, v.limit)
+                         : page.words.get("site.no_value")) +
+                " (" + limit + ")";
     }
     if (!values.empty())
       out +=
@@ -123,7 +130,7 @@ std::string limit_text(const Page& page, const WorkItem& l) {
   const bool in_sentence = std::any_of(l.finding.evidence.begin(), l.finding.evidence.end(),
                                        [](const Number& e) { return e.name == "limit"; });
   if (!l.limit || in_sentence) return {};
-  return ", " + page.words.get("site.limit", {{"limit", short_number(page, *l.limit, l.unit)}});
+  return ", " + page.words.get("site.limit", {{"limit", limit_number(page, *l.limit, l.unit)}});
 }
 
 std::string since_text(const Page& page, const WorkItem& l) {
@@ -166,7 +173,6 @@ namespace {
 
 constexpr std::size_t most_named = 12;  // campaigns named in a line; JSON has all
 
-/// Titles of finding ids such as "table.refused-reversal, ...".
 std::string titles(const Templates& templates, std::string_view language, const std::string& ids,
                    const std::string& axis) {
   std::string out;
@@ -198,7 +204,6 @@ std::string line_text(const Templates& templates, std::string_view language, con
     if (l.campaigns.size() > most_named) names += ", ...";
     finding.texts.emplace_back("campaigns", names);
   }
-  // The size of a change; for a scatter, a factor.
   for (const auto& [number, key] : {std::pair{"size", "site.size"}, {"factor", "site.factor"}})
     if (std::any_of(finding.evidence.begin(), finding.evidence.end(),
                     [wanted = number](const Number& n) { return n.name == wanted; }))

@@ -14,13 +14,12 @@
 
 namespace nonio::reports::site {
 
-/// Data of every page.
 struct Page {
   const SiteHistory& site;
   const Templates& templates;
   const Wording& words;
   std::string to_root;                   ///< relative path to index.html: "" or "../"
-  std::shared_ptr<const Fonts> fonts{};  ///< fonts for text widths in charts
+  std::shared_ptr<const Fonts> fonts{};  ///< for text widths in charts
 };
 
 /// Escaped text whose dates do not wrap.
@@ -28,43 +27,42 @@ Html with_whole_days(std::string_view text);
 /// Like with_whole_days, for HTML.
 std::string whole_days(const std::string& html);
 
-/// Values for the head of a page.
 View page_view(const Page&, const std::string& title, std::string next_to_navigation = {});
-/// Writes the page from templates/pages/site/`name`.html.
+/// The template is templates/pages/site/`name`.html.
 Expected<std::string> written(const Page&, const std::string& name, const View&);
 
-/// Link relative to the current page; empty: none.
+/// Link relative to the current page; empty if there is no link.
 inline std::string from_root(const Page& page, const std::string& link) {
   return link.empty() ? link : page.to_root + link;
 }
 
-/// Text such as "−4.2 ± 0.4 µm", U = 2 u; without u the number and its unit.
-std::string value_text(const Page&, double value, std::optional<double> u, Quantity);
-/// Text such as "6 months. Why.", or the reason for no proposal; empty if not required.
+/// "−4.2 ± 0.4 µm", U = 2 u; without u the number and its unit.
+std::string value_text(const Page&, double value, std::optional<double> u, Quantity,
+                       std::optional<double> limit = {});
+/// "6 months. Why.", or the reason for no proposal; empty if not required.
 std::string proposal_text(const Page&, const IntervalProposal&);
-/// Text such as "every 6 months"; empty without months.
+/// "every 6 months"; empty without months.
 std::string interval_text(const Page&, const std::string& months);
-/// Number format of a comparison of machines.
 FollowedNumbers numbers_of(const Page&, const ModelComparison&);
-/// Whether the value is printed; a scatter is a logarithm, and its sentence states the factor.
+/// A scatter is a logarithm, so its value is not printed; its sentence states the factor.
 bool shows_value(const WorkItem&);
 /// A text of a line ("says", "advice") with kinds of events in words; not yet typeset.
 std::string line_text(const Page&, const WorkItem&, const char* part);
-/// Text such as "Also out: A 15.5 ± 1.9 µm (limit 5)."; empty: one value only.
+/// "Also out: A 15.5 ± 1.9 µm (limit 5)."; empty for one value only.
 std::string also_text(const Page&, const WorkItem&);
-/// Text such as ", limit 12.0"; empty without a limit or if the line's sentence states it.
+/// ", limit 12.0"; empty without a limit or if the line's sentence states it.
 std::string limit_text(const Page&, const WorkItem&);
-/// Text such as "Since 2026-01-24."; empty if the line's sentence has the date.
+/// "Since 2026-01-24."; empty if the line's sentence has the date.
 std::string since_text(const Page&, const WorkItem&);
-/// Name of a quantity; its symbol if it has no text.
+/// Symbol of a quantity if it has no text.
 std::string quantity_text(const Page&, const std::string& quantity);
-/// A number with three significant digits in its printed unit, without the unit.
+/// Three significant digits in the printed unit, without the unit.
 std::string short_number(const Page&, double value, Quantity);
 
 using Day = std::chrono::sys_days;
-/// nullopt: not "YYYY-MM-DD".
+/// nullopt unless the text is "YYYY-MM-DD".
 std::optional<Day> day_of(std::string_view date);
-/// Month and year such as "Mar 2026".
+/// "Mar 2026"
 std::string month_text(const Page&, std::string_view month);
 
 const char* name_of(WorkItem::Kind);

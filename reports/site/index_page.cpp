@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// index.html: the worklist.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -48,8 +47,8 @@ std::string counts(const Page& page) {
   return out;
 }
 
-constexpr std::size_t most_lines = 200;    // limit of the page size
-constexpr std::size_t most_machines = 60;  // in the overview by months
+constexpr std::size_t most_lines = 200;  // limit of the page size
+constexpr std::size_t most_machines = 60;
 constexpr std::size_t most_months = 36;
 
 std::span<const WorkItem> shown_lines(const Page& page) {
@@ -86,7 +85,6 @@ Html says(const Page& page, const WorkItem& l, const char* part) {
   return {typeset_html(line_text(page, l, part))};
 }
 
-/// Text of the line, other open values of the axis, and since when.
 Html all_it_says(const Page& page, const WorkItem& l) {
   std::string more;
   for (const std::string& text : {also_text(page, l), since_text(page, l)})
@@ -109,7 +107,7 @@ void add_line(View& view, const Page& page, const WorkItem& l) {
   line.set("where_link",
            l.machine.empty() ? from_root(page, l.link) : machine_link(page, l.machine));
   line.set("quantity", l.quantity.empty() ? "" : quantity_text(page, l.quantity));
-  line.set("value", shows_value(l) ? value_text(page, *l.value, l.u, l.unit) : "");
+  line.set("value", shows_value(l) ? value_text(page, *l.value, l.u, l.unit, l.limit) : "");
   line.set("value_link", l.value ? from_root(page, l.link) : "");
   line.set("limit", l.value ? limit_text(page, l) : "");
   line.set("says", all_it_says(page, l));
@@ -163,7 +161,6 @@ void add_cell(View& row, const Page& page, const std::string& month, const Month
   cell.set("about", m->machine + ", " + month_text(page, month) + ": " + word);
 }
 
-/// One row per machine, one cell per month.
 void add_strip(View& view, const Page& page) {
   std::set<std::string> months;
   std::map<std::string, std::map<std::string, const MonthOfMachine*>> cells;
@@ -173,7 +170,7 @@ void add_strip(View& view, const Page& page) {
   }
   view.flag("strip", !months.empty());
   while (months.size() > most_months) months.erase(months.begin());
-  std::set<std::string> first;  // machines of the lines come first
+  std::set<std::string> first;
   for (const WorkItem& l : page.site.lines)
     if (first.size() < most_machines && cells.contains(l.machine)) first.insert(l.machine);
   for (const auto& [machine, of] : cells)
@@ -202,7 +199,6 @@ void add_strip(View& view, const Page& page) {
 
 constexpr std::size_t most_sparks = 10;
 
-/// The first line of each machine and axis.
 std::vector<const WorkItem*> drawn_lines(const SiteHistory& site) {
   std::vector<const WorkItem*> out;
   std::set<std::string> seen;
@@ -213,7 +209,6 @@ std::vector<const WorkItem*> drawn_lines(const SiteHistory& site) {
   return out;
 }
 
-/// Largest deviations of the machines in the first lines.
 void add_sparks(View& view, const Page& page) {
   bool any = false;
   for (const WorkItem* l : drawn_lines(page.site)) {

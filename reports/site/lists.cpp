@@ -21,7 +21,6 @@ std::vector<const MachineHistory*> by_due(const SiteHistory& site) {
   return out;
 }
 
-/// Groups by month, because work is planned by months; past dates are overdue.
 std::string bucket(const Page& page, const std::string& due) {
   const std::string& today = page.site.date;
   if (due < today) return page.words.get("site.overdue");

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// machines/<asset>.html: one machine over its campaigns.
 #include <set>
 
 #include "chart.h"
@@ -37,7 +36,7 @@ void add_open_lines(View& view, const Page& page, const MachineHistory& m) {
     std::string text = page.words.get("site.kind." + std::string(name_of(l.kind))) + ": ";
     if (!l.axis.empty()) text += l.axis + " ";
     if (!l.quantity.empty()) text += quantity_text(page, l.quantity) + " ";
-    if (shows_value(l)) text += value_text(page, *l.value, l.u, l.unit) + ". ";
+    if (shows_value(l)) text += value_text(page, *l.value, l.u, l.unit, l.limit) + ". ";
     text = html_of(text).text;
     for (const char* part : {"says", "advice"})
       text += typeset_html(line_text(page, l, part)) + " ";
@@ -69,7 +68,6 @@ void add_tables(View& view, const Page& page, const MachineHistory& m) {
   }
 }
 
-/// Text of a change; as found and as left on the same day have a separate text.
 std::string change_text(const Page& page, const FollowedNumbers& numbers, const HistoryChange& c) {
   const std::string size = numbers.difference(c.size, c.u);
   if (c.cause == "table" && c.after == c.before)
@@ -124,7 +122,6 @@ std::string comparison_text(const Page& page, const HistoryPoint& p,
              : printed_result(p.value, 2.0 * p.u, numbers.quantity(), page.words.language()).U;
 }
 
-/// Adds the numbers shown in the chart.
 void add_numbers(View& view, const Page& page, const HistorySeries& s,
                  const FollowedNumbers& numbers) {
   view.flag("followed", !s.model.empty());
@@ -142,7 +139,6 @@ void add_numbers(View& view, const Page& page, const HistorySeries& s,
   }
 }
 
-/// Title of a series; an ended series includes its last date.
 std::string title_of(const Page& page, const HistorySeries& s) {
   const std::string title = s.axis + " · " + quantity_text(page, s.quantity);
   if (!s.ended || s.points.empty()) return title;

@@ -7,7 +7,7 @@ namespace nonio::reports {
 
 namespace {
 
-/// Fonts of the templates. If they are missing, text widths in charts are estimated.
+/// If fonts are missing in the templates, text widths in charts are estimated.
 Expected<std::shared_ptr<const Fonts>> fonts_of(const Templates& templates) {
   std::array<FontFile, 2> files{
       {{"", "fonts/LiberationSans-Regular.ttf"}, {"", "fonts/LiberationSans-Bold.ttf"}}};

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// The worklist as text: one line per action.
 #include <map>
 
 #include "html.h"
@@ -14,7 +13,6 @@ using Kind = WorkItem::Kind;
 using State = WorkItem::State;
 using site::Page;
 
-/// First word of a line, such as "Out"; "Known" or "Fixed" if it is not new.
 std::string head_of(const Page& page, const WorkItem& l) {
   const std::string kind = page.words.get("site.kind." + std::string(site::name_of(l.kind)));
   if (l.state == State::fixed) return page.words.get("site.kind.fixed");
@@ -31,7 +29,7 @@ std::string number_of(const Page& page, const WorkItem& l) {
   std::string out;
   if (!l.quantity.empty()) out = site::quantity_text(page, l.quantity);
   if (!site::shows_value(l)) return out;
-  out += (out.empty() ? "" : " ") + site::value_text(page, *l.value, l.u, l.unit);
+  out += (out.empty() ? "" : " ") + site::value_text(page, *l.value, l.u, l.unit, l.limit);
   return out + site::limit_text(page, l);
 }
 

@@ -7,17 +7,19 @@
 
 namespace nonio::reports {
 
-/// A scale with ticks at round values.
 struct AxisScale {
   double from = 0, to = 1;
   std::vector<double> ticks;
   std::vector<std::string> labels;
 
-  double at(double value) const { return (value - from) / (to - from); }  ///< 0: from, 1: to
+  double at(double value) const {
+    return (value - from) / (to - from);
+    /// 0 at `from`, 1 at `to`.
+  }
 };
 
 /// Covers `low` to `high` with about `count` ticks at multiples of 1, 2, 2.5 or 5 times a power of
-/// ten, at fractions of a turn, or at whole numbers.
+/// ten, at fractions of a revolution, or at whole numbers.
 enum class Ticks { decimal, turn, whole };
 AxisScale axis_scale(double low, double high, int count, Ticks ticks, std::string_view language);
 

@@ -113,7 +113,6 @@ void draw_mark(Canvas& canvas, const Style& style, Level level, double x, double
 
 namespace {
 
-/// Adds lines of a text as pieces; more than eight lines can be divided.
 void add_text(std::vector<Piece>& pieces, const SetText& text, double indent, Colour colour,
               bool with_next = false) {
   constexpr std::size_t together = 8;
@@ -236,7 +235,7 @@ Expected<Laid> lay(const Status& status, double width, const Context& context,
   }
   double height = 2 * pad;
   for (const SetText& text : texts) height += text.height();
-  if (height > context.page_room) {  // rare: without the box it can be divided
+  if (height > context.page_room) {
     Laid out;
     for (const SetText& text : texts) add_text(out.pieces, text, 0, style.text);
     return out;
@@ -310,7 +309,6 @@ Expected<Laid> lay_all(const std::vector<Block>& blocks, double width, const Con
   return out;
 }
 
-/// Aligns plots that begin side-by-side parts by a common height of title and legend.
 Expected<void> put_in_line(Columns& columns, double room, const Context& context) {
   const auto share_of = [&](std::size_t i) {
     return i < columns.shares.size() ? columns.shares[i]

@@ -142,7 +142,7 @@ void PdfCanvas::font(int which, double size) {
   state_.size = size;
 }
 
-/// Shows runs of one font; accents separately.
+/// Runs of one font are one operation; accents are separate.
 void PdfCanvas::show(bool bold, double size, std::span<const Glyph> glyphs) {
   const auto is_accent = [](const Glyph& g) { return g.shift != 0 || g.rise != 0; };
   for (std::size_t i = 0; i < glyphs.size();) {
@@ -175,7 +175,7 @@ void PdfCanvas::show(bool bold, double size, std::span<const Glyph> glyphs) {
 
 void PdfCanvas::shown(std::span<const Glyph> glyphs) {
   ops += '(';
-  std::array<char, 256> part;  // buffer, twice as fast as appending bytes
+  std::array<char, 256> part;  // twice as fast as appending bytes
   std::size_t n = 0;
   for (const Glyph& g : glyphs) {
     for (const int byte : {g.id >> 8, g.id & 0xFF}) {

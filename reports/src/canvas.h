@@ -44,7 +44,7 @@ class Canvas {
 
   /// x, y: start of the baseline.
   virtual void text(double x, double y, bool bold, double size, std::span<const Glyph>) = 0;
-  /// Text in upward direction, for titles of vertical axes.
+  /// For titles of vertical axes.
   virtual void text_upwards(double x, double y, bool bold, double size, std::span<const Glyph>) = 0;
 
   /// Groups drawing until `end_item`, with a tooltip and a link (may be empty); no effect in a PDF.
@@ -68,7 +68,7 @@ class PdfCanvas final : public Canvas {
   void curve_to(double x1, double y1, double x2, double y2, double x3, double y3);
   void rectangle(double x, double y, double w, double h) override;
   void circle(double x, double y, double radius) override;
-  void dots(std::span<const Point>, double diameter, Colour) override;  ///< compact
+  void dots(std::span<const Point>, double diameter, Colour) override;
   void close() override { ops += "h\n"; }
   void stroke() override { ops += "S\n"; }
   void fill() override { ops += "f\n"; }
@@ -92,7 +92,7 @@ class PdfCanvas final : public Canvas {
     double width = -1;
     Dash dash = Dash::solid;
     bool see_through = false;
-    int font = 0;  ///< font in use: 1 regular, 2 bold, 3 wide
+    int font = 0;  ///< 1 regular, 2 bold, 3 wide
     double size = -1;
   };
   void number(double value);

@@ -8,7 +8,7 @@
 namespace nonio::reports {
 namespace {
 
-/// The NFC composition of both characters (or of `first` if `second` is 0); 0: none.
+/// The NFC composition of both characters (or of `first` if `second` is 0); 0 if there is none.
 char32_t composed(char32_t first, char32_t second) {
   std::array<utf8proc_int32_t, 32> parts{};
   utf8proc_ssize_t size = 0;

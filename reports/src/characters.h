@@ -3,7 +3,6 @@
 
 #include <string_view>
 
-/// Characters of UTF-8 texts and their properties.
 namespace nonio::reports {
 
 inline constexpr char32_t not_utf8 = 0xFFFFFFFF;

@@ -11,7 +11,6 @@
 namespace nonio::reports {
 namespace {
 
-/// Reads the Unicode cmap of format 4 (basic plane) into a table by character.
 bool read_cmap(const FontReader& r, std::size_t cmap, std::vector<std::uint16_t>& glyphs) {
   const std::size_t count = r.u16(cmap + 2);
   for (std::size_t i = 0; i < count; ++i) {
@@ -50,7 +49,7 @@ void append_hex(std::string& out, std::uint32_t value) {
 using Numbers = std::vector<int>;
 constexpr int no_glyph = -1;
 
-/// The ToUnicode map. The minus sign maps to "-", so that copied numbers are valid.
+/// The minus sign maps to "-", so that copied numbers are valid.
 std::string to_unicode(const Font& font, const Numbers& numbers) {
   std::vector<std::uint16_t> character(font.advance.size());
   for (std::size_t c = font.glyphs.size(); c-- > 0;)
@@ -100,8 +99,6 @@ std::string widths_array(const std::vector<std::uint16_t>& advance, const Number
   return out + "]";
 }
 
-/// The font name with a prefix of six letters that depends on the subset, such as
-/// "ABCDEF+LiberationSans".
 std::string subset_name(std::string_view bytes, std::string_view path) {
   std::uint64_t hash = 1469598103934665603U;  // FNV-1a, 64 bits
   for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
@@ -129,7 +126,6 @@ pdf::EmbeddedFont embedded(const Font& font, const std::string& file, const Numb
           widths_array(font.advance, numbers), pdf::deflated(to_unicode(font, numbers), level)};
 }
 
-/// Compresses a font that documents embed completely or as common part.
 void compress(Font& font) {
   constexpr int level = 12;  // highest level, because it runs once per process
   Numbers all, common;
@@ -152,7 +148,7 @@ bool same_font(const Font& font, FontFile file) {
 }  // namespace
 
 pdf::EmbeddedFont embedded_part(const Font& font, const std::vector<std::uint16_t>& glyphs) {
-  constexpr int level = 1;  // compression level of pages
+  constexpr int level = 1;
   const std::string part = font_part(font.bytes, glyphs);
   return part.empty() ? pdf::EmbeddedFont{}
                       : embedded(font, part, Numbers(glyphs.begin(), glyphs.end()), level);
@@ -206,7 +202,7 @@ Expected<std::shared_ptr<const Fonts>> shared_fonts(FontFile regular, FontFile b
     std::mutex mutex;
     std::shared_ptr<const Fonts> fonts;
   };
-  static Memo memo;  // cache, which only affects the speed
+  static Memo memo;
   const std::lock_guard lock(memo.mutex);
   if (memo.fonts && same_font(memo.fonts->regular, regular) && same_font(memo.fonts->bold, bold) &&
       same_font(memo.fonts->wide, wide))

@@ -7,7 +7,8 @@
 
 namespace nonio::reports {
 
-/// Big-endian numbers of a font file. Beyond its end, 0 is returned and `ok` becomes false.
+/// Big-endian numbers of a font file. Beyond the end of the file, 0 is returned and `ok` becomes
+/// false.
 class FontReader {
  public:
   explicit FontReader(std::string_view bytes) : bytes_(bytes) {}
@@ -16,7 +17,6 @@ class FontReader {
   int s16(std::size_t at) const { return static_cast<std::int16_t>(u16(at)); }
   bool ok() const { return ok_; }
 
-  /// Offset of a table; nullopt if missing.
   std::optional<std::size_t> table(std::string_view tag) const { return entry(tag, 8); }
   std::optional<std::size_t> table_size(std::string_view tag) const { return entry(tag, 12); }
 

@@ -30,7 +30,6 @@ std::uint32_t checksum(const std::string& padded) {
   return sum;
 }
 
-/// Adds the components of the glyphs.
 std::vector<char> closed(std::vector<char> kept, const FontReader& r, const Outlines& outlines) {
   std::vector<std::size_t> open;
   for (std::size_t g = 0; g < kept.size(); ++g)
@@ -71,7 +70,6 @@ std::string joined(Tables tables) {
   return out;
 }
 
-/// The tables that a PDF requires, without outlines; empty if one is missing.
 Tables tables_of(std::string_view font, const FontReader& r) {
   Tables tables;
   for (const char* tag : {"head", "hhea", "hmtx", "maxp", "name", "loca", "glyf"}) {
@@ -84,10 +82,9 @@ Tables tables_of(std::string_view font, const FontReader& r) {
   return tables;
 }
 
-/// The font file with these outlines; glyph `g` begins at offsets[g].
 std::string with_outlines(Tables tables, std::string glyf,
                           const std::vector<std::size_t>& offsets) {
-  const bool halves = glyf.size() <= 0x1FFFE;  // whether the short format of loca is sufficient
+  const bool halves = glyf.size() <= 0x1FFFE;
   std::string loca;
   for (const std::size_t offset : offsets)
     halves ? put16(loca, static_cast<std::uint32_t>(offset / 2))
@@ -133,7 +130,7 @@ std::string font_part(std::string_view font, std::vector<std::uint16_t> glyphs) 
     if (glyphs[n] < number.size()) number[glyphs[n]] = static_cast<std::uint16_t>(n);
   std::string glyf, hmtx;
   std::vector<std::size_t> offsets;
-  for (std::size_t n = 0; n < glyphs.size(); ++n) {  // components are appended
+  for (std::size_t n = 0; n < glyphs.size(); ++n) {
     const std::size_t g = glyphs[n], begin = std::min(outlines.begin(g), font.size());
     offsets.push_back(glyf.size());
     std::string outline(font.substr(begin, outlines.size(g)));

@@ -12,10 +12,8 @@ namespace {
 
 constexpr double head_room = 16, foot_room = 16;
 
-/// Distributes strips to pages.
 class Pages {
  public:
-  /// `foot`: bottom of the first page; its space is reserved.
   Pages(const Style& style, bool head, const Laid& foot)
       : style_(style),
         room_(style.page_height - style.top - style.bottom - foot_room),
@@ -34,7 +32,7 @@ class Pages {
         height += pieces[end - 1].gap + pieces[end].height;
         ++end;
       }
-      if (height > room_ - head_) end = i + 1, height = pieces[i].height;  // longer than a page
+      if (height > room_ - head_) end = i + 1, height = pieces[i].height;
       if ((y_ + height > room() + 0.01 || pieces[i].new_page) &&
           (y_ > top_of_page() || room() < room_)) {
         next_page();
@@ -80,7 +78,6 @@ class Pages {
   std::optional<pdf::SignaturePlace> signature_;
 };
 
-/// Lays out the bottom of the first page.
 Expected<Laid> lay_first_foot(const Document& document, double width, const Context& context) {
   Laid foot;
   double height = 0.0;
@@ -153,7 +150,7 @@ Expected<void> add_mark(std::vector<PdfCanvas>& pages, const Document& document,
   const double diagonal = std::hypot(style.page_width, style.page_height);
   const double cosine = style.page_width / diagonal, sine = style.page_height / diagonal;
   const double size = std::min(110.0, 0.8 * diagonal / std::max(width_of(*glyphs), 0.1));
-  const double length = width_of(*glyphs) * size, half = 0.35 * size;  // half a capital letter
+  const double length = width_of(*glyphs) * size, half = 0.35 * size;
   for (PdfCanvas& page : pages) {
     PdfCanvas canvas;
     canvas.see_through(true);
@@ -176,7 +173,6 @@ pdf::Font as_embedded(const Font& font, bool common_only, int stem) {
           stem};
 }
 
-/// File without pages and without the wide font.
 pdf::NewFile new_file(const Document& document, const Fonts& fonts, Used& used) {
   pdf::NewFile file;
   file.title = document.title;
@@ -214,7 +210,7 @@ Expected<std::string> pdf_bytes(const Document& document, const Fonts& fonts) {
        {std::pair(&document.title, "title"), std::pair(&document.author, "author"),
         std::pair(&document.subject, "subject")})
     if (auto glyphs = shape(*text, fonts, false, field); !glyphs) return fail(glyphs.error());
-  Laid waiting;  // headings, kept with the next block
+  Laid waiting;
   NONIO_TRY(const auto foot, lay_first_foot(document, width, context));
   Pages pages(style, !document.head.empty(), foot);
   std::optional<Laid> before_last;  // the last block is not alone on a page

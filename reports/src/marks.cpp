@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// QR codes, drawn as areas from libqrencode modules, and the signature frame.
 #include <qrencode.h>
 
 #include <algorithm>
@@ -21,7 +19,6 @@ Modules modules_of(const std::string& text) {
           &QRcode_free};
 }
 
-/// Draws adjacent dark modules as one rectangle.
 void draw_modules(Canvas& canvas, const QRcode& code, double size) {
   const int width = code.width;
   const double module = size / (width + 2 * quiet_zone);

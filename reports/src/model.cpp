@@ -12,7 +12,6 @@ namespace {
 
 constexpr double notable_correlation = 0.9;
 
-/// Meaning of a parameter; parts of a curve (s1, s2, ...) share a text.
 std::string meaning_of(const ModelFit::Parameter& p, const Templates& templates,
                        const std::string& language) {
   const std::string card = "effect." + p.effect.substr(0, p.effect.find(':')) + ".parameter.";
@@ -28,7 +27,7 @@ const ModelFit::Curve* curve_named(const ModelFit& fit, const std::string& effec
   return nullptr;
 }
 
-/// Adds properties of a curve, because spline coefficients are not readable.
+/// Properties of a curve, because spline coefficients are not readable.
 void add_curve(std::vector<ParameterRow>& rows, const std::string& effect,
                const ModelFit::Curve& curve, const ModelFit& fit, const Templates& templates,
                const std::string& language) {
@@ -87,7 +86,7 @@ std::vector<ParameterRow> parameter_rows(const ModelFit& fit, const Templates& t
     if (p.u && std::isfinite(*p.u)) U = 2 * *p.u;
     const Printed shown = printed_result(p.value, U, p.quantity, language);
     const bool same = above != nullptr && *above == p.effect;
-    const bool is_held = p.u && *p.u == 0.0 && !p.searched;  // the parameter is stated, not fitted
+    const bool is_held = p.u && *p.u == 0.0 && !p.searched;
     const std::string says_U = is_held           ? words(templates, language, "model.held")
                                : shown.U.empty() ? "–"
                                                  : shown.U;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "nonio/sdk/format.h"
 
@@ -12,7 +13,7 @@ namespace {
 constexpr double largest_plain = 1e9;
 constexpr const char* dash = "–";
 
-/// Localizes a number; the minus sign is U+2212, which a PDF maps back to "-" when copied.
+/// The minus sign is U+2212, which a PDF maps back to "-" when copied.
 std::string typeset(std::string number, std::string_view language) {
   number = localised(std::move(number), language);
   std::string out;
@@ -24,7 +25,6 @@ std::string typeset(std::string number, std::string_view language) {
   return out;
 }
 
-/// Rounds to a multiple of 10^place.
 std::string rounded_text(double printed_value, int place, std::string_view language) {
   if (!std::isfinite(printed_value)) return dash;
   if (std::fabs(printed_value) >= largest_plain)
@@ -32,17 +32,31 @@ std::string rounded_text(double printed_value, int place, std::string_view langu
   return typeset(nonio::rounded_text(printed_value, place), language);
 }
 
+/// Place of the last digit, at most `place`, at which the rounded magnitude is on the same side of
+/// the limit as the magnitude.
+int place_that_shows(double value, double limit, int place) {
+  constexpr int least = -9;
+  const auto side = [&](double x) { return (std::fabs(x) > limit) - (std::fabs(x) < limit); };
+  while (place > least &&
+         side(std::strtod(nonio::rounded_text(value, place).c_str(), nullptr)) != side(value))
+    --place;
+  return place;
+}
+
 }  // namespace
 
 Printed printed_result(double value, std::optional<double> U, Quantity quantity,
-                       std::string_view language) {
+                       std::string_view language, std::optional<double> limit) {
   if (quantity == Quantity::count) return {printed_number(value, quantity, 0, language), ""};
   const double shown = printed(value, quantity);
   const double shown_U = U ? printed(*U, quantity) : 0.0;
   if (!(shown_U > 0.0) || !std::isfinite(shown_U))
     return {rounded_text(shown, quantity == Quantity::time ? -1 : -3, language), ""};
   const int place = std::max(place_of_second_digit(shown_U), -9);
-  return {rounded_text(shown, place, language), rounded_text(shown_U, place, language)};
+  const int place_of_value = limit && std::isfinite(shown)
+                                 ? place_that_shows(shown, printed(*limit, quantity), place)
+                                 : place;
+  return {rounded_text(shown, place_of_value, language), rounded_text(shown_U, place, language)};
 }
 
 std::string printed_number(double si, Quantity quantity, int decimals, std::string_view language) {

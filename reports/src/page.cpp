@@ -80,7 +80,6 @@ class PageWriter {
     return nullptr;
   }
 
-  /// Processes from `at` to the end of a section; no output unless `written`.
   Expected<void> part(std::size_t& at, bool written, std::string_view section) {
     const std::string_view text = open_.back().text;
     const std::size_t begin = at;

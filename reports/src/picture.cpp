@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // libharu also reads pictures, but decodes and compresses them again for every document.
 #include "nonio/reports/picture.h"
 
@@ -24,7 +23,6 @@ std::string size_error(unsigned width, unsigned height) {
          std::to_string(most_pixels) + " a side is the most";
 }
 
-/// Compresses RGBA pixels to color and opacity.
 void compress(const std::string& pixels, Picture& picture) {
   std::string colours, opacity;
   picture.grey = true;
@@ -41,7 +39,6 @@ void compress(const std::string& pixels, Picture& picture) {
   if (!opaque) picture.opacity = pdf::deflated(opacity, level);
 }
 
-/// Returns an error message; empty: none.
 std::string read_png(std::string_view bytes, Picture& picture) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
@@ -117,7 +114,7 @@ Expected<std::shared_ptr<const Picture>> shared_picture(std::string_view bytes,
     std::mutex mutex;
     std::vector<Known> known;
   };
-  static Memo memo;  // cache, which only affects the speed
+  static Memo memo;
   constexpr std::size_t most = 4;
   const std::lock_guard lock(memo.mutex);
   for (const Known& k : memo.known)

@@ -14,7 +14,7 @@
 
 namespace nonio::reports {
 
-/// The signature frame relative to an origin; y of its upper left corner, downwards negative.
+/// Upper left corner relative to an origin; y is negative downwards.
 struct SignatureFrame {
   double x = 0.0, y = 0.0, width = 0.0, height = 0.0;
 };
@@ -24,8 +24,8 @@ struct Piece {
   double height = 0.0;
   double gap = 0.0;  ///< space to the next strip on the page
   std::string ops{};
-  bool with_next = false;  ///< kept with the next piece
-  bool new_page = false;   ///< begins a new page
+  bool with_next = false;
+  bool new_page = false;
   std::optional<SignatureFrame> signature{};
 };
 
@@ -39,9 +39,9 @@ struct Laid {
 
 /// Data to be embedded in a document.
 struct Used {
-  bool common_only = true;             ///< only glyphs in Font::common were used
+  bool common_only = true;             ///< whether only glyphs in Font::common were used
   std::vector<std::uint16_t> wide;     ///< glyphs of Fonts::wide by their number in the document
-  std::vector<std::uint16_t> numbers;  ///< document numbers by glyph; 0: not used
+  std::vector<std::uint16_t> numbers;  ///< document numbers by glyph; 0 if the glyph is not used
   std::vector<std::shared_ptr<const Picture>> pictures;
 };
 
@@ -53,7 +53,6 @@ struct Context {
   Medium medium = Medium::paper;
 };
 
-/// Text of one size, divided into lines.
 struct SetText {
   Glyphs glyphs;
   std::vector<TextLine> lines;
@@ -65,7 +64,7 @@ struct SetText {
   /// Draws line `i` with its upper edge at y; align 0 left, 0.5 center, 1 right in `width`.
   void draw(Canvas&, std::size_t i, double x, double y, double width = 0.0,
             double align = 0.0) const;
-  /// Draws all lines, the first with its upper edge at y.
+  /// The first line has its upper edge at y.
   void draw_all(Canvas&, double x, double y, double width = 0.0, double align = 0.0) const;
 };
 
@@ -78,7 +77,7 @@ Expected<SetText> set_text(const Context&, std::string_view text, bool bold, dou
 Expected<SetText> set_line(const Context&, std::string_view text, bool bold, double size,
                            double width, std::string_view field);
 
-/// A filled sign: disc, triangle, square or ring, distinguishable without color.
+/// A disc, triangle, square or ring, distinguishable without color.
 void draw_mark(Canvas&, const Style&, Level, double x, double y, double size);
 Colour colour_of(const Style&, Level);
 

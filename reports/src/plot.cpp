@@ -12,7 +12,7 @@ namespace nonio::reports {
 namespace {
 
 using Curve = Plot::Curve;
-constexpr double largest_drawn = 1e300;  // so that differences of two values are finite
+constexpr double largest_drawn = 1e300;  // differences of two values remain finite
 
 bool drawable(double v) { return std::fabs(v) < largest_drawn; }
 
@@ -27,9 +27,8 @@ struct Range {
   bool empty() const { return !(low <= high); }
 };
 
-/// The area of the curves, and its scales.
 struct Frame {
-  double x, y, w, h;  ///< lower left corner and size, pt
+  double x, y, w, h;
   AxisScale across, up;
   double px(double v) const { return x + w * across.at(v); }
   double py(double v) const { return y + h * up.at(v); }
@@ -77,7 +76,7 @@ void draw_marker(Canvas& canvas, Marker marker, double x, double y, double r, Co
 
 using Point = Canvas::Point;
 
-/// Draws markers of one kind; dots in one operation, which needs much fewer bytes.
+/// Dots are drawn in one operation, which needs much fewer bytes.
 void draw_markers(Canvas& canvas, Marker marker, const std::vector<Point>& points, double r,
                   Colour colour) {
   constexpr double outline = 0.6;
@@ -85,8 +84,8 @@ void draw_markers(Canvas& canvas, Marker marker, const std::vector<Point>& point
   for (const auto& [x, y] : points) draw_marker(canvas, marker, x, y, r, colour);
 }
 
-/// Thins an unbroken part of a curve: of many points at one x, the first, the extremes and the last
-/// are kept, which look the same.
+/// Of many points of an unbroken part at one x, the first, the extremes and the last are kept,
+/// which look the same.
 void thin_out(std::vector<Point>& points) {
   constexpr double place = 0.4;
   if (points.size() < 400) return;
@@ -106,7 +105,6 @@ void thin_out(std::vector<Point>& points) {
   points = std::move(out);
 }
 
-/// The unbroken parts of a curve in page coordinates; missing readings break it.
 std::vector<std::vector<Point>> stretches(const Frame& frame, const std::vector<double>& x,
                                           const std::vector<double>& y) {
   std::vector<std::vector<Point>> out(1);
@@ -189,8 +187,8 @@ void draw_bars(Canvas& canvas, const Frame& frame, const Curve& curve) {
   if (any) canvas.stroke();
 }
 
-/// Points of a scatter plot. Of many in one cell, the first is drawn, and the extremes of each
-/// column, so that a million readings make a small file that looks the same.
+/// Of many points in one cell, the first is drawn, and the extremes of each column, so that a
+/// million readings give a small file that looks the same.
 std::vector<Point> scattered(const Frame& frame, const Curve& curve, double place) {
   const auto cells = [place](double length) {
     return static_cast<std::size_t>(std::max(0.0, length) / place) + 1;
@@ -216,7 +214,6 @@ std::vector<Point> scattered(const Frame& frame, const Curve& curve, double plac
   return out;
 }
 
-/// Draws each point as an item with tooltip and link.
 void draw_items(Canvas& canvas, const Frame& frame, const Curve& curve) {
   const auto text_of = [](const std::vector<std::string>& all, std::size_t i) {
     return i < all.size() ? std::string_view(all[i]) : std::string_view();
@@ -256,7 +253,6 @@ class PlotSetter {
         field_(field),
         size_(std::max(5.0, context.style.small - 0.5)) {}
 
-  /// Draws the plot and returns its height.
   Expected<double> set() {
     const auto own_top = draw_top();
     if (!own_top || plot_.only_legend) return own_top;
@@ -414,7 +410,6 @@ class PlotSetter {
     return draw_spans(frame);
   }
 
-  /// Draws with one scale for both axes, centered, with the caption below.
   Expected<void> draw_picture(double top, double height, Range across, Range up) {
     NONIO_TRY(auto caption, set_text(context_, plot_.x_title, false, size_, width_, field_));
     const double below = caption.height() + 2, edge = 1.6 * size_;
@@ -450,7 +445,7 @@ class PlotSetter {
     canvas_.line(style_.rule_width);
     for (const double tick : f.up.ticks) canvas_.segment(f.x, f.py(tick), f.x + f.w, f.py(tick));
     for (const double tick : f.across.ticks) {
-      const double at = plot_.lanes.empty() ? tick : tick + 0.5;  // centers of lanes
+      const double at = plot_.lanes.empty() ? tick : tick + 0.5;
       canvas_.segment(f.px(at), f.y, f.px(at), f.y + f.h);
     }
     canvas_.stroke_colour(style_.muted);
@@ -505,7 +500,6 @@ class PlotSetter {
     return scale;
   }
 
-  /// Widens a range symmetrically to at least `span`.
   static void widen(Range& range, double span) {
     const double more = std::max(0.0, span - (range.high - range.low)) / 2;
     range.low -= more, range.high += more;
@@ -518,7 +512,6 @@ class PlotSetter {
 
   double span_room() const { return 1.3 * size_ + 7; }
 
-  /// Draws dimension lines between two values, as in technical drawings.
   Expected<void> draw_spans(const Frame& f) {
     double x = f.x + f.w + 5;
     for (const Plot::Span& span : plot_.spans) {

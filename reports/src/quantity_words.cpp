@@ -12,7 +12,7 @@ namespace nonio::reports {
 std::string followed_quantity(const Wording& site, const std::string& quantity) {
   const auto colon = quantity.find(':');
   const std::string kind = quantity.substr(0, colon);
-  // Value of a rule, such as "iso-1988:A", with the name of the standard.
+  // A value of a rule, such as "iso-1988:A", is printed with the name of the standard.
   if (const std::string rule = site.get_or("site.rule." + kind, "");
       !rule.empty() && colon != std::string::npos) {
     const std::string symbol = quantity.substr(colon + 1);
@@ -20,7 +20,7 @@ std::string followed_quantity(const Wording& site, const std::string& quantity) 
   }
   const std::string name = site.get_or("site.quantity." + kind, quantity);
   if (name == quantity || colon == std::string::npos) return name;
-  // For example "straightness:Z.curve_2": axis and part of the curve.
+  // In "straightness:Z.curve_2", Z is the axis and curve_2 the part of the curve.
   const auto dot = quantity.find('.', colon);
   const std::string of = name + " " + quantity.substr(colon + 1, dot - colon - 1);
   if (dot == std::string::npos || quantity.substr(dot + 1) == "c") return of;
@@ -41,7 +41,7 @@ std::string with_unit(const std::string& number, Quantity q) {
   return unit.empty() ? number : number + " " + unit;
 }
 
-/// Whether the axis has angular deviations; straightness and squareness never have.
+/// Straightness and squareness never have angular deviations.
 bool has_angles(const HistorySeries& s, const std::vector<HistorySeries>& of_machine) {
   return s.quantity.find(':') == std::string::npos &&
          std::any_of(of_machine.begin(), of_machine.end(), [&](const HistorySeries& other) {

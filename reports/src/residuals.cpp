@@ -32,7 +32,7 @@ double normal_quantile(double p) {
   return z;
 }
 
-/// Whether all phases are within ±1 % of the period, so that no pattern is visible.
+/// Whether all phases are within +-1 % of the period, so that no pattern is visible.
 bool one_phase(const std::vector<double>& phase, double period) {
   double sine = 0, cosine = 0;
   for (const double p : phase) {
@@ -51,7 +51,6 @@ bool any_finite(const std::vector<double>& values) {
 
 bool both_directions(const ModelFit& fit) { return !reversal_of(fit).values.x.empty(); }
 
-/// Unit of times in figures, and its length in s.
 std::pair<const char*, double> time_unit(const ModelFit& fit) {
   double first = INFINITY, last = -INFINITY;
   for (const double t : fit.time)
@@ -62,7 +61,6 @@ std::pair<const char*, double> time_unit(const ModelFit& fit) {
                       : std::pair("s", 1.0);
 }
 
-/// Reason why the phase figure cannot be drawn; empty: it can.
 std::string no_phase(const ModelFit& fit, const Wording& words) {
   const double period = period_of(fit);
   const Quantity q = position_of(fit.rotary);
@@ -199,7 +197,7 @@ std::vector<double> phase_of(const ModelFit& fit, double period) {
   out.reserve(fit.size());
   for (const double p : fit.target) {
     double phase = p - period * std::floor(p / period);
-    if (period - phase < 1e-9 * period) phase = 0.0;  // a multiple, up to rounding
+    if (period - phase < 1e-9 * period) phase = 0.0;  // a multiple of the period, up to rounding
     out.push_back(phase);
   }
   return out;

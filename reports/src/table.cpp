@@ -15,7 +15,6 @@ struct Cells {
   std::vector<bool> bold;
 };
 
-/// Column widths for: text on one line, unbroken words, unbroken numbers.
 struct Needs {
   std::vector<double> natural, least, numbers;
 };
@@ -41,7 +40,7 @@ std::vector<double> up_to_a_level(const Needs& needs, double width) {
 
 using Widths = std::vector<double>;
 
-/// Candidate column widths. With enough space: natural widths plus equal surplus. Otherwise the
+/// Alternative column widths. With enough space: natural widths plus equal surplus. Otherwise the
 /// widest word plus a share of the rest, or short columns first. If even words do not fit, only
 /// numbers stay unbroken.
 std::vector<Widths> column_widths(const Needs& needs, double width) {
@@ -141,7 +140,6 @@ class TableSetter {
     return {};
   }
 
-  /// Chooses the widths with the fewest lines.
   void choose(const std::vector<Widths>& ways) {
     std::size_t least = 0;
     for (const Widths& way : ways) {
@@ -213,7 +211,6 @@ class TableSetter {
     return {height + above_rows, 0, std::move(canvas.ops), true};
   }
 
-  /// Adds a row; a row of more than 20 lines can be divided between lines.
   void add_row(std::vector<Piece>& pieces, std::size_t r) const {
     constexpr std::size_t together = 20;
     const Style& style = context_.style;

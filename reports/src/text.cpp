@@ -24,7 +24,6 @@ std::string hex(std::uint32_t value, int digits) {
   return text;
 }
 
-/// Error for `part` of the text, which is the character `c`.
 Error unprintable(std::string_view part, char32_t c, std::string_view field) {
   std::string what;
   if (c == not_utf8)
@@ -130,14 +129,14 @@ Expected<void> check_text(std::string_view text, const Fonts& fonts, std::string
     const auto c = static_cast<unsigned char>(byte);
     return c < 0x80 && !is_control(c) && fonts.regular.glyph(c) != 0 && fonts.bold.glyph(c) != 0;
   };
-  if (std::all_of(text.begin(), text.end(), in_both)) return {};  // nearly always
+  if (std::all_of(text.begin(), text.end(), in_both)) return {};
   for (const bool bold : {false, true})
     if (auto glyphs = shape(text, fonts, bold, field); !glyphs) return fail(glyphs.error());
   return {};
 }
 
 std::string visible_text(std::string_view text, const Fonts& fonts) {
-  if (check_text(text, fonts, "")) return std::string(text);  // usual case: everything is printable
+  if (check_text(text, fonts, "")) return std::string(text);
   std::string out;
   for (std::size_t i = 0; i < text.size();) {
     const std::size_t at = i;

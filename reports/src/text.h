@@ -24,8 +24,8 @@ using Glyphs = std::vector<Glyph>;
 /// A screen has additional fonts for missing characters.
 enum class Medium : std::uint8_t { paper, screen };
 
-/// Converts UTF-8 to glyphs with NFC composition. An unprintable character is an error with
-/// `field`. On a screen its width is estimated instead.
+/// NFC composition. An unprintable character is an error with `field`; on a screen its width is
+/// estimated instead.
 Expected<Glyphs> shape(std::string_view text, const Fonts&, bool bold, std::string_view field,
                        Medium = Medium::paper);
 

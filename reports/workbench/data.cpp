@@ -18,7 +18,7 @@ using namespace reports;
 
 namespace {
 
-/// Writes eight significant digits, to keep large pages small; null if not finite.
+/// Eight significant digits keep large pages small; null if not finite.
 void put_number(JsonWriter& json, double value) {
   if (!std::isfinite(value)) return json.null();
   char buffer[32];
@@ -32,7 +32,6 @@ void put_number(JsonWriter& json, std::string_view name, double value) {
   put_number(json, value);
 }
 
-/// Writes a column for the kept rows; null if the files do not contain it.
 template <class T>
 void put_column(JsonWriter& json, std::string_view name, const std::vector<T>& values,
                 const std::vector<std::size_t>& rows, double factor = 1.0, double from = 0.0) {
@@ -53,11 +52,12 @@ void put_words(JsonWriter& json, const Drawn& source) {
   json.key("words");
   json.begin_object();
   for (const char* name :
-       {"rms_now", "without", "without_cv", "not_refitted", "reading", "deviation", "model",
-        "residual", "time", "temperature", "line", "suspect", "reversal", "polar_title",
+       {"rms_now", "without", "without_cv", "not_refitted", "of_whole", "reading", "deviation",
+        "model", "residual", "time", "temperature", "line", "suspect", "reversal", "polar_title",
         "polar_says", "rest_title", "rest_says"})
     json.member(name, source.words.get(std::string("page.") + name));
   for (const char* name : chart_words) json.member(name, source.words.get(name));
+  json.member("largest", source.words.get("model.largest"));
   json.member("no_readings", source.words.get("picture.no_readings"));
   json.member("one_direction", source.words.get("picture.reversal.none"));
   json.end_object();
@@ -79,21 +79,46 @@ void put_pictures(JsonWriter& json, const Drawn& source, bool titles) {
   json.list("pictures", source.pictures, put);
 }
 
-/// Writes the refitted model without one effect: RMS of all readings, residuals of the page's rows.
-void put_without(JsonWriter& json, const ModelFit& fit, const std::string& effect,
-                 const std::vector<std::size_t>& rows, double per_si) {
+/// Writes what a fit leaves: its numbers are of all readings, its columns of the page's rows.
+template <class Fit>
+void put_residuals(JsonWriter& json, const Fit& fit, const Kept& kept, double per_si) {
+  const auto known = [&](std::optional<double> si) { return si ? *si * per_si : std::nan(""); };
+  put_number(json, "rms", fit.rms * per_si);
+  put_number(json, "cv_rms", known(fit.cv_rms));
+  put_number(json, "largest", fit.largest * per_si);
+  put_number(json, "floor", known(fit.floor));
+  put_column(json, "residual", fit.residual, kept.rows, per_si);
+  put_column(json, "left_out", fit.cv_residual, kept.rows, per_si);
+  std::vector<double> weight = fit.weight;
+  weight.resize(fit.residual.size(), 1.0);
+  std::map<std::size_t, std::size_t> place;
+  for (std::size_t k = 0; k < kept.rows.size(); ++k) {
+    place[kept.rows[k]] = k;
+    if (kept.counted[k] == 0) weight[kept.rows[k]] = 0.0;
+  }
+  put_column(json, "weight", weight, kept.rows);
+  json.list("suspects", fit.suspects, [&](const ModelFit::Suspect& s) {
+    const auto it = place.find(s.row);
+    if (it == place.end()) return;
+    json.begin_array();
+    json.value(static_cast<std::uint64_t>(it->second));
+    put_number(json, s.minimal_detectable * per_si);
+    json.end_array();
+  });
+}
+
+/// Writes the fit without one effect.
+void put_without(JsonWriter& json, const ModelFit& fit, const std::string& effect, const Kept& kept,
+                 double per_si) {
   json.key("without");
   const auto it = std::find_if(fit.without.begin(), fit.without.end(),
                                [&](const auto& w) { return w.effect == effect; });
   if (it == fit.without.end() || it->residual.size() != fit.size()) return json.null();
   json.begin_object();
-  put_number(json, "rms", it->rms * per_si);
-  put_number(json, "cv_rms", it->cv_rms ? *it->cv_rms * per_si : std::nan(""));
-  put_column(json, "residual", it->residual, rows, per_si);
+  put_residuals(json, *it, kept, per_si);
   json.end_object();
 }
 
-/// Plane of a circle (first and second axis) and radius, m; 0: no circle.
 struct CircleOf {
   std::string axes;
   double radius = 0.0;
@@ -111,7 +136,6 @@ CircleOf circle_of(const Campaign& campaign, const std::string& id) {
   return out;
 }
 
-/// Writes radius in mm and plane of each measurement; 0 and "" if it is no circle.
 void put_circles(JsonWriter& json, const Drawn& source) {
   if (!has_circles(source.campaign, source.fit)) return;
   const auto& all = source.fit.measurements;
@@ -169,11 +193,6 @@ std::string data_of(const Drawn& source, const Kept& kept, bool titles) {
   double first = INFINITY;
   for (const double t : fit.time)
     if (std::isfinite(t)) first = std::min(first, t);
-  std::vector<double> weight(fit.size(), 1.0);
-  for (std::size_t i = 0; i < fit.weight.size() && i < weight.size(); ++i)
-    weight[i] = fit.weight[i];
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    if (kept.counted[k] == 0) weight[rows[k]] = 0.0;
   const auto known = [](const auto& values, std::size_t n) {
     auto out = values;
     out.resize(n);
@@ -188,7 +207,6 @@ std::string data_of(const Drawn& source, const Kept& kept, bool titles) {
   json.member("unit", unit_text(up));
   json.member("position_unit", across.unit);
   json.member("time_unit", over_time.time_unit);
-  // Names of lines side by side; null: one axis.
   if (const Lanes lanes = lanes_of(fit); !lanes.names.empty()) {
     json.member("lanes", lanes.names);
   } else {
@@ -198,7 +216,8 @@ std::string data_of(const Drawn& source, const Kept& kept, bool titles) {
   put_number(json, "measurements", static_cast<double>(fit.measurements.size()));
   put_circles(json, source);
   put_number(json, "period", period_of(fit) * across.per_si);
-  put_number(json, "floor", fit.floor ? *fit.floor * per_si : std::nan(""));
+  put_number(json, "readings", static_cast<double>(fit.size()));
+  put_residuals(json, fit, kept, per_si);
   put_words(json, source);
   put_pictures(json, source, titles);
   std::vector<std::string> files;
@@ -220,14 +239,11 @@ std::string data_of(const Drawn& source, const Kept& kept, bool titles) {
   put_column(json, "time", fit.time, rows, over_time.x_per_si, first);
   put_column(json, "temperature", fit.temperature, rows);
   put_column(json, "deviation", fit.deviation, rows, per_si);
-  put_column(json, "residual", fit.residual, rows, per_si);
-  put_column(json, "left_out", fit.cv_residual, rows, per_si);
-  put_column(json, "weight", weight, rows);
   json.list("effects", fit.effects, [&](const ModelFit::Effect& e) {
     json.begin_object();
     json.member("name", e.name);
     put_column(json, "says", known(e.contribution, fit.size()), rows, per_si);
-    put_without(json, fit, e.name, rows, per_si);
+    put_without(json, fit, e.name, kept, per_si);
     json.end_object();
   });
   json.list("channels", fit.channels, [&](const ModelFit::Channel& c) {
@@ -237,16 +253,6 @@ std::string data_of(const Drawn& source, const Kept& kept, bool titles) {
     json.member("used", c.used);
     put_column(json, "values", c.values, rows);
     json.end_object();
-  });
-  std::map<std::size_t, std::size_t> place;
-  for (std::size_t k = 0; k < rows.size(); ++k) place[rows[k]] = k;
-  json.list("suspects", fit.suspects, [&](const ModelFit::Suspect& s) {
-    const auto it = place.find(s.row);
-    if (it == place.end()) return;
-    json.begin_array();
-    json.value(static_cast<std::uint64_t>(it->second));
-    put_number(json, s.minimal_detectable * per_si);
-    json.end_array();
   });
   json.end_object();
   return json.take();

@@ -39,12 +39,11 @@ namespace net = Poco::Net;
 
 namespace {
 
-constexpr std::size_t longest_answer = 300;  // longest quoted message of a server or program, in
-                                             // bytes
+constexpr std::size_t longest_answer = 300;  // longest quoted answer of a server or program, bytes
 constexpr std::size_t longest_subject = 200;
 
-/// Replaces control characters by spaces and removes spaces at the end. A text longer than
-/// `longest` bytes is shortened without cutting a character, and "..." is appended.
+/// Replaces control characters by spaces. A text longer than `longest` bytes is cut between
+/// characters and gets "...".
 std::string one_line(std::string text, std::size_t longest) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
@@ -57,23 +56,22 @@ std::string one_line(std::string text, std::size_t longest) {
   return text;
 }
 
-/// Returns `text`, or a note in its place if `text` contains the secret: a server may send back
-/// what it received.
+/// Replaces a text that contains the secret, because a server may return what it received.
 std::string without(const std::string& secret, const std::string& text) {
   if (secret.empty()) return text;
   const bool there = text.find(secret) != std::string::npos;
   return there ? "its answer contains a secret that was sent, and is not shown" : text;
 }
 
-/// Makes one line of at most about 200 bytes from the subject. If it is not ASCII, it is encoded as
-/// `=?UTF-8?B?...?=` words, none of which splits a character (RFC 2047).
+/// Encodes a subject that is not ASCII as `=?UTF-8?B?...?=` words (RFC 2047), none of which splits
+/// a character.
 std::string encoded_subject(const std::string& subject) {
   const std::string text = one_line(subject, longest_subject);
   const bool plain = std::all_of(text.begin(), text.end(),
                                  [](char c) { return static_cast<unsigned char>(c) < 0x80; });
   if (plain) return text;
-  constexpr std::size_t piece = 39;  // largest piece in bytes: 52 in base64, so that an encoded
-                                     // word has at most 75 characters
+  // 39 bytes are 52 characters in base64, so an encoded word has at most 75 characters.
+  constexpr std::size_t piece = 39;
   std::string out;
   for (std::size_t at = 0; at < text.size();) {
     std::size_t end = std::min(at + piece, text.size());
@@ -108,7 +106,7 @@ void fill(net::MailMessage& message, const config::Mail& mail, const Letter& let
   message.setDate(Poco::Timestamp());
 }
 
-/// Returns the descriptor of a file in memory that contains `bytes`; -1 if it cannot be made.
+/// Returns a descriptor of an anonymous file with `bytes`; -1 after an error.
 int file_in_memory(const std::string& bytes) {
   const int file = ::memfd_create("mail", MFD_CLOEXEC);
   if (file < 0) return -1;
@@ -128,8 +126,7 @@ std::string said_in(int file) {
   return one_line(std::move(said), longest_answer);
 }
 
-/// Returns the environment variables PATH, HOME, USER, LOGNAME, LANG and TZ for the mail program;
-/// all others are left out, because they may contain passwords.
+/// Returns the variables that the mail program receives; all others may contain passwords.
 std::vector<std::string> kept_environment() {
   constexpr std::string_view kept[] = {"PATH=", "HOME=", "USER=", "LOGNAME=", "LANG=", "TZ="};
   std::vector<std::string> all = process::present_environment();
@@ -219,8 +216,8 @@ void talk(const config::Mail& mail, const fs::path& site, const std::string& pas
   }
 }
 
-/// Ignores SIGPIPE during its lifetime, so that a server that closes the connection causes an error
-/// and not the end of the process.
+/// Ignores SIGPIPE, so that a connection closed by the server causes an error instead of ending the
+/// process.
 class WithoutPipeSignal {
  public:
   WithoutPipeSignal() : before_(::signal(SIGPIPE, SIG_IGN)) {}

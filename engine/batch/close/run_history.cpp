@@ -28,8 +28,7 @@ bool show_histories(const RunOptions& options, const RunEvents& events,
                     const reading::Context& context, const RunState& state, ReleaseDesk desk,
                     HistoryUpdate& history, const Expected<store::SiteRecords>& records,
                     const std::string& only, RunResult& run) {
-  if (!records || !run.history_error.empty())
-    return true;  // the error is reported already; the next run writes the reports
+  if (!records || !run.history_error.empty()) return true;
   const ShownHistories shown(options, context);
   auto others = shown.others(run.campaigns, *records, history.rebuilt());
   std::string error = others ? std::string() : others.error().message;

@@ -16,8 +16,7 @@ namespace {
 
 constexpr const char* histories_name = "histories";
 
-/// Returns the SHA-256 of the events, aliases and calibration intervals in histories. All other
-/// contents of a history change only if a campaign changes.
+/// The rest of a history changes only with a campaign.
 std::string digest_of_records(const store::SiteRecords& records) {
   storage::Json json = storage::Json::array();
   for (const auto* events : {&records.logs.events, &records.of_records}) {

@@ -12,25 +12,24 @@
 
 namespace nonio::batch {
 
-/// Finds the campaigns whose documents show another history of their machine than the store
-/// contains. A run evaluates them again after it has added its results to the store. The store is
-/// not read if OUT/.nonio/histories notes that all documents are up to date, and the events,
-/// aliases and calibration intervals have not changed since.
+/// Finds campaigns whose documents contain an outdated history of their machine, which a run
+/// evaluates again after it has updated the store. The store is not read if OUT/.nonio/histories
+/// states that all documents are up to date for the present events, aliases and calibration
+/// intervals.
 class ShownHistories {
  public:
   ShownHistories(const RunOptions& options, const reading::Context& context)
       : options_(options), context_(context) {}
 
-  /// Has to be called before the first result of a run is stored. Notes that documents may show
-  /// outdated histories until `end` is called.
+  /// Must be called before the first result of a run is stored. Until `end`, documents may be
+  /// outdated.
   Expected<void> begin() const;
-  /// Returns the history to be shown, by campaign id, for each campaign whose document shows
-  /// another history. With `looked`, the store is read even if all documents are noted as up to
-  /// date.
+  /// Returns the present history, by campaign id, for each campaign whose document contains another
+  /// one. `looked` forces the store to be read.
   Expected<std::map<std::string, assessment::HistoryBasis>> others(
       const std::vector<CampaignState>& campaigns, const store::SiteRecords& records,
       bool looked) const;
-  /// Notes in OUT/.nonio/histories that all documents show the present history.
+  /// Notes in OUT/.nonio/histories that all documents contain the present history.
   Expected<void> end(const std::vector<CampaignState>& campaigns,
                      const store::SiteRecords& records) const;
 

@@ -25,8 +25,6 @@ std::string where(const Error& e) {
   return text.empty() ? e.message : text + ": " + e.message;
 }
 
-/// Returns a single reason in the language of `words`: a fixed text, or a name followed by an event
-/// such as "changed".
 std::string one_reason(const std::string& text, const config::TerminalWords& words) {
   if (std::string whole = words.of("reason", text); whole != text) return whole;
   for (const char* what : {" changed", " is missing from the output", " was changed in the output"})
@@ -36,10 +34,9 @@ std::string one_reason(const std::string& text, const config::TerminalWords& wor
   return text;
 }
 
-constexpr std::size_t most_shown = 6;  // largest number of lines of a list in summary.txt
+constexpr std::size_t most_shown = 6;
 
-/// A list of the summary: its first entries as text for a person, and all entries as lines of JSON
-/// for a program.
+/// A list of the summary: `text` contains the first entries for summary.txt, `json` all entries.
 struct List {
   List(const char* list_name, const fs::path& folder)
       : name(list_name), text(storage::Spool::in(folder)), json(storage::Spool::in(folder)) {}
@@ -77,9 +74,6 @@ storage::Json run_json(const evaluation::RunLabel& run) {
   return {{"night", run.number}, {"date", run.date}};
 }
 
-/// Returns the first line of the summary: number and date of the run, and the numbers of campaigns
-/// in this run and in the previous one. It is written first so that an old summary is not mistaken
-/// for a new one.
 std::string run_line(const RunResult& run, const config::TerminalWords& words) {
   std::string line =
       run_words(run.run, words) + "; " + words.counted("seen", run.campaigns.size()) + ", ";
@@ -90,8 +84,6 @@ std::string run_line(const RunResult& run, const config::TerminalWords& words) {
          "\n";
 }
 
-/// Number of new findings with the same heading, and the first three campaigns and measurements
-/// with such a finding.
 struct Fresh {
   std::size_t count = 0;
   std::string where;
@@ -108,8 +100,7 @@ struct Lists {
         fresh("new_findings", folder) {}
   const config::TerminalWords& words;
   List done, unchanged, attention, failed, vanished, fresh;
-  std::map<std::string, Fresh> fresh_by_heading;  ///< new findings with severity warning, by
-                                                  ///< heading
+  std::map<std::string, Fresh> fresh_by_heading;
 
   void add(const Vanished& v) {
     vanished.add(
@@ -117,9 +108,8 @@ struct Lists {
         {{"campaign", v.id}, {"folder", v.folder}, {"last_done_night", v.run}, {"message", v.why}});
   }
 
-  /// Adds a campaign to its lists. Reads the record of a campaign that was evaluated in this run or
-  /// has the status `attention`, and reports an error if this record cannot be read. No error is
-  /// reported for a failed campaign.
+  /// Reads the record of a campaign that was evaluated in this run or has the status `attention`.
+  /// An error if it cannot be read.
   Expected<void> add(const CampaignState& c, const fs::path& out) {
     if (c.status == evaluation::Status::failed) {
       add_failed(c, out);
@@ -153,8 +143,8 @@ struct Lists {
   }
 
  private:
-  /// Adds a failed campaign with its error, the run since which it has failed, and the folder of
-  /// earlier results that are still valid.
+  /// The entry contains the first run of an unbroken series of failures and the folder of earlier
+  /// good results.
   void add_failed(const CampaignState& c, const fs::path& out) {
     std::string line = c.id + ": " + first_error(c, words);
     storage::Json entry = entry_json(c, first_error(c, {words.templates(), "en"}));
@@ -194,8 +184,6 @@ struct Lists {
   }
 };
 
-/// Returns the line of issued certificates: all numbers if there are at most 8, otherwise the first
-/// and the last.
 std::string issued_line(const std::vector<certificates::RegisterEntry>& issued,
                         const config::TerminalWords& words) {
   constexpr std::size_t most = 8;
@@ -217,8 +205,7 @@ std::string waiting_line(const std::vector<certificates::WaitingDraft>& drafts,
   return line + (drafts.size() > most ? ", ..." : "") + "\n";
 }
 
-/// Returns the line with the version and the counts, for example "Nonio 2026-12: 12 campaigns: 3
-/// done, 9 unchanged, 0 failed; 2 lines: action required".
+/// Example: "Nonio 2026-12: 12 campaigns: 3 done, 9 unchanged, 0 failed; 2 lines: action required".
 std::string counts_line(const RunResult& run, const Lists& lists, const WorklistPages& worklist,
                         const std::string& version) {
   const auto n = [](std::size_t count) { return std::to_string(count); };
@@ -234,8 +221,6 @@ std::string counts_line(const RunResult& run, const Lists& lists, const Worklist
          words.counted("asking", worklist.asking) + "\n";
 }
 
-/// Writes the headings of new findings with severity warning, one line each, with the most frequent
-/// first: at most 6 lines, then the number of the others.
 void write_fresh(storage::Spool& out, const Lists& lists) {
   if (lists.fresh_by_heading.empty()) return;
   std::vector<std::pair<std::string, Fresh>> all(lists.fresh_by_heading.begin(),
@@ -251,18 +236,16 @@ void write_fresh(storage::Spool& out, const Lists& lists) {
             "\n");
 }
 
-/// Returns whether the run has nothing to report: no campaign was evaluated, failed or vanished, no
-/// certificate was issued or waits for approval, there is no note, and a worklist exists that
-/// requires no action.
+/// Whether the run has nothing to report: no campaign was evaluated, failed or missing, no
+/// certificate was issued or is waiting for approval, and the worklist requires no action.
 bool is_quiet(const RunResult& run, const Lists& lists, const WorklistPages& worklist) {
   return lists.done.count == 0 && lists.failed.count == 0 && lists.vanished.count == 0 &&
          worklist.asking == 0 && !worklist.json.empty() && run.issued.empty() &&
          run.waiting.empty() && run.notes.empty();
 }
 
-/// Writes summary.txt: a single line if the run has nothing to report; otherwise the counts and
-/// certificates, then failures, losses and the worklist before the campaigns that were evaluated.
-/// Long lists are cut; summary.json contains them in full.
+/// Writes one line if there is nothing to report. Otherwise failures and the worklist precede the
+/// evaluated campaigns. Long lists are cut, because summary.json contains them in full.
 void write_text(storage::Spool& out, const RunResult& run, Lists& lists, const std::string& version,
                 const WorklistPages& worklist) {
   const config::TerminalWords& words = lists.words;
@@ -331,6 +314,8 @@ void write_json(storage::Spool& out, const RunResult& run, Lists& lists, const s
     waiting.push_back(std::move(one));
   }
   out.add(",\n \"drafts\": " + waiting.dump());
+  if (!run.history_error.empty())
+    out.add(",\n \"history_error\": " + storage::dump_line(run.history_error));
   out.add(",\n \"notes\": " +
           storage::Json(run.notes).dump(-1, ' ', false, storage::Json::error_handler_t::replace) +
           "\n}\n");

@@ -17,8 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t most_lines = 16;  // largest number of worklist lines in summary.txt, so that
-                                        // it fits on one page
+constexpr std::size_t most_lines = 16;  // summary.txt fits on one page
 
 bool is_as_it_was(const fs::path& path, const std::string& bytes) {
   std::error_code error;
@@ -27,13 +26,10 @@ bool is_as_it_was(const fs::path& path, const std::string& bytes) {
   return found && *found == bytes;
 }
 
-/// Returns whether summary.txt shows the line in a separate list with more details: lines of failed
-/// and of lost campaigns.
 bool is_in_a_list(const reports::WorkItem& line) {
   return line.kind == reports::WorkItem::Kind::lost || line.kind == reports::WorkItem::Kind::failed;
 }
 
-/// Removes pages of machines that no longer exist.
 void remove_old_pages(const fs::path& folder, const std::set<std::string>& present) {
   std::error_code error;
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
@@ -43,7 +39,7 @@ void remove_old_pages(const fs::path& folder, const std::set<std::string>& prese
     }
 }
 
-/// Publishes the pages, then reads them back from the disk and reports an error if they differ.
+/// Reads the pages back from the disk. An error if they differ.
 Expected<void> publish_checked(const fs::path& folder, const std::vector<Artifact>& pages) {
   if (pages.empty()) return {};
   if (auto put = storage::publish(folder, pages); !put) return put;
@@ -56,15 +52,14 @@ Expected<void> publish_checked(const fs::path& folder, const std::vector<Artifac
   return {};
 }
 
-/// Writes the pages that have changed, index.html last.
+/// index.html is written last.
 Expected<void> write_lists(const fs::path& out, std::vector<Artifact> pages) {
   std::reverse(pages.begin(), pages.end());
   std::erase_if(pages, [&](const Artifact& p) { return is_as_it_was(out / p.name, p.bytes); });
   return publish_checked(out, pages);
 }
 
-/// Writes the pages of the machines, removes those of former machines, then writes the pages of the
-/// site.
+/// Pages of the site are written last, because they link to those of the machines.
 Expected<void> write_pages(const fs::path& out, std::vector<Artifact> pages) {
   std::vector<Artifact> root, machines;
   std::set<std::string> present;
@@ -83,8 +78,7 @@ Expected<void> write_pages(const fs::path& out, std::vector<Artifact> pages) {
   return write_lists(out, std::move(root));
 }
 
-/// Members of `WorklistPages` that the child process returns as texts, in the order text, json,
-/// asking, judged ("1" or empty), mail, actions.
+/// Result of the child process: text, json, asking, judged ("1" or empty), mail, actions.
 using Texts = std::vector<std::string>;
 
 void add_curves(reports::SiteHistory& site, const fs::path& out,
@@ -95,8 +89,7 @@ void add_curves(reports::SiteHistory& site, const fs::path& out,
   }
 }
 
-/// Returns the text of the mail to the addresses in `[mail]`; empty without `[mail]`, or if no line
-/// is severe enough for a mail. `site` is unchanged afterwards.
+/// Returns an empty text without [mail] or if no line is severe enough. Restores `site`.
 Expected<std::string> mail_text(reports::SiteHistory& site, const reading::Context& context,
                                 const std::string& language) {
   if (!context.site.mail) return std::string();
@@ -116,7 +109,6 @@ Expected<std::string> mail_text(reports::SiteHistory& site, const reading::Conte
   return text;
 }
 
-/// Returns the language of the site if its words are available, otherwise "en".
 std::string language_of_pages(const reading::Context& context) {
   const std::string& own = context.site.language;
   return context.templates.tables.contains("words/" + own + "/site") ? own : "en";
@@ -139,7 +131,6 @@ Expected<Texts> texts_of(reports::SiteHistory site, const reading::Context& cont
                site.judged ? "1" : "", mail, actions};
 }
 
-/// Makes all pages again, with the error curves from each campaign's results.json.
 Expected<Texts> small_worklist(const fs::path& out, const reading::Context& context,
                                const assessment::LastRun& last_run,
                                const std::function<void()>& alive) {
@@ -151,8 +142,7 @@ Expected<Texts> small_worklist(const fs::path& out, const reading::Context& cont
   return texts_of(std::move(site), context);
 }
 
-/// Writes the pages of machines whose data have changed, or all pages if the language or the
-/// templates have changed.
+/// Writes only pages of machines with new data, unless the language or the templates have changed.
 class MachinePages {
  public:
   MachinePages(assessment::Assessment& assessment, const fs::path& out,
@@ -202,8 +192,6 @@ class MachinePages {
   std::vector<std::size_t> which_{};
 };
 
-/// Makes the lists of the site, and the pages of those machines only that have new data, all
-/// without error curves.
 Expected<Texts> large_worklist(const fs::path& out, const reading::Context& context,
                                const assessment::LastRun& last_run,
                                const std::function<void()>& alive) {

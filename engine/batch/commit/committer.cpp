@@ -13,8 +13,7 @@ namespace nonio::batch {
 
 namespace {
 
-/// Largest number of campaigns in one batch, so that a crash affects at most 64 campaigns and their
-/// answers fit into the channel.
+/// A crash affects at most 64 campaigns, and their answers fit into the channel.
 constexpr std::size_t largest_batch = 64;
 
 struct StoredMessage {
@@ -65,7 +64,7 @@ Expected<void> Committer::give(Given campaign) {
   if (!channel_)
     if (auto started = start(); !started) return started;
   pending_.push_back(campaign);
-  // If the process has ended already, done() detects this and returns the campaign.
+  // If the process has ended, done() returns the campaign.
   [[maybe_unused]] const ssize_t n = ::send(channel(), &campaign, sizeof campaign, MSG_NOSIGNAL);
   return {};
 }

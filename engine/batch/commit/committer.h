@@ -14,39 +14,38 @@
 
 namespace nonio::batch {
 
-/// Makes staged results durable in a child process while the workers continue. Up to 64 campaigns
-/// that were given while the disk was busy are flushed together, so that the number of flushes
-/// remains small without delaying a single campaign.
+/// Makes staged results durable in a child process while the workers continue. All campaigns that
+/// were queued while the disk was busy, up to 64, are flushed together; a batch never waits for
+/// more campaigns.
 class Committer {
  public:
   struct Given {
     std::size_t campaign = 0;
-    std::uint32_t losses = 0;  ///< number of losses that the disk had reported before the results
-                               ///< were written
+    /// Number of lost writes that the disk had reported before the results were written.
+    std::uint32_t losses = 0;
   };
   struct Done {
     Given given;
-    std::string error;   ///< reason why the results could not be stored; empty: they are stored
-    bool again = false;  ///< whether the process died while storing the campaign, so that the
-                         ///< parent process may store it
+    std::string error;  ///< reason of a failure; empty if the results are stored
+    /// Whether the process ended before an answer, so that the caller may store the campaign.
+    bool again = false;
   };
-  /// Runs in the child process: stores these campaigns and returns the outcome of each.
+  /// Runs in the child process and returns one result per campaign.
   using Task = std::function<std::vector<Expected<void>>(const std::vector<Given>&)>;
 
   explicit Committer(Task task) : task_(std::move(task)) {}
 
   /// Queues a campaign. An error if the process cannot be started.
   Expected<void> give(Given campaign);
-  /// Returns the campaigns that were given and not answered yet.
   const std::vector<Given>& pending() const { return pending_; }
-  /// Ends the process at once, even while it writes.
+  /// Ends the process at once, even during a write.
   void end();
-  /// Returns the campaigns that are finished since the last call. If the process died, all pending
-  /// ones are returned.
+  /// Returns the campaigns that were finished since the last call. If the process has ended, all
+  /// pending campaigns are returned.
   std::vector<Done> done();
   int channel() const {
     return channel_.get();
-  }  ///< descriptor that can be read when a campaign is finished; -1: the process is not running
+  }  ///< readable when a campaign is finished; -1 without a process
 
  private:
   Expected<void> start();

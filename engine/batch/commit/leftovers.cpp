@@ -11,8 +11,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Removes leftovers from all results folders of the output folder. If `hashed`, the folders are
-/// one level deeper (OUT/ab/<id>).
 Expected<void> tidy_below(const fs::path& out, bool hashed) {
   std::error_code error;
   for (fs::directory_iterator it(out, error), end; !error && it != end; it.increment(error)) {
@@ -41,7 +39,7 @@ Expected<void> tidy_all(const RunResult& run, const fs::path& out, bool resumed)
     if (process::is_stop_requested()) return fail("interrupted");
     if (c.action != CampaignState::Action::done || !c.is_campaign) continue;
     const fs::path folder = storage::own_folder(out, c.id);
-    if (storage::results_folder(out, c.id) != folder) continue;  // a pack contains no leftovers
+    if (storage::results_folder(out, c.id) != folder) continue;
     if (auto tidied = tidy(folder); !tidied) return tidied;
   }
   return {};

@@ -9,8 +9,9 @@
 
 namespace nonio::batch {
 
-/// Stores failed results for campaigns that the survey refused; good results of an earlier run are
-/// kept instead. Several campaigns with one id share a folder, so only the first of them is stored.
+/// Stores failed results of campaigns that the survey rejected, but keeps good results of an
+/// earlier run. Of several campaigns with the same id only the first is stored, because they share
+/// a folder.
 void store_refused(const RunOptions& options, const reading::Context& context, const RunState& run,
                    const RunEvents& events, std::vector<CampaignState>& campaigns);
 

@@ -23,8 +23,8 @@ evaluation::RecordedFile recorded(const Artifact& a) {
   return {a.name, a.bytes.size(), storage::sha256(a.bytes)};
 }
 
-/// Writes the record under a temporary name, completely or not at all. Until `commit` renames the
-/// file, a resumed run reads from it why the campaign is evaluated.
+/// Writes the record atomically under a temporary name. Before `commit` renames it, a resumed run
+/// reads from it the reason of the evaluation.
 Expected<void> write_record(const fs::path& folder, const evaluation::Record& record) {
   const std::string unfinished = std::string(".") + evaluation::record_name;
   const std::string text = evaluation::to_json(record);
@@ -35,8 +35,8 @@ Expected<void> write_record(const fs::path& folder, const evaluation::Record& re
                               [&] { return storage::read_file(path).value_or("") == text; });
 }
 
-/// Copies into `record` the findings of the previous run and, if the campaign has failed, sets the
-/// run since which it has failed.
+/// Copies the findings of the previous run and, for a failed campaign, the first run of the
+/// failure.
 Expected<void> look_back(const fs::path& folder, evaluation::Record& record) {
   NONIO_TRY(const auto last, evaluation::last_record(folder));
   if (record.status == evaluation::Status::failed)
@@ -89,7 +89,7 @@ Expected<void> stage(const fs::path& out, const evaluation::Evaluated& e,
     files.push_back({store::earlier_name, std::move(carried.earlier)});
     record.files.push_back(recorded(files.back()));
   }
-  // results.json is written last, so that it never names a file that is missing.
+  // results.json is written last, so that it never names a missing file.
   files.push_back({evaluation::results_name, std::move(results)});
   record.files.push_back(recorded(files.back()));
 
@@ -104,11 +104,9 @@ Expected<void> stage(const fs::path& out, const evaluation::Evaluated& e,
 
 namespace {
 
-/// Moves the results of one campaign from their temporary names to their own names.
 class Move {
  public:
-  /// Takes over the staged record of this run. If the results have their own names already, because
-  /// another process or an interrupted commit renamed them, nothing is left to be done.
+  /// Another process or an interrupted commit may have renamed the results already.
   Move(fs::path to, std::uint64_t run, const Expected<void>& sound) : folder_(std::move(to)) {
     auto staged = evaluation::staged_record(folder_);
     if (storage::has_own_names() && is_stored(run)) {
@@ -127,7 +125,6 @@ class Move {
     }
   }
 
-  /// Sets an error if the bytes on the disk differ from those that were written.
   void read_back() {
     for (const evaluation::RecordedFile& f : record_.files) {
       const fs::path temporary = storage::temporary_path(folder_, f.name);
@@ -146,8 +143,8 @@ class Move {
               (folder_ / evaluation::record_name).string());
   }
 
-  /// Renames the old record, and removes files of the old results that the new ones do not contain.
-  /// If the new results are a temporary failure, good old results are moved into `last-good`.
+  /// Removes old files that the new results do not contain. If the new results are a temporary
+  /// failure, good old results are moved into `last-good`.
   void put_old_aside() {
     std::error_code error;
     const bool there = fs::exists(fs::symlink_status(folder_ / evaluation::record_name, error));
@@ -155,7 +152,7 @@ class Move {
     if (there && done_ && storage::has_own_names()) {
       const auto moved = evaluation::last_record(folder_);
       if (moved && *moved && (*moved)->record.run >= record_.run) {
-        // Another process has stored the results since this process looked.
+        // Another process has stored the results in the meantime.
         rename(folder_ / evaluation::record_before_name, folder_ / evaluation::record_name);
         return leave_to_other();
       }
@@ -176,7 +173,7 @@ class Move {
              [&] { return storage::sha256_of_file(folder_ / f.name).value_or("") == f.sha256; });
   }
   void rename_record() {
-    // The survey treats a file that is younger than the record as changed, so the record gets the
+    // The survey regards files that are newer than the record as changed, so the record gets the
     // latest time.
     ::utimensat(AT_FDCWD, storage::temporary_path(folder_, evaluation::record_name).c_str(),
                 nullptr, 0);
@@ -186,7 +183,7 @@ class Move {
              return now && evaluation::to_json(*now) == evaluation::to_json(record_);
            });
     if (!done_) return;
-    // The new results are complete, so a failure to remove remaining old files does no harm.
+    // The new results are complete, so remaining old files do no harm.
     [[maybe_unused]] const auto gone = put_away_record_before(folder_);
   }
 
@@ -217,12 +214,11 @@ class Move {
     return storage::is_artifact_name(name) || name == evaluation::results_name ||
            name == store::earlier_name;
   }
-  /// Whether the present results belong to this run or to a later one.
   bool is_stored(std::uint64_t run) const {
     const auto record = evaluation::read_record(folder_);
     return record && record->run >= run;
   }
-  /// Gives up, because another process that does the same shard has stored the same bytes.
+  /// Another process that runs the same shard has stored the same bytes.
   void leave_to_other() {
     storage::remove_leftovers(folder_);
     moved_ = true;
@@ -241,8 +237,8 @@ class Move {
     if (const auto renamed = storage::rename_file(from, to, is_ours); !renamed)
       give_up(renamed.error().message);
   }
-  /// Moves the old results into `last-good`. Files that an interrupted attempt has moved already
-  /// stay there. If a file is missing or differs from its record, `last-good` is removed.
+  /// Files that an interrupted attempt has moved already are kept. If a file is missing or
+  /// modified, `last-good` is removed.
   void keep(const evaluation::Record& old) {
     if (!done_) return;
     const fs::path to = folder_ / evaluation::last_good_name;
@@ -261,7 +257,7 @@ class Move {
   fs::path folder_;
   evaluation::Record record_{};
   std::set<std::string> names_{};
-  bool moved_ = false;  ///< whether the results have their own names already
+  bool moved_ = false;
   Expected<void> done_{};
 };
 
@@ -309,8 +305,7 @@ Expected<void> store(const fs::path& out, const evaluation::Evaluated& evaluated
 }
 
 Expected<void> tidy(const fs::path& folder) {
-  constexpr int tries = 3;  // number of attempts, because an error of the file system may be
-                            // transient
+  constexpr int tries = 3;  // errors of a file system may be transient
   auto left = storage::temporaries(folder);
   for (int i = 0; i < tries && (!left || !left->empty()); ++i, left = storage::temporaries(folder))
     storage::remove_leftovers(folder);

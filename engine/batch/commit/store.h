@@ -10,7 +10,7 @@
 
 namespace nonio::batch {
 
-/// Properties of an evaluation that its record states in addition to the results.
+/// Contents of run.json that are not part of the results.
 struct StoreNote {
   std::string folder;
   evaluation::RunLabel run{};
@@ -18,33 +18,29 @@ struct StoreNote {
   bool retry = false;
 };
 
-/// Writes a campaign's files into its output folder under temporary names; `commit` renames them.
+/// Writes the results under temporary names, which `commit` replaces by the final names.
 Expected<void> stage(const std::filesystem::path& out, const evaluation::Evaluated& evaluated,
                      const reading::Context& context, const StoreNote& note);
 
-/// A campaign whose files were written by `stage`.
 struct Staged {
   std::string id;
-  std::uint32_t losses = 0;  ///< number of write losses that the disk had reported before the first
-                             ///< file of the campaign was written
+  /// Number of lost writes that the disk had reported before the first file was written.
+  std::uint32_t losses = 0;
 };
 
-/// Makes the staged files the results of their campaigns. Each step is made durable by one flush of
-/// the disk for all campaigns. The files are read back from the disk first. Then the old record is
-/// renamed, and the new record gets its name last, so that a record always lists files that belong
-/// together. Results that are replaced by a temporary failure are kept in the folder `last-good`.
-/// Returns one entry for each campaign.
+/// Gives staged files their final names after they were read back from the disk, with one flush per
+/// step for all campaigns. The record is renamed last, so that it always lists files that belong
+/// together. Good results that a temporary failure replaces are kept in `last-good`. Returns one
+/// result per campaign.
 std::vector<Expected<void>> commit(const std::filesystem::path& out,
                                    const std::vector<Staged>& campaigns, std::uint64_t run,
                                    const storage::Disk& disk);
 
-/// Calls `stage` and `commit` for one campaign.
 Expected<void> store(const std::filesystem::path& out, const evaluation::Evaluated& evaluated,
                      const reading::Context& context, const StoreNote& note,
                      const storage::Disk& disk);
 
-/// Removes leftovers of unfinished storing from a campaign's output folder. An error names a file
-/// that cannot be removed.
+/// Removes temporary files of interrupted runs from the folder. An error names a file that remains.
 Expected<void> tidy(const std::filesystem::path& folder);
 
 }  // namespace nonio::batch

@@ -11,7 +11,6 @@ Expected<std::string> leave_only(const RunOptions& options, const RunState& stat
   std::error_code error;
   std::string below = fs::path(options.only).lexically_normal().generic_string();
   while (below.ends_with('/')) below.pop_back();
-  // The folder may be given relative to the current directory instead of the site.
   const std::string from_here = fs::weakly_canonical(options.only, error)
                                     .lexically_relative(fs::weakly_canonical(options.site, error))
                                     .generic_string();

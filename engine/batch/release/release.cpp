@@ -28,8 +28,6 @@ namespace {
 constexpr const char* author = "author";
 constexpr const char* authoriser = "authoriser";
 
-/// Returns the name with ASCII letters in lower case, single spaces, and no spaces at the ends, so
-/// that two spellings of one person are equal.
 std::string plain_name(const std::string& name) {
   std::string out;
   for (const char c : name) {
@@ -41,8 +39,6 @@ std::string plain_name(const std::string& name) {
   return out;
 }
 
-/// Splits a list of persons at semicolons, for example "B. Sample; A. Bianchi", and returns the
-/// names in the form of `plain_name`.
 std::vector<std::string> persons_in(const std::string& text) {
   std::vector<std::string> out;
   for (std::size_t at = 0; at <= text.size();) {
@@ -59,7 +55,6 @@ bool is_one_line(const std::string& text) {
                       [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; });
 }
 
-/// Returns what is wrong with the names and reasons of the request; empty if they are valid.
 std::string mistake_in(const ReleaseRequest& request) {
   if (const std::string mistake = certificates::mistake_in_name(request.by); !mistake.empty())
     return "--by: " + mistake;
@@ -70,7 +65,6 @@ std::string mistake_in(const ReleaseRequest& request) {
   return {};
 }
 
-/// Assigns each reason to its finding. Reasons that match no finding are an error.
 Expected<std::map<std::string, std::string>> reasons_for(const certificates::WaitingDraft& draft,
                                                          const ReleaseRequest& request) {
   std::map<std::string, std::string> reasons;
@@ -134,8 +128,8 @@ class Releaser {
     return std::move(out_);
   }
 
-  /// Checks password and role of the user that `--user` names, and takes the name of the person
-  /// from users.toml. Without `--user`, calls `no_user_is_named`.
+  /// Checks password and role of the account `--user` and sets the name of the person from
+  /// users.toml.
   Expected<void> identify() {
     if (request_.user.empty()) return no_user_is_named();
     if (!request_.by.empty()) return fail("--by and --user: expected one of them");
@@ -153,8 +147,7 @@ class Releaser {
     return {};
   }
 
-  /// Returns an error if the name in `--by` belongs to a user of users.toml who has a password,
-  /// because this user has to be identified by `--user`.
+  /// Returns an error if `--by` names a user with a password, who must use `--user`.
   Expected<void> no_user_is_named() const {
     if (!certificates::has_users(options_.site)) return {};
     NONIO_TRY(const auto users, certificates::read_users(options_.site));
@@ -185,8 +178,6 @@ class Releaser {
     return role_ == authoriser ? may_authorise() : Expected<void>{};
   }
 
-  /// Checks that the person is in the laboratory's list of persons who may authorise, if site.toml
-  /// states such a list.
   Expected<void> may_authorise() const {
     std::string digest;
     const auto site = config::read_site(options_.site, digest);
@@ -230,7 +221,7 @@ class Releaser {
       if (certificates::likeness_of(by_author->by) == certificates::likeness_of(request_.by))
         return fail("two_persons = true in site.toml: " + by_author->by +
                     " is the author; expected another person as authoriser");
-      // A name proves no identity: two persons need two passwords or two accounts.
+      // A name does not prove identity: two persons need two passwords or two accounts.
       const bool two_users = !by_author->user.empty() && !request_.user.empty();
       if (by_author->user.empty() != request_.user.empty())
         return fail(
@@ -261,8 +252,8 @@ class Releaser {
            (first ? ", approved by " + first->by + " at " + first->at : "");
   }
 
-  /// Checks that the draft in the output folder is the one in the register, locks the folder, and
-  /// reads from its record the run and the other campaigns with the same readings.
+  /// Checks that the draft file is that of the register, locks the output folder, and reads from
+  /// the record the run and the other campaigns with the same readings.
   Expected<void> take_output() {
     if (!request_.out.empty()) out_.draft->out = fs::absolute(request_.out).string();
     options_.out = out_.draft->out;
@@ -293,7 +284,7 @@ class Releaser {
     if (!(*place)->no_key.empty()) return refuse((*place)->no_key);
     const certificates::Releasing releasing{seen_, approval, twins_};
     ReleaseDesk desk{&*(*place)->signer, &releasing, {}, &*(*place)->host};
-    // Campaigns that the store does not contain yet are entered by the next run.
+    // The next run adds campaigns that the store does not contain yet.
     if (auto bases = assessment::history_bases(options_.out, {id_}); bases)
       for (assessment::HistoryBasis& b : *bases) desk.histories.emplace(id_, std::move(b));
     CampaignState campaign;
@@ -305,7 +296,7 @@ class Releaser {
     if (const auto begun = history.begin(); !begun) return fail_with(begun.error().message);
     if (!do_campaigns(options_, events_, (*place)->context, run_, desk, campaigns))
       return fail_with("interrupted");
-    // If the store cannot be updated now, the next run does it.
+    // If the store cannot be updated now, the next run updates it.
     [[maybe_unused]] const auto entered =
         history.end({id_}, read_records(options_, (*place)->context));
     auto opened = certificates::Register::open(options_.site, numbering_);
@@ -344,9 +335,8 @@ class Releaser {
   RunState run_;
   std::optional<OutputLock> lock_;
   std::string id_, role_, last_number_;
-  certificates::WaitingDraft seen_;  ///< the draft as it was first read from the register
-  reading::Twins twins_;             ///< files of readings shared with other campaigns, as recorded
-                                     ///< by the run that made the draft
+  certificates::WaitingDraft seen_;
+  reading::Twins twins_;
   Released out_;
 };
 

@@ -11,53 +11,48 @@
 
 namespace nonio::batch {
 
-/// Arguments of `nonio certificate approve`.
 struct ReleaseRequest {
-  std::filesystem::path campaign;  ///< folder of the campaign
-  std::string by;                  ///< name of the person as printed on the certificate; empty if
-                                   ///< `user` is given
-  std::string role;                ///< role of the person: author or authoriser; empty: author if
-                                   ///< site.toml requires two persons, otherwise authoriser
-  std::map<std::string, std::string> reasons;  ///< reasons why findings are accepted, by
-                                               ///< finding_key or by the finding's id
-  std::filesystem::path out;                   ///< output folder of the run; empty: the folder
-                                               ///< stated in the draft
-  /// Name of a user in users.toml, whose printed name is used; the password proves the identity.
-  /// Empty: `by` is an unverified statement.
+  std::filesystem::path campaign;
+  std::string by;  ///< printed name of the person; empty if `user` is stated
+  /// Author or authoriser; empty for the default of the site: author if it requires two persons.
+  std::string role;
+  std::map<std::string, std::string> reasons;  ///< by finding_key or by id of the finding
+  /// Output folder of the run; empty for that of the draft.
+  std::filesystem::path out;
+  /// Account in users.toml with its password, which prove the identity of the person. Without an
+  /// account, `by` is an unverified statement.
   std::string user{}, password{};
 };
 
 struct Released {
   enum class State {
-    refused,   ///< a condition for approval is not met, as `why` states; nothing was changed
-    lacking,   ///< the findings listed in `without_reason` have severity warning and need a reason
-    approved,  ///< approved by the author; an authoriser is still required
-    failed,    ///< not issued, as `why` states; the draft is kept
+    refused,   ///< a condition of the approval is not met; nothing was changed
+    lacking,   ///< findings in `without_reason` have severity warning and need a reason
+    approved,  ///< approved by the author; an authoriser must approve too
+    failed,    ///< not issued, the draft is kept
     issued
   } state = State::refused;
   std::string why;
   std::optional<certificates::WaitingDraft> draft;
-  std::vector<std::string> without_reason;  ///< keys of the findings that still need a reason
+  std::vector<std::string> without_reason;  ///< keys of findings
   std::vector<std::string> notes;
-  certificates::RegisterEntry entry;         ///< register entry of the certificate; only in state
-                                             ///< `issued`
-  std::vector<std::filesystem::path> files;  ///< written files in the output folder of the run
+  certificates::RegisterEntry entry;         ///< only in state `issued`
+  std::vector<std::filesystem::path> files;  ///< files in the output folder of the run
 };
 
-/// Approves the draft of a run, and issues the certificate unless the person approves as author. A
-/// certificate is issued only if the data, plugins, templates and program version are unchanged
-/// since the run. `base` provides the plugins, the templates and the version.
+/// Approves the draft of a run, and issues the certificate unless the role is author. An error if
+/// data, plugins, templates or the program version have changed since the run. `base` states
+/// plugins, templates and version.
 Released release(const ReleaseRequest& request, const RunOptions& base, const RunEvents& events);
 
-/// Returns the drafts of the site that contains `folder`; for a campaign's folder, only the draft
-/// of this campaign.
+/// Returns the draft of the campaign `folder`, or the drafts of all campaigns of the site.
 Expected<std::vector<certificates::WaitingDraft>> waiting_drafts(
     const std::filesystem::path& folder);
 
-/// Returns the path of the draft's file, in a folder or in a pack.
+/// The path may be in a pack.
 std::filesystem::path file_of(const certificates::WaitingDraft& draft);
-/// Returns why the draft cannot be approved: its file is missing or has changed since the run.
-/// Returns an empty text if it can be approved.
+/// Returns the reason why the draft cannot be approved, or an empty string. Possible reasons are a
+/// missing file and changes since the run.
 std::string why_stale(const certificates::WaitingDraft& draft);
 
 }  // namespace nonio::batch

@@ -37,7 +37,7 @@ Expected<PackedShard> PackedShard::begin(const RunOptions& options,
         evaluation::copy_results(storage::results_folder(options.out, c.id), folder->path() / c.id);
     if (!copied) return fail(c.id + ": its last results cannot be read: " + copied.error().message);
   }
-  // Processes that are started from here on inherit no open packs.
+  // Open packs must not be inherited by processes that are started later.
   storage::close_packs();
   return PackedShard(std::move(folder));
 }
@@ -94,9 +94,8 @@ Expected<void> PackedShard::hand_over(const RunOptions& options, const RunPlan& 
 
 namespace {
 
-/// Removes the results of an earlier run from a campaign's folder; results of this run and other
-/// files are kept. The record is removed after all files that only it names, so that files
-/// remaining after an interruption can still be found and removed.
+/// Keeps results of this run and other files. The record is removed after the files that only it
+/// names, so that an interrupted removal can be continued.
 Expected<void> clear_folder(const fs::path& folder, std::uint64_t run) {
   NONIO_TRY(const auto there, storage::is_there(folder));
   if (!there) return {};
@@ -154,7 +153,7 @@ Expected<void> accept_packs(const fs::path& out, const RunPlan& plan,
 
 Expected<void> keep_packs(const fs::path& out) {
   const auto found = find_plan(out);
-  // A plan that cannot be read is cancelled with the packs accepted so far.
+  // A plan that cannot be read is canceled without accepting further packs.
   if (!found || !*found) return {};
   const RunPlan& plan = **found;
   std::vector<ShardRecord> sound;

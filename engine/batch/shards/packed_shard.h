@@ -12,24 +12,22 @@
 #include "batch/state/run_result.h"
 #include "platform/storage/scratch_folder.h"
 
-/// A shard that evaluates its campaigns in a folder of its host and hands over their results as one
-/// file, a pack.
 namespace nonio::batch {
 
-/// Returns the record of the shard if its pack is stored and undamaged, so that the shard need not
-/// be done again; otherwise returns none.
+/// Returns the record of the shard, which need not be evaluated again, if its pack is stored and
+/// undamaged; otherwise std::nullopt.
 std::optional<ShardRecord> reported_pack(const std::filesystem::path& out, const RunPlan& plan,
                                          std::uint64_t shard);
 
-/// A temporary output folder on this host that contains the last results of the campaigns to be
-/// evaluated by the shard.
+/// A shard that works in a temporary folder of its host, which contains the last results of its
+/// campaigns, and delivers its results as one file, a pack.
 class PackedShard {
  public:
   static Expected<PackedShard> begin(const RunOptions& options,
                                      const std::vector<CampaignState>& campaigns);
   const std::filesystem::path& out() const { return folder_->path(); }
-  /// Writes the results of this run into a pack and moves it to the shared output folder. Marks the
-  /// packed campaigns in `record`. An error names a campaign that is not stored.
+  /// Writes the results of this run into a pack in the shared output folder and marks the packed
+  /// campaigns in `record`. An error names a campaign without stored results.
   Expected<void> hand_over(const RunOptions& options, const RunPlan& plan,
                            ShardRecord& record) const;
 
@@ -39,12 +37,12 @@ class PackedShard {
   std::unique_ptr<storage::ScratchFolder> folder_;
 };
 
-/// Accepts the packs of these shards as the results of their campaigns. Results of earlier runs in
-/// the folders of the same campaigns are removed; those of this run are kept.
+/// Accepts the packs of these shards as results. Results of earlier runs in the folders of the same
+/// campaigns are removed.
 Expected<void> accept_packs(const std::filesystem::path& out, const RunPlan& plan,
                             const std::vector<const ShardRecord*>& shards);
-/// Accepts the packs of a cancelled plan as results, so that the next run continues from them.
-/// Damaged packs are skipped.
+/// Accepts the undamaged packs of a canceled plan, so that the next run continues with their
+/// results.
 Expected<void> keep_packs(const std::filesystem::path& out);
 
 }  // namespace nonio::batch

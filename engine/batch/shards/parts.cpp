@@ -28,7 +28,7 @@ using Action = CampaignState::Action;
 
 namespace {
 
-/// Returns a token for temporary names that no other process on any host has.
+/// Returns a part of temporary names that is unique among all hosts.
 std::string own_token() {
   std::array<char, 256> host{};
   ::gethostname(host.data(), host.size() - 1);
@@ -41,9 +41,8 @@ std::string own_token() {
   return token + more.data();
 }
 
-/// Returns the campaigns of the lists ordered by id. Campaigns that are known only because they
-/// share files of readings with others are added at the end and are not evaluated; with
-/// `whole_site` they are left out.
+/// Sorts the campaigns by id. Campaigns of other shards with the same files of readings are
+/// appended, or omitted if `whole_site`; they are not evaluated.
 std::vector<CampaignState> states_of(std::vector<Listed> listed, bool whole_site) {
   std::stable_sort(listed.begin(), listed.end(),
                    [](const Listed& a, const Listed& b) { return a.campaign.id < b.campaign.id; });
@@ -72,8 +71,8 @@ std::vector<CampaignState> states_of(std::vector<Listed> listed, bool whole_site
   return states;
 }
 
-/// Takes over the results of a campaign that this shard, or a copy of it, has already stored in
-/// this run. Returns whether there were any.
+/// Sets the outcome from a record of this run, which this shard or a copy of it has written.
+/// Returns false without such a record.
 bool take_stored(const fs::path& out, std::uint64_t run, CampaignState& c) {
   const auto record = evaluation::read_record(storage::results_folder(out, c.id));
   if (!record || record->run != run) return false;
@@ -110,9 +109,8 @@ std::string numbers_text(const std::vector<std::uint64_t>& numbers) {
          (numbers.size() > most ? " and " + std::to_string(numbers.size() - most) + " more" : "");
 }
 
-/// Repeats `try_it` until it succeeds, a stop is requested, or `until` has passed, because on a
-/// shared file system the files of another host may appear late. Returns the last result of
-/// `try_it`.
+/// Repeats `try_it` until it succeeds, a stop is requested or `until` has passed, because files of
+/// another host may appear late on a shared file system. Returns the last result.
 template <class Try>
 auto with_patience(std::chrono::steady_clock::time_point until, const Try& try_it) {
   for (;;) {
@@ -123,8 +121,7 @@ auto with_patience(std::chrono::steady_clock::time_point until, const Try& try_i
   }
 }
 
-/// Takes over the results that the shard has handed over before, instead of evaluating its
-/// campaigns.
+/// Sets the outcomes of a shard that was evaluated before.
 void take_reported(const ShardRecord& record, std::vector<CampaignState>& campaigns) {
   for (std::size_t i = 0; i < campaigns.size() && i < record.results.size(); ++i) {
     const ShardResult& r = record.results[i];
@@ -135,8 +132,8 @@ void take_reported(const ShardRecord& record, std::vector<CampaignState>& campai
   }
 }
 
-/// Evaluates the campaigns of a shard, which are the first `own` of `run.campaigns`. If an error is
-/// returned and `run.error` is empty, the shard was refused or interrupted.
+/// The campaigns of the shard are the first `own` of `run.campaigns`. After an error with an empty
+/// `run.error`, the shard was refused or interrupted.
 Expected<void> do_part(const RunOptions& options, const RunEvents& events, const RunPlan& plan,
                        std::size_t own, RunResult& run) {
   RunOptions where = options;
@@ -156,7 +153,7 @@ Expected<void> do_part(const RunOptions& options, const RunEvents& events, const
   for (std::size_t i = 0; i < own && !packed; ++i)
     if (take_stored(options.out, plan.run.number, run.campaigns[i])) --to_do;
   events.planned(own, to_do);
-  if (to_do > 0) {  // no plugin is loaded if nothing is to be done
+  if (to_do > 0) {  // no plugin is loaded if there is nothing to do
     NONIO_TRY(const auto place, set_up(options));
     const reading::Context& read = place->context;
     if (events.words) events.words(config::TerminalWords(read.templates, read.site.language));
@@ -213,7 +210,7 @@ RunResult run_shard(const RunOptions& options, const RunEvents& events) {
 
 namespace {
 
-/// Writes the results that this run has stored in a pack into the campaign's own folder.
+/// Unpacks the results that this run has stored in a pack.
 Expected<void> take_in_of(const fs::path& out, std::uint64_t run, const std::string& id) {
   const auto record = evaluation::read_record(storage::results_folder(out, id));
   if (!record || record->run != run) return {};
@@ -229,11 +226,11 @@ Expected<void> plan_shards(const RunOptions& options, const reading::Context& co
                                [](const CampaignState& c) { return c.action == Action::todo; });
   if (auto removed = remove_plan(options.out); !removed) return removed;
   if (auto swept = storage::sweep_packs(options.out); !swept) return swept;
-  if (state.resumed)  // removes leftovers of an interrupted run or plan
+  if (state.resumed)  // removes temporary files of an interrupted run or plan
     if (auto tidied = tidy_all(run, options.out, true); !tidied) return tidied;
   for (const CampaignState& c : run.campaigns) {
     if (!state.resumed || c.action != Action::todo || !c.is_campaign) continue;
-    // Otherwise the shard would take over results that this run stored before it was planned again.
+    // The shard would otherwise use results that this run stored before it was planned again.
     if (auto taken = take_in_of(options.out, state.number, c.id); !taken) return taken;
     const fs::path folder = storage::own_folder(options.out, c.id);
     const auto record = evaluation::read_record(folder);
@@ -271,7 +268,6 @@ bool is_of(const std::vector<ShardResult>& record, const std::vector<Listed>& li
       [](const ShardResult& r, const Listed& l) { return r.campaign == l.campaign.id; });
 }
 
-/// The campaigns that a shard had to evaluate, and the record of their results.
 struct Reported {
   std::vector<Listed> listed;
   ShardRecord record;
@@ -279,8 +275,8 @@ struct Reported {
 
 using Until = std::chrono::steady_clock::time_point;
 
-/// Returns the record of a shard, if it exists and its pack is undamaged; otherwise none, with the
-/// reason in `why` if there is an error.
+/// Returns std::nullopt if the record does not exist or its pack is damaged; `why` is the error, if
+/// any.
 std::optional<ShardRecord> sound_record(const fs::path& out, const RunPlan& plan,
                                         std::uint64_t shard, std::string& why) {
   auto record = read_shard_record(out, plan, shard);
@@ -317,8 +313,8 @@ Expected<std::vector<Reported>> reported_by_all(const fs::path& out, const RunPl
               "`, and so on, then `nonio run merge OUT` again");
 }
 
-/// Sets the outcome of each campaign of a shard. Campaigns whose stored results cannot be found are
-/// added to `missing`.
+/// Sets the outcome of each campaign of a shard. Campaigns without the stored results that the
+/// record states are added to `missing`.
 void take_results(const fs::path& out, const RunPlan& plan, std::uint64_t shard, Until until,
                   Reported& reported, std::vector<std::string>& missing) {
   for (std::size_t i = 0; i < reported.listed.size(); ++i) {
@@ -342,7 +338,7 @@ Expected<void> gather(const RunOptions& options, const RunPlan& plan, RunResult&
                      std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                          std::chrono::duration<double>(options.patience));
   NONIO_TRY(auto all, read_rest(options.out, plan));
-  for (Listed& one : all) {  // takes over campaigns that an interrupted merge has evaluated
+  for (Listed& one : all) {  // results of an interrupted merge are used
     CampaignState& c = one.campaign;
     if (c.action == Action::todo && c.status != evaluation::Status::failed)
       take_stored(options.out, plan.run.number, c);

@@ -11,41 +11,35 @@
 
 namespace nonio::batch {
 
-/// One campaign of the run and its state so far. It contains no findings; the summary reads them
-/// from the record of the campaign.
+/// A campaign and its state in the run. The summary reads the findings from the record, so that the
+/// memory does not grow with them.
 struct CampaignState {
   std::string id{};
-  std::string folder{};   ///< folder of the campaign relative to the site, as stored in the file
-                          ///< system
-  std::string reason{};   ///< reason why the campaign is evaluated, or why not
-  std::string history{};  ///< digest of the machine's history that the document shows (only if
-      ///< `shows_history`); empty: the history was not known when the document was
-      ///< written
+  std::string folder{};  ///< relative to the site, in the encoding of the file system
+  std::string reason{};  ///< why the campaign is evaluated or not
+  /// Digest of the machine history in the document; empty if no history was available.
+  std::string history{};
   enum class Action : char { todo, done, unchanged } action = Action::todo;
-  evaluation::Status status = evaluation::Status::none;  ///< status of the results; none: the
-                                                         ///< campaign is still to be evaluated
-  bool named_by_folder = false;                          ///< whether the id was made from the
-                                                         ///< folder's name, because the manifest
-                                                         ///< states none
-  bool is_campaign = true;     ///< false: the entry is a folder that could not be listed, or
-                               ///< a campaign of another shard, listed because it shares
-                               ///< files of readings
-  bool shows_history = false;  ///< whether a document shows the machine's history
+  evaluation::Status status = evaluation::Status::none;  ///< `none` before the evaluation
+  /// Whether the id is the name of the folder, because the manifest states no id.
+  bool named_by_folder = false;
+  /// False for a folder that cannot be listed and for a campaign of another shard with the same
+  /// files of readings.
+  bool is_campaign = true;
+  bool shows_history = false;
 
   using Twin = std::pair<std::uint64_t, std::uint32_t>;
   using TwinBefore = std::pair<std::uint64_t, std::string>;
   std::vector<Error> errors{};
-  std::vector<Error>
-      warnings{};  ///< warnings about keys with former names in the manifest; not stored for the
-                   ///< next run
-  /// Files of readings that another campaign has too: the first 64 bits of the file's SHA-256, and
-  /// the position of the other campaign in the list of all campaigns.
+  std::vector<Error> warnings{};  ///< former keys in the manifest; not stored for the next run
+  /// Files of readings that another campaign contains too: first 64 bits of the SHA-256, and index
+  /// of the other campaign.
   std::vector<Twin> twins{};
-  /// Shared files of readings that the campaign's last record states: the first 64 bits of the
-  /// file's SHA-256, and the id of the other campaign.
+  /// Shared files of readings in the last record: first 64 bits of the SHA-256, and id of the other
+  /// campaign.
   std::vector<TwinBefore> twins_before{};
-  /// First 64 bits of the SHA-256 of each of the campaign's files of readings. The list is empty
-  /// after the comparison with other campaigns, because the digests are moved out.
+  /// First 64 bits of the SHA-256 of each file of readings; empty after the comparison with other
+  /// campaigns.
   std::vector<std::uint64_t> readings{};
 };
 

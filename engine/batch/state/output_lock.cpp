@@ -28,8 +28,8 @@ namespace {
 
 constexpr const char* user_name = "user";
 
-/// The content of OUT/.nonio/user: the process that uses the output folder. `machine` and `boot`
-/// identify the host and its present start; empty if the system does not provide them.
+/// Content of OUT/.nonio/user. `machine` and `boot` identify the host and its present boot; empty
+/// if unknown.
 struct User {
   std::string host, machine, boot, job;
   long pid = 0;
@@ -59,8 +59,7 @@ std::string text_of(const User& user) {
          "\n";
 }
 
-/// Parses the content of the user file. An unreadable file yields a user without a host name, which
-/// blocks the folder nevertheless.
+/// An unreadable file gives a user without a host name, which blocks the folder too.
 User user_in(const std::string& text) {
   const Json json = storage::parse_or_discard(text);
   if (!json.is_object()) return {};
@@ -80,32 +79,30 @@ std::string words_for(const User& user) {
          (user.job.empty() ? "" : " (job " + user.job + ")");
 }
 
-/// Whether the process `user` is known to have ended. Must be called by the process that has the
-/// flock of this host.
+/// Whether the process is known to have ended. The caller must have the flock of this host.
 bool is_gone(const User& user, const User& own) {
-  // A running process of this start of the host would have the flock.
+  // A running process of this boot would have the flock.
   if (!user.boot.empty() && user.boot == own.boot) return true;
   return !user.machine.empty() && user.machine == own.machine && user.host == own.host;
 }
 
-/// Returns the bytes of OUT/.nonio/user; none if there is no such file.
+/// Returns std::nullopt if the file does not exist.
 Expected<std::optional<std::string>> read_user(const fs::path& path) {
   NONIO_TRY(const auto there, storage::is_there(path));
   if (!there) return std::nullopt;
   auto text = storage::read_small_file(path);
   if (text) return *text;
   const auto still = storage::is_there(path);
-  if (still && !*still) return std::nullopt;  // the file was removed in the meantime
+  if (still && !*still) return std::nullopt;
   return fail(text.error());
 }
 
-/// Returns the common beginning of the temporary names that this host has used since it started.
 std::string temporary(const fs::path& path, const User& own) {
   return path.string() + "-" + own.boot.substr(0, own.boot.find('-')) + "-";
 }
 
-/// Removes temporary files of killed processes of this host. Must be called by the process that has
-/// the flock.
+/// Removes temporary files of processes that were killed since the last boot of this host. The
+/// caller must have the flock.
 void sweep(const fs::path& path, const User& own) {
   const std::string front = temporary(path, own);
   std::error_code error;
@@ -113,18 +110,16 @@ void sweep(const fs::path& path, const User& own) {
     if (entry.path().string().starts_with(front)) ::unlink(entry.path().c_str());
 }
 
-/// Removes a temporary file, with a second attempt in case of a transient error.
 void remove_temporary(const std::string& path) {
   if (::unlink(path.c_str()) != 0) ::unlink(path.c_str());
 }
 
 enum class Made { done, taken, no_links };
 
-/// Creates `path` with these bytes unless it exists. link(2) is atomic on every server. If the
-/// answer is lost and a second attempt reports "exists", the link count of 2 proves that the file
-/// was created.
+/// Creates the file atomically by link(2), unless it exists. A network file system may report
+/// EEXIST after a successful but repeated request; the link count 2 proves the success.
 Expected<Made> make_user(const fs::path& path, const User& user, const std::string& says) {
-  std::string own = temporary(path, user) + "XXXXXX";  // mkostemp replaces XXXXXX by letters
+  std::string own = temporary(path, user) + "XXXXXX";  // mkostemp replaces XXXXXX
   const int fd = ::mkostemp(own.data(), O_CLOEXEC);
   if (fd < 0) return fail("cannot write " + own + ": " + std::strerror(errno));
   const bool written = ::write(fd, says.data(), says.size()) == static_cast<ssize_t>(says.size()) &&
@@ -142,13 +137,13 @@ Expected<Made> make_user(const fs::path& path, const User& user, const std::stri
   if (linked == 0 || two_names) return Made::done;
   if (linked == EEXIST) return Made::taken;
   if (linked == EPERM || linked == EOPNOTSUPP || linked == ENOSYS || linked == EMLINK)
-    // FAT and some shares have no hard links: flock alone protects the folder.
+    // FAT and some network shares have no hard links; flock alone protects the folder.
     return Made::no_links;
   return fail("cannot write " + path.string() + ": " + std::strerror(linked));
 }
 
-/// Returns true if this process now owns the user file, and false on file systems without hard
-/// links, where only flock protects the folder. An error if another process uses the folder.
+/// Returns false on file systems without hard links, where only flock protects the folder. An error
+/// if another process uses the folder.
 Expected<bool> become_user(const fs::path& out, const fs::path& path, const User& own,
                            const std::string& says) {
   sweep(path, own);
@@ -179,7 +174,6 @@ int open_lock(const fs::path& out, int how) {
   return ::open((out / state_folder / "lock").c_str(), how | O_CLOEXEC, 0644);
 }
 
-/// Whether a process has the exclusive lock, as far as the file system reports it.
 bool is_held(const fs::path& out) {
   const int fd = open_lock(out, O_RDONLY);
   const bool held = fd >= 0 && ::flock(fd, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
@@ -224,7 +218,7 @@ Expected<OutputLock> OutputLock::take(const fs::path& out, Use use) {
   if (fd < 0)
     return fail("cannot use the output folder " + out.string() + ": " + std::strerror(errno));
   OutputLock lock(fd);
-  // Child processes of a killed run may need a moment to end, so the lock is tried repeatedly.
+  // Child processes of a killed run may end with a delay, so the lock is tried repeatedly.
   constexpr int tries = 50;
   int code = EWOULDBLOCK;
   for (int i = 0; i < tries && (code == EWOULDBLOCK || code == EINTR); ++i) {
@@ -266,7 +260,7 @@ OutputLock::~OutputLock() {
     const auto text = read_user(user_);
     if (text && *text == says_) ::unlink(user_.c_str());
   }
-  // Also releases the lock for a child process that was left behind because its disk hangs.
+  // Releases the lock also for a child process that remains because its disk hangs.
   ::flock(fd_, LOCK_UN);
   ::close(fd_);
 }

@@ -10,20 +10,17 @@
 namespace nonio::batch {
 
 /// Locks an output folder for a run; an error names the process that uses it.
-///
-/// Two locks are used. flock on OUT/.nonio/lock works among the processes of one host, and on most
-/// network file systems among hosts. The file OUT/.nonio/user, created by link(2), names the
-/// process that has exclusive use, and works among hosts on every file system with hard links. The
-/// file is taken over only if its process is known to have ended: the process belongs to the
-/// present boot of this host, where flock decides, or to an earlier boot of this host. Processes of
-/// other hosts cannot be checked; `unlock` releases their lock.
+/// flock on OUT/.nonio/lock excludes processes of one host, and on most network file systems of
+/// other hosts. The file OUT/.nonio/user, created by link(2), excludes processes of all hosts on
+/// file systems with hard links. A file of this host is taken over if its process has ended: in the
+/// present boot flock proves this, in an earlier boot the restart. Files of other hosts must be
+/// removed by `unlock`.
 class OutputLock {
  public:
   enum class Use {
-    whole,    ///< exclusive use; refused also while a run is planned
-    planned,  ///< exclusive use; for a process that makes, merges or withdraws a plan
-    shard     ///< shared with other shards by flock only, since two processes of the same shard do
-              ///< no harm
+    whole,    ///< exclusive; refused while a run is planned
+    planned,  ///< exclusive; for a process that makes, merges or withdraws a plan
+    shard     ///< shared by flock among shards
   };
   static Expected<OutputLock> take(const std::filesystem::path& out, Use use = Use::whole);
   OutputLock(OutputLock&& other) noexcept;
@@ -33,22 +30,19 @@ class OutputLock {
  private:
   explicit OutputLock(int fd) : fd_(fd) {}
   int fd_;
-  std::filesystem::path user_{};  ///< path of OUT/.nonio/user; empty if this object does not own
-                                  ///< the file
-  std::string says_{};            ///< content of the file OUT/.nonio/user as this process wrote it
-  long pid_ = 0;                  ///< process id of the owner, so that its child processes do not
-                                  ///< remove the file
+  std::filesystem::path user_{};  ///< OUT/.nonio/user; empty if this object did not create the file
+  std::string says_{};            ///< content of the file `user_`
+  /// Process that created the file, because its child processes must not remove it.
+  long pid_ = 0;
 };
 
-/// Describes the process that has exclusive use of the output folder, for example "process 17 on
-/// host a (job 5)"; empty if there is none.
+/// Returns, for example, "process 17 on host a (job 5)"; empty if no process has exclusive use.
 std::string user_of(const std::filesystem::path& out);
 
-/// Removes OUT/.nonio/user of a process that has ended on another host, and returns a description
-/// of that process; empty if the file does not exist. `alive` contains the ids of the jobs that a
-/// scheduler still runs, one per line. With `alive`, unlocking is refused if the process belongs to
-/// one of these jobs, or has no job id (environment variable NONIO_JOB). It is also refused while a
-/// process of this host uses the folder.
+/// Removes OUT/.nonio/user of a process that has ended on another host and returns the description
+/// of the process; empty if the file does not exist. `alive` lists the jobs of a scheduler, one id
+/// per line: an error if the job of the process (NONIO_JOB) is listed or unknown. An error also if
+/// a process has the flock.
 Expected<std::string> unlock(const std::filesystem::path& out,
                              const std::optional<std::string>& alive);
 

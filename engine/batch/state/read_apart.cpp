@@ -12,7 +12,7 @@ Expected<std::string> bytes_apart(const std::string& what, double seconds,
                                   const std::function<std::string(process::SignsOfLife&)>& read) {
   auto started = process::Watched::start(
       [&](process::SignsOfLife& signs, const process::Watched::Send& send) { send(read(signs)); });
-  if (!started) {  // If no process can be started, this process calls `read` itself.
+  if (!started) {
     process::SignsOfLife alone{};
     return read(alone);
   }

@@ -12,15 +12,15 @@
 
 namespace nonio::batch {
 
-/// Returns the bytes that `read` produces in a child process, or in this process if no child can be
-/// started. The child may take `seconds` without a sign of life. An error names `what`; if a stop
-/// is requested, the child is left behind and the error is "interrupted".
+/// Runs `read` in a child process, or in this process if none can be started. The child may take
+/// `seconds` without a sign of life. An error names `what`, or is "interrupted" if a stop is
+/// requested; the child may then remain.
 Expected<std::string> bytes_apart(const std::string& what, double seconds,
                                   const std::function<std::string(process::SignsOfLife&)>& read);
 
-/// Returns the value of `read`, computed in a child process, so that a disk or share that hangs
-/// blocks neither this process nor a request to stop it. An error that names `what` if the child
-/// shows no sign of life for `seconds`, or ends without a value.
+/// Returns the value of `read`, which runs in a child process, so that a disk that hangs does not
+/// block a request to stop. An error names `what` if the child shows no sign of life for `seconds`
+/// or ends without a value.
 template <class T, class Read>
 Expected<T> read_apart(const std::string& what, double seconds, const Read& read) {
   const auto bytes = bytes_apart(what, seconds, [&](process::SignsOfLife& signs) {

@@ -26,8 +26,7 @@ using Action = CampaignState::Action;
 
 namespace {
 
-/// Returns the bytes as a JSON string, or as hexadecimal digits if they are not UTF-8 (names of
-/// folders).
+/// Names of folders that are not UTF-8 are written as hexadecimal digits.
 Json exact(const std::string& bytes) {
   if (storage::path_text(bytes) == bytes) return bytes;
   std::string hex;
@@ -64,7 +63,6 @@ std::vector<Error> errors_in(const Json& json) {
   return all;
 }
 
-/// Parses a status; an unknown word means that the campaign is not evaluated yet.
 evaluation::Status status_in(const Json& json) {
   return evaluation::status_named(json.get<std::string>()).value_or(evaluation::Status::none);
 }
@@ -77,7 +75,6 @@ std::string hex_of(std::uint64_t value) {
   return text.data();
 }
 
-/// Returns one campaign as a line of JSON; default values are left out.
 std::string line_of(const CampaignState& c, const std::vector<CampaignState>& all) {
   Json json = {{"id", c.id}, {"folder", exact(c.folder)}, {"reason", exact(c.reason)}};
   if (c.action != Action::todo) json["action"] = actions.at(static_cast<std::size_t>(c.action));
@@ -114,7 +111,6 @@ Listed listed_in(const Json& json) {
   return listed;
 }
 
-/// Returns the error for a file of a plan that was changed after it was written.
 Error damaged(const fs::path& path, const std::string& why) {
   return Error{path.string() + " is damaged (" + why + "); plan the run again"};
 }
@@ -136,8 +132,8 @@ Expected<std::vector<Listed>> read_list(const fs::path& path, const RunPlan::Lis
   return all;
 }
 
-/// Writes the campaigns with the indices `of` as a list of the plan, under its temporary name and
-/// line by line, since a list may not fit into memory. Sets the digest in `list`.
+/// Writes the campaigns with the indices `of` line by line, because a list may not fit into memory,
+/// into a temporary file. Sets the digest of `list`.
 Expected<void> write_list(const fs::path& folder, const std::string& name,
                           std::span<const std::uint32_t> of,
                           const std::vector<CampaignState>& campaigns, RunPlan::List& list) {
@@ -237,9 +233,8 @@ std::string word_of_its_own() {
   return text.data();
 }
 
-/// Returns whether the campaign needs the key and the register, which are available only on the
-/// host of the merge. This is derived from its last record. If the campaign has no record, its
-/// shard detects the need.
+/// Whether the last record contains a certificate or a draft, which needs key and register on the
+/// host of the merge. Without a record, the shard detects the need.
 bool needs_register(const fs::path& out, const CampaignState& c) {
   const auto last = evaluation::last_record(storage::results_folder(out, c.id));
   return last && *last && ((*last)->record.draft || !(*last)->record.certificate.empty());
@@ -249,8 +244,6 @@ bool is_for_shard(const CampaignState& c) {
   return c.action == Action::todo && c.status != evaluation::Status::failed;
 }
 
-/// Returns the positions of the campaigns in `campaigns`, sorted by shard; campaigns of no shard
-/// come last. Sets the numbers of campaigns in the plan.
 std::vector<std::uint32_t> by_list(const fs::path& out, RunPlan& plan,
                                    const std::vector<CampaignState>& campaigns) {
   const auto rest = static_cast<std::uint32_t>(plan.shards.size());

@@ -22,37 +22,34 @@ namespace nonio::batch {
 struct RunOptions {
   std::filesystem::path site, out;
   std::vector<std::filesystem::path> plugin_folders, template_folders;
-  std::filesystem::path own_plugins;  ///< plugin folder of the installed program
-  std::size_t jobs = 0;               ///< number of worker processes; 0: one for each core
+  std::filesystem::path own_plugins;
+  std::size_t jobs = 0;  ///< number of worker processes; 0 for one per core
   bool force = false;
-  std::string only{};  ///< folder below the site, or id, of the only campaign to be evaluated again
-                       ///< after a complete run; empty: all campaigns
+  /// --only: folder or id of the only campaign that is evaluated again after a complete run.
+  std::string only{};
   bool dry_run = false;
-  bool verify_results = false;  ///< whether to compare the digests of all output files, even if
-                                ///< their times are unchanged
-  std::string date{};           ///< date of the run, YYYY-MM-DD; empty: today
+  /// Whether to compare the digests of all output files, even if their times are unchanged.
+  bool verify_results = false;
+  std::string date{};  ///< YYYY-MM-DD; empty for today
   std::string version;
-  bool as_root = false;  ///< whether root may start the run even if other users can change the
-                         ///< plugins
-  bool confine = true;   ///< whether plugins are confined; false is used to measure what
-                         ///< confinement costs
-  /// Part of the run that this process does; `whole`: the run is not divided.
+  bool as_root = false;
+  /// Whether plugins are confined; false measures the cost of the confinement.
+  bool confine = true;
+  /// `whole` for a run without shards.
   enum class Step { whole, plan, shard, merge } step = Step::whole;
-  std::uint64_t shard = 0, shards = 0;  ///< zero-based index of this shard, and number of shards
-  bool pack = false;                    ///< whether the shard hands its results over as one file
-  std::filesystem::path
-      scratch{};          ///< local folder of a packed shard; empty: the system's temporary folder
-  double patience = 0.0;  ///< time that a merge waits for results of other hosts to appear, s
+  std::uint64_t shard = 0, shards = 0;  ///< zero-based index of the shard and number of shards
+  bool pack = false;                    ///< whether the shard delivers its results as one file
+  /// Local folder of a packed shard; empty for the temporary folder of the system.
+  std::filesystem::path scratch{};
+  double patience = 0.0;  ///< waiting time of a merge for results of other hosts, s
 };
 
-/// A campaign that has results and is no longer in the site, or another part of the site that is
-/// lost (SiteParts). The results are kept; forgotten.toml confirms that the removal was intended.
+/// A campaign with results that the site no longer contains, or a lost part of the site
+/// (SiteParts). An entry in forgotten.toml confirms that the removal was intended.
 struct Vanished {
-  std::string id, folder;  ///< id, and former folder as text; for a lost part of the site, both are
-                           ///< its path
-  std::uint64_t run = 0;   ///< number of the run that evaluated the campaign last, or that wrote
-                           ///< the inventory of the site last
-  std::string why;         ///< what the site contains instead, and the required action
+  std::string id, folder;  ///< id and former folder; for a part of the site, its path
+  std::uint64_t run = 0;   ///< last run that evaluated the campaign or read the part
+  std::string why;
 };
 
 /// Callbacks during a run; only `stage` and `words` may be empty.
@@ -60,47 +57,42 @@ struct RunEvents {
   std::function<void(const std::string& message)> note;
   std::function<void(std::size_t campaigns, std::size_t to_do)> planned;
   std::function<void(const CampaignState&)> finished;
-  std::function<void()> tick;  ///< called several times per second, so that the progress display
-                               ///< can be redrawn
-  /// Called at the beginning of each stage: survey, campaigns, history, pages.
+  std::function<void()> tick;  ///< called several times per second for the progress bar
+  /// Called with "survey", "campaigns", "history" and "pages".
   std::function<void(const char* name)> stage{};
-  /// Called first, as soon as site.toml and the templates are read.
+  /// Called once, after site.toml and the templates were read.
   std::function<void(const config::TerminalWords&)> words{};
 };
 
 struct RunResult {
   enum class End { complete, interrupted, refused } end = End::complete;
   evaluation::RunLabel run{};
-  std::optional<std::uint64_t> seen_before{};  ///< number of campaigns in the previous run; none:
-                                               ///< first run
-  std::string error;                           ///< why the run was refused or could not be
-                                               ///< completed; empty: neither
-  std::vector<CampaignState> campaigns;        ///< campaigns of the run, ordered by id
+  std::optional<std::uint64_t> seen_before{};
+  /// Reason why the run was refused or is not complete.
+  std::string error;
+  std::vector<CampaignState> campaigns;  ///< sorted by id
   std::vector<std::string> notes;
-  std::vector<certificates::RegisterEntry> issued;  ///< certificates issued since the previous run
+  std::vector<certificates::RegisterEntry> issued;
   std::vector<certificates::WaitingDraft> waiting;  ///< drafts that wait for approval
-  std::vector<Vanished> vanished;                   ///< vanished campaigns and lost parts of the
-                                                    ///< site, ordered by id
-  std::size_t failed() const;      ///< number of failed campaigns and of folders that could not be
-                                   ///< listed
+  std::vector<Vanished> vanished;                   ///< sorted by id
+  std::size_t failed() const;                       ///< includes folders that could not be listed
   std::size_t lost_parts() const;  ///< number of entries in `vanished` that are not campaigns
-  /// Returns whether a campaign failed, more campaigns vanished than site.toml allows, a part of
-  /// the site is lost, or the history or the worklist could not be written.
+  /// Whether a campaign failed, more campaigns are missing than site.toml accepts, a part of the
+  /// site is lost, or the history or the worklist could not be written.
   bool any_failed() const {
     return failed() > 0 || lost_parts() > 0 || vanished.size() > may_vanish ||
            !history_error.empty() || !worklist_error.empty();
   }
-  std::size_t may_vanish = 0;  ///< largest number of vanished campaigns that is not a failure, from
-                               ///< site.toml
-  std::string actions{};       ///< JSON list of lines that require action, in the language of the
-                               ///< site
-  std::optional<std::uint64_t> asking{};  ///< number of worklist lines that require action; none if
-                                          ///< the worklist was not made
-  std::string worklist_error{};           ///< why the pages were not made or the mail was not sent;
-                                          ///< empty: no error
-  std::string history_error{};            ///< why OUT/history.sqlite does not contain this run, or
-                                          ///< histories in reports are outdated; empty: no error
-  /// Number of campaigns in each shard; only for a planned run.
+  std::size_t may_vanish = 0;  ///< number of missing campaigns that site.toml accepts
+  /// JSON list of worklist lines that require action, in the language of the site.
+  std::string actions{};
+  /// Number of worklist lines that require action, if the worklist was made.
+  std::optional<std::uint64_t> asking{};
+  std::string worklist_error{};  ///< error of the pages or of the mail
+  /// Reason why the history lacks this run or some results, or why reports contain outdated
+  /// histories.
+  std::string history_error{};
+  /// Number of campaigns per shard after the step `plan`.
   std::vector<std::uint64_t> planned{};
 };
 

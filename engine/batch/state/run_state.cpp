@@ -24,8 +24,8 @@ namespace {
 constexpr const char* state_name = "night.json";
 constexpr const char* seconds_name = "seconds";
 
-/// Stores the duration of a run as the time of an empty file, in seconds after 1970: the same input
-/// gives the same bytes in every file.
+/// Stores the duration (s) as the modification time of an empty file, so that equal inputs give
+/// equal bytes of all files.
 Expected<void> keep_seconds(const fs::path& out, double seconds) {
   const fs::path folder = out / state_folder;
   if (auto kept = storage::publish(folder, {{seconds_name, ""}}); !kept) return kept;
@@ -38,7 +38,7 @@ Expected<void> keep_seconds(const fs::path& out, double seconds) {
   return {};
 }
 
-/// None if no run has stored its duration, or if a copy of the folder has lost the times of files.
+/// Returns std::nullopt for times that cannot be durations, such as those of a copied file.
 std::optional<double> seconds_in(const fs::path& out) {
   constexpr std::time_t longest = std::time_t{366} * 86400;
   struct stat info {};
@@ -76,8 +76,6 @@ std::optional<RunEnd> end_in(const storage::Json& json, const char* key) {
   return RunEnd{{*number, known_text(*it, "date")}, *seen, known_count(*it, "failed").value_or(0)};
 }
 
-/// Returns OUT/.nonio's state file as JSON, none if it does not exist; an error if it cannot be
-/// read or is damaged.
 Expected<std::optional<storage::Json>> read_state(const fs::path& out) {
   const fs::path path = out / state_folder / state_name;
   std::error_code error;
@@ -89,8 +87,6 @@ Expected<std::optional<storage::Json>> read_state(const fs::path& out) {
   return json;
 }
 
-/// Writes the state of the run. `end` contains the counts of a complete run; it is none while the
-/// run is in progress.
 Expected<void> write_state(const fs::path& out, const RunState& run,
                            const std::optional<RunEnd>& end) {
   storage::Json json = {{"schema", "nonio-night/1"}, {"night", run.number},
@@ -103,9 +99,8 @@ Expected<void> write_state(const fs::path& out, const RunState& run,
   return storage::publish(out / state_folder, {{state_name, storage::dump(json)}});
 }
 
-/// Returns why the results of `site` must not be stored with those of `other`; returns an empty
-/// text if they may. A site that was moved is still the same site, because its old folder no longer
-/// exists.
+/// Returns the reason why results of both sites must not share a folder, or an empty string. A site
+/// whose former folder does not exist was moved.
 std::string other_site(const std::string& other, const std::string& site, const fs::path& out) {
   std::error_code error;
   if (other.empty() || other == site || !fs::is_directory(other, error) ||
@@ -115,8 +110,6 @@ std::string other_site(const std::string& other, const std::string& site, const 
          "; expected a folder of its own for " + site;
 }
 
-/// Returns whether existing results are in hashed folders (OUT/ab/<id>); none if there are no
-/// results.
 std::optional<bool> lie_hashed(const fs::path& out) {
   std::error_code error;
   const auto has_results = [&](const fs::path& folder) {
@@ -148,7 +141,6 @@ std::string today() {
 
 namespace {
 
-/// Checks the site stated in the state file. An error if it is another site that still exists.
 Expected<void> check_site(const storage::Json& json, const std::string& site, const fs::path& out) {
   const std::string known = known_text(json, "site");
   if (known == site) return {};
@@ -216,7 +208,7 @@ Expected<RunState> begin_run(const RunOptions& options, const std::string& site,
     if (auto own = check_site(json, site, out); !own) return fail(own.error());
     run.resumed = known_text(json, "state") == "running";
     run.number = json["night"].get<std::uint64_t>() + (run.resumed ? 0 : 1);
-    // An interrupted run that was forced is also finished as a forced run.
+    // An interrupted run with --force is also completed with --force.
     if (run.resumed) run.force = options.force || json.value("force", false);
     if (run.resumed && options.date.empty() && json.contains("date"))
       run.date = known_text(json, "date");

@@ -13,58 +13,55 @@
 
 namespace nonio::batch {
 
-/// Folder for the run's own files in the output folder; no campaign can have this name.
+/// Folder of internal files in the output folder. It is not a valid campaign id.
 inline constexpr const char* state_folder = ".nonio";
-/// Folder inside `state_folder` for the plan of a run in shards; it exists from the plan to the end
-/// of the merge, or until the plan is cancelled.
+/// Folder in `state_folder` that exists until the planned run is merged or canceled.
 inline constexpr const char* plan_folder = "plan";
 inline constexpr const char* plan_name = "plan.json";
 
-/// Number and date of the run, stored in OUT/.nonio. A run that was killed or interrupted keeps its
-/// number when it is resumed, so that its summary equals that of an undisturbed run.
+/// State of a run in OUT/.nonio. A resumed run keeps its number, so that its summary equals that of
+/// a run without interruption.
 struct RunState {
   std::uint64_t number = 1;
-  std::string date{};            ///< date of the run, YYYY-MM-DD; the local date if none was given
-  std::optional<RunEnd> last{};  ///< the previous complete run; none before the first
+  std::string date{};  ///< YYYY-MM-DD
+  std::optional<RunEnd> last{};
   bool force = false;
   bool resumed = false;
-  /// Position, in the order of issue, of the last certificate number in the register when the
-  /// previous run ended, or when the first run began; none if the register could not be read.
+  /// Last position in the order of issue that the previous run recorded; before the first run, the
+  /// last position in the register. Unknown if the register could not be read.
   std::optional<std::uint64_t> issued_before{};
-  /// Position, in the order of issue, of the last certificate number in the register when this run
-  /// began. It is needed if the run is reopened later.
+  /// Value of `issued_before` at the beginning of the run, for reopening it.
   std::optional<std::uint64_t> issued_at_begin{};
-  bool reopened = false;  ///< whether this is a complete run of which one campaign is evaluated
-                          ///< again
-  std::string site{};     ///< folder of the site that the results belong to
-  /// When this process began the run; none if the run was done in shards, or reopened.
+  bool reopened = false;  ///< whether one campaign of a complete run is evaluated again
+  std::string site{};
+  /// Set only in a process that does a whole run.
   std::optional<std::chrono::steady_clock::time_point> began{};
   evaluation::RunLabel of() const { return {number, date}; }
 };
 
-/// Begins or resumes a run; with `dry_run`, nothing is written. An error if the state file is
-/// damaged, or if the output folder contains results of another site that still exists, because the
-/// campaigns of both would be mixed.
+/// Begins or resumes a run; `dry_run` writes nothing. An error if the state file is damaged or if
+/// the output folder belongs to another existing site, because the campaigns of both would be
+/// mixed.
 Expected<RunState> begin_run(const RunOptions& options, const std::string& site,
                              std::optional<std::uint64_t> issued_so_far);
-/// Returns the state that the last run had when it began, so that one campaign can be evaluated
-/// again. An error if the run is not complete. Nothing is written, so an interruption leaves the
-/// run complete.
+/// Returns the state at the beginning of the last run, so that one of its campaigns can be
+/// evaluated again. An error if the run is not complete. Nothing is written, so that the run
+/// remains complete after an interruption.
 Expected<RunState> reopen_run(const RunOptions& options, const std::string& site);
-/// Returns the state that the planned run had when it began. An error if it is not the run in
-/// progress in the output folder. Nothing is written.
+/// Returns the state at the beginning of the planned run without writing. An error if this run is
+/// not in progress, or if it is of another site.
 Expected<RunState> planned_run(const RunOptions& options, const std::string& site,
                                std::uint64_t number);
-/// Marks the run as complete. The next run takes over `run.issued_before`.
+/// Marks the run as complete. The next run continues from `run.issued_before`.
 Expected<void> end_run(const std::filesystem::path& out, const RunState& run, const RunEnd& end);
 
-/// Compares the layout of site.toml (`hashed`: OUT/ab/<id>) with that of existing results, and
-/// marks a new output folder with hashed folders, unless `dry_run`. Results are never moved: a
-/// different layout is an error.
+/// Compares the layout in site.toml (`hashed` for OUT/ab/<id>) with that of existing results. A
+/// difference is an error, because results are never moved. Marks a new folder with the hashed
+/// layout, unless `dry_run`.
 Expected<void> settle_folders(const std::filesystem::path& out, bool hashed, bool dry_run);
 
-/// Returns an error if a planned run has been neither merged nor cancelled, because no other run
-/// may begin before.
+/// Returns an error while a planned run is neither merged nor canceled, because no other run may
+/// begin.
 Expected<void> check_not_planned(const std::filesystem::path& out);
 
 }  // namespace nonio::batch

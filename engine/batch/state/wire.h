@@ -11,7 +11,7 @@
 #include "nonio/sdk/plugin.h"
 #include "platform/storage/serialise.h"
 
-/// Members of the types that the processes of a run send to each other.
+/// Members of the types that the processes of a run exchange.
 namespace nonio::storage {
 
 NONIO_MEMBERS(Error, a, b, c, d, e)
@@ -38,13 +38,13 @@ NONIO_MEMBERS(Conformity, a, b, c, d, e, f, g, h)
 NONIO_MEMBERS(ModelFit::Parameter, a, b, c, d, e, f)
 NONIO_MEMBERS(ModelFit::Curve, a, b, c, d, e)
 NONIO_MEMBERS(ModelFit::Effect, a, b, c, d)
-NONIO_MEMBERS(ModelFit::Without, a, b, c, d)
+NONIO_MEMBERS(ModelFit::Without, a, b, c, d, e, f, g, h, i, j)
 NONIO_MEMBERS(ModelFit::Candidate, a, b, c, d, e, f, g, h)
 NONIO_MEMBERS(ModelFit::Step, a, b, c)
 NONIO_MEMBERS(ModelFit::Suspect, a, b)
 NONIO_MEMBERS(ModelFit::Channel, a, b, c, d)
 NONIO_MEMBERS(ModelFit, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y,
-              z, aa, bb, cc, dd)
+              z, aa, bb, cc, dd, ee, ff, gg)
 NONIO_MEMBERS(Results::Analysed, a, b, c, d, e)
 NONIO_MEMBERS(Results::Written, a, b, c)
 NONIO_MEMBERS(Results, a, b, c, d, e, f)

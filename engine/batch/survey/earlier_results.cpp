@@ -14,7 +14,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Index of the campaigns by the text of their folders.
 class ByFolder {
  public:
   ByFolder(const std::vector<CampaignState>& campaigns, std::size_t ordered)
@@ -37,7 +36,7 @@ class ByFolder {
  private:
   const CampaignState* first_;
   const CampaignState* end_;
-  // Folders that are not UTF-8 or not in the order of the others; there are only few of them.
+  // Folders that are not UTF-8 or not in the sorted part.
   std::map<std::string, const CampaignState*> others_;
 };
 

@@ -13,15 +13,14 @@
 
 namespace nonio::batch {
 
-/// Results in the output folder whose id no manifest of this run states.
+/// Results whose id no manifest states.
 struct EarlierResult {
-  std::string id, folder;  ///< id of the campaign, and its folder relative to the site, as text
+  std::string id, folder;
   std::uint64_t run = 0;
   bool failed = false;
 };
 
-/// Index of the campaigns whose manifests state an id. It stores the positions of the campaigns
-/// (four bytes each) to save memory.
+/// Index of the ids that manifests state. It contains positions of four bytes to save memory.
 class ClaimedIds {
  public:
   explicit ClaimedIds(const std::vector<CampaignState>& campaigns);
@@ -32,14 +31,13 @@ class ClaimedIds {
   std::vector<std::uint32_t> by_id_;
 };
 
-/// Returns the results in `out` whose id is not in `claimed`, sorted by id. An error if the output
-/// folder cannot be listed.
+/// Returns the results in `out` whose id is not in `claimed`, sorted by id. An error if the folder
+/// cannot be listed.
 Expected<std::vector<EarlierResult>> unclaimed_results(const std::filesystem::path& out,
                                                        const ClaimedIds& claimed);
 
-/// Returns campaigns that existed before and no longer exist. Failed results of a folder that now
-/// has another id are leftovers and are only noted. The first `ordered` campaigns are in the order
-/// of their folders.
+/// Returns the campaigns that no longer exist. Failed results of a folder whose campaign has
+/// another id are only noted. The first `ordered` campaigns must be sorted by folder.
 std::vector<Vanished> vanished_of(const std::vector<EarlierResult>& earlier,
                                   const std::vector<CampaignState>& campaigns, std::size_t ordered,
                                   const std::vector<SiteWalk::Unlisted>& unlisted,

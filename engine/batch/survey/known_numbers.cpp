@@ -11,8 +11,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Returns an error if the register would be inside an output folder below the site, because it
-/// would be lost with that folder.
+/// Returns an error if the register is in an output folder inside the site, because it would be
+/// lost with this folder.
 Expected<void> check_register_place(const RunOptions& options, const reading::Context& context) {
   NONIO_TRY(const auto place, certificates::register_place(options.site, context.site.numbering));
   std::error_code error;

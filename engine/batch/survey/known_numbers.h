@@ -10,22 +10,21 @@
 
 namespace nonio::batch {
 
-/// Entries and drafts in the register before the run.
+/// Content of the register before the run.
 struct Known {
   std::vector<certificates::RegisterEntry> numbers;
   std::vector<certificates::WaitingDraft> drafts;
 };
 
-/// Point of the run at which the register is read. `first`: before anything is issued; the hash
-/// chain of the journal is checked, and a broken chain is an error.
+/// `first`: before numbers are issued, the hash chain of the journal is checked, and a broken chain
+/// is an error.
 enum class Look { first, again };
-/// Reads the register; none if another process keeps it locked. An error if it cannot be read, or
-/// is in a place where it could be lost.
+/// Returns std::nullopt if another process has locked the register. An error if it cannot be read,
+/// or if it is stored in the output folder, where it could be lost.
 Expected<std::optional<Known>> known_of(const RunOptions& options, const reading::Context& context,
                                         Look look = Look::first);
 
-/// Returns the position of the last issued number in the order of issue, counted from 1; 0 if no
-/// number is issued.
+/// Returns the last position in the order of issue, counted from 1; 0 without certificates.
 std::uint64_t issued_so_far(const std::vector<certificates::RegisterEntry>& numbers);
 
 }  // namespace nonio::batch

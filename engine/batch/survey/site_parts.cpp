@@ -32,8 +32,8 @@ std::string_view without_end(std::string_view text) {
   return text.substr(0, last == std::string_view::npos ? 0 : last + 1);
 }
 
-/// Returns a description of a loss of bytes that no edit explains: the file is empty, or cut at its
-/// end. Returns an empty text if there is no such loss.
+/// Returns a description if the file is empty or truncated, which no editing explains; otherwise
+/// empty.
 std::string lost_bytes(std::string_view before, std::string_view now) {
   before = without_end(before), now = without_end(now);
   if (before.empty() || now.size() >= before.size()) return {};
@@ -49,8 +49,8 @@ bool is_record(const std::string& path) {
 }
 std::string asset_of(const std::string& path) { return fs::path(path).stem().string(); }
 
-/// Returns whether the file may replace its copy. A machine record must be valid, because the copy
-/// identifies the machine if the record is lost. Other files may always replace their copies.
+/// Whether the file may replace its copy. An invalid machine record may not, because the copy
+/// identifies the machine of a lost record.
 bool is_good(const std::string& path, const std::string& bytes) {
   return !is_record(path) || config::parse_machine(bytes, path, asset_of(path)).has_value();
 }
@@ -85,7 +85,8 @@ Expected<void> SiteParts::read_inventory() {
     date_ = json.at("date").get<std::string>();
     run_ = json.at("night").get<std::uint64_t>();
     for (const auto& [path, part] : json.at("files").items()) {
-      // These names are used to read, write and remove files, so they must be below the site.
+      // Files with these names are read, written and removed, so the names must not lead out of the
+      // site.
       if (!config::is_site_part(path) || fs::path(path).lexically_normal() != path)
         throw std::runtime_error("no path below the site");
       parts_[path] = {part.at("sha256").get<std::string>(), part.value("last_seen", date_), {}};
@@ -98,7 +99,7 @@ Expected<void> SiteParts::read_inventory() {
   return {};
 }
 
-/// Takes the copies themselves as the inventory, because the inventory is missing or damaged.
+/// Makes the inventory from the copies, because it is missing or damaged.
 Expected<void> SiteParts::read_copies() {
   NONIO_TRY(const auto there, storage::is_there(out_ / copies_folder));
   if (!there) return {};
@@ -121,7 +122,7 @@ Expected<void> SiteParts::look_at_all() {
     NONIO_TRY(const auto files, config::template_paths(site_ / folder));
     for (const auto& [name, file] : files)
       if (const std::string path = std::string(folder) + "/" + name;
-          folder == config::templates_folder || (is_record(path) && name.find('/') == name.npos))
+          folder != config::machines_folder || (is_record(path) && name.find('/') == name.npos))
         paths.insert(path);
   }
   for (const std::string& path : paths) look(path);
@@ -157,8 +158,8 @@ void SiteParts::look(const std::string& path) {
   if (is_good(path, *now)) renewed_[path] = std::move(*now);
 }
 
-/// Marks a lost file as removed on purpose if forgotten.toml contains an entry for it that is not
-/// older than the last run that read the file. An older entry refers to an earlier loss.
+/// An entry of forgotten.toml that is older than the last valid state of the file refers to an
+/// earlier loss.
 void SiteParts::leave_out_removed(const std::vector<config::Forgotten>& forgotten) {
   for (const auto& one : parts_) {
     const std::string& path = one.first;
@@ -173,7 +174,7 @@ void SiteParts::leave_out_removed(const std::vector<config::Forgotten>& forgotte
 
 void SiteParts::note_lost() {
   const std::set<std::string> removed(removed_.begin(), removed_.end());
-  std::map<std::string, std::size_t> whole;  // folders of which no file exists any more
+  std::map<std::string, std::size_t> whole;
   for (const char* folder : part_folders) {
     std::size_t missing = 0;
     const bool all = std::all_of(parts_.begin(), parts_.end(), [&](const auto& p) {
@@ -201,8 +202,8 @@ void SiteParts::note_lost() {
                      damaged_ + "; this run makes the inventory of the site anew"});
 }
 
-/// Returns what is wrong with a file, the day on which it was last read, its new name if it was
-/// renamed, and where its copy is.
+/// Returns the error with the date of the last valid state, a new name of the file if it was
+/// renamed, and the path of the copy.
 std::string SiteParts::why_of(const std::string& path) const {
   const Part& part = parts_.at(path);
   std::string why = part.why;
@@ -246,8 +247,8 @@ void SiteParts::complete(config::MachineRecords& records) const {
 }
 
 Expected<void> SiteParts::keep(const evaluation::RunLabel& run) const {
-  // The inventory is written before the copies. In the opposite order, if the run ended in between,
-  // the next run would find copies without an inventory and report the inventory as lost.
+  // The inventory is written before the copies, because the next run would report copies without an
+  // inventory as a loss.
   NONIO_TRY(const auto listed, storage::is_there(out_ / inventory_name));
   if (!listed)
     if (auto begun = put_inventory(run, parts_); !begun) return begun;

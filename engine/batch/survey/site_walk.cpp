@@ -25,14 +25,13 @@ namespace {
 
 enum class Seen : std::uint64_t { campaign, unlisted, note, all };
 
-/// Remarks beyond this number are only counted.
 constexpr std::size_t most_remarks = 100;
-/// If this many folders hang, the site as a whole is reported as not answering.
+/// Number of folders without a response at which the site itself is regarded as not responding.
 constexpr std::size_t most_hung = 64;
-/// After this many folders that hang, each further one gets at most one second.
+/// Number of folders without a response after which the waiting time is one second.
 constexpr std::size_t patient_for = 8;
 
-// Paths that did not answer, and the message for each.
+// Paths without a response, with the message for each.
 using Passed = std::map<std::string, std::string>;
 
 std::string lower(std::string text) {
@@ -41,7 +40,8 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// Whether the name is probably meant as that of a manifest: `Campaign.toml`, `campaign.toml.txt`.
+/// Whether the file was probably meant as a manifest, such as `Campaign.toml` or
+/// `campaign.toml.txt`.
 bool is_nearly_manifest(const std::string& name) {
   const std::string word = lower(name), wanted = config::manifest_name;
   return word == wanted || word.starts_with(wanted + ".");
@@ -53,7 +53,6 @@ struct FolderNames {
   bool has_manifest = false;
 };
 
-/// Searches the site for campaigns; used in the child process.
 class Walker {
  public:
   Walker(fs::path root, const fs::path& out, const Passed& passed, process::SignsOfLife& signs,
@@ -99,8 +98,7 @@ class Walker {
     if (++remarks_ <= most_remarks) tell(Seen::note, text);
   }
 
-  /// Returns whether the path `place` may be read. If it did not answer in an earlier attempt, the
-  /// reason is reported and false is returned.
+  /// Returns false, after reporting the reason, if an earlier attempt hung or crashed at this path.
   bool may(const std::string& place) {
     signs_.reading(place);
     const auto hung = passed_.find(place);
@@ -109,8 +107,8 @@ class Walker {
     return false;
   }
 
-  /// Returns the names in a folder; none for the output folder, and none, with a report, if the
-  /// folder cannot be read. No descriptor remains open.
+  /// Returns no names for the output folder and, after a report, for a folder that cannot be read.
+  /// No descriptor remains open.
   FolderNames list(const std::string& folder) {
     FolderNames names;
     const int fd = ::open(path_of(folder).c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
@@ -176,8 +174,8 @@ class Walker {
              config::manifest_name);
   }
 
-  /// Notes a broken link, or a link to a folder or campaign, which is not followed. Links in a
-  /// campaign's folder are noted only if they lead to a campaign.
+  /// Notes links that are broken or lead to a folder. In the folder of a campaign, only links to
+  /// campaigns are noted.
   void look_at_link(const std::string& link, bool in_campaign) {
     struct stat info {};
     if (::stat(path_of(link).c_str(), &info) != 0) {
@@ -202,8 +200,6 @@ class Walker {
   std::size_t remarks_ = 0;
 };
 
-/// Adds the pieces received from the child process to `walk`. Returns true when the search is
-/// complete.
 bool take_over(const std::vector<std::string>& pieces, SiteWalk& walk) {
   for (const std::string& piece : pieces) {
     Seen what{};
@@ -226,9 +222,9 @@ bool take_over(const std::vector<std::string>& pieces, SiteWalk& walk) {
   return false;
 }
 
-/// Searches the site once. Returns none if the child process ended or hung, and then adds the place
-/// where this happened to `passed`, so that the next attempt skips it. If `stopped` returns true,
-/// the incomplete result is returned.
+/// Returns std::nullopt if the child process ended or did not respond, and adds the path to
+/// `passed`, so that the next attempt skips this path. If `stopped` returns true, the result is
+/// incomplete.
 Expected<std::optional<SiteWalk>> try_walk(const fs::path& site, const fs::path& out,
                                            double seconds, bool (*stopped)(), Passed& passed) {
   auto child =

@@ -29,13 +29,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Largest number of campaigns given to one process, so that starting the process is cheap compared
-/// with its work, and a crash costs little.
+/// Large enough that starting a process is cheap compared with its work, small enough that a crash
+/// costs little.
 constexpr std::size_t campaigns_in_batch = 2000;
-/// After this many campaigns whose files hang, each further one gets at most one second.
+/// Number of campaigns without a response after which the waiting time is one second.
 constexpr std::size_t most_patience = 8;
 
-/// Returns the error for an issued number that the register does not contain.
 Error unknown_number(const std::string& number, const std::filesystem::path& out) {
   return Error{"the register of certificates does not know the number " + number + ", which " +
                out.string() +
@@ -55,7 +54,7 @@ class Pool {
 
   Expected<void> run(std::span<const std::uint32_t> which) {
     const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-    // Several batches per core, so that all cores end at about the same time.
+    // Several batches per core let all cores end at about the same time.
     const std::size_t size =
         std::clamp(which.size() / (4 * cores), std::size_t{1}, campaigns_in_batch);
     while ((!which.empty() || !todo_.empty() || !children_.empty()) && !in_.stopped()) {
@@ -112,9 +111,8 @@ class Pool {
     batches_.erase(batches_.begin() + static_cast<std::ptrdiff_t>(i));
   }
 
-  /// Handles a child that died or hangs. If the files of its current campaign hang, the campaign
-  /// fails; otherwise it is tried alone, at most twice more, and then fails. Another process
-  /// continues with the others.
+  /// A campaign whose files do not respond fails. After a crash, the campaign is tried alone, at
+  /// most twice, and then fails. Another process continues with the rest of the batch.
   void cut_short(process::Watched& child, const Batch& batch, bool silent, double patience) {
     const std::size_t at =
         std::clamp<std::size_t>(child.signs().index, batch.received, batch.campaigns.size() - 1);
@@ -146,23 +144,22 @@ class Pool {
 
   const SurveyInput& in_;
   std::vector<CampaignState>& states_;
-  std::vector<Batch> todo_;  // batches that are examined before all other campaigns
+  std::vector<Batch> todo_;
   std::vector<process::Watched> children_;
-  std::vector<Batch> batches_;  // batch of each process in `children_`
+  std::vector<Batch> batches_;
   std::map<std::uint32_t, int> trials_;
   std::size_t hung_ = 0;
   std::string unknown_;
 };
 
-/// Examines the campaigns `which` of `states` and completes their states, on all cores, in child
-/// processes that may hang or crash without harm to the run. An error if no process can be started,
-/// or if the register does not contain an issued number.
+/// Sets the states with the indices `which` on all cores, in child processes, so that a disk that
+/// hangs or a crash does no harm. An error if no process can be started or the register lacks a
+/// number.
 Expected<void> look_at_all(const SurveyInput& input, std::span<const std::uint32_t> which,
                            std::vector<CampaignState>& states) {
   return Pool(input, states).run(which);
 }
 
-/// Returns an id made from the name of the folder, for a campaign whose manifest states none.
 std::string folder_id(const std::string& folder) {
   std::string id = folder == "." ? "campaign" : fs::path(folder).filename().string();
   for (char& c : id) {
@@ -173,14 +170,14 @@ std::string folder_id(const std::string& folder) {
   return id.substr(0, 100);
 }
 
-/// Sets an id for each campaign whose manifest states none: the id under which its folder has
-/// results, otherwise one from the folder's name that no other campaign has.
+/// Sets the id of campaigns whose manifest states none: the id of earlier results of the folder,
+/// otherwise a unique id made from the name of the folder.
 void name_by_folder(std::vector<CampaignState>& states, const std::vector<EarlierResult>& earlier,
                     const ClaimedIds& claimed) {
-  std::map<std::string_view, std::string_view> known;  // ids of earlier results, by folder
+  std::map<std::string_view, std::string_view> known;
   std::set<std::string> taken;
   for (const EarlierResult& e : earlier) {
-    // An id that was made from the folder's name is replaced by one that a manifest stated.
+    // A result that did not fail has the id of a valid manifest, which has precedence.
     const auto [at, is_new] = known.emplace(e.folder, e.id);
     if (!is_new && !e.failed) at->second = e.id;
     taken.insert(e.id);
@@ -200,8 +197,8 @@ void name_by_folder(std::vector<CampaignState>& states, const std::vector<Earlie
   }
 }
 
-/// Marks campaigns with the same id as failed, since each would write to the same output folder. A
-/// message names at most four of the folders.
+/// Campaigns with equal ids fail, because their results would share a folder. A message names at
+/// most four of their folders.
 void fail_collisions(std::vector<CampaignState>& states) {
   constexpr std::size_t most_named = 4;
   for (std::size_t i = 0; i < states.size();) {
@@ -241,8 +238,6 @@ CampaignState failed_folder(const SiteWalk::Unlisted& unlisted) {
   return state;
 }
 
-/// Marks the campaign as to be evaluated if the set of campaigns that share its readings has
-/// changed since its record was written.
 void compare_twins(CampaignState& state, const std::vector<CampaignState>& all) {
   const reading::Twins before = state.twins_before;
   state.twins_before = {};

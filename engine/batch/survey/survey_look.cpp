@@ -40,14 +40,13 @@ CampaignState ChangeDetector::at(const CampaignState& known, bool rough) {
   state.named_by_folder = known.named_by_folder;
   signs_.reading((fs::path(known.folder) / config::manifest_name).string());
   const auto text = storage::read_small_file(in_.site / known.folder / config::manifest_name);
-  if (!text) {  // the worker reports why the manifest cannot be read
+  if (!text) {
     state.named_by_folder = true;
     state.reason = "no earlier result";
     return state;
   }
   const std::string digest = storage::sha256(*text);
-  // Extract the id only; the manifest is parsed in full if it differs from that of the last
-  // results.
+  // The manifest is parsed only if it differs from that of the last results.
   if (state.id.empty()) state.id = config::extract_id(*text);
   Last last = last_of(state.id);
   const bool as_before = last && *last &&
@@ -98,8 +97,8 @@ ChangeDetector::Last ChangeDetector::last_of(const std::string& id) {
   return last;
 }
 
-/// Returns the reason of an evaluation of this run that was staged and not completely stored; empty
-/// if there is none. The output files are then no longer those of the previous run.
+/// Returns the reason of an evaluation of this run whose results were not stored completely, so
+/// that the output files are not those of the previous run; otherwise empty.
 std::string ChangeDetector::staged_reason(const CampaignState& state) const {
   const auto staged = evaluation::staged_record(storage::own_folder(in_.out, state.id));
   return staged && *staged && (*staged)->run == in_.run ? (*staged)->reason : "";
@@ -178,9 +177,8 @@ std::optional<std::uint64_t> ChangeDetector::look_at_file(const CampaignState& s
   return now ? std::optional(storage::short_digest(*now)) : std::nullopt;
 }
 
-/// Adds output files that are missing or changed to `why`. A file of another size has changed. A
-/// file of the recorded size is unchanged if it is not younger than the record, unless
-/// `verify_results` is set; otherwise its digest decides.
+/// Adds missing and modified output files to `why`. Of files with the recorded size, only those
+/// that are newer than the record are compared by digest, or all if `verify_results` is set.
 void ChangeDetector::look_at_outputs(const CampaignState& state, const evaluation::Record& record,
                                      std::vector<std::string>& why) {
   const fs::path folder = storage::results_folder(in_.out, state.id);
@@ -203,6 +201,12 @@ void ChangeDetector::look_at_number(const CampaignState& state, const evaluation
                                     std::vector<std::string>& why) const {
   if (in_.numbers && record.draft && !in_.drafts.contains(state.id))
     why.push_back("its draft was released, or the register does not know it");
+  const bool amends = std::any_of(record.findings.begin(), record.findings.end(),
+                                  [](const auto& f) { return f.id == "certificate.amendment"; });
+  if (in_.numbers && amends && std::none_of(numbers_.begin(), numbers_.end(), [&](const auto& n) {
+        return n.second->campaign == state.id && n.second->in_force();
+      }))
+    why.push_back("the certificate that it replaces was withdrawn");
   const auto number = numbers_.find(record.certificate);
   if (number == numbers_.end() || number->second->in_force()) return;
   why.push_back("its certificate " + record.certificate + " was " + number->second->state);

@@ -9,8 +9,8 @@ namespace nonio::batch {
 
 namespace {
 
-/// Returns the digests that occur more than once, sorted. Since they are few, only these digests
-/// have to be stored together with their campaigns.
+/// Returns the sorted digests that occur more than once. They are few, so that only their campaigns
+/// must be stored.
 std::vector<std::uint64_t> found_again(const std::vector<CampaignState>& campaigns) {
   std::size_t count = 0;
   for (const CampaignState& c : campaigns) count += c.readings.size();
@@ -28,8 +28,7 @@ std::vector<std::uint64_t> found_again(const std::vector<CampaignState>& campaig
 }  // namespace
 
 void find_twins(std::vector<CampaignState>& campaigns) {
-  using File = std::pair<std::uint64_t, std::uint32_t>;  // digest of a file, and index of a
-                                                         // campaign that contains the file
+  using File = std::pair<std::uint64_t, std::uint32_t>;
   const std::vector<std::uint64_t> often = found_again(campaigns);
   std::vector<File> files;
   for (std::size_t i = 0; i < campaigns.size(); ++i) {

@@ -8,16 +8,15 @@
 
 namespace nonio::batch {
 
-/// Finds files of readings that several campaigns have, and notes for each campaign the smallest id
-/// of another campaign with the file. Campaigns must be in the order of their ids; their `readings`
-/// are empty afterwards.
+/// Finds files of readings that several campaigns contain and stores the other campaign with the
+/// smallest id in `twins`. `campaigns` must be sorted by id; their `readings` are cleared.
 void find_twins(std::vector<CampaignState>& campaigns);
 
-/// Returns the shortened digest of each file of readings that another campaign contains too, with
-/// the id of that campaign. The list is sorted by digest, as the evaluation requires.
+/// Returns the first 64 bits of the SHA-256 of each shared file and the id of the other campaign,
+/// sorted.
 reading::Twins twins_of(const CampaignState& campaign, const std::vector<CampaignState>& all);
 
-/// Returns the files shared with other campaigns that the inputs in a record state.
+/// Returns the shared files of readings that the inputs of a record state.
 reading::Twins twins_of(const reading::Inputs& inputs);
 
 }  // namespace nonio::batch

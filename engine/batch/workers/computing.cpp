@@ -20,7 +20,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// First byte of each message of the process with the plugins.
 constexpr char wants_file = 'f', has_analysed = 'a', has_done = 'e';
 
 int ask_for_file(int stream, const fs::path& path) {
@@ -32,8 +31,7 @@ int ask_for_file(int stream, const fs::path& path) {
   return -1;
 }
 
-/// Reports that the campaign is analysed. If a number is required, sends the results and waits for
-/// the number.
+/// Reports the end of the analysis. If a number is required, sends the results and waits for it.
 std::optional<evaluation::AssignedNumber> ask_for_number(
     int stream, const evaluation::AnalysedCampaign& analysed) {
   if (!analysed.number) {
@@ -49,8 +47,8 @@ std::optional<evaluation::AssignedNumber> ask_for_number(
   return assigned;
 }
 
-/// Returns why the answer cannot come from a process of this program; returns an empty text if it
-/// can. The values checked here decide which files are written.
+/// Returns the reason why the answer is not valid, or an empty string. The checked values decide
+/// which files are written.
 std::string unsound_answer(const evaluation::Evaluated& e, const std::string& id) {
   if (e.campaign.id != id) return "another campaign's results";
   if (e.status != evaluation::Status::ok && e.status != evaluation::Status::attention &&
@@ -97,9 +95,8 @@ void evaluate_for(int stream, const reading::Context& context, process::SharedSt
   }
 }
 
-/// Sends the descriptor of a file of the campaign to the other process. Files outside the campaign
-/// and secrets are refused; only the manifest may be a link to a file outside. Returns false if the
-/// message cannot be sent.
+/// Sends a descriptor of a file of the campaign, or EACCES for secrets and for files outside the
+/// campaign, except a manifest that is a link. Returns false if the message cannot be sent.
 bool Evaluator::hand_out(const fs::path& folder, const std::string& path) const {
   std::error_code error;
   const fs::path root = fs::path(path).is_absolute() ? storage::real_folder(folder, error) : folder;
@@ -158,7 +155,8 @@ Expected<evaluation::Evaluated> Evaluator::write_documents(
     return fail(no_process_of_ours);
   if (const std::string why = unsound_answer(evaluated, id); !why.empty())
     return fail("the process that evaluates gave " + why);
-  // The certificate is the one assigned here; the other process only fills in its output.
+  // Only the output of a certificate is accepted from the process with the plugins; its other
+  // members are those of this process.
   if (evaluated.certificate) {
     if (!assigned || !assigned->certificate) return fail(no_process_of_ours);
     assigned->certificate->output = evaluated.certificate->output;

@@ -23,8 +23,7 @@ constexpr const char* register_elsewhere = "the register of certificates is on a
 constexpr const char* register_locked =
     "the certificate register has been locked by another process since the run started";
 
-/// Whether the error comes from the host and not from the readings: lack of memory, or a disk or
-/// share that does not answer.
+/// Whether the host caused the error: lack of memory, or a disk or share that does not respond.
 bool is_of_the_machine(const Error& e) {
   if (e.message.find("out of memory") != e.message.npos) return true;
   constexpr int codes[] = {EIO, ESTALE, ETIMEDOUT, ENOTCONN, EHOSTDOWN, EHOSTUNREACH, ENOMEM};
@@ -44,9 +43,8 @@ void fail_certificate(evaluation::Evaluated& evaluated, const Error& why) {
   evaluated.retry = true;
 }
 
-/// Assigns a certificate number to the campaign. Returns an error in `AssignedNumber` if the
-/// register is on another host, damaged or locked; `locked` is set if the register may be available
-/// later.
+/// The error is set if the register is on another host, damaged or locked. `locked` is set if the
+/// register may be available later.
 evaluation::AssignedNumber number_of(const SiteWork& site, const RegisterState& state,
                                      const evaluation::Evaluated& evaluated,
                                      const std::vector<std::string>& missing,
@@ -85,8 +83,6 @@ bool wants_signature(const evaluation::Evaluated& evaluated) {
   });
 }
 
-/// Evaluates a campaign in the process with the plugins, and assigns a certificate number if one is
-/// required. With `as_draft`, no number is assigned in any case.
 Expected<evaluation::Evaluated> evaluated_apart(const SiteWork& site, const RegisterState& state,
                                                 const CampaignState& c, const fs::path& folder,
                                                 certificates::CampaignFiles& files, bool as_draft,
@@ -101,8 +97,7 @@ Expected<evaluation::Evaluated> evaluated_apart(const SiteWork& site, const Regi
   return evaluator.write_documents(c.id, std::move(number));
 }
 
-/// Evaluates a campaign and, if required, signs its certificate and enters it into the register.
-/// `locked` is set if the campaign has to wait for the register.
+/// Sets `locked` if the campaign must wait for the register.
 Expected<evaluation::Evaluated> certified(const SiteWork& site, const RegisterState& state,
                                           const CampaignState& c, process::SharedStatus& stage,
                                           bool& locked, Evaluator& evaluator) {
@@ -128,7 +123,6 @@ Expected<evaluation::Evaluated> certified(const SiteWork& site, const RegisterSt
   return evaluation;
 }
 
-/// Does the work of `do_campaign` without catching exceptions.
 Answer work(const SiteWork& site, const RegisterState& state, std::size_t index, bool first,
             process::SharedStatus& stage, Evaluator& evaluator, bool& shows_history) {
   if (first && site.signer != nullptr) site.signer->leave_to_worker();

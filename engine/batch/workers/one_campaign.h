@@ -15,36 +15,32 @@
 
 namespace nonio::batch {
 
-/// Data shared by all campaigns of a run, or by the one that is approved.
+/// Data of all campaigns of a run, or of the campaign that is approved.
 struct SiteWork {
   const RunOptions& options;
   const reading::Context& context;
   const RunState& run;
   const std::vector<CampaignState>& campaigns;
   const certificates::Numbers& numbers;
-  certificates::Signer* signer;  ///< process with the key; null: nothing is signed
-  const reading::Twins* twins;   ///< shared files of readings of the campaign that is approved;
-                                 ///< null in a run
-  /// History by campaign, for campaigns whose documents show it.
+  certificates::Signer* signer;
+  /// Shared files of readings of an approved campaign; null in a run.
+  const reading::Twins* twins;
+  /// Machine histories by campaign id.
   const std::map<std::string, assessment::HistoryBasis>& histories;
-  bool elsewhere = false;  ///< whether register and key are on another host; campaigns that need
-                           ///< them are left to the merge
+  /// Whether register and key are on another host; campaigns that need them are left to the merge.
+  bool elsewhere = false;
 };
 
-/// The register of certificates, as known when a worker is started.
 struct RegisterState {
-  bool read = true;         ///< whether the register was read; false: another process keeps it
-                            ///< locked
-  std::string unsound{};    ///< why no number can be assigned; empty: numbers can be assigned
-  bool last_trial = false;  ///< whether this is the last attempt, which does not wait for the lock
-                            ///< any longer
+  bool read = true;         ///< false if another process has locked the register
+  std::string unsound{};    ///< reason why no number can be assigned
+  bool last_trial = false;  ///< whether a locked register is an error instead of a reason to wait
 };
 
-/// Evaluates one campaign in the worker, which contains no plugin code: plugins run at the other
-/// end of the evaluator's stream. If required, the certificate gets a number and is signed. The
-/// files are staged. `first`: the first campaign of this process. Exceptions of plugins are caught
-/// where they are called. With Answer::not_stored, `stage` states why. `shows_history`: set if a
-/// document of the campaign shows the machine's history.
+/// Evaluates one campaign in the worker, while plugins run at the other end of the stream of
+/// `evaluator`. If required, assigns a certificate number and signs. The files are staged. `first`
+/// means the first campaign of this process. After Answer::not_stored, `stage` contains the reason.
+/// Sets `shows_history` if a document contains the machine history.
 Answer do_campaign(const SiteWork& site, const RegisterState& state, std::size_t index, bool first,
                    process::SharedStatus& stage, Evaluator& evaluator, bool& shows_history);
 

@@ -37,14 +37,12 @@ constexpr const char* loading_process = "the process that loads plugins";
 constexpr double load_seconds = 10.0, prepare_seconds = 30.0, answer_seconds = 30.0;
 constexpr std::string_view preparing = "prepare ", died = "died";
 constexpr int most_unexplained = 3;
-constexpr std::size_t most_prints = 16 << 10;  // largest size of plugin output that is printed,
-                                               // bytes
+constexpr std::size_t most_prints = 16 << 10;  // limit of the printed plugin output, bytes
 
-/// Message of the loading process when all plugins are loaded.
 struct Ready {
   loader::Catalogue catalogue;
   std::vector<std::string> said;
-  std::string refused;  ///< why the process cannot continue; empty: it can continue
+  std::string refused;  ///< reason why the process cannot continue
 };
 
 void take_input() {
@@ -52,10 +50,9 @@ void take_input() {
   if (nothing >= 0) ::dup2(nothing, STDIN_FILENO);
 }
 
-/// Waits up to 50 ms. Returns whether the stream can be read.
 bool is_ready(int stream) {
   pollfd one{stream, POLLIN, 0};
-  constexpr int now_and_then = 50;  // longest wait, ms
+  constexpr int now_and_then = 50;
   return ::poll(&one, 1, now_and_then) > 0;
 }
 
@@ -87,10 +84,9 @@ void PluginHost::end() {
 }
 
 Expected<loader::Catalogue> PluginHost::start() {
-  constexpr int most_trials = 100;  // largest number of attempts, each of which leaves out one more
-                                    // plugin
-  int unexplained = 0;              // deaths that no plugin explains, possibly due to a temporary
-                                    // lack of memory
+  constexpr int most_trials = 100;  // each attempt omits one more plugin
+  // Crashes without a plugin as the cause, such as a temporary lack of memory.
+  int unexplained = 0;
   for (int i = 0; i < most_trials; ++i) {
     auto loaded = load_once();
     const bool again =
@@ -133,15 +129,15 @@ Expected<loader::Catalogue> PluginHost::load_once() {
   const std::string where = progress.get();
   Error error{where.empty() ? std::string(loading_process) + " died: " + why : why};
   error.key = where.empty() ? died : preparing;
-  // The first death may be due to a lack of memory, and signal 9 comes from outside, so both get
-  // further attempts. A plugin that hangs gets none.
+  // A first crash may be due to a lack of memory, and signal 9 comes from outside, so both are
+  // tried again. A plugin that hangs is not.
   const int most_deaths = why.starts_with("signal 9 ") ? 5 : 1;
   if (!where.empty() && (!hung.empty() || ++died_at_[where] > most_deaths)) leave_out(where, why);
   return fail(error);
 }
 
-/// Waits for the message of the loading process and returns it. Each step, such as loading one
-/// plugin, has its own time limit; `hung` states why the wait was given up.
+/// Waits for the message of the loading process. The time limit is that of one step, such as
+/// loading one plugin. `hung` is the reason of an error.
 Expected<std::string> PluginHost::answer(int stream, process::SharedStatus& progress,
                                          std::string& hung) {
   std::string last;
@@ -157,8 +153,7 @@ Expected<std::string> PluginHost::answer(int stream, process::SharedStatus& prog
       hung = "no answer within " + std::to_string(static_cast<int>(limit)) + " s";
     if (!hung.empty()) return fail(hung);
   }
-  // A complete message can be read at once. The time limit is for an incomplete one, which may have
-  // been sent by a plugin.
+  // The limit is for an incomplete message, which a plugin may have sent.
   constexpr timeval patience{5, 0};
   ::setsockopt(stream, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   std::string text;
@@ -188,7 +183,7 @@ Expected<process::Child> PluginHost::make_process(process::Handle stream,
     const bool heard = sent && ::poll(&one, 1, static_cast<int>(1000 * answer_seconds)) > 0;
     auto hello = heard ? process::receive_descriptors(control_.get()) : fail("no answer");
     // The kernel states the sender, which must be a child of this process other than the loading
-    // one.
+    // process.
     if (hello && hello->word == 'h' && hello->sender > 0 && hello->sender != child_.pid()) {
       siginfo_t info{};
       if (::waitid(P_PID, static_cast<id_t>(hello->sender), &info, WEXITED | WNOHANG | WNOWAIT) ==
@@ -229,8 +224,6 @@ void PluginHost::say(std::string_view text) {
   if (room > 0 && printed_ >= most_prints)
     std::cerr << "\nplugins print more than " << most_prints << " bytes: the rest is dropped\n";
 }
-
-// The following functions run in the process that loads plugins.
 
 std::string PluginHost::check_secrets() const {
   // The lack of confinement is reported already.
@@ -273,7 +266,7 @@ loader::Plugins& PluginHost::load_all(process::SharedStatus& progress,
   for (const Output& output : plugins->outputs()) {
     if (output.prepare == nullptr || unprepared_.contains(output.info.name)) continue;
     progress.set(std::string(preparing) + output.info.name);
-    // The preparation is tried twice, because a lack of memory may be temporary.
+    // A second attempt, because a lack of memory may be temporary.
     if (!is_prepared(output, request_.context.templates) &&
         !is_prepared(output, request_.context.templates))
       said.push_back("output " + output.info.name + " could not prepare: it threw an exception");
@@ -292,7 +285,7 @@ void PluginHost::serve(int control, int catalogue, int prints, process::SharedSt
   std::sort(kept.begin(), kept.end());
   process::close_others(kept);
   process::forget_environment();
-  // The first digest makes the cryptographic library read its settings while files can still be
+  // The cryptographic library reads its settings at the first digest, while files can still be
   // opened.
   storage::sha256("");
   std::vector<fs::path> readable = request_.folders;
@@ -314,10 +307,10 @@ void PluginHost::serve(int control, int catalogue, int prints, process::SharedSt
 
 void PluginHost::make_sibling(int control, int prints) {
   auto asked = process::receive_descriptors(control);
-  if (!asked) ::_exit(0);  // the main process has ended
+  if (!asked) ::_exit(0);
   if (asked->descriptors.size() != 2) return;
-  // The clone becomes a child of the main process, which waits for it and ends it. No lock can be
-  // held, since this process has one thread.
+  // The clone is a child of the main process, which waits for it. No lock can be taken at this
+  // time, because this process has one thread.
   const long pid = ::syscall(SYS_clone, CLONE_PARENT | SIGCHLD, nullptr, nullptr, nullptr, nullptr);
   if (pid != 0) return;
   process::init_child();

@@ -29,9 +29,8 @@ namespace {
 
 using Action = CampaignState::Action;
 
-/// A worker is replaced after this many campaigns, so that memory left by plugins does not
-/// accumulate. With plugins from other folders than the program's own, which were not tested with
-/// this program, every campaign gets its own process.
+/// Limits the memory that plugins do not release. If a plugin is not of the program's own folder,
+/// and therefore not tested with it, each campaign gets its own process.
 constexpr std::size_t campaigns_per_worker = 256;
 
 std::string day_of(std::time_t time) {
@@ -99,7 +98,6 @@ class Runner {
   }
 
  private:
-  /// Returns the next campaign to do; campaigns with a second attempt come first.
   std::optional<std::size_t> next() {
     if (!again_.empty()) {
       const std::size_t campaign = again_.back();
@@ -127,8 +125,8 @@ class Runner {
     give(workers_.back(), campaign);
   }
 
-  /// Queues the campaign again if no process could be started, because the lack of resources may
-  /// pass. After 20 failures in a row the campaign fails.
+  /// Tries the campaign again, because a lack of resources may be temporary. After 20 failures in a
+  /// row the campaign fails.
   void not_started(std::size_t campaign, const std::string& why) {
     constexpr int most = 20;
     if (++starts_failed_ >= most) {
@@ -147,8 +145,7 @@ class Runner {
                               std::chrono::duration<double>(context_.site.limits.seconds)));
   }
 
-  /// Ends the workers; evaluated campaigns are still stored, others are given up. Waits at most 10
-  /// s for the disk.
+  /// Ends the workers and stores the evaluated campaigns. Waits at most 10 s for the disk.
   void stop() {
     for (Worker& w : workers_) {
       w.end();
@@ -165,9 +162,8 @@ class Runner {
       storage::remove_leftovers(storage::own_folder(options_.out, campaigns_[g.campaign].id));
   }
 
-  /// Waits for the register, which another process keeps locked, when all other campaigns are done.
-  /// After the time limit, the campaigns that wait for it are evaluated a last time, whether or not
-  /// it is still locked.
+  /// Waits until the locked register can be read. After the time limit, the waiting campaigns are
+  /// evaluated once more in any case.
   void wait_for_register() {
     using Clock = Worker::Clock;
     const config::Numbering& numbering = context_.site.numbering;
@@ -175,7 +171,7 @@ class Runner {
       give_up_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                     std::chrono::duration<double>(numbering.patience));
     register_.last_trial = Clock::now() >= *give_up_;
-    constexpr double now_and_then = 0.5;  // time limit of one attempt to read the register, s
+    constexpr double now_and_then = 0.5;  // waiting time of one attempt, s
     auto numbers = read_apart<std::vector<certificates::RegisterEntry>>(
         "the register of certificates", context_.site.limits.disk_seconds,
         [&](process::SignsOfLife&) {
@@ -215,9 +211,8 @@ class Runner {
     events_.tick();
   }
 
-  /// Handles the answer of a worker. Returns whether the worker may do another campaign. It may not
-  /// after a failure, if a campaign waits for a second attempt in a new worker, if it has done its
-  /// largest number of campaigns, or if its memory has grown.
+  /// Returns whether the worker may evaluate another campaign: not after a failure, after its
+  /// largest number of campaigns, if its memory has grown, or if a campaign waits for a new worker.
   bool take(Worker& worker, Answer answer) {
     switch (answer) {
       case Answer::ok:
@@ -252,8 +247,8 @@ class Runner {
     c.history = shown && basis != histories_.end() ? basis->second.sha256 : "";
   }
 
-  /// Handles a campaign without results. It gets a second attempt in a new process, unless it was
-  /// the first campaign of its process, because an earlier campaign may be the cause.
+  /// Repeats the campaign in a new process, because an earlier campaign of the process may be the
+  /// cause. The first campaign of a process fails.
   void not_done(Worker& worker, const std::string& why) {
     worker.end();
     if (worker.given() > 1)
@@ -266,7 +261,6 @@ class Runner {
     return {campaigns_[g.campaign].id, g.losses};
   }
 
-  /// Stores the campaign in this process. Returns the error, empty if there is none.
   std::string commit_here(const Committer::Given& given) const {
     const auto stored = commit(options_.out, {staged_of(given)}, run_.number, disk_).front();
     return stored ? "" : stored.error().message;
@@ -275,7 +269,7 @@ class Runner {
   void store_staged(std::size_t campaign) {
     const Committer::Given given{campaign, losses_[campaign]};
     if (committer_.give(given)) return;
-    // No committer process can be started, so this process stores the results.
+    // If no committer process can be started, this process stores the results.
     settle(campaign, commit_here(given));
   }
 
@@ -316,13 +310,12 @@ class Runner {
     return s;
   }
 
-  /// Fails a campaign whose worker returned no results, and stores the failure as its result. In an
-  /// approval nothing is stored, so that the draft is kept.
+  /// Stores the failure as the result of the campaign, except in an approval, which keeps the
+  /// draft.
   void lost(std::size_t index, const std::string& why) {
     CampaignState& c = campaigns_[index];
     note_failure(c.id, why);
-    if (work_.twins != nullptr)
-      return finish(index, evaluation::Status::failed, {Error{why}});  // the draft is kept
+    if (work_.twins != nullptr) return finish(index, evaluation::Status::failed, {Error{why}});
     evaluation::Evaluated evaluated;
     evaluated.campaign.id = c.id;
     evaluated.status = evaluation::Status::failed;
@@ -335,8 +328,7 @@ class Runner {
     finish(index, evaluation::Status::failed, std::move(evaluated.results.errors));
   }
 
-  /// Enters a failure into the register, unless the register is on another host. After the register
-  /// has not answered once, it is not tried again.
+  /// Does nothing after the register has not responded once.
   void note_failure(const std::string& campaign, const std::string& why) {
     if (register_hangs_ || work_.elsewhere) return;
     const auto noted =
@@ -360,25 +352,24 @@ class Runner {
   const RunEvents& events_;
   const reading::Context& context_;
   const RunState& run_;
-  certificates::Signer* signer_;  ///< process with the key; null: nothing is signed
+  certificates::Signer* signer_;
   PluginHost& plugins_;
   const std::vector<fs::path> secrets_;
   const certificates::Numbers numbers_;
   const SiteWork work_;
-  NumbersCheck recheck_;  ///< check of the numbers in the register; empty: done already or not
-                          ///< required
+  NumbersCheck recheck_;  ///< empty after the check, or if no check is required
   RegisterState register_;
   const std::map<std::string, assessment::HistoryBasis>& histories_;
   std::vector<CampaignState>& campaigns_;
-  const storage::Disk disk_;           ///< must be constructed before the first process that writes
-  std::vector<std::uint32_t> losses_;  ///< number of write losses that the disk had reported when
-                                       ///< each campaign was begun, by campaign
+  const storage::Disk disk_;  ///< must be constructed before the first process that writes
+  /// Number of lost writes that the disk had reported before each campaign.
+  std::vector<std::uint32_t> losses_;
   Committer committer_;
   const std::size_t campaigns_per_worker_;
   std::size_t next_ = 0;
-  int starts_failed_ = 0;             ///< number of process starts that failed in a row
-  std::vector<std::size_t> again_;    ///< campaigns that wait for another attempt
-  std::vector<std::size_t> waiting_;  ///< campaigns that need the register, which is locked
+  int starts_failed_ = 0;  ///< failures in a row
+  std::vector<std::size_t> again_;
+  std::vector<std::size_t> waiting_;
   std::optional<Worker::Clock::time_point> give_up_;
   bool register_hangs_ = false;
   std::vector<Worker> workers_;

@@ -28,8 +28,8 @@ std::string all_of(const std::vector<Error>& errors) {
   return text;
 }
 
-/// Adds a note for summary.txt if no signature is possible, or if the signing certificate expires
-/// within 30 days. Sets `unstamped` if there is no time-stamp server.
+/// Notes that no signature is possible, or that the signing certificate expires within 30 days.
+/// Sets `unstamped` without a time-stamp server.
 void note_key(SetUp& place, bool is_stamped) {
   constexpr sign::Time month = sign::Time{30} * 86400;
   std::vector<std::string>& notes = place.notes;
@@ -49,9 +49,9 @@ void note_key(SetUp& place, bool is_stamped) {
         " (`nonio certificate extend` can add a time stamp until then)";
 }
 
-/// Returns a plugin folder, or a plugin, that belongs to a user other than root and the owner of
-/// the program, or that a group or every user can change; empty if there is none. The program's own folder is
-/// not checked, because whoever can change it can change the program too.
+/// Returns a plugin or plugin folder that other users than root and the owner of the program can
+/// change; empty if there is none. The program's own folder is excluded, because whoever can change
+/// it can change the program.
 std::string changeable_by_others(const RunOptions& options) {
   struct stat own {};
   ::stat(options.own_plugins.c_str(), &own);
@@ -70,8 +70,8 @@ std::string changeable_by_others(const RunOptions& options) {
   return {};
 }
 
-/// Refuses to run as root if other users can change the plugins, because a gap in the confinement
-/// would give these users root's rights. The option --root permits the run.
+/// Root must not run plugins that other users can change, because a gap in the confinement would
+/// give these users root's rights.
 Expected<void> check_user(const RunOptions& options) {
   if (::geteuid() != 0 || options.as_root) return {};
   if (const std::string path = changeable_by_others(options); !path.empty())
@@ -80,7 +80,6 @@ Expected<void> check_user(const RunOptions& options) {
   return {};
 }
 
-/// Starts the process that loads the plugins, and stores their declarations and notes in `place`.
 Expected<void> load_plugins(SetUp& place, const RunOptions& options) {
   PluginHost& host = place.host.emplace(
       PluginHost::Request{options.plugin_folders, library_folders(options.own_plugins),

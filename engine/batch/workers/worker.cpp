@@ -66,7 +66,7 @@ void Worker::give(std::size_t campaign, Clock::duration limit) {
   campaign_ = campaign;
   ++given_;
   deadline_ = Clock::now() + limit;
-  // If the worker has ended already, answer() detects this.
+  // If the worker has ended, answer() detects this.
   [[maybe_unused]] const ssize_t n = ::send(channel(), &campaign, sizeof campaign, MSG_NOSIGNAL);
 }
 
@@ -81,7 +81,7 @@ std::optional<Answer> Worker::answer() {
       return message.answer;
     }
     if (gone || !silent) return Answer::none;
-    // A process that a plugin left running may keep the channel open.
+    // A process that a plugin has left may keep the channel open.
     gone = child_.has_ended();
     if (!gone) return std::nullopt;
   }

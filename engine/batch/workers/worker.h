@@ -15,14 +15,14 @@
 
 namespace nonio::batch {
 
-/// Answer of a worker at the end of a campaign.
 enum class Answer : char {
   ok,
   attention,
   failed,
-  again,       ///< failed and not written; an earlier campaign of the worker may be the cause
-  waits,       ///< needs the register of certificates, which another process keeps locked
-  not_stored,  ///< the results could not be stored; `Worker::stage` states why
+  /// Failed and not stored, because an earlier campaign of the worker may be the cause.
+  again,
+  waits,
+  not_stored,  ///< `Worker::stage` contains the reason
   none,        ///< the process ended without an answer
 };
 
@@ -30,29 +30,23 @@ class PluginHost;
 
 struct Outcome {
   Outcome(Answer a, bool has_grown = false, bool history = false)
-      : answer(a),
-        grown(has_grown),
-        shows_history(history) {}  // NOLINT: an Answer may be used as
-                                   // an Outcome
+      : answer(a), grown(has_grown), shows_history(history) {}  // NOLINT: an Answer may be used as
   Answer answer;
-  bool grown;          ///< whether the memory of the worker or of the evaluating process has grown
-                       ///< by more than 64 MiB since its start
-  bool shows_history;  ///< whether a document of the campaign shows the machine's history
+  bool grown;          ///< whether the memory of one of the processes has grown by more than 64 MiB
+  bool shows_history;  ///< whether a document contains the machine history
 };
 
-/// A process that evaluates the campaigns requested by its parent, one after the other, together
-/// with a second process that runs the plugins. At the end both are killed, with all processes that
-/// they left running. Movable, not copyable.
+/// A process that evaluates campaigns one by one, and a second process with the plugins. At the end
+/// both are killed, with all processes that they have left. Movable, not copyable.
 class Worker {
  public:
   using Clock = std::chrono::steady_clock;
-  /// Function that runs in the worker. `first` is true for the first campaign of this process.
+  /// Runs in the worker; `first` means the first campaign of this process.
   using Task =
       std::function<Outcome(std::size_t campaign, bool first, process::SharedStatus& stage)>;
 
   static Expected<Worker> start(const Task& task, double memory_MB);
-  /// Starts a worker with a process that runs the plugins at the other end of the stream that
-  /// `task` receives.
+  /// `task` receives the stream to the process with the plugins.
   static Expected<Worker> start(PluginHost& plugins, const std::function<Task(int stream)>& task,
                                 double memory_MB);
 
@@ -63,16 +57,14 @@ class Worker {
   std::string stage() const { return stage_.get(); }
   int channel() const { return channel_.get(); }
 
-  /// Returns whether the memory of the worker or of the process with the plugins has grown by more
-  /// than 64 MiB.
+  /// Whether the memory of one of the processes has grown by more than 64 MiB.
   bool grown() const { return grown_; }
-  /// Whether a document of the last answered campaign shows the machine's history.
+  /// Whether a document of the last campaign contains the machine history.
   bool shows_history() const { return shows_history_; }
-  /// Returns the answer to the campaign that was given last: `Answer::none` if the process has
-  /// ended without one, no value if there is no answer yet.
+  /// Returns the answer to the last campaign: std::nullopt while it is evaluated, `Answer::none` if
+  /// the process has ended without an answer.
   std::optional<Answer> answer();
-  /// Ends the worker. After Answer::none, returns how its process, or the one with the plugins, had
-  /// ended.
+  /// After Answer::none, the result describes how the process, or that with the plugins, has ended.
   process::ChildEnd end();
 
  private:
@@ -87,8 +79,8 @@ class Worker {
   bool grown_ = false, shows_history_ = false;
 };
 
-/// Returns when a worker may have an answer, when the descriptor `other` (or -1) can be read, or
-/// after 0.1 s.
+/// Returns when a worker may have an answer, when the descriptor `other` can be read (-1 for none),
+/// or after 0.1 s.
 void wait_for_answer(const std::vector<Worker>& workers, int other = -1);
 
 }  // namespace nonio::batch

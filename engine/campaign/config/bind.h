@@ -11,8 +11,8 @@
 
 /// Declares a key together with the member that it fills:
 ///   {"dwell_s", into<&Measurement::dwell>, "Dwell at a target.", seconds, not_negative}
-/// `TableReader::fill` reads all keys of a table. A member that no kind of key can fill is a
-/// compile-time error. A key that is absent leaves its member unchanged.
+/// A member that no kind of key can fill is a compile-time error. An absent key leaves its member
+/// unchanged.
 namespace nonio::config {
 
 using Span = std::pair<double, double>;
@@ -23,11 +23,9 @@ struct Chosen {
   int value = 0;
 };
 
-/// Returns the value of a key in the unit of the member and reports a wrong value as an error.
-/// Returns none if the key is absent, its text is empty, or its value cannot be used. A list of
-/// whole numbers is never none: it lacks the wrong elements, and it is empty without the key. A
-/// text or list that only breaks a rule for its form may be returned in spite of the reported
-/// error.
+/// Returns the value of a key in the unit of the member, and reports a wrong value as an error.
+/// Returns nullopt if the key is absent, its text is empty, or its value cannot be used. A list of
+/// whole numbers is always returned, without its wrong elements.
 template <class T>
 std::optional<T> value_of(TableReader&, const Key&);
 // The specializations are defined with the reader (toml_reader.cpp).
@@ -54,14 +52,12 @@ std::optional<Numbers> value_of(TableReader&, const Key&);
 template <>
 std::optional<Translations> value_of(TableReader&, const Key&);
 
-/// Fills one struct for each table under the key. `add` creates the struct; `check` is called after
-/// the keys of its table were read.
+/// Fills one struct from `add` per table; `check` is called after the keys of a table were read.
 void read_tables(TableReader&, const Key&, void* outer, void* (*add)(void* outer, std::string_view),
                  void (*check)(TableReader&, void* inner, void* outer));
 
 namespace binding {
 
-/// Pairs the kind of key that fills a member with the type of the value that is read.
 template <Key::Holds h, class T>
 struct As {
   static constexpr Key::Holds holds = h;
@@ -121,7 +117,6 @@ struct Path {
   using Value = typename Plain<Member>::Type;
 };
 
-/// Reads a key into `to`. If `value_of` returns none, `to` stays unchanged.
 template <class Kind, class Value, class Member>
 void read(TableReader& reader, const Key& key, Member& to) {
   auto value = value_of<typename Kind::Type>(reader, key);
@@ -251,7 +246,6 @@ inline constexpr Key::Into file{table, nullptr, nullptr, &binding::tag<T>};
 template <auto read, Key::Holds holds, auto... path>
 inline constexpr Key::Into by = binding::by<read, holds, binding::Path<path...>>();
 
-/// Concatenates two arrays of keys.
 template <std::size_t n, std::size_t m>
 consteval std::array<Key, n + m> joined(const Key (&first)[n], const Key (&second)[m]) {
   return [&]<std::size_t... i, std::size_t... j>(std::index_sequence<i...>,
@@ -308,8 +302,7 @@ constexpr auto longest(std::size_t entries) {
 }
 inline constexpr auto distinct = [](Key& key) { key.distinct = true; };
 inline constexpr auto secret = [](Key& key) { key.may_be_secret = true; };
-/// Sets the default of the key `kind` to rotary if the name of the axis begins with A, B or C (ISO
-/// 841).
+/// Key `kind` defaults to rotary if the name of the axis begins with A, B or C (ISO 841).
 inline constexpr auto kind_by_name = [](Key& key) {
   key.initials = "ABC", key.by_name = "kind", key.named_so = "rotary";
 };

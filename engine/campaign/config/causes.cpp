@@ -17,7 +17,7 @@ namespace {
 
 constexpr int values_of_a_range = 24;
 
-/// Returns the name of a file in messages: its path in the site or in the templates.
+/// Returns the path of the file in the site or in the templates, for messages.
 std::string place_of(std::string_view name) {
   return name.starts_with(site_causes)
              ? std::string(causes_folder) + "/" + std::string(name.substr(site_causes.size()))
@@ -97,9 +97,7 @@ void read_file(const std::string& name, std::string_view text,
   std::move(causes.all.begin(), causes.all.end(), std::back_inserter(out.causes));
 }
 
-/// Returns the causes in these templates, with the errors and warnings of their files. The last
-/// result is kept, because every campaign needs it and reading the files takes a tenth of the time
-/// of a short command.
+/// The last result is kept, because every campaign needs it.
 std::shared_ptr<const Read> read_in(const Templates& templates) {
   static std::mutex one_at_a_time;
   static std::shared_ptr<const Read> last;

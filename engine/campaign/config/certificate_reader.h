@@ -5,8 +5,7 @@
 
 namespace nonio::config {
 
-/// Returns `[certificate]` of a campaign combined with that of site.toml: for each key the value of
-/// the campaign, otherwise that of the site, otherwise the default.
+/// A key has the value of the campaign, otherwise that of the site, otherwise the default.
 CertificateTexts certificate_of(const CertificateTexts& site, const CertificateTexts& campaign);
 
 }  // namespace nonio::config

@@ -7,9 +7,9 @@
 #include "campaign/config/manifest.h"
 #include "campaign/config/site_logs.h"
 
-/// Functions for conditions that involve several keys. Those named check_... check and complete a
-/// table after its keys were read; a third argument is the struct that the outer table fills. Those
-/// named read_... read one key into a member.
+/// Conditions that involve several keys. Functions named check_... complete a table after its keys
+/// were read; a third argument is the struct that the outer table fills. Functions named read_...
+/// read one key into a member.
 namespace nonio::config {
 
 void read_options(TableReader&, const Key&, RawOptions&);
@@ -46,15 +46,14 @@ bool given_before(const std::vector<T>& all, std::string T::*name) {
   return false;
 }
 
-/// The causes in one file, and the place of each cause in all files so far, by its name.
+/// The causes in one file. `places`: file and line of each cause in all files so far, by its name.
 struct Causes {
   std::vector<Cause> all{};
   std::map<std::string, std::string>* places = nullptr;
-  bool of_site = false;  ///< whether the formulas have to be tried
+  bool of_site = false;  ///< whether the formulas have to be tried, as those of a site
 };
 void check_cause(TableReader&, Cause&, Causes&);
 
-/// The entries in one of the files of site_logs.h.
 struct Entries {
   std::vector<Event> events;
   std::vector<Acknowledgement> acknowledged;

@@ -27,7 +27,6 @@ class Trial {
   Trial(const Formula& formula, const Axis& axis, Expression& expression)
       : formula_(formula), axis_(axis), expression_(expression), point_(expression.slots()) {}
 
-  /// Returns why the expression is not valid; "" if it is valid.
   std::string run() {
     largest_.assign(formula_.parameters.size(), 0.0);
     for (const auto& p : formula_.parameters)
@@ -48,8 +47,7 @@ class Trial {
 
   bool linear(std::size_t k) const { return !formula_.parameters[k].range; }
 
-  /// Sets `point_` to trial point n. Point 0 is the middle of the travel at time 0, with the lowest
-  /// value of each shape.
+  /// Point 0 is the middle of the travel at time 0, with the lowest value of each shape.
   void draw(int n) {
     const auto between = [&](double low, double high) {
       return low + (high - low) * numbers_.uniform();
@@ -123,7 +121,7 @@ class Trial {
   }
 
   /// Returns an error unless the term of parameter k scales with the unit of length as a deviation
-  /// does (not at all for an angle) and does not depend on the units of time and temperature.
+  /// does (an angle does not), and does not depend on the units of time and temperature.
   std::string wrong_unit(std::size_t k, double one) {
     constexpr std::array<const char*, 3> names{"length", "time", "temperature"};
     constexpr int bits = 10;
@@ -187,7 +185,7 @@ std::vector<double> search(const Formula::Parameter& p, int count) {
   return grid;
 }
 
-/// Returns the mean of a column; none unless every reading has a value.
+/// Returns nullopt unless every reading has a value.
 std::optional<double> mean_of_all(const Observations& o, const std::vector<double>& column) {
   double sum = 0.0;
   for (const double x : column) sum += x;
@@ -195,8 +193,7 @@ std::optional<double> mean_of_all(const Observations& o, const std::vector<doubl
   return sum / static_cast<double>(column.size());
 }
 
-/// Optional quantities that an expression uses. `met` checks that the readings or the axis provide
-/// these quantities.
+/// Optional quantities that an expression uses.
 struct Wants {
   bool K, pitch, teeth, air, pressure, humidity;
 
@@ -215,8 +212,7 @@ struct Wants {
   }
 };
 
-/// Returns the parsed expression of a formula. The last one is kept, because columns are computed
-/// for one shape value after another, and parsing takes as long as 200 readings.
+/// The last expression is kept, because parsing takes as long as 200 readings.
 Expected<Expression>& understood(const std::shared_ptr<const Formula>& formula, const Axis& axis) {
   struct Last {
     std::shared_ptr<const Formula> formula;
@@ -298,8 +294,7 @@ Expected<Effect> formula_effect(const Formula& formula, const Axis& axis, bool t
   e.info = {formula.name, "formula", formula.expression, {}};
   const auto searched = std::count_if(formula.parameters.begin(), formula.parameters.end(),
                                       [](const auto& p) { return p.range.has_value(); });
-  // With several shapes, fewer values of each are tried; the search then refines between these
-  // values.
+  // With several shapes, fewer values of each are tried; the search refines between these values.
   const int values = searched < 2 ? most : searched == 2 ? most * 5 / 16 : most / 9;
   for (const Formula::Parameter& p : formula.parameters) {
     const Effect::Parameter parameter{p.name, "of the formula", p.quantity};

@@ -52,8 +52,7 @@ constexpr std::array<Name, 9> units{{{"m", 1.0, distance},
 constexpr std::size_t most_characters = 400;
 
 /// Returns an error for text that no formula needs, even if the parser would accept it: over 400
-/// characters, characters that no formula contains (quotes, #, { or those outside ASCII),
-/// assignments, several results; otherwise "".
+/// characters, quotes, #, {, characters outside ASCII, assignments, several results; otherwise "".
 std::string forbidden(const std::string& text) {
   if (text.size() > most_characters)
     return "expected " + std::to_string(most_characters) + " characters at most, found " +

@@ -14,8 +14,7 @@ namespace nonio::config {
 /// Exponents of length, time and temperature in a unit; all 0 for an angle.
 using Dimension = std::array<int, 3>;
 
-/// The expression of a formula. Its slots contain the values of the variables, units and parameters
-/// in SI units.
+/// The slots of an expression contain the values of variables, units and parameters in SI units.
 class Expression {
  public:
   enum Variable : std::size_t {
@@ -25,8 +24,7 @@ class Expression {
     t,
     K,
     run,
-    // A parameter of the formula may have one of the following names; the name then means the
-    // parameter.
+    // A parameter of the formula may have one of the following names, which then denotes it.
     length,
     duration,
     runs,
@@ -38,16 +36,14 @@ class Expression {
     variables
   };
 
-  /// Parses an expression. An error contains the position of the wrong text if there is one. If
-  /// `known`, the expression was parsed before, and only the names that occur in it are declared.
+  /// `known`: the expression was parsed before, and only the names that occur in it are declared.
   static Expected<Expression> parse(const Formula& formula, const Axis& axis, bool known = false);
   Expression(Expression&&) noexcept;
   Expression& operator=(Expression&&) noexcept;
   ~Expression();
 
   /// Returns a copy of the slots. After `parse`, the units have their values in SI units, `length`,
-  /// `duration`, `runs`, `pitch` and `teeth` are 1, and all other variables and the parameters are
-  /// 0.
+  /// `duration`, `runs`, `pitch` and `teeth` are 1, and all others are 0.
   std::vector<double> slots() const;
   static std::size_t parameter_slot(std::size_t k);
   /// Converts slots to units in which the unit of dimension `k` (0: length, 1: time, 2:

@@ -6,8 +6,7 @@
 
 namespace nonio::config {
 
-/// Checks and tries the last formula of [model] or of a simulation after its keys were read, so
-/// that its errors are reported together with all others.
+/// Must be called after the keys of the last formula were read.
 void check_formula(TableReader& reader, std::vector<Formula>& all, const Machine& machine);
 
 }  // namespace nonio::config

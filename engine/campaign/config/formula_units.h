@@ -10,7 +10,6 @@
 
 namespace nonio::config {
 
-/// A unit that a formula's parameter may have.
 struct FormulaUnit {
   Quantity quantity;
   std::string_view words;
@@ -41,9 +40,9 @@ inline constexpr std::array<FormulaUnit, 18> formula_units{
      {Quantity::temperature_difference, "temperature difference"},
      {Quantity::number, "none: a number"}}};
 
-/// Returns the quantity of `formula_units` with this unit; none if no quantity has it.
+/// Returns nullopt if no quantity of `formula_units` has this unit.
 std::optional<Quantity> quantity_of(std::string_view unit);
-/// Returns a list of all units for messages: "um (deviation), mm (position or period), ...".
+/// Returns "um (deviation), mm (position or period), ..." for messages.
 std::string known_units();
 
 }  // namespace nonio::config

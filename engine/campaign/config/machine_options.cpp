@@ -20,20 +20,17 @@ std::uint64_t line_in(const KeyLines& lines, const std::string& key) {
   return found == lines.end() ? 0 : found->second;
 }
 
-/// Returns the file of a record and the line of a key in it, "machines/S-0042.toml:7"; only the
-/// file if the line is not known.
 std::string place_in(const MachineRecord& record, const std::string& key) {
   const std::uint64_t line = line_in(record.lines, key);
   return record.file + (line == 0 ? "" : ":" + std::to_string(line));
 }
 
-/// Returns the key of the record from which a setting of option `axes` comes.
 std::string key_of(const std::string& axis, const std::string& setting) {
   const bool travel = setting.starts_with("from_") || setting.starts_with("to_");
   return "axes." + axis + "." + (travel ? "travel" : setting);
 }
 
-/// Returns the names of all axes for which the campaign may have tables, including slaves.
+/// Axes that the settings of the output may name, including slaves and the axes of measured lines.
 std::set<std::string> axes_of(const Campaign& campaign) {
   std::set<std::string> names;
   for (const Axis& a : campaign.machine.axes) {
@@ -77,7 +74,6 @@ class Layers {
   NumberTables tables() const { return tables_; }
 
  private:
-  /// Returns the tables of option `axes`. Invalid ones were already refused by `settle_options`.
   NumberTables tables_in(const RawOptions& options) const {
     const auto plugin = options.find(output_.name);
     if (plugin == options.end()) return {};
@@ -88,14 +84,11 @@ class Layers {
     return list == nullptr ? NumberTables{} : number_tables_of(*list).value_or(NumberTables{});
   }
 
-  /// Adds settings of an axis; they replace earlier ones.
   void add(const std::string& axis, const NumberTable& settings) {
     NumberTable& all = tables_[axis];
     for (const auto& [key, value] : settings) all[key] = value;
   }
 
-  /// Returns an error with the line of a key of the manifest, or with the line of the option if its
-  /// tables are written as texts.
   Error at_axes(const std::string& message, const std::string& axis, const std::string& key) const {
     const auto plugin = manifest_.options.find(output_.name);
     std::uint64_t line =
@@ -128,8 +121,8 @@ class Layers {
     return key + "=" + in_digits(value);
   }
 
-  /// Reports a number that belongs to another axis of the machine, because the table would be
-  /// loaded for that axis.
+  /// A number that belongs to another axis is an error, because the control would load the table
+  /// for that axis.
   void look_for_owner(const std::string& axis, const std::string& key, double number,
                       std::vector<Error>& errors) const {
     for (const auto& [name, recorded] : record_->axes)
@@ -141,8 +134,8 @@ class Layers {
                                  axis, key));
   }
 
-  /// Adds the backlash value that was active during the measurement to the settings of an axis, in
-  /// their unit. A different value in the settings is an error.
+  /// Adds the backlash value that was active during the measurement; a different value in the
+  /// settings is an error.
   void add_backlash(const Axis& a, std::vector<Error>& errors) {
     if (!a.active_backlash) return;
     const std::string key = a.rotary ? "backlash_deg" : "backlash_mm";

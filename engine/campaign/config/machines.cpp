@@ -39,8 +39,8 @@ void same_number_twice(const MachineRecord& record, TableReader& top) {
     }
 }
 
-/// Reads the table files that a record names. An error if a path is outside of the site, or if the
-/// files no longer have the SHA-256 that the record states.
+/// Returns an error if a path is outside of the site, or if the files no longer have the SHA-256
+/// that the record states.
 Expected<std::map<std::string, std::vector<Artifact>>> tables_of(const MachineRecord& record,
                                                                  const fs::path& site) {
   std::map<std::string, std::vector<Artifact>> tables;
@@ -206,8 +206,7 @@ std::string machine_input(const Machine& m) {
 
 namespace {
 
-/// Returns a machine with the maker and serial number of a record, or of its last valid version if
-/// the record has errors.
+/// Returns maker and serial number of a record, or of its last valid version after an error.
 Machine machine_of(const RecordFile& r) {
   Machine out;
   out.maker = r.record ? r.record->maker : r.maker;
@@ -215,8 +214,6 @@ Machine machine_of(const RecordFile& r) {
   return out;
 }
 
-/// Whether a record cannot be read and its machine is not known, so that it may concern any
-/// machine.
 bool may_be_of_any(const RecordFile& r) { return !r.record && r.maker.empty() && r.serial.empty(); }
 
 }  // namespace

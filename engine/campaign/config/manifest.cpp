@@ -21,8 +21,7 @@ namespace {
 constexpr double mm = 1e-3, um = 1e-6;
 constexpr double deg = 1.0 / deg_per_rad, arcsec = 1.0 / arcsec_per_rad;
 
-/// Reports a coefficient of expansion that is probably in 1/K. Read in um/(m K), such a value would
-/// be so small that it has no effect.
+/// Reports a coefficient that is stated in 1/K instead of um/(m K).
 void check_expansion(TableReader& reader, const std::optional<double>& value) {
   constexpr double least = 1e-3;
   if (value && *value != 0.0 && std::fabs(*value) < least * um)
@@ -35,8 +34,7 @@ NumberTable scaled(NumberTable table, double scale) {
   return table;
 }
 
-/// Sets `from` to the centre of a circle and `to` to its point at 0 deg, on the first axis of the
-/// plane (m). Positions of the centre on axes outside of the plane are stored in `at`.
+/// Sets `from` to the center of a circle and `to` to its point at 0 deg (m).
 void fill_circle(TableReader& reader, Measurement& m) {
   const std::string plane = m.settings.text("plane");
   const NumberTable centre = scaled(m.settings.table("centre"), mm);
@@ -54,8 +52,6 @@ void fill_circle(TableReader& reader, Measurement& m) {
     if (!m.from.contains(axis)) m.at[axis] = position;
 }
 
-/// Sets the members of a measurement from keys that a method may declare, for example `lateral` and
-/// `foot_mm`. SI units.
 void fill_members(TableReader& reader, Measurement& m) {
   const Settings& s = m.settings;
   m.axis = s.text("axis");
@@ -72,7 +68,6 @@ void fill_members(TableReader& reader, Measurement& m) {
   for (const auto& [axis, position] : scaled(s.table("to"), mm)) m.to[axis] = position;
 }
 
-/// Checks the conditions that involve several keys of a method.
 void check_members(TableReader& reader, const Measurement& m) {
   if (!m.axis.empty() && m.settings.text("lateral") == m.axis)
     reader.error("lateral", "expected another axis than " + m.axis +
@@ -85,8 +80,6 @@ void check_members(TableReader& reader, const Measurement& m) {
     reader.error("square_turned", "expected the key square as well");
 }
 
-/// Checks that feed and over-travel are stated in one unit only. An empty `state` is stored as an
-/// empty text, so that it differs from a missing one.
 void check_common(TableReader& reader, Measurement& m) {
   if (reader.contains("state") && !m.state) m.state.emplace();
   for (const auto& [linear, rotary] :
@@ -102,8 +95,7 @@ void refuse_kind(TableReader& reader, const std::string& kind, const std::vector
   reader.error("kind", storage::not_one_of(kinds, kind));
 }
 
-/// Reads one [[measurement]]. Without `methods` it reads only the keys that all methods share and
-/// accepts all others.
+/// Without `methods`, reads only the keys that all methods share and accepts all others.
 void read_measurement(TableReader& common, const std::vector<Method>* methods, Measurement& m) {
   const std::string kind = common.raw()["kind"].value_or(std::string());
   const auto method = methods == nullptr
@@ -136,15 +128,12 @@ void read_measurement(TableReader& common, const std::vector<Method>* methods, M
   reader.finish();
 }
 
-/// Adds to the machine an axis that is measured but not declared. If other axes are declared
-/// (`any_named`), the axis is also listed for a finding.
 void add_axis(const std::string& name, bool any_named, Manifest& manifest) {
   manifest.campaign.machine.axes.push_back(Axis{.name = name, .rotary = rotary_by_name(name)});
   if (any_named) manifest.undeclared_axes.push_back(name);
 }
 
-/// Checks that each `reversal_of` names a straightness of the same line that is no reversal itself,
-/// and that no straightness is named twice.
+/// Checks that `reversal_of` names a straightness of the same line, and each at most once.
 void check_reversals(std::vector<TableReader>& list, const std::vector<Measurement>& all) {
   std::set<std::string> taken;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -162,8 +151,7 @@ void check_reversals(std::vector<TableReader>& list, const std::vector<Measureme
   }
 }
 
-/// Checks that each `square` names a [[square]], and that each line on a square is measured at most
-/// once per state and position of the square.
+/// Checks that each line on a square is measured at most once per state and position.
 void check_squares(std::vector<TableReader>& list, const Campaign& campaign) {
   std::set<std::string> seen;
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -181,7 +169,6 @@ void check_squares(std::vector<TableReader>& list, const Campaign& campaign) {
   }
 }
 
-/// A manifest while it is read, with the methods that declare its keys.
 struct Reading : Manifest {
   const std::vector<Method>* methods = nullptr;
 };
@@ -210,7 +197,6 @@ void check_square(TableReader& reader, Square& square, Manifest& manifest) {
     reader.error("id", "\"" + square.name + "\" is given twice");
 }
 
-/// Reads tolerances; a second limit for the same result is an error.
 void read_tolerances(TableReader& reader, const Key& key, std::vector<Tolerance>& tolerances) {
   for (const Quantity q : {Quantity::deviation, Quantity::small_angle, Quantity::angular_deviation,
                            Quantity::deviation_per_length}) {
@@ -277,8 +263,7 @@ void check_campaign(TableReader& reader, Manifest& manifest) {
     reader.error("end_date", "expected a day that is not before date, " + campaign.date);
 }
 
-/// Sorts the axes by their lines in the file: toml++ sorts tables by name, but controllers that
-/// number the axes need the written order.
+/// toml++ sorts tables by name, but controllers that number the axes need the written order.
 void restore_axis_order(TableReader& reader, Machine& machine) {
   const toml::table* axes = reader.raw()["axes"].as_table();
   if (axes == nullptr) return;

@@ -13,8 +13,6 @@ using Holds = Key::Holds;
 
 std::span<const Key> common_keys() { return find_key(campaign_file().keys, "measurement")->keys; }
 
-/// Returns the kind of key that reads values of an option; `by_kind` for tables of numbers, which
-/// no key of [[measurement]] contains.
 Holds holds_of(const Setting& value) {
   return std::visit(
       []<class T>(const T&) {
@@ -26,7 +24,6 @@ Holds holds_of(const Setting& value) {
       value);
 }
 
-/// Reads an option of a method into the settings; without the key the default remains.
 void read_setting(TableReader& reader, const Key& key, void* measurement) {
   auto& values = static_cast<Measurement*>(measurement)->settings.values;
   std::visit(
@@ -37,8 +34,7 @@ void read_setting(TableReader& reader, const Key& key, void* measurement) {
       values.find(key.name)->second);
 }
 
-/// Returns what a message states as expected: the method's text, otherwise the limits of the
-/// option.
+/// Returns the method's text, otherwise the limits of the option, for messages.
 std::string expected_of(const Option& option) {
   if (!option.expected.empty()) return option.expected;
   if (std::holds_alternative<std::string>(option.default_value)) {

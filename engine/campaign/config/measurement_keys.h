@@ -8,15 +8,12 @@
 #include "campaign/config/keys.h"
 #include "nonio/sdk/plugin.h"
 
-/// Declares the keys of [[measurement]]: those that all methods share and those of each method. The
-/// classes refer to the methods, which must outlive them.
+/// The classes refer to the methods, which must outlive them.
 namespace nonio::config {
 
-/// Returns a key of [[measurement]] that all methods share, which no method may declare; null if
-/// there is none of this name.
+/// Returns null unless all methods share the key; no method may declare such a key.
 const Key* common_key(std::string_view name);
 
-/// Declaration of [[measurement]] for one method.
 class KindKeys {
  public:
   explicit KindKeys(const Method& method);
@@ -34,9 +31,8 @@ class KindKeys {
   Key table_;
 };
 
-/// Declaration of campaign.toml with the keys of all methods in [[measurement]]; a key of a method
-/// is allowed only for the kinds that declare it. A key that two kinds declare differently is
-/// `Key::Holds::by_kind`.
+/// Declaration of campaign.toml in which a key of a method is allowed only for the kinds that
+/// declare it. A key that two kinds declare differently is `Key::Holds::by_kind`.
 class CampaignKeys {
  public:
   explicit CampaignKeys(const std::vector<Method>& methods);
@@ -52,7 +48,7 @@ class CampaignKeys {
   };
   std::deque<KindKeys> of_kinds_;
   std::vector<Key> measurement_, top_;
-  std::deque<Kinds> kinds_;  ///< kinds that declare or require each key of a method
+  std::deque<Kinds> kinds_;
   Key file_;
 };
 

@@ -15,7 +15,6 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-/// Position of the number in a pattern such as "{year}-{number:4}".
 struct Place {
   std::size_t begin = std::string::npos, size = 0, digits = 1;
 };

@@ -8,13 +8,12 @@
 
 namespace nonio::config {
 
-/// Returns the key of the counter that a number uses: the pattern with the year in place of {year}
-/// and with {number} in place of {number:4}, so that the number of digits makes no difference.
+/// Returns the key of a counter: `pattern` with the year filled in and without the number of
+/// digits.
 std::string sequence_of(const std::string& pattern, const std::string& year);
 
-/// Returns the certificate number for the pattern `[certificate] numbering`. An error if the
-/// pattern does not contain the number once, contains another placeholder than {year}, or results
-/// in a text that cannot be part of a file name.
+/// Returns a certificate number. An error unless `pattern` contains {number} once, no placeholder
+/// except {year}, and only characters allowed in file names.
 Expected<std::string> number_text(const std::string& pattern, const std::string& year,
                                   std::uint64_t number);
 

@@ -21,7 +21,6 @@ const char* kind_of(const Setting& setting) {
   return kinds[setting.index()];
 }
 
-/// Parses an entry in the form of former manifests: "X reference_mm=0 step_mm=50".
 Expected<void> take_entry(const std::string& entry, NumberTables& out) {
   std::istringstream words(entry);
   std::string name, word;
@@ -59,8 +58,8 @@ Expected<NumberTables> number_tables_of(const std::vector<std::string>& entries)
 
 namespace {
 
-/// Converts a setting to the declared kind: a whole number to a number, an empty list to an empty
-/// list of numbers, and texts such as "X number=1" to tables. Any other difference is an error.
+/// Converts whole numbers, empty lists and texts such as "X number=1" to the declared kind. Any
+/// other difference of kinds is an error.
 Expected<Setting> as_declared(const Setting& found, const Setting& declared) {
   if (found.index() == declared.index()) return found;
   if (const auto* i = std::get_if<std::int64_t>(&found);
@@ -106,8 +105,6 @@ std::string choice_complaint(const Option& option, const Setting& setting) {
   return storage::not_one_of(all, found);
 }
 
-/// Returns the error about an option that is not a valid setting; in a table it names the first key
-/// that is not a number.
 Error wrong_option(const std::string& place, const toml::node& value, const std::string& file) {
   if (const toml::table* tables = value.as_table())
     for (const auto& [name, node] : *tables) {
@@ -233,8 +230,6 @@ std::optional<double> finite_number(std::string_view text) {
   return number;
 }
 
-/// Parses numbers separated by commas. Other text is returned unchanged and refused when its kind
-/// is checked.
 Setting numbers_of(std::string_view text) {
   std::vector<double> numbers;
   for (const std::string& part : parted(text))
@@ -245,7 +240,6 @@ Setting numbers_of(std::string_view text) {
   return numbers;
 }
 
-/// Converts a text of the command line into a setting of the kind that the option declares.
 Setting setting_of(std::string_view text, const Option* declared) {
   if (declared != nullptr && std::holds_alternative<std::string>(declared->default_value))
     return std::string(text);

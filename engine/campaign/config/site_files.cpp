@@ -53,8 +53,8 @@ Expected<SiteFiles> read_site_files(const fs::path& site,
   reading(site / site_name);
   NONIO_TRY(auto settings, read_settings(site));
   files.settings = std::move(settings);
-  // The records are read here to detect a network share that does not respond; the code that uses
-  // them reads them again.
+  // The records are read here to detect a network share that does not respond; later code reads
+  // them again.
   reading(site / machines_folder);
   if (const auto machines = read_machines(site); !machines) return fail(machines.error());
   reading(site / "templates");
@@ -99,7 +99,7 @@ Expected<std::string> from_hex(const std::string& text) {
 fs::path site_of(const fs::path& campaign) {
   std::error_code error;
   const fs::path start = fs::canonical(campaign, error);
-  // If a path cannot be examined, it is treated as existing: reading it then reports the error.
+  // An inaccessible path is treated as existing, so that reading it reports the error.
   const auto has = [](const char* name) {
     return
         [name](const fs::path& folder) { return storage::is_there(folder / name).value_or(true); };

@@ -12,23 +12,20 @@
 
 namespace nonio::config {
 
-/// Reads site.toml, with defaults if it does not exist; each error has its line. `digest` receives
-/// the SHA-256 of the file.
+/// Returns defaults without site.toml. `digest` receives the SHA-256 of the file.
 Checked<SiteFile> read_site(const std::filesystem::path& site, std::string& digest);
 
-/// The files of a site that apply to all its campaigns.
 struct SiteFiles {
-  std::optional<std::string> settings{};  ///< text of site.toml; none: there is no such file
+  std::optional<std::string> settings{};  ///< text of site.toml; nullopt if the file does not exist
   TemplateFiles templates{};
 };
 
-/// Reads the files of a site. `reading` is called with each path before it is read.
+/// Calls `reading` with each path before the file is read.
 Expected<SiteFiles> read_site_files(
     const std::filesystem::path& site,
     const std::function<void(const std::filesystem::path&)>& reading);
 
-/// Parses site.toml from files that `read_site_files` has read; each error has its line. `digest`
-/// receives the SHA-256 of site.toml.
+/// `digest` receives the SHA-256 of site.toml.
 Checked<SiteFile> site_in(const SiteFiles& files, std::string& digest);
 
 /// Returns `folders`, followed by the site's own templates and causes if they exist.
@@ -38,8 +35,8 @@ Expected<std::vector<std::filesystem::path>> with_site_templates(
 std::string to_hex(std::string_view bytes);
 Expected<std::string> from_hex(const std::string& text);
 
-/// Returns the nearest folder at or above the campaign that contains site.toml, otherwise
-/// machines/, otherwise causes/; if there is none, the campaign's folder.
+/// Returns the nearest folder at or above the campaign with site.toml, otherwise with machines/,
+/// otherwise with causes/, otherwise the campaign's folder.
 std::filesystem::path site_of(const std::filesystem::path& campaign);
 
 }  // namespace nonio::config

@@ -32,8 +32,6 @@ bool takes_back(const Withdrawal& w, const Acknowledgement& a) {
          a.quantity == w.quantity;
 }
 
-/// Parses one of the files of site_logs.h and returns its entries without withdrawn
-/// acknowledgements.
 Checked<Entries> parse_log(std::string_view text, const std::string& file, const Key& declaration) {
   auto root = parse_toml(text, file);
   if (!root) return tl::unexpected(std::vector<Error>{root.error()});
@@ -75,8 +73,6 @@ Expected<void> take_log(const fs::path& site, const char* name,
   return {};
 }
 
-/// Returns a TOML string. Control characters are escaped, and the reader refuses them with a
-/// message.
 std::string quoted(const std::string& text) {
   constexpr const char* digits = "0123456789ABCDEF";
   std::string out = "\"";
@@ -92,7 +88,6 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-/// Builds the text of an entry: `[[name]]` and its keys, in the order of the calls.
 class Entry {
  public:
   explicit Entry(const char* name) : text_(std::string("[[") + name + "]]\n") {}
@@ -100,7 +95,6 @@ class Entry {
     if (!value.empty()) text_ += std::string(key) + " = " + quoted(value) + "\n";
     return *this;
   }
-  /// Adds a date. Text that is not a date is quoted and refused when the file is read again.
   Entry& date(const char* key, const std::string& value) {
     const bool is_day =
         value.find_first_not_of("0123456789-") == std::string::npos && !value.empty();
@@ -120,8 +114,7 @@ class Entry {
   std::string text_;
 };
 
-/// A lock against other Nonio processes that write to the site. A change by an editor is noticed
-/// when the file is read again.
+/// Excludes other Nonio processes that write to the site, but not editors.
 class SiteLock {
  public:
   explicit SiteLock(const fs::path& site)
@@ -145,8 +138,6 @@ class SiteLock {
 std::vector<Error> one(Error error) { return {std::move(error)}; }
 
 using Check = std::function<Checked<std::size_t>(const std::string&)>;
-/// Whether the numbers of valid entries before and after an addition show that the new entry is
-/// read as intended.
 using Adds = bool (*)(std::size_t before, std::size_t after);
 
 Checked<void> append(
@@ -188,9 +179,6 @@ Check counts(Checked<std::vector<T>> (*parse)(std::string_view, const std::strin
 
 }  // namespace
 
-/// Checks an entry after its keys were read and stores its line. A reason must contain words,
-/// because it is read years later. `until` must not be before `date`. Former ids of findings are
-/// renamed.
 template <class Entry>
 void check_entry(TableReader& reader, Entry& entry) {
   entry.line = reader.line();

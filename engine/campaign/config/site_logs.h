@@ -21,7 +21,7 @@ inline constexpr const char* forgotten_name = "forgotten.toml";
 bool is_site_part(std::string_view path);
 
 struct Event {
-  std::string date, machine, axis, kind, text, by;  ///< an empty axis means the whole machine
+  std::string date, machine, axis, kind, text, by;  ///< `axis` is empty for the whole machine
   std::uint64_t line = 0;
 };
 
@@ -33,8 +33,8 @@ struct Acknowledgement {
   std::uint64_t line = 0;
 };
 
-/// Withdraws all acknowledgements above it in the file that have the same finding, machine, axis
-/// and quantity.
+/// Withdraws all earlier acknowledgements in the file that have the same finding, machine, axis and
+/// quantity.
 struct Withdrawal {
   std::string date, finding, machine, axis, quantity, by, why;
   std::uint64_t line = 0;
@@ -53,22 +53,20 @@ struct SiteLogs {
   std::vector<Forgotten> forgotten{};
 };
 
-/// Parses a file. Returns all its errors at once, each with its line.
 Checked<std::vector<Event>> parse_events(std::string_view text, const std::string& file);
 /// Returns the acknowledgements that were not withdrawn; they may have expired.
 Checked<std::vector<Acknowledgement>> parse_acknowledged(std::string_view text,
                                                          const std::string& file);
 Checked<std::vector<Forgotten>> parse_forgotten(std::string_view text, const std::string& file);
 
-/// Reads the three files of a site; a missing file is treated as empty.
 Checked<SiteLogs> read_site_logs(const std::filesystem::path& site);
 
-/// Adds an entry at the end of a file and leaves its content, including comments, unchanged; a
-/// missing file is created. Nothing is written if the file has errors, would have errors with the
-/// entry, or is being written by another process.
+/// Appends an entry and leaves the rest of the file, including comments, unchanged. Nothing is
+/// written if the file has errors, would have errors with the entry, or is being written by another
+/// process.
 Checked<void> add_event(const std::filesystem::path& site, const Event& event);
 Checked<void> add_acknowledgement(const std::filesystem::path& site, const Acknowledgement& known);
-/// Adds a withdrawal; an error if there is no valid acknowledgement to withdraw.
+/// Returns an error without a valid acknowledgement to withdraw.
 Checked<void> add_withdrawal(const std::filesystem::path& site, const Withdrawal& withdrawal);
 Checked<void> add_forgotten(const std::filesystem::path& site, const Forgotten& forgotten);
 

@@ -28,8 +28,7 @@ int usual_port(Mail::Tls tls) {
 
 }  // namespace
 
-/// Checks the keys of [mail] together and sets the usual port if none is stated. A login requires
-/// encryption, so that the password is never sent as plain text.
+/// A login requires encryption, so that the password is never sent as plain text.
 void check_mail(TableReader& reader, Mail& m) {
   if (m.port == 0) m.port = usual_port(m.tls);
   if (reader.raw().contains("to") && m.to.empty())
@@ -50,7 +49,7 @@ void check_mail(TableReader& reader, Mail& m) {
     reader.error("tls", "none would send the password readable; expected starttls or tls");
 }
 
-/// Checks [webhook]: without encryption only addresses of this machine are allowed.
+/// Without encryption only addresses of this machine are allowed.
 void check_webhook(TableReader& reader, Webhook& w) {
   const auto begins = [&](std::string_view host) {
     const std::string from = "http://" + std::string(host);
@@ -88,7 +87,6 @@ void check_signing(TableReader& reader, Signing& s) {
     reader.error("signer", "excludes [[signing.signers]]");
 }
 
-/// Checks [[alias]]: a name occurs only once, and the reason contains words.
 void check_alias(TableReader& reader, Alias& alias, SiteFile& site) {
   alias.line_of_asset = reader.line_of("asset");
   if (!alias.name.empty() && given_before(site.aliases, &Alias::name))
@@ -146,15 +144,14 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
                              file, alias.line_of_asset});
   site.evaluation = settings_of(*root, {"run", "options"});
   toml::table printed = *root;
-  // How certificates are approved is an internal matter of the laboratory and is not printed.
   if (toml::table* certificate = printed["certificate"].as_table())
     for (const char* key : {"release", "accept", "two_persons", "register", "register_seconds"})
       certificate->erase(key);
   site.settings = settings_of(printed, {"run", "options", "laboratory", "certificate"});
   if (const toml::table* laboratory = (*root)["laboratory"].as_table())
     site.evaluation += settings_of(*laboratory, {"cmc"});
-  // The decision rule changes which results conform. The default is left out, because it was used
-  // before this key existed and requires no new evaluation.
+  // The decision rule changes which results conform. The default requires no new evaluation,
+  // because it was used before this key existed.
   if (const auto rule = (*root)["certificate"]["decision_rule"].value<std::string>();
       rule && *rule != "iso14253-1")
     site.evaluation += "decision_rule = \"" + *rule + "\"\n";

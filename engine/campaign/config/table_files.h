@@ -10,10 +10,9 @@
 
 namespace nonio::config {
 
-/// Reads the files of one table from a list such as "a.ini,b.ini".
+/// `list`: paths separated by commas, for example "a.ini,b.ini".
 Expected<std::vector<Artifact>> read_table_files(const std::string& list);
-/// Reads the files of one table from a list of paths inside the folder `base`, each file at most 1
-/// MB.
+/// `list`: paths inside `base`, separated by commas. Each file has at most 1 MB.
 Expected<std::vector<Artifact>> read_table_files(const std::string& list,
                                                  const std::filesystem::path& base);
 

@@ -16,7 +16,6 @@ namespace fs = std::filesystem;
 Expected<std::map<std::string, fs::path>> template_paths(const fs::path& folder) {
   std::map<std::string, fs::path> files;
   std::error_code error;
-  // the folders that contain the current file
   std::vector<fs::path> above{fs::canonical(folder, error)};
   fs::recursive_directory_iterator it(folder, fs::directory_options::follow_directory_symlink,
                                       error);
@@ -42,15 +41,13 @@ Expected<std::map<std::string, fs::path>> template_paths(const fs::path& folder)
 
 namespace {
 
-/// Whether a file is attached to signed files. Fonts are not, because they are large and part of
-/// every installation.
+/// Fonts are not attached to signed files, because they are large and part of every installation.
 bool travels(std::string_view name) { return !name.starts_with("fonts/"); }
 
 }  // namespace
 
 namespace {
 
-/// Returns the path of a template; causes of a site are in the folder next to its templates.
 fs::path path_of(const TemplateFiles& own, const std::string& name) {
   return name.starts_with(site_causes)
              ? own.folder.parent_path() / causes_folder / name.substr(site_causes.size())

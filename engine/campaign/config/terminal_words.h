@@ -10,8 +10,7 @@
 
 namespace nonio::config {
 
-/// Texts of the terminal and of summary.txt in the language of the site:
-/// templates/words/<language>/terminal.toml; a missing text is taken from English.
+/// Texts of terminal.toml in the language of the site. A missing text is taken from English.
 class TerminalWords {
  public:
   using Parts = std::vector<std::pair<std::string, std::string>>;
@@ -19,17 +18,12 @@ class TerminalWords {
   TerminalWords(const Templates& templates, std::string language)
       : templates_(templates), language_(std::move(language)) {}
 
-  /// Returns the text of this name with each `{part}` replaced; the name itself if there is no
-  /// text.
+  /// Returns the text with each `{part}` replaced, or the name itself without a text.
   std::string operator()(std::string_view name, const Parts& parts = {}) const;
-  /// Returns the text `<name>.one` for a count of 1, otherwise `<name>.many`, with `{count}`
-  /// replaced.
   std::string counted(std::string_view name, std::size_t count, Parts parts = {}) const;
-  /// Returns the translation of a fixed text of the program (a reason, a decision), which the table
-  /// `list` of the templates contains; returns the text unchanged if there is no entry.
+  /// Translates a fixed text with the table `list`; without an entry, returns the text unchanged.
   std::string of(std::string_view list, const std::string& text) const;
 
-  /// Returns a number with the decimal sign of the language.
   std::string number(std::string text) const;
 
   const std::string& language() const { return language_; }

@@ -15,7 +15,6 @@ namespace {
 
 std::uint64_t line_of_node(const toml::node& node) { return node.source().begin.line; }
 
-/// Returns `words` with {} replaced by `value`.
 std::string filled(std::string_view words, std::string_view value) {
   std::string text(words);
   if (const std::size_t at = text.find("{}"); at != std::string::npos) text.replace(at, 2, value);
@@ -326,7 +325,6 @@ const toml::table* TableReader::table_at(const Key& key) {
   return node->as_table();
 }
 
-/// Checks a key that is declared without a member.
 void TableReader::check(const Key& key) {
   using enum Key::Holds;
   switch (key.holds) {

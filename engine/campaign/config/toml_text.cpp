@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parses text to TOML and converts its values to settings. toml_reader.cpp interprets them.
 #include <algorithm>
 #include <cmath>
 
@@ -17,13 +16,11 @@ bool is_bare_key_character(char c) {
 
 /// Finds text for which toml++ 3.3 has undefined behavior instead of an error: a byte outside ASCII
 /// that is neither in a string nor in a comment, or where a string continues after a backslash; a
-/// table header that does not begin with a key; a quote within a word; and tables nested too
-/// deeply.
+/// table header that does not begin with a key; a quote within a word; too deeply nested tables.
 class Precheck {
  public:
   explicit Precheck(std::string_view text) : text_(text) {}
 
-  /// Returns the error, or "" if toml++ may parse the text; `line` receives the line of the error.
   std::string run(std::uint64_t& line) {
     line = 1;
     bool line_begins = true;
@@ -53,8 +50,7 @@ class Precheck {
   }
 
  private:
-  /// Whether a quote opens within a word. toml++ regards it as part of the word and would interpret
-  /// characters that this check regards as part of a string.
+  /// toml++ regards a quote within a word as part of the word; this check would begin a string.
   bool quote_within_word() const {
     const bool opens = closing_.empty() && (text_[at_] == '"' || text_[at_] == '\'');
     return opens &&
@@ -62,8 +58,7 @@ class Precheck {
                                         std::string_view::npos));
   }
 
-  /// Whether a string continues with a character outside ASCII after a backslash and blanks. toml++
-  /// tests whether it is one more blank, but implements the test for few such characters.
+  /// toml++ tests for a blank after a backslash incorrectly for most characters outside ASCII.
   bool goes_on_outside_ascii() const {
     if (text_[at_] != '\\' || closing_ != "\"\"\"") return false;
     const std::size_t next = text_.find_first_not_of(" \t\r\n", at_ + 1);
@@ -102,8 +97,6 @@ class Precheck {
     return !closing_.empty() || static_cast<unsigned char>(c) < 0x80;
   }
 
-  /// Processes a character outside of strings and comments: tracks whether a key or value is
-  /// expected, and whether a value without quotes has begun.
   void step_outside(char c) {
     if (c == '.' && !wants_value_) ++dots_;
     if (std::string_view("=,{").find(c) != std::string_view::npos) dots_ = 0;
@@ -116,7 +109,6 @@ class Precheck {
     } else if (c == '=') {
       wants_value_ = true;
     } else if (c == '[' || c == '{') {
-      // A bracket that does not begin a value begins a table header, which contains keys.
       open_ += wants_value_ ? c : '{';
       wants_value_ = open_.back() == '[';
     } else {
@@ -126,16 +118,14 @@ class Precheck {
 
   std::string_view text_;
   std::size_t at_ = 0;
-  std::string_view closing_;  // end of the string or comment that is open; empty: none
+  std::string_view closing_;  // end of the open string or comment
   std::string open_;          // open brackets: [ contains values, { contains keys
   bool wants_value_ = false, in_word_ = false;
-  /// Limits of dots in a key and of open brackets. toml++ reads, copies and frees tables
-  /// recursively, so that hundreds of thousands of nested tables would end the process.
+  /// toml++ reads and frees tables recursively, so deep nesting would end the process.
   static constexpr std::size_t most_dots = 31, most_open = 64;
   std::size_t dots_ = 0;
 };
 
-/// Returns the value of a line if it is a European date with points, "23.3.2026"; otherwise "".
 std::string dotted_date(std::string_view text, std::uint64_t line) {
   for (; line > 1 && text.find('\n') != text.npos; --line) text.remove_prefix(text.find('\n') + 1);
   text = text.substr(0, text.find_first_of("#\r\n"));
@@ -211,7 +201,6 @@ std::string type_name(const toml::node& node) {
 
 namespace {
 
-/// Converts a table whose tables contain only finite numbers; none for any other table.
 std::optional<Setting> number_tables(const toml::table& table) {
   NumberTables tables;
   for (const auto& [name, node] : table) {

@@ -13,8 +13,6 @@ bool is_of_key(char c) {
          c == '-';
 }
 
-/// Returns the position of `name` as a key in a line: a whole word before '=', '.' or the bracket
-/// of a header; npos if there is none.
 std::size_t key_in(std::string_view line, std::string_view name) {
   for (std::size_t at = line.find(name); at != std::string_view::npos;
        at = line.find(name, at + 1)) {
@@ -28,7 +26,6 @@ std::size_t key_in(std::string_view line, std::string_view name) {
   return std::string_view::npos;
 }
 
-/// Returns the position of `value` between quotes; npos if there is none.
 std::size_t value_in(std::string_view line, const std::string& value) {
   for (const char quote : {'"', '\''})
     if (const std::size_t at = line.find(quote + value + quote); at != std::string_view::npos)
@@ -36,7 +33,6 @@ std::size_t value_in(std::string_view line, const std::string& value) {
   return std::string_view::npos;
 }
 
-/// Splits a text into lines, each with its line feed.
 std::vector<std::string> lines_of(std::string_view text) {
   std::vector<std::string> lines;
   while (!text.empty()) {

@@ -12,19 +12,17 @@
 namespace nonio::config {
 
 struct UpgradedLine {
-  std::uint64_t line = 0;  ///< number of the line, from 1
+  std::uint64_t line = 0;
   std::string before, after;
 };
 
 struct UpgradedFile {
   std::string text;
-  std::vector<UpgradedLine> lines;  ///< lines that differ; empty: nothing was changed
+  std::vector<UpgradedLine> lines;
 };
 
-/// Returns the text of a file with former names of keys and of findings replaced by the present
-/// ones. All other bytes, including comments, order, line ends and the byte order mark, stay the
-/// same. The result is parsed again. Returns an error with the line to be changed by hand if a name
-/// is not found in its line, or if the result does not have the same content.
+/// Replaces former names and leaves all other bytes unchanged. Returns an error with the line if a
+/// name is not found in its line, or if the content of the result differs.
 Expected<UpgradedFile> upgraded(std::string_view text, const Key& declaration,
                                 const std::string& file);
 

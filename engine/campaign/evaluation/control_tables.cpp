@@ -36,8 +36,6 @@ namespace {
 /// Measurements with more targets are not stored, because no table has so many points.
 constexpr std::size_t most_targets = 500;
 
-/// Returns the standard uncertainty of a mean at a target from the pooled scatter of the readings;
-/// 0 if there is only one reading per target and direction.
 double u_of_mean(const math::AxisTest& test) {
   double squares = 0.0, n = 0.0, means = 0.0;
   for (std::size_t i = 0; i < test.targets.size(); ++i)
@@ -93,9 +91,8 @@ class OfCampaign {
     return out;
   }
 
-  /// Returns what the written tables add along an axis; none if no table was written for it, or if
-  /// the axis was measured more than once, because it is then not known which of the tables is
-  /// loaded.
+  /// Returns nullopt without a written table, or if the axis was measured more than once, because
+  /// it is then not known which table is loaded.
   std::optional<AxisCorrection> written(const std::string& axis, const Measurement& m) const {
     const Campaign& campaign = read_.manifest->campaign;
     const auto many = std::count_if(

@@ -8,7 +8,6 @@ namespace nonio::evaluation {
 
 namespace {
 
-/// A tolerance, with the measurement and axis that it applies to.
 struct Held {
   std::string measurement, axis;
   Tolerance tolerance;
@@ -35,8 +34,7 @@ bool is_in_unit_of(const Tolerance& tolerance, const Value& v) {
   return unit_of(v.quantity).symbol == unit_of(tolerance.quantity).symbol;
 }
 
-/// Adds a decision for each value that has the name and unit of the tolerance. Returns false if
-/// there is no such value.
+/// Returns false if no value has the name and unit of the tolerance.
 bool add_decisions(const Campaign& campaign, const std::vector<Results::Analysed>& analyses,
                    const Held& held, std::vector<Conformity>& out) {
   const std::size_t before = out.size();

@@ -64,8 +64,7 @@ void append_analyses(std::vector<Results::Analysed>& to, std::vector<Results::An
   to.insert(to.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-/// Moves what was read into `out`. Returns false if there is no valid manifest to evaluate, or if
-/// its id is no longer `id`.
+/// Returns false without a valid manifest, or if its id is no longer `id`.
 bool begin_results(reading::ReadCampaign& read, const std::string& id, const reading::Twins& twins,
                    Evaluated& out) {
   out.campaign.id = id;

@@ -17,8 +17,7 @@ namespace nonio::evaluation {
 
 namespace {
 
-/// Returns the smallest U (CMC) of a quantity measured over `length` (m); 0 if none is stated for
-/// this quantity.
+/// `length` in m. Returns 0 if [laboratory.cmc] states nothing for this quantity.
 double floor_of(const Cmc& cmc, Quantity q, double length) {
   switch (q) {
     case Quantity::length:
@@ -34,10 +33,8 @@ double floor_of(const Cmc& cmc, Quantity q, double length) {
   }
 }
 
-/// Raises each U of an evaluation to at least the smallest uncertainty of an accredited laboratory,
-/// `[laboratory.cmc]`, for a measurement over `length` (m). Does nothing without accreditation.
-/// Source: the policy of ILAC-P14 that U on a certificate is not below the CMC; its text was not
-/// available.
+/// Raises each U to at least the CMC over `length` (m). Does nothing without accreditation. Source:
+/// the policy of ILAC-P14; its text was not available.
 void apply_cmc(const Laboratory& laboratory, double length, Evaluation& e) {
   if (laboratory.accreditation.empty() || !laboratory.cmc.stated()) return;
   std::string raised;
@@ -50,7 +47,7 @@ void apply_cmc(const Laboratory& laboratory, double length, Evaluation& e) {
   const auto note = [&](const std::string& name) { raised += (raised.empty() ? "" : ", ") + name; };
   for (Value& v : e.values)
     if (v.U && raise(*v.U, v.quantity)) {
-      v.k = 2.0;  // coverage factor for which [laboratory.cmc] states U
+      v.k = 2.0;  // coverage factor of [laboratory.cmc]
       note(v.name);
     }
   for (PointTable::Column& c : e.points.columns)
@@ -64,8 +61,6 @@ void apply_cmc(const Laboratory& laboratory, double length, Evaluation& e) {
     e.findings.push_back({.id = "uncertainty.cmc", .texts = {{"results", std::move(raised)}}});
 }
 
-/// Adds a finding if readings were excluded without a reason: the evaluation is valid, but no
-/// certificate is issued.
 void note_reasons_missing(const Measurement& m, Evaluation& evaluation) {
   if (m.exclude.empty() || has_content(m.exclude_reason)) return;
   evaluation.findings.push_back(
@@ -75,9 +70,8 @@ void note_reasons_missing(const Measurement& m, Evaluation& evaluation) {
        .texts = {{"file", m.file}, {"id", m.id}}});
 }
 
-/// Returns the length over which an evaluation was measured, in m: the length in its uncertainty
-/// budget, otherwise the largest range of positions of a linear axis in the measurement; 0 if there
-/// is none.
+/// Length in the uncertainty budget, otherwise the largest range of positions of a linear axis, m;
+/// 0 without either.
 double measured_length(const reading::ReadCampaign& read, const Evaluation& e,
                        const Measurement* measurement) {
   if (e.budget) return e.budget->length;
@@ -92,9 +86,7 @@ double measured_length(const reading::ReadCampaign& read, const Evaluation& e,
   return most;
 }
 
-/// Marks all values of an evaluation for comparison between the campaigns of a machine. It is
-/// called for analyses that do not mark values themselves. Values without an uncertainty budget are
-/// left out later.
+/// For analyses that do not mark the values that are compared between campaigns.
 void follow_all(const std::string& plugin, const Measurement* m, Evaluation& e) {
   for (Value& v : e.values) {
     v.followed = {plugin + ':' + v.name, m == nullptr ? std::string() : m->axis};
@@ -104,8 +96,7 @@ void follow_all(const std::string& plugin, const Measurement* m, Evaluation& e) 
   }
 }
 
-/// Runs an analysis for one measurement, or for the campaign if `measurement` is null. Errors are
-/// reported, and the result is then none.
+/// `measurement` is null for the whole campaign. Returns nullopt after an error, which is reported.
 std::optional<Results::Analysed> analysed_with(
     const Work& work, const Analysis& analysis, const Measurement* measurement,
     const std::function<Expected<Evaluation>(const Settings&)>& call) {
@@ -221,7 +212,8 @@ std::vector<std::string> open_doubts(const Work& work, std::vector<Results::Anal
   std::string found;
   for (const std::string& id : known) found += (found.empty() ? "" : ", ") + id;
   for (const config::AcceptedFinding& entry : accepted)
-    if (!known.contains(entry.finding))
+    // Only a run of the site knows whether campaigns share a file.
+    if (!known.contains(entry.finding) && entry.finding != reading::file_of_another_campaign)
       work.report(Error{"tables.accept: the readings have no finding " + entry.finding +
                             "; they have " + (known.empty() ? "none" : found),
                         config::manifest_name, entry.line});

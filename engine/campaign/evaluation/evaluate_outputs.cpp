@@ -24,7 +24,6 @@ std::string comma_list(const std::vector<std::string>& names) {
   return text;
 }
 
-/// Reports an error if no controller plugin writes tables for the control that the manifest states.
 void check_control(const Work& work) {
   const std::string& control = work.campaign().machine.control;
   std::vector<std::string> tables;
@@ -35,9 +34,8 @@ void check_control(const Work& work) {
                                                    "; there are " + comma_list(tables)));
 }
 
-/// Whether the machine's record states this controller or no control; also true without a record.
-/// Otherwise, an error is reported if the manifest has `[run] outputs`. A controller that site.toml
-/// requests for all machines is left out without an error.
+/// Whether the record of the machine states this control, or states none. Reports a difference only
+/// if the manifest has `[run] outputs`, because site.toml requests controllers for all machines.
 bool is_control_of_record(const Work& work, const std::string& controller) {
   const auto& machine = work.read.machine;
   if (!machine || machine->control.empty() || machine->control == controller) return true;
@@ -48,7 +46,6 @@ bool is_control_of_record(const Work& work, const std::string& controller) {
   return false;
 }
 
-/// Adds a note with the present form of option `axes` if the manifest states it as texts.
 void note_axes_as_texts(const Work& work, const Info& controller, const Settings& settled,
                         std::vector<Remark>& notes) {
   const auto& options = work.read.manifest->options;
@@ -117,8 +114,6 @@ WantedPlugins wanted_plugins(const Work& work, std::vector<Remark>& notes) {
 
 namespace {
 
-/// Sets the place of an error to the line that requests the output, unless the error already has a
-/// line.
 void place_at_output(const Work& work, const std::string& name, Error& error) {
   const config::Manifest& manifest = *work.read.manifest;
   const config::SiteFile& site = work.context.site;
@@ -141,7 +136,6 @@ void keep_result(const Info& output, OutputResult result, Results& results) {
   results.outputs.push_back({output.name, output.version, std::move(result)});
 }
 
-/// Stores the result of a plugin; if it is an error or not valid, reports an error of the campaign.
 void take_result(const Work& work, const Info& plugin, const std::string& who,
                  Expected<OutputResult> result, Results& results) {
   if (result)
@@ -152,7 +146,6 @@ void take_result(const Work& work, const Info& plugin, const std::string& who,
   work.report(std::move(result.error()));
 }
 
-/// Returns a result that contains a finding in place of a table.
 OutputResult no_table(const char* id, const Info& controller, const char* why,
                       const std::string& text) {
   OutputResult nothing;
@@ -161,12 +154,10 @@ OutputResult no_table(const char* id, const Info& controller, const char* why,
   return nothing;
 }
 
-/// Readings predicted by the model, from which the tables are made; none if the manifest requires
-/// tables from the measured readings, an error if there is no model.
+/// Readings predicted by the model; nullopt if the manifest requires the measured readings.
 using ModelReadings = std::optional<Expected<std::vector<Observations>>>;
 
-/// Writes a table. If compensation was active during the measurement, its tables are first removed
-/// from the readings and results, because the new table replaces them.
+/// Active tables are removed from the readings first, because the new table replaces them.
 Expected<OutputResult> write_over_present(const Work& work, const WantedController& w,
                                           const ModelReadings& of_model, const Results& results) {
   const reading::ReadCampaign& read = work.read;
@@ -200,7 +191,7 @@ Expected<OutputResult> table_of(const Work& work, const WantedController& w,
   auto written = write_over_present(work, w, of_model, results);
   if (!written && !w.asked && written.error().key.empty())
     written = no_table("table.not-written", info, "why", written.error().message);
-  if (written && !w.asked)  // not requested: the machine may not have this control
+  if (written && !w.asked)
     for (Finding& f : written->findings)
       if (f.id == "table.axis-number" || f.id == "table.active-not-stated") f.attention = false;
   return written;
@@ -224,7 +215,6 @@ void write_tables(const Work& work, const std::vector<WantedController>& wanted,
 
 namespace {
 
-/// Returns the output that is issued under a number; null if there is none, or after an error.
 const WantedOutput* numbered_output(const Work& work, const std::vector<WantedOutput>& wanted) {
   const WantedOutput* numbered = nullptr;
   for (const WantedOutput& w : wanted) {
@@ -272,7 +262,7 @@ std::optional<NumberRequest> number_request(const Work& work,
   request.missing = std::move(*missing);
   request.incomplete.findings = reading::traceability_findings(work.campaign());
   // An expired calibration does not prevent a certificate if the person who approves it states a
-  // reason. Its finding is therefore removed here.
+  // reason.
   std::erase_if(request.incomplete.findings,
                 [](const Finding& f) { return reading::is_expired_calibration(f.id); });
   for (const Finding& f : request.incomplete.findings)
@@ -283,8 +273,6 @@ std::optional<NumberRequest> number_request(const Work& work,
 
 namespace {
 
-/// Stores the answer of the register for the output that is issued under a number: the certificate,
-/// a finding that states what is missing, or an error, after which the next run tries again.
 void take_number(const Work& work, NumberRequest request, const AssignedNumber* assigned,
                  const std::vector<WantedOutput>& documents, Evaluated& out) {
   if (assigned != nullptr && assigned->error) {
@@ -306,7 +294,6 @@ void take_number(const Work& work, NumberRequest request, const AssignedNumber* 
       keep_result(w.output->info, std::move(request.incomplete), out.results);
 }
 
-/// Returns the files of a certificate as they were issued, because they are not written again.
 OutputResult as_issued(const Certificate& certificate, const std::string& output) {
   OutputResult issued;
   for (const IssuedFile& f : certificate.files)

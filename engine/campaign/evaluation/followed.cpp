@@ -12,8 +12,7 @@ namespace nonio::evaluation {
 
 namespace {
 
-/// Returns a name of the instrument including its calibration, because its error changes with each
-/// calibration; empty if no serial number is stated.
+/// Identifies instrument and calibration; empty without a serial number.
 std::string instrument_source(const Instrument& i) {
   if (i.serial.empty()) return {};
   std::string out = "instrument";
@@ -40,8 +39,8 @@ std::optional<double> mean_temperature(const Observations& o) {
   return n > 0.0 ? std::optional(sum / n) : std::nullopt;
 }
 
-/// Adds a standard uncertainty under the source that campaigns share. Without a source it is
-/// regarded as new in each campaign, and its square is added to `variance`.
+/// Without a source, the square of `u` is added to `variance`, the part that is new in each
+/// campaign.
 void put_common(FollowedQuantity& to, double& variance, const std::string& source, double u) {
   if (u == 0.0) return;
   if (source.empty())
@@ -61,8 +60,6 @@ void put_conditions(FollowedQuantity& to, const math::AxisTest& test, const Camp
   if (!m.lateral.empty()) to.texts.emplace_back("across", m.lateral);
 }
 
-/// Returns the quantities of the readings of one axis, along or across it, that are compared
-/// between campaigns; none for other measurements.
 std::optional<FollowedGroup> of_axis(const reading::ReadCampaign& read, std::size_t index) {
   const Campaign& campaign = read.manifest->campaign;
   const Measurement& m = campaign.measurements[index];
@@ -97,9 +94,7 @@ std::optional<FollowedGroup> of_axis(const reading::ReadCampaign& read, std::siz
   return out;
 }
 
-/// Returns the values of an analysis that are compared between campaigns, if it has an uncertainty
-/// budget; otherwise none. The budget states what the instrument contributes to their uncertainty.
-/// Values without any other uncertainty are left out.
+/// Returns nullopt without an uncertainty budget. Values without other uncertainties are left out.
 std::optional<FollowedGroup> of_budget(const Results::Analysed& a, const Campaign& campaign) {
   if (!a.evaluation.budget) return std::nullopt;
   const UncertaintyBudget& budget = *a.evaluation.budget;
@@ -144,10 +139,8 @@ std::string effects_of(const ModelFit& fit) {
   return out;
 }
 
-/// Whether a parameter of a model is compared between campaigns. Excluded are nonlinear parameters
-/// whose value was found by a search, parameters of curves, because their knots differ between
-/// campaigns, and all parameters in m/m, because the quantity `scale` contains the scale of a
-/// linear axis with the contributions of instrument and temperature.
+/// Excludes searched parameters, parameters of curves, because their knots differ between
+/// campaigns, and parameters in m/m, which the quantity `scale` includes.
 bool is_followed(const ModelFit& fit, const ModelFit::Parameter& p) {
   const auto effect = std::find_if(fit.effects.begin(), fit.effects.end(),
                                    [&](const ModelFit::Effect& e) { return e.name == p.effect; });
@@ -155,8 +148,6 @@ bool is_followed(const ModelFit& fit, const ModelFit::Parameter& p) {
          (effect == fit.effects.end() || !effect->curve);
 }
 
-/// Returns the linear parameters of a model that are compared between campaigns, with their
-/// covariance.
 std::optional<FollowedGroup> of_model(const ModelFit& fit, const Campaign& campaign) {
   FollowedGroup out;
   std::vector<std::size_t> kept;
@@ -209,8 +200,6 @@ void put_quantity(JsonWriter& json, const FollowedQuantity& q) {
   json.end_object();
 }
 
-/// Writes the upper triangle of the covariance row by row, in the units of the quantities. A
-/// correlation that is only a rounding error is written as 0.
 void put_covariance(JsonWriter& json, const FollowedGroup& group, std::size_t first) {
   const std::size_t n = group.quantities.size();
   json.begin_object();

@@ -7,10 +7,7 @@
 
 namespace nonio::evaluation {
 
-/// Writes the key `certificate` of results.json: what a certificate prints in addition to the
-/// results.
 void put_certificate(JsonWriter& json, const Certificate& certificate);
-/// Reads the key `certificate`; missing members stay empty.
 Certificate certificate_of(const storage::Json& json);
 
 }  // namespace nonio::evaluation

@@ -13,7 +13,6 @@ namespace nonio::evaluation {
 
 namespace {
 
-/// Converts a square from SI units to the printed unit of the quantity.
 double printed_square(double si, Quantity q) { return printed(printed(si, q), q); }
 
 std::string hexadecimal(std::uint64_t bits) {
@@ -30,7 +29,6 @@ void put_list(JsonWriter& json, const char* name, std::size_t n, Value value) {
   json.end_array();
 }
 
-/// Writes the upper triangle of a matrix, row by row.
 template <class Value>
 void put_triangle(JsonWriter& json, const char* name, std::size_t n, Value value) {
   json.key(name);

@@ -14,7 +14,7 @@ struct OtherTargets;
 
 namespace nonio::evaluation {
 
-/// Data for comparing a campaign with campaigns that have other targets (nonio/math/followed.h).
+/// Data for comparison with campaigns that have other targets (nonio/math/followed.h).
 struct ComparedTargets {
   struct Fit {
     double beyond = 0.0, dof = 0.0;
@@ -33,8 +33,7 @@ struct ComparedTargets {
 
 ComparedTargets compared_targets(const nonio::math::AxisTest&, const nonio::math::OtherTargets&);
 
-/// Writes the member `other_targets`. `variances` contains the squares of u of the quantities, in
-/// SI units.
+/// `variances`: squares of u, SI units.
 void put_other_targets(JsonWriter& json, const ComparedTargets&,
                        const std::vector<Quantity>& quantities,
                        const std::vector<double>& variances);

@@ -150,7 +150,6 @@ std::string to_json(const Record& r) {
 
 namespace {
 
-/// Parses a record; none if the bytes are not a record of this version.
 std::optional<Record> record_in(const std::string& bytes) {
   try {
     dom::parser parser;
@@ -163,7 +162,6 @@ std::optional<Record> record_in(const std::string& bytes) {
   }
 }
 
-/// Reads a record; none if the file does not exist or is not a record.
 Expected<std::optional<Record>> record_at(const fs::path& path) {
   NONIO_TRY(const auto there, storage::is_there(path));
   if (!there) return std::nullopt;

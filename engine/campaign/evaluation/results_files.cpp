@@ -14,8 +14,6 @@ namespace {
 
 constexpr const char* earlier_name = "earlier.json";
 
-/// Adds the files that the record in a folder names, and the record last; adds nothing if the
-/// folder has no record.
 Expected<void> add_files(const fs::path& folder, const std::string& before,
                          std::vector<RecordedFile>& all) {
   const fs::path path = folder / record_name;
@@ -64,8 +62,7 @@ Expected<std::string> read_result(const fs::path& folder, const RecordedFile& fi
 
 namespace {
 
-/// Reads the files to copy. A damaged file is left out, so that the campaign is evaluated again; a
-/// damaged earlier.json is an error, because it is the only copy.
+/// Leaves out damaged files. A damaged earlier.json is an error, because no other copy exists.
 Expected<std::vector<Artifact>> files_to_copy(const fs::path& folder) {
   std::vector<Artifact> files;
   NONIO_TRY(const auto last, last_record(folder));

@@ -21,7 +21,6 @@ void put_text(JsonWriter& json, const char* key, const std::string& text) {
   if (!text.empty()) json.member(key, text);
 }
 
-/// Writes an object with the texts that are not empty; nothing if all are empty.
 void put_texts(JsonWriter& json, const char* key,
                std::initializer_list<std::pair<const char*, const std::string&>> texts) {
   if (std::all_of(texts.begin(), texts.end(), [](const auto& t) { return t.second.empty(); }))
@@ -32,7 +31,6 @@ void put_texts(JsonWriter& json, const char* key,
   json.end_object();
 }
 
-/// Writes the notes in English; documents translate them into their own language.
 void put_notes(JsonWriter& json, const std::vector<Remark>& notes, const Templates& templates) {
   if (notes.empty()) return;
   json.list("notes", notes, [&](const Remark& note) {
@@ -112,7 +110,6 @@ void put_table(JsonWriter& json, const PointTable& table, const char* name, cons
   json.end_array();
 }
 
-/// Writes the U of each column that has one.
 void put_point_U(JsonWriter& json, const PointTable& points) {
   const auto has_U = [](const PointTable::Column& c) { return c.U.has_value(); };
   if (std::none_of(points.columns.begin(), points.columns.end(), has_U)) return;
@@ -160,8 +157,6 @@ void put_contribution(JsonWriter& json, const Contribution& c) {
   json.end_object();
 }
 
-/// Writes the uncertainty budget: standard uncertainties of the inputs, and their contribution to
-/// each result.
 void put_budget(JsonWriter& json, const std::optional<UncertaintyBudget>& budget) {
   if (!budget) return;
   json.key("budget");
@@ -272,7 +267,6 @@ void put_predictions(JsonWriter& json, const std::vector<Prediction>& prediction
   });
 }
 
-/// Writes predictions, findings and notes once per output, not with each of its files.
 void put_tables(JsonWriter& json, const std::vector<Results::Written>& outputs,
                 const Templates& templates) {
   const auto silent = [](const Results::Written& w) {

@@ -9,11 +9,10 @@
 
 namespace nonio::evaluation {
 
-/// Returns results.json (schema nonio-results/1) for the stored output files `files`, in their
-/// order.
+/// Returns results.json (schema nonio-results/1).
 std::string results_json(const Evaluated& evaluated, const reading::Context& context,
                          const std::vector<RecordedFile>& files);
-/// Returns results.json (schema nonio-results/1) for output files that were not stored.
+/// For output files that were not stored.
 std::string results_json(const Evaluated& evaluated, const reading::Context& context);
 
 const char* to_text(Decision decision);

@@ -20,13 +20,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Converts a date such as 20240302 to 2024-03-02; other text stays unchanged.
 std::string iso_date(const std::string& date) {
   if (date.size() != 8) return date;
   return date.substr(0, 4) + "-" + date.substr(4, 2) + "-" + date.substr(6);
 }
 
-/// Replaces each {place} in a text by its value from the file name; none if a value is missing.
 std::optional<std::string> filled_in(const std::string& text, const Places& places) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -44,9 +42,8 @@ std::optional<std::string> filled_in(const std::string& text, const Places& plac
   return out;
 }
 
-/// Returns the id of the campaign to which a file belongs. Without `campaign` in the rule it
-/// consists of the date and the texts of all placeholders except axis and id, as in
-/// 2024-03-02-fp12. Capital letters become small letters, and blanks become "-".
+/// Without `campaign` in the rule, the id consists of date and placeholders except axis and id.
+/// Capital letters become small letters, blanks become "-".
 std::string campaign_of(const ImportRule& rule, const Places& places) {
   std::string id;
   if (!rule.campaign.empty()) {
@@ -64,9 +61,7 @@ std::string campaign_of(const ImportRule& rule, const Places& places) {
   return id;
 }
 
-/// Returns a digest of the deviations, runs, positions and approaches of all readings, which is the
-/// same for equal readings in different bytes (line ends, a comment); empty if there are no
-/// readings.
+/// The digest depends on the readings only, not on line ends or comments; empty without readings.
 std::string digest_of(const Observations& o) {
   std::string bytes;
   const auto put = [&](const auto& column) {
@@ -103,7 +98,6 @@ class Importer {
   }
 
  private:
-  /// Returns every file of the folder, sorted by name; links are not followed.
   Expected<std::vector<std::string>> files() const {
     std::error_code error;
     const fs::path root = fs::canonical(request_.folder, error);
@@ -124,7 +118,7 @@ class Importer {
 
   Expected<void> look() {
     NONIO_TRY(const auto names, files());
-    std::map<std::string, std::string> first;  // name of the first file with each digest
+    std::map<std::string, std::string> first;
     for (const std::string& name : names) {
       const auto excluded =
           std::find_if(request_.rule.exclude.begin(), request_.rule.exclude.end(),
@@ -179,7 +173,7 @@ class Importer {
           artifacts.push_back({campaign.files[i].name, std::move(found[i].bytes)});
       artifacts.push_back(
           {config::manifest_name,
-           // last, because a process that sees the manifest relies on the other files
+           // last, because a process that sees the manifest requires the other files
            manifest_of(campaign, found.front().places)});
       if (auto ok = storage::publish(folder, artifacts); !ok) return ok;
       campaign.written = true;
@@ -188,8 +182,8 @@ class Importer {
     return {};
   }
 
-  /// Whether a folder contains all these files and its manifest a measurement for each of them. If
-  /// so, the campaign was imported before, and its manifest may have been completed since.
+  /// A folder with these files and a measurement for each was imported before, even if its manifest
+  /// was completed since.
   static bool is_there(const fs::path& folder, const ImportedCampaign& campaign,
                        const std::vector<Found>& found) {
     std::error_code error;
@@ -254,8 +248,6 @@ class Importer {
                              (request_.rule.axes.empty() ? "" : ", as the rule states"));
   }
 
-  /// Returns the text of campaign.toml. What the campaign lacks is named in comments at the
-  /// beginning, and what a file lacks in comments in its [[measurement]].
   std::string manifest_of(const ImportedCampaign& campaign, const Places& places) const {
     toml::table root;
     if (auto extra = config::parse_toml(request_.rule.manifest, "rule"); extra)
@@ -283,8 +275,7 @@ class Importer {
     }
     return out.str();
   }
-  /// Sets the keys of the machine from the request, otherwise from the rule's manifest, otherwise
-  /// from the name of the file.
+  /// The request has precedence over the rule's manifest, which has precedence over the file name.
   void put_machine(toml::table& machine, const Places& places) const {
     for (const auto& [key, place, said] :
          {std::tuple("asset", "asset", &request_.asset),
@@ -305,8 +296,6 @@ class Importer {
     return text;
   }
 
-  /// Reads every file as a run would, even if names or ids occur twice, and notes what is missing
-  /// or wrong.
   void check(ImportedCampaign& campaign, const std::vector<Found>& found) {
     if (const auto manifest = manifest_to_read(campaign, found.front().places)) {
       const Machine& machine = manifest->campaign.machine;
@@ -321,7 +310,6 @@ class Importer {
         if (digest.empty()) continue;
         const auto [same, fresh] = first.try_emplace(digest, file.file);
         if (fresh) continue;
-        // replaces messages about an equal name or id, which have the same cause
         file.same_as = same->second;
         file.lacks = {"the same readings as " + file.same_as +
                       "; exclude one of them, in the rule: exclude = [\"" + file.file + "\"]"};
@@ -340,7 +328,6 @@ class Importer {
     return !file.axis.empty() || request_.rule.kind == "observations";
   }
 
-  /// Returns a manifest with all files that can be read, under provisional names and ids.
   config::Checked<config::Manifest> manifest_to_read(const ImportedCampaign& campaign,
                                                      const Places& places) const {
     ImportedCampaign all;
@@ -356,7 +343,7 @@ class Importer {
                                   plugins_.methods());
   }
 
-  /// Reads a file and returns the digest of its readings; empty if it has none or cannot be read.
+  /// Returns the digest of the readings; empty if the file cannot be read.
   std::string look_into(const config::Manifest& manifest, Measurement m, ImportedFile& file,
                         const Found& found) const {
     m.id = file.measurement;
@@ -395,7 +382,6 @@ class Importer {
         *reader, {bytes, manifest.campaign, m, *options, {}, plugins_.method(m.kind)});
   }
 
-  /// Returns the options of site.toml; empty if the file does not exist or has errors.
   config::RawOptions site_options() const {
     const auto text = storage::read_file(request_.out / "site.toml");
     if (!text) return {};

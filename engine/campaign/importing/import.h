@@ -13,50 +13,45 @@
 
 namespace nonio::importing {
 
-/// The rule by which the names of files state what was measured.
 struct ImportRule {
-  std::string pattern;   ///< form of the names: "{machine}_{axis}_{date}.rtl"
-  std::string campaign;  ///< pattern of the id; empty: date and placeholders except axis and id
-  std::string kind = "axis";         ///< kind of every measurement
-  std::string reader;                ///< reader of every file; empty: chosen by the content
-  std::vector<std::string> exclude;  ///< a file is skipped if its path contains one of these
-  std::string axis;                  ///< axis of every file; empty: the text at {axis} in the name
-  /// Texts accepted at {axis}, and the axis of the machine that each of them names; empty: names of
-  /// axes are accepted.
+  std::string pattern;   ///< file names, for example "{machine}_{axis}_{date}.rtl"
+  std::string campaign;  ///< pattern of the id; if empty, date and placeholders except axis and id
+  std::string kind = "axis";
+  std::string reader;  ///< reader of every file; if empty, the content determines the reader
+  /// Files are skipped if their paths contain one of these texts.
+  std::vector<std::string> exclude;
+  std::string axis;  ///< axis of every file; if empty, the text at {axis}
+  /// Axis of the machine for each text at {axis}; if empty, the texts are names of axes.
   std::map<std::string, std::string, std::less<>> axes;
   std::string manifest;  ///< TOML text that every campaign.toml also contains
 };
 
 using Places = std::map<std::string, std::string, std::less<>>;
 
-/// Read a rule: a pattern alone, or a TOML file with `pattern`, `campaign`, `kind`, `reader`,
-/// `exclude`, `axis` and the tables [axes] and [manifest].
+/// `pattern` alone, or a TOML file with `pattern`, `campaign`, `kind`, `reader`, `exclude`, `axis`
+/// and the tables [axes] and [manifest].
 config::Checked<ImportRule> import_rule_of_pattern(const std::string& pattern);
 config::Checked<ImportRule> parse_import_rule(std::string_view text, const std::string& file);
 
-/// Returns the ways in which the pattern matches a path, at most two. A pattern without "/" applies
-/// to the name of the file only.
+/// Returns at most two matches of the pattern. Without "/", only the file name is matched.
 std::vector<Places> readings_of_name(const ImportRule& rule, const std::string& path);
 
 struct ImportedFile {
-  std::string file;  ///< path of the file below the imported folder
-  std::string name;  ///< name of the file in the campaign
+  std::string file;
+  std::string name;  ///< name in the campaign
   std::string measurement, axis, reader;
   std::uint64_t readings = 0, missing = 0;
   std::vector<std::string> lacks;  ///< what must be stated or corrected first
-  std::string same_as;             ///< another file with the same readings; empty: none
-  std::vector<std::string>
-      assumed;  ///< what was derived from the name or the rule, not stated literally
+  std::string same_as;             ///< other file with the same readings; empty without such a file
+  std::vector<std::string> assumed;  ///< data derived from the name or the rule
 };
 
 struct ImportedCampaign {
   std::string id;
   std::vector<ImportedFile> files;
-  std::vector<std::string> lacks;  ///< what must be stated about the campaign as a whole
+  std::vector<std::string> lacks;  ///< what must be stated for the whole campaign
   bool written = false;
-  std::string asset{}, maker{}, serial{};  ///< asset, maker and serial number of its machine
-  /// The campaign was imported before: its folder contains these files, and its manifest a
-  /// measurement for each of them.
+  std::string asset{}, maker{}, serial{};
   bool there = false;
 
   bool whole() const;
@@ -73,15 +68,15 @@ struct ImportReport {
 struct ImportRequest {
   std::filesystem::path folder, out;
   ImportRule rule;
-  /// Asset, maker and serial number of the machine of all campaigns; empty: not stated.
+  /// For the machine of all campaigns; empty if not stated.
   std::string asset{}, maker{}, serial{};
-  /// Whether campaigns with missing data are also written; comments in them state what is missing.
+  /// Whether incomplete campaigns are also written.
   bool partial = false;
   bool dry_run = false;
 };
 
-/// Makes campaigns from a folder of files. Each campaign's folder is new and appears completely;
-/// existing files are not changed, and a campaign that was imported completely is skipped.
+/// Each new folder appears completely. Existing files are not changed, and campaigns that were
+/// imported before are skipped.
 Expected<ImportReport> import_folder(const ImportRequest& request, const loader::Plugins& plugins);
 
 }  // namespace nonio::importing

@@ -9,7 +9,6 @@ namespace nonio::importing {
 
 namespace {
 
-/// A part of a pattern: a text, or the name of a placeholder in braces.
 struct Token {
   std::string text;
   bool place = false;
@@ -35,7 +34,7 @@ Expected<std::vector<Token>> tokens_of(const std::string& pattern) {
           "pattern: expected {name} of small letters, or {*} for what does not count, found \"" +
           pattern.substr(i) + "\"");
     // The end of an axis or date can be recognized by its form. A file is not imported if its name
-    // can still be divided among the placeholders in two ways.
+    // can be divided among the placeholders in two ways.
     const auto bounded = [](const std::string& place) {
       return place == "axis" || place == "date";
     };
@@ -55,8 +54,8 @@ bool all_of_digits(std::string_view text) {
          std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Whether a text names an axis of a machine: capital letters and digits, or a small letter of ISO
-/// 841 and digits (x and u2 name the axes X and U2).
+/// Whether the text consists of capital letters and digits, or of a small letter of ISO 841 and
+/// digits (x and u2 name X and U2); at most 8 characters.
 bool is_axis(std::string_view text) {
   if (text.empty() || text.size() > 8) return false;
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
@@ -67,8 +66,7 @@ bool is_axis(std::string_view text) {
          });
 }
 
-/// Whether a placeholder can contain this text. A date must begin with the year, because all other
-/// orders are ambiguous. {*} may be empty.
+/// A date must begin with the year, because all other orders are ambiguous. {*} may be empty.
 bool fits(const ImportRule& rule, const std::string& place, std::string_view text) {
   if (text.find('/') != text.npos) return false;
   if (place == "*") return true;
@@ -88,14 +86,12 @@ class Matcher {
       : rule_(rule), tokens_(tokens), text_(text) {}
   std::vector<Places> match() {
     from(0, 0);
-    // too many steps: the result is treated as ambiguous
     if (steps_ > most_steps) found_.resize(2);
     return std::move(found_);
   }
 
  private:
-  /// Matches the tokens from `token` on with the text from `at` on. Matches that differ only in the
-  /// text of {*} are regarded as one.
+  /// Matches that differ only in the text of {*} are regarded as one.
   void from(std::size_t token, std::size_t at) {
     if (found_.size() > 1 || ++steps_ > most_steps) return;
     if (token == tokens_.size()) {
@@ -112,7 +108,6 @@ class Matcher {
       const std::string_view part = text_.substr(at, length);
       if (part.ends_with('/')) return;
       if (!fits(rule_, t.text, part)) continue;
-      // A placeholder that occurs twice must have the same text both times.
       const auto known = now_.find(t.text);
       if (known != now_.end() && known->second != part) continue;
       const bool names = t.text != "*" && known == now_.end();
@@ -166,7 +161,6 @@ constexpr config::Key rule_keys[] = {
 constexpr config::Key rule_file{"rule", config::declared::file<ImportRule>, "Rule of an import.",
                                 rule_keys};
 
-/// Checks that the axes in a rule are valid names and are stated in one place only.
 void check_axes(const ImportRule& rule, config::TableReader& reader) {
   const auto axis = [](const std::string& name) {
     return is_axis(name) && name[0] >= 'A' && name[0] <= 'Z';

@@ -26,7 +26,7 @@ class Offered final : public Registry {
   void add(Output output) override { take("output", std::move(output)); }
   void add(Controller c) override { take("controller", std::move(c)); }
 
-  /// Returns what is wrong with the first plugin that cannot be used; empty if all can be used.
+  /// Returns the first fault of a plugin; empty if all plugins can be used.
   const std::string& incomplete() const { return incomplete_; }
   void give_to(Registry& registry) {
     for (auto& one : all_) std::visit([&](auto& plugin) { registry.add(std::move(plugin)); }, one);

@@ -7,8 +7,7 @@
 
 namespace nonio::loader {
 
-/// Loads a library and returns its entry; an error if it is not a plugin for this program. The
-/// library is never unloaded.
+/// Returns an error unless the library is a plugin for this program. The library is never unloaded.
 Expected<const PluginEntry*> open_entry(const std::filesystem::path& path);
 
 }  // namespace nonio::loader

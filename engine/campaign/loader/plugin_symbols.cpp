@@ -12,8 +12,7 @@ namespace nonio::loader {
 
 namespace {
 
-/// Returns the `n` entries of a table that begins at byte `at` of the ELF file; none if the table
-/// would exceed the end of the file.
+/// Returns no entries if the table would exceed the end of the ELF file.
 template <class Entry>
 std::vector<Entry> entries(std::string_view bytes, std::uint64_t at, std::uint64_t n) {
   if (at > bytes.size() || n > (bytes.size() - at) / sizeof(Entry)) return {};
@@ -35,8 +34,7 @@ std::string text_at(std::string_view bytes, std::uint64_t at) {
 
 }  // namespace
 
-// Replaces boost::dll::library_info, which reads the table of names that `strip` removes, and does
-// not distinguish weak symbols.
+// boost::dll::library_info reads a table that `strip` removes, and includes weak symbols.
 Expected<std::vector<std::string>> exported_symbols(const std::filesystem::path& library) {
   NONIO_TRY(const auto file, storage::MappedFile::open(library));
   const std::string_view bytes = file.bytes();

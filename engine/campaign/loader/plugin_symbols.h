@@ -9,8 +9,7 @@
 
 namespace nonio::loader {
 
-/// Returns the symbols that an ELF library exports, without weak copies of templates of the
-/// standard library, which every compiler adds.
+/// Omits weak symbols, because compilers add copies of templates of the standard library.
 Expected<std::vector<std::string>> exported_symbols(const std::filesystem::path& library);
 
 }  // namespace nonio::loader

@@ -28,7 +28,7 @@ namespace {
 constexpr double probe_seconds = 10.0;
 constexpr const char* out_of_memory = "could not be loaded: out of memory";
 
-/// Returns the libraries of all plugins, which are never unloaded while the process runs.
+/// The libraries are never unloaded while the process runs.
 std::vector<dll::shared_library>& libraries() {
   static auto* kept = new std::vector<dll::shared_library>;
   return *kept;
@@ -54,8 +54,6 @@ Expected<const PluginEntry*> open_entry(const fs::path& path) {
 
 namespace {
 
-/// Loads and registers a file as a trial. Returns why it must be refused; empty if it registers
-/// correctly.
 std::string try_registering(const fs::path& path) {
   struct Nobody final : Registry {
     void add(Method) override {}
@@ -80,15 +78,12 @@ std::string try_registering(const fs::path& path) {
 }
 
 struct Probed {
-  /// Reason of refusal of each file tried before the child ended; "": accepted.
   std::vector<std::string> refusals;
   process::ChildEnd end;
 };
 
-/// Tries to load the files one after another in one child process, and returns the results of those
-/// that were tried.
 Probed probe_in_child(std::span<const fs::path> paths) {
-  std::vector<process::SharedStatus> said(paths.size());  // empty until that file was tried
+  std::vector<process::SharedStatus> said(paths.size());
   for (const process::SharedStatus& words : said)
     if (!words.valid()) return {{}, {false, "no memory"}};
   auto child = process::Child::start("the plugins", {}, [&] {
@@ -107,24 +102,22 @@ Probed probe_in_child(std::span<const fs::path> paths) {
   return probed;
 }
 
-/// Whether the child was killed by SIGKILL before it finished a file. The signal is sent from
-/// outside (by a person, or by a system without memory), so it shows nothing about the plugin.
+/// SIGKILL comes from outside (a person, or a system without memory), so it shows nothing about the
+/// plugin.
 bool is_killed(const Probed& p) {
   return p.refusals.empty() && !p.end.well && !p.end.overdue &&
          p.end.words.starts_with("signal 9 ");
 }
 
-/// Returns for each file why it must be refused; empty if it is accepted. All files are tried in
-/// one child, because a child takes longer to start than a plugin. A file with which the child
-/// ended before the time limit is tried again alone, so that it is not blamed for the files before
-/// it.
+/// Returns the reason of refusal of each file, or "". One child tries all files, because starting a
+/// child takes longer than a plugin. The file with which the child ended is tried again alone.
 std::vector<std::string> probe(std::span<const fs::path> paths) {
   std::vector<std::string> refusals;
   while (refusals.size() < paths.size()) {
     Probed together = probe_in_child(paths.subspan(refusals.size()));
     for (std::string& r : together.refusals) refusals.push_back(std::move(r));
     if (refusals.size() == paths.size()) break;
-    if (together.end.overdue) {  // the time limit is used up
+    if (together.end.overdue) {
       refusals.push_back("did not survive loading: " + together.end.words);
       continue;
     }
@@ -187,7 +180,7 @@ std::vector<fs::path> Plugins::files_in(const std::vector<fs::path>& folders) {
     std::vector<fs::path> here;
     std::error_code error;
     const fs::path real = fs::canonical(folder, error);
-    error.clear();  // the loop below detects the same error
+    error.clear();
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
       if (it->path().extension() == ".so" && it->is_regular_file()) {
         const bool resolved = !real.empty() && !it->is_symlink(error);
@@ -231,8 +224,7 @@ void Plugins::load_file(const fs::path& path, const std::string& refusal) {
   const process::Muted muted;
   try {
     auto entry = open_entry(path);
-    // Opening is tried a second time, because a temporary failure must not change the results of a
-    // run.
+    // A temporary failure must not change the results of a run.
     if (!entry) entry = open_entry(path);
     Offered offered;
     if (entry) (*entry)->add_to(offered);
@@ -268,8 +260,6 @@ Expected<std::string> Plugins::digest() const {
 
 namespace {
 
-/// Returns the other kind of plugins that `[run] outputs` may name, because names must be unique in
-/// this list; other kinds are returned unchanged.
 std::string_view named_with(std::string_view kind) {
   return kind == "output" ? "controller" : kind == "controller" ? "output" : kind;
 }
@@ -278,7 +268,6 @@ std::string_view named_with(std::string_view kind) {
 
 bool Plugins::accept(std::string_view kind, const Info& info) {
   const std::string name = std::string(kind) + " " + info.name;
-  // The path is empty if the plugin was added without a file.
   const fs::path path = files_.empty() ? fs::path() : files_.back().path;
   const std::string other = std::string(named_with(kind)) + " " + info.name;
   for (const auto& [known, where] : names_)
@@ -319,8 +308,6 @@ const Method* Plugins::method(std::string_view kind) const {
 
 namespace {
 
-/// Whether a refused file may contain this plugin: its name contains that of the plugin, or it is
-/// named after the kind, as Nonio's own libraries are.
 bool may_contain(const fs::path& file, std::string_view kind, std::string_view name) {
   const std::string stem = file.stem().string();
   const std::string all = kind == "analysis" ? "analyses" : std::string(kind) + "s";
@@ -367,7 +354,6 @@ std::string Plugins::refusals() const {
 }
 
 std::vector<std::string> Plugins::refusal_notes() const {
-  // Names of the refused files, by reason of refusal
   std::vector<std::pair<std::string, std::string>> files;
   for (const PluginFile& file : files_) {
     if (file.refused.empty()) continue;

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double k = 2.0;  // coverage factor of ISO 230-2 since 1997
 
-/// Returns the weighted RMS of values about the mean of their line, without the parts of the set-up
-/// (zeros, slopes, rotations), which are unknown before and after a table is loaded.
+/// Returns the weighted RMS about the mean of each line, without the parts of the set-up (zeros,
+/// slopes, rotations).
 double rms_about_zeros(const Observations& o, std::vector<double> values, const model::Fit& fit) {
   const std::vector<double>& weight = fit.weight;
   for (std::size_t t = 0; t < fit.terms.size(); ++t)
@@ -35,7 +35,6 @@ double rms_about_zeros(const Observations& o, std::vector<double> values, const 
   return all > 0.0 ? std::sqrt(squares / all) : std::nan("");
 }
 
-/// Returns the readings of one measurement with their positions along its axis.
 Observations readings_of(const model::Part& part, std::size_t measurement,
                          const std::vector<double>& deviation) {
   Observations o;

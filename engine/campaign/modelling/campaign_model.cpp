@@ -142,7 +142,9 @@ ReadingPlace place_of(const PartModel& part, const Campaign& campaign, std::size
     if (m.id == place.measurement) place.file = m.file;
   if (row < o.source_line.size()) place.line = o.source_line[row];
   if (row < o.run.size()) place.run = o.run[row];
-  place.direction = part.part.way[row] > 0 ? 1 : part.part.way[row] < 0 ? -1 : 0;
+  // Features of a body have no known direction of approach.
+  const bool is_feature = !o.lines.empty() && !o.lines[o.line_of(row)].body.empty();
+  if (!is_feature) place.direction = part.part.way[row] > 0 ? 1 : part.part.way[row] < 0 ? -1 : 0;
   place.target = part.part.along[row];
   place.position = part.position();
   return place;

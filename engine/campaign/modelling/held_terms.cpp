@@ -16,8 +16,6 @@ std::string trimmed(const std::string& text) {
   return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
-/// Returns the units in which a value of this quantity may be stated; the first is the one in which
-/// it is printed.
 std::vector<Quantity> units_for(Quantity q) {
   static constexpr std::array lengths{Quantity::deviation, Quantity::length};
   static constexpr std::array angles{Quantity::small_angle, Quantity::angular_deviation,
@@ -32,7 +30,6 @@ std::vector<Quantity> units_for(Quantity q) {
   return out;
 }
 
-/// Splits "12.3 arcsec" or "12.3arcsec" into the number and the text after it.
 std::pair<std::optional<double>, std::string> split_value(const std::string& text) {
   const std::size_t begin = text.starts_with('+') ? 1 : 0;
   double number = 0.0;

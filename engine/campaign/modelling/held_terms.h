@@ -8,25 +8,21 @@
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/plugin.h"
 
-/// Effects of a model whose value is stated instead of fitted: "squareness:XY = 12.3 arcsec".
+/// Effects whose value is stated instead of fitted: "squareness:XY = 12.3 arcsec".
 namespace nonio::modelling {
 
-/// An entry of [model] effects.
 struct Entry {
-  std::string effect;                  ///< name of the effect: "squareness:XY"
-  std::optional<std::string> value{};  ///< stated value: "12.3 arcsec"; none: it is fitted
-  /// Returns the entry as a manifest has it: one blank around "=" and before the unit.
+  std::string effect;
+  std::optional<std::string> value{};  ///< "12.3 arcsec"; nullopt for a fitted effect
   std::string text() const { return value ? effect + " = " + *value : effect; }
 };
 Entry entry_of(const std::string& written);
 
-/// Returns the entry for an effect, whether it is fitted or its value is stated; null if the model
-/// does not contain it.
+/// Returns the entry with or without a value; null if the model lacks the effect.
 const std::string* find_effect(const std::vector<std::string>& model, const std::string& effect);
 
-/// Returns the stated value in SI units. If `rotary`, the axis of the effect is rotary. An error
-/// states what was expected: only an effect with one parameter, without shapes and without groups,
-/// that is neither a curve nor depends on a recorded channel, can have a stated value.
+/// Returns SI units. An error unless the effect has one parameter, no shapes and no groups, is not
+/// a curve, and does not depend on a channel.
 Expected<double> held_value(const Entry& entry, const Effect& effect, bool rotary);
 
 }  // namespace nonio::modelling

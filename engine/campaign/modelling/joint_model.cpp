@@ -17,8 +17,7 @@ namespace {
 using model::Holds;
 using storage::Json;
 
-// Largest number of readings of an axis in a campaign, because all columns of its effects are kept
-// in memory.
+// Limits the memory for the columns of all effects.
 constexpr std::size_t most_readings = 20000;
 
 const char* name_of(Holds holds) {
@@ -33,7 +32,6 @@ const char* name_of(Holds holds) {
   return "own";
 }
 
-/// Returns the parts that can be explained together, by name, and adds all others to `left_out`.
 /// `trouble` receives the error of a campaign whose model has a mistake.
 std::map<std::string, std::vector<std::pair<const reading::ReadCampaign*, PartModel>>> common_parts(
     const std::vector<const reading::ReadCampaign*>& campaigns, Expected<void>& trouble,
@@ -71,7 +69,7 @@ std::map<std::string, std::vector<std::pair<const reading::ReadCampaign*, PartMo
   return out;
 }
 
-/// Whether an effect has more than 3 linear parameters in a group; then only its RMS is printed.
+/// Whether the effect has more than 3 linear parameters in a group; then only its RMS is printed.
 bool is_curve(const std::vector<model::Parameter>& group) {
   return std::count_if(group.begin(), group.end(), [](const auto& p) { return !p.shape; }) > 3;
 }
@@ -96,7 +94,6 @@ std::string place_text(const Together& t, std::size_t campaign) {
   return t.campaigns[campaign] + (t.dates[campaign].empty() ? "" : " (" + t.dates[campaign] + ")");
 }
 
-/// Whether all parameters of the group may be zero (chi-squared test, p > 0.001).
 bool is_absent(const std::vector<model::Parameter>& group) {
   constexpr double least_p = 0.001;
   double squares = 0.0, count = 0.0;
@@ -105,8 +102,6 @@ bool is_absent(const std::vector<model::Parameter>& group) {
   return math::chi2_upper(squares, count) > least_p;
 }
 
-/// Returns the indices of the campaigns in which the first parameter of the effect is smallest and
-/// largest.
 std::pair<std::size_t, std::size_t> extremes(const model::JointEffect& e) {
   std::pair<std::size_t, std::size_t> out{e.groups.size(), e.groups.size()};
   for (std::size_t g = 0; g < e.groups.size(); ++g) {
@@ -165,7 +160,6 @@ std::string sentence_of(const model::JointEffect& e, const Together& t,
 std::string sentence_of(const Together& t, const config::TerminalWords& say) {
   const model::JointExplanation& x = t.explanation;
   const Quantity q = t.deviation();
-  // a small difference between the two RMS values is printed with more digits
   constexpr int usual = 3, most = 5;
   const auto text_of = [&](double v, int digits) { return short_text(printed(v, q), digits); };
   const int digits = text_of(x.rms, usual) == text_of(x.rms_after, usual) ? most : usual;
@@ -282,9 +276,8 @@ std::vector<model::Member> members_of(const Together& t) {
   return members;
 }
 
-/// Adds each cause of the library that a campaign alone shows to the catalogue of all campaigns,
-/// because otherwise another effect would be named in its place. Returns whether there is such a
-/// cause.
+/// Adds causes that one campaign shows, because otherwise another effect would be named in their
+/// place. Returns false without such a cause.
 bool add_named_causes(Together& t, std::uint64_t seed) {
   std::set<std::string> named;
   for (const PartModel& part : t.parts)

@@ -11,22 +11,21 @@
 
 namespace nonio::modelling {
 
-/// One axis in several campaigns, in the order of their dates, and the explanation of all together.
+/// One axis in several campaigns, by date, and the explanation of all together.
 struct Together {
-  std::string part;  ///< name of the part, which is that of its axis: "X"
+  std::string part;
   std::vector<std::string> campaigns, dates;
   std::vector<PartModel> parts;
-  std::vector<std::string> effects;  ///< effects that the models of the campaigns contain
+  std::vector<std::string> effects;
   model::JointExplanation explanation;
   std::vector<std::shared_ptr<const void>> keeps{};  ///< owners of effects made from library causes
 
   Quantity deviation() const { return parts.front().deviation(); }
 };
 
-/// Explains the runs of each axis that at least two campaigns measured, with the models of these
-/// campaigns. Parts that cannot be explained together are added to `left_out` as "<campaign>
-/// <part>": other kinds, axes that only one campaign measured and, with the reason in brackets,
-/// parts that have more than 20000 readings or cannot show their model.
+/// Explains each axis that at least two campaigns measured. Other parts are added to `left_out` as
+/// "<campaign> <part>": other kinds, axes in one campaign only, parts with more than 20000
+/// readings, and parts that cannot show their model.
 Expected<std::vector<Together>> explain_together(
     const std::vector<const reading::ReadCampaign*>& campaigns, std::uint64_t seed,
     std::vector<std::string>& left_out);

@@ -15,9 +15,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Compares the part that shows an effect with this model; none if no measurement shows it. The
-/// catalogue of possible effects takes time, so it is made only for parts to which the model cannot
-/// be fitted, or if the model does not contain the effect and the catalogue has to find the part.
+/// Returns nullopt if no measurement shows the effect. The catalog takes time, so it is made only
+/// if the model cannot be fitted or does not contain the effect.
 Expected<std::optional<Compared>> compare_axis(const reading::ReadCampaign& read,
                                                const std::vector<std::string>& effects,
                                                const std::string& effect) {
@@ -54,8 +53,7 @@ ModelStep step_of(const Change& change, const std::string& effect, bool add) {
   return step;
 }
 
-/// Returns the text of campaign.toml. An error if the file is a link, or if another process has
-/// changed it since it was read.
+/// Returns an error if campaign.toml is a link or has changed since it was read.
 Expected<std::string> unchanged_manifest(const fs::path& folder,
                                          const reading::ReadCampaign& read) {
   std::error_code error;
@@ -86,8 +84,6 @@ Expected<void> write(const fs::path& folder, const reading::ReadCampaign& read,
       folder, {{history_name, std::move(history)}, {config::manifest_name, std::move(edited)}});
 }
 
-/// Returns the model after one edit and its comparisons before and after. `known` is a comparison
-/// of the model before the edit, if one already exists; otherwise null.
 Expected<Change> changed(const reading::ReadCampaign& read, const std::vector<std::string>& model,
                          const ModelEdit& edit, const Compared* known) {
   const std::string& effect = edit.effect;
@@ -120,7 +116,6 @@ Expected<Change> changed(const reading::ReadCampaign& read, const std::vector<st
   return change;
 }
 
-/// Removes the readings in these lines, as if the file were read again with the exclusion.
 Expected<void> leave_out(reading::ReadCampaign& read, const Exclusion& one) {
   const auto& all = read.manifest->campaign.measurements;
   const auto m = std::find_if(all.begin(), all.end(),

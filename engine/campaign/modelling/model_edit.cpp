@@ -14,8 +14,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-/// Returns the byte offset of a position of toml++, which numbers lines and columns from 1 and
-/// measures columns in code points.
+/// toml++ numbers lines and columns from 1 and measures columns in code points.
 std::size_t offset_of(std::string_view text, toml::source_position at) {
   std::size_t i = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
   for (toml::source_index line = 1; line < at.line; ++line) {
@@ -30,8 +29,6 @@ std::size_t offset_of(std::string_view text, toml::source_position at) {
   return i;
 }
 
-/// Returns the offset of the next byte from `i` on that is not part of a blank, a line end or a
-/// comment.
 std::size_t next_mark(std::string_view text, std::size_t i) {
   while (i < text.size()) {
     if (text[i] == '#')
@@ -49,7 +46,6 @@ std::size_t line_begin(std::string_view text, std::size_t i) {
   return before == std::string_view::npos ? 0 : before + 1;
 }
 
-/// Returns the end of a line's content, before its LF or CRLF.
 std::size_t line_end(std::string_view text, std::size_t i) {
   std::size_t end = std::min(text.find('\n', i), text.size());
   if (end > i && end < text.size() && text[end - 1] == '\r') --end;
@@ -63,8 +59,7 @@ std::string newline_of(std::string_view text) {
 
 std::string quoted(const std::string& name) { return "\"" + name + "\""; }
 
-/// An element of a list: [begin, end) includes quotes; `comma` is the position of the comma after
-/// it; none: no comma follows.
+/// Element of a list: [begin, end) includes quotes. `comma`: position of the next comma.
 struct Item {
   std::size_t begin, end;
   std::optional<std::size_t> comma;
@@ -75,7 +70,6 @@ struct List {
   std::vector<Item> items;
 };
 
-/// Returns the end of the quoted text that begins at `i`.
 std::size_t text_end(std::string_view text, std::size_t i) {
   const char quote = text[i];
   const std::string three(3, quote);
@@ -88,7 +82,6 @@ std::size_t text_end(std::string_view text, std::size_t i) {
   return std::min(i + 1, text.size());
 }
 
-/// Returns the end of the number, word or date that begins at `i`.
 std::size_t word_end(std::string_view text, std::size_t i) {
   const std::size_t end = text.find_first_of(" \t\r\n,]}#\"'[", i);
   return std::min(end, text.size());
@@ -115,7 +108,6 @@ std::optional<List> list_at(std::string_view text, std::size_t open) {
   return std::nullopt;
 }
 
-/// Returns the text with one more value at the end of a list, in the style of the list.
 std::string appended(std::string_view text, const List& list, const std::string& value) {
   std::string out(text);
   if (list.items.empty()) return out.insert(list.open + 1, value);
@@ -154,7 +146,7 @@ std::string removed(std::string_view text, const List& list, std::size_t index) 
   const std::size_t from = line_begin(text, begin), to = line_end(text, end);
   const bool alone = from > list.open && blank(text.substr(from, begin - from)) &&
                      blank(text.substr(end, to - end));
-  if (alone) {  // the element fills its line: the line is removed
+  if (alone) {  // the element fills its line
     begin = from;
     end = std::min(text.find('\n', to), text.size());
     if (end < text.size()) ++end;
@@ -190,7 +182,6 @@ bool differs_elsewhere(toml::table a, toml::table b) {
   return a != b;
 }
 
-/// Whether the new text differs from the old one only in this list of effects.
 bool is_meant(const toml::table& before, const std::string& text, const Names& wanted) {
   const auto after = config::parse_toml(text, config::manifest_name);
   return after && names_in(*after) == wanted && !differs_elsewhere(before, *after);
@@ -201,8 +192,7 @@ tl::unexpected<Error> refusal(const std::string& why, std::uint64_t line) {
                     config::manifest_name, line});
 }
 
-/// Returns the possible texts with a new list: below the header [model], or in a new table at the
-/// end.
+/// Returns the possible texts: a list below a header [model], or a new table at the end.
 std::vector<std::string> with_new_list(std::string_view text, const std::string& effect) {
   const std::string nl = newline_of(text), line = "effects = [" + quoted(effect) + "]";
   std::vector<std::string> out;
@@ -278,8 +268,6 @@ tl::unexpected<Error> not_meant(const std::string& key, const toml::table& table
                     config::manifest_name, table.source().begin.line});
 }
 
-/// Returns the text with a new line in a table: below the key `behind`, or below the header if the
-/// table lacks this key.
 std::string with_line(std::string_view text, const toml::table& table, const char* behind,
                       const std::string& line) {
   const toml::node* const above = table.get(behind);
@@ -291,7 +279,6 @@ std::string with_line(std::string_view text, const toml::table& table, const cha
   return out.insert(line_end(text, list ? list->close : at), newline_of(text) + indent + line);
 }
 
-/// Returns the text with a new value (text or number) for an existing key.
 std::string with_value(std::string_view text, const toml::node& node, const std::string& value) {
   const std::size_t at = offset_of(text, node.source().begin);
   const std::size_t end = node.is_string() ? text_end(text, at) : word_end(text, at);
@@ -333,7 +320,6 @@ Expected<std::string> with_excluded(std::string_view text, const std::string& me
     out = with_line(text, *table, "file", "exclude = [" + numbers + "]");
   }
   table->insert_or_assign("exclude", std::move(wanted));
-  // The reason is changed in the text that already contains the new list of lines.
   auto half = config::parse_toml(out, config::manifest_name);
   toml::table* const now = half ? measurement_in(*half, measurement) : nullptr;
   if (now == nullptr) return not_meant("exclude", *table);

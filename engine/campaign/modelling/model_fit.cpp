@@ -136,11 +136,25 @@ void put_readings(ModelFit& out, const PartModel& whole) {
   out.deviation = whole.measured();
 }
 
+/// Sets what a fit leaves, for the model and for the model without one effect.
+template <class Out>
+void put_residuals(Out& out, const model::Comparison& c) {
+  out.rms = c.fit.rms;
+  out.cv_rms = c.cv_rms;
+  out.largest = c.largest;
+  out.residual = c.fit.residual;
+  out.weight = c.fit.weight;
+  out.cv_residual = c.cv_residual;
+  if (c.floor) {
+    out.floor = c.floor->s;
+    out.floor_u = c.floor->u;
+  }
+  for (const model::Suspect& s : c.suspects) out.suspects.push_back({s.row, s.minimal_detectable});
+}
+
 void put_fit(ModelFit& out, const PartModel& part, const model::Comparison& c) {
   const model::Fit& fit = c.fit;
-  out.residual = fit.residual;
-  out.weight = fit.weight;
-  out.cv_residual = c.cv_residual;
+  put_residuals(out, c);
   for (std::size_t t = 0; t < fit.terms.size(); ++t)
     out.effects.push_back({fit.terms[t].name(), fit.terms[t].effect->compensable, fit.part[t],
                            curve_of(part, fit, t)});
@@ -149,18 +163,11 @@ void put_fit(ModelFit& out, const PartModel& part, const model::Comparison& c) {
                               std::isfinite(p.u) ? std::optional(p.u) : std::nullopt, p.quantity,
                               p.shape});
   out.correlation = fit.correlation;
-  if (c.floor) {
-    out.floor = c.floor->s;
-    out.floor_u = c.floor->u;
-  }
-  for (const model::Suspect& s : c.suspects) out.suspects.push_back({s.row, s.minimal_detectable});
 }
 
-// Largest number of readings for which models with fewer effects are fitted too, because with more
-// readings each fit takes seconds.
+// With more readings, reduced models are not fitted, because each fit takes seconds.
 constexpr std::size_t most_refitted = 20000;
 
-/// Returns the terms that are marked in `in`, in the order of the model.
 std::vector<model::Term> chosen(const std::vector<model::Term>& terms,
                                 const std::vector<char>& in) {
   std::vector<model::Term> out;
@@ -169,17 +176,13 @@ std::vector<model::Term> chosen(const std::vector<model::Term>& terms,
   return out;
 }
 
-/// Returns a mark for each term: 1 for terms of the set-up, which every model contains, otherwise
-/// 0.
 std::vector<char> set_up_of(const std::vector<model::Term>& terms) {
   std::vector<char> in;
   for (const model::Term& term : terms) in.push_back(term.effect->is_nuisance ? 1 : 0);
   return in;
 }
 
-/// Returns the indices of the effects in the order in which each reduces the remaining RMS most,
-/// with the shapes of the whole model. For more than 20000 readings, the order is that of the
-/// model.
+/// Orders effects by their reduction of the RMS; with more than 20000 readings, as in the model.
 std::vector<std::size_t> falling_order(const PartModel& part, const model::Fit& whole) {
   std::vector<std::size_t> order;
   std::vector<char> in = set_up_of(part.terms);
@@ -202,7 +205,6 @@ std::vector<std::size_t> falling_order(const PartModel& part, const model::Fit& 
   return order;
 }
 
-/// Adds the RMS after each effect is added in turn; a step that cannot be fitted is left out.
 void put_steps(ModelFit& out, const PartModel& part, const model::Comparison& whole) {
   const std::vector<std::size_t> order = falling_order(part, whole.fit);
   PartModel grown = part;
@@ -220,7 +222,7 @@ void put_steps(ModelFit& out, const PartModel& part, const model::Comparison& wh
 void put_candidates(ModelFit& out, const PartModel& part, const model::Explanation& e) {
   for (const model::Candidate& c : e.candidates) {
     if (!is_ranked(c) || !(c.score > 0.0)) continue;
-    // in correlated readings, evidence that also occurs without a cause is left out
+    // In correlated readings, evidence that also occurs without a cause is left out.
     if (part.part.kind == model::Part::Kind::course && !(c.p < e.verdict.false_alarms)) continue;
     const bool certain =
         std::find(e.certain.begin(), e.certain.end(), c.term.name()) != e.certain.end();
@@ -231,8 +233,7 @@ void put_candidates(ModelFit& out, const PartModel& part, const model::Explanati
   out.next = next_findings(e, part);
 }
 
-/// Returns the axis that moved if only one moved in all readings; otherwise null, because the phase
-/// of a screw is then not defined along the line.
+/// Returns null unless one axis moved, because the phase of a screw is otherwise not defined.
 const Axis* one_moved(const model::Part& part) {
   const Axis* moved = nullptr;
   for (const auto& column : part.table.axes) {
@@ -246,7 +247,6 @@ const Axis* one_moved(const model::Part& part) {
   return moved;
 }
 
-/// Returns the fit of a part with all data that documents show.
 ModelFit value_of(const PartModel& part, const model::Explanation& e) {
   ModelFit out = fitted_value(part, e.comparison);
   put_steps(out, part, e.comparison);
@@ -263,8 +263,6 @@ ModelFit value_of(const PartModel& part, const model::Explanation& e) {
   return out;
 }
 
-/// Returns a mark for each row of a measurement: 1 for the first row with its line, position and
-/// direction, otherwise 0.
 std::vector<char> first_of_each(const Observations& o) {
   std::set<std::vector<double>> seen;
   std::vector<char> kept(o.size(), 0);
@@ -279,7 +277,7 @@ std::vector<char> first_of_each(const Observations& o) {
   return kept;
 }
 
-/// Returns the prediction of the compensable effects for each reading, in m or rad.
+/// Sum of the compensable effects for each reading, m or rad.
 std::vector<double> compensable_part(const model::Fit& fit) {
   std::vector<double> said(fit.residual.size(), 0.0);
   for (std::size_t t = 0; t < fit.terms.size(); ++t) {
@@ -339,8 +337,10 @@ std::vector<ModelFit::Without> without_each(const PartModel& part) {
     if (part.terms[t].effect->is_nuisance) continue;
     PartModel rest = part;
     rest.terms.erase(rest.terms.begin() + static_cast<std::ptrdiff_t>(t));
-    if (auto c = compare_part(rest))
-      out.push_back({part.terms[t].name(), c->fit.rms, c->cv_rms, std::move(c->fit.residual)});
+    const auto c = compare_part(rest);
+    if (!c) continue;
+    out.emplace_back().effect = part.terms[t].name();
+    put_residuals(out.back(), *c);
   }
   return out;
 }
@@ -381,7 +381,7 @@ Expected<std::vector<Observations>> compensable_readings(const reading::ReadCamp
   auto parts = part_models(read, campaign.model);
   if (!parts) return fail(parts.error());
   std::vector<Observations> out = read.observations;
-  // a measurement that belongs to two states of the machine is in two parts
+  // A measurement that belongs to two states of the machine is in two parts.
   std::set<std::size_t> done;
   for (const PartModel& part : *parts) {
     const auto compared = compare_part(part);

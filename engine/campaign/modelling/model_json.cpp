@@ -199,7 +199,11 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
     out.push_back(words.has_unstated_position());
   for (const std::string& measurement : part.part.order_assumed)
     out.push_back(words.order_assumed(measurement));
-  if (!part.part.table.order_known) out.push_back(words.order_unknown());
+  const auto& lines = part.part.table.lines;
+  const bool features =
+      !lines.empty() &&
+      std::none_of(lines.begin(), lines.end(), [](const auto& l) { return l.body.empty(); });
+  if (!part.part.table.order_known && !features) out.push_back(words.order_unknown());
   if (part.interpolated.count > 0) out.push_back(words.temperature_interpolated(part.interpolated));
   for (const model::ChannelLeft& left : part.part.channels_left)
     out.push_back(words.channel_left(left));

@@ -14,12 +14,11 @@ namespace nonio::modelling {
 
 using storage::Json;
 
-/// Returns parameters as JSON; with `part`, those of the fit of its model with these terms.
+/// `part` (whose model has these parameters) and `terms` (of its fit) may be null.
 Json parameters_json(const std::vector<model::Parameter>& parameters,
                      const PartModel* part = nullptr, const std::vector<model::Term>& terms = {});
 
-/// Extent of an entry of "parts". `first`, which the page requests at first, omits the prediction
-/// of what remains after compensation by a table.
+/// `first`, which the page requests at first, omits the prediction after compensation by a table.
 enum class Extent { whole, first };
 
 /// Returns an entry of "parts" in nonio-compare/1 and nonio-explain/1.
@@ -28,9 +27,7 @@ std::string part_json(const Compared& compared, const Campaign& campaign, const 
 std::string part_json(const Explained& explained, const Campaign& campaign,
                       const ModelWords& words);
 
-/// Return the JSON nonio-compare/1, nonio-explain/1 and nonio-model/1 (docs/json.md), from which
-/// the terminal prints too. If `all` is empty, `errors` state why; `errors` and `warnings` are those
-/// of the campaign.
+/// Return nonio-compare/1, nonio-explain/1 and nonio-model/1 (docs/json.md).
 Json compare_json(const std::vector<Compared>& all, const Campaign& campaign,
                   const ModelWords& words, const std::vector<std::string>& warnings,
                   const std::vector<Error>& errors);
@@ -38,12 +35,11 @@ Json explain_json(const std::vector<Explained>& all, const Campaign& campaign,
                   const ModelWords& words, std::uint64_t seed, const std::vector<ModelStep>& steps,
                   const std::vector<std::string>& warnings, const std::vector<Error>& errors);
 Json change_json(const Change& change, const Campaign& campaign, const ModelWords& words);
-/// Returns the JSON of a planned measurement, with its sentence.
 Json plan_json(const model::Plan& plan, const ModelWords& words);
 Json steps_json(const std::vector<ModelStep>& steps);
-/// Returns the parts of a document: its `parts`, or a list of the document itself.
+/// Returns `parts`; without this member, a list of the document itself.
 Json parts_of(const Json& document);
-/// Returns what one more run would change: `what_if` of nonio-explain/1.
+/// Returns `what_if` of nonio-explain/1.
 std::string foresight_json(const std::vector<model::Foresight>& all);
 
 }  // namespace nonio::modelling

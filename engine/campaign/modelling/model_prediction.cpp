@@ -7,8 +7,7 @@ namespace nonio::modelling {
 
 namespace {
 
-/// Returns the part of the same kind and name; for a displacement over time otherwise the first
-/// part with the same displacement. Null if there is none, or for ball centres.
+/// Matches kind and name, or the displacement over time. Returns null for ball centers.
 const PartModel* same_part(const std::vector<PartModel>& parts, const PartModel& wanted) {
   const PartModel* found = nullptr;
   for (const PartModel& part : parts) {

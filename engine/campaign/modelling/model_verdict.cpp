@@ -81,9 +81,8 @@ std::vector<std::string> next_effects(const std::vector<Explained>& all) {
   const std::string next = next_effect(verdicts_of(all));
   if (next.empty()) return {};
   std::vector<std::string> out{next};
-  // In a displacement over time, the sensors of a set replace each other, so the set is added as a
-  // whole. A volume has many errors at once: the set is added if it leaves nothing unexplained,
-  // otherwise only its significant effects.
+  // Sensors replace each other in a displacement over time, so their set is added as a whole. The
+  // set of a volume is added if it leaves nothing unexplained, otherwise its significant effects.
   std::vector<std::string> more;
   if (kind == model::Part::Kind::course || (kind == model::Part::Kind::space && e.explains_all))
     more = e.together;

@@ -8,32 +8,27 @@
 #include "campaign/modelling/campaign_model.h"
 #include "nonio/model/explain.h"
 
-/// Combines the verdicts of the parts of a campaign: the most severe one, and the effects to add
-/// next.
 namespace nonio::modelling {
 
 struct Explained {
   PartModel part;
   model::Explanation explanation;
-  /// What one more run would change; none: not requested.
+  /// nullopt if not requested
   std::optional<std::vector<model::Foresight>> what_if{};
 };
 
-/// Returns the index of the part with the most severe verdict: missing, unrepeatable, unknown,
-/// nothing.
+/// Order of severity: missing, unrepeatable, unknown, nothing.
 std::size_t most_severe(const std::vector<Explained>& all);
 
-/// The verdict of one part. `next_effect` returns the effect that `nonio model explain --auto` adds
-/// first: the missing effect of the most severe verdict, otherwise its most significant effect; ""
-/// if there is none.
+/// `next_effect` returns the missing effect of the most severe verdict, otherwise its most
+/// significant effect, or "".
 struct PartVerdict {
-  std::string kind, effect;          ///< kind of the verdict, and the effect that it names
-  std::vector<std::string> certain;  ///< significant effects, the one with the most evidence first
+  std::string kind, effect;          ///< `effect`: named by the verdict
+  std::vector<std::string> certain;  ///< significant effects by decreasing evidence
 };
 std::vector<PartVerdict> verdicts_of(const std::vector<Explained>& all);
 std::string next_effect(const std::vector<PartVerdict>& parts);
-/// Returns the effects that `--auto` adds next, as the manifest lists them; empty if there are
-/// none.
+/// Returns the effects in the form of the manifest.
 std::vector<std::string> next_effects(const std::vector<Explained>& all);
 
 const char* to_text(model::Verdict::Kind kind);
@@ -45,10 +40,10 @@ struct Correlated {
 };
 std::vector<Correlated> correlated(const model::Fit& fit);
 
-/// Largest number of candidates that the JSON marks as best, in addition to those of the best set.
+/// Largest number of best candidates in JSON, in addition to the best set.
 inline constexpr std::size_t most_best = 5;
 
-/// Whether a candidate has a score and can be ranked. These readings cannot show other candidates.
+/// Whether the readings can show the candidate, so that a score exists.
 bool is_ranked(const model::Candidate& candidate);
 
 }  // namespace nonio::modelling

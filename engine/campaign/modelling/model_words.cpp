@@ -478,7 +478,7 @@ std::string ModelWords::curve(const ModelFit::Curve& c, const PartModel& part) c
 }
 
 std::string ModelWords::suspect(const model::Suspect& s, const ReadingPlace& at, Quantity q) const {
-  return says("suspect",
+  return says(at.run == 0 && at.direction == 0 ? "suspect.feature" : "suspect",
               {{"residual", s.residual, q},
                {"detectable", s.minimal_detectable, q},
                {"target", at.target, at.position},

@@ -11,7 +11,6 @@ namespace nonio::modelling {
 
 namespace {
 
-/// Columns for values of one name: one column per unit that any part uses.
 struct Columns {
   std::string name;
   std::vector<Quantity> units{};

@@ -10,11 +10,11 @@ namespace nonio::modelling {
 
 /// Returns every reading with its model as a row, in the order of the parts and of their tables:
 ///
-///     part,measurement,file_line,target_mm,run,direction,time_s,reading_um,model_um,residual_um,weight
+/// part,measurement,file_line,target_mm,run,direction,time_s,reading_um,model_um,residual_um,weight
 ///
-/// Units are part of the names. If parts differ in units, there is a column for each unit, which is
-/// empty for other parts. Displacements over time have no target. Unknown values are empty. Weight
-/// 0: a suspect reading that the fit does not use. reading = model + residual.
+/// If parts differ in units, there is a column for each unit, which is empty for other parts.
+/// Displacements over time have no target. Unknown values are empty. Weight 0: a suspect reading
+/// that the fit does not use. reading = model + residual.
 std::string readings_csv(const std::vector<Compared>& all);
 
 }  // namespace nonio::modelling

@@ -12,7 +12,6 @@ namespace {
 
 Number minutes(const char* name, double s) { return {name, s / 60.0, Quantity::number}; }
 
-/// Returns the term that needs the time constant of this axis; null if there is none.
 const model::Term* asks(const PartModel& part, const std::string& axis) {
   for (const auto* list : {&part.terms, &part.catalogue})
     for (const model::Term& term : *list)
@@ -20,8 +19,6 @@ const model::Term* asks(const PartModel& part, const std::string& axis) {
   return nullptr;
 }
 
-/// Returns the time constant that was fitted for the term `asked`, and sets `term` to the fitted
-/// term; returns null if the model does not contain the term.
 const model::Parameter* fitted_tau(const model::Fit& fit, const model::Term& asked,
                                    const model::Term*& term) {
   for (const model::Term& t : fit.terms)
@@ -31,7 +28,6 @@ const model::Parameter* fitted_tau(const model::Fit& fit, const model::Term& ask
   return nullptr;
 }
 
-/// Returns a finding that compares the time constant from the readings with that from the tests.
 Finding own_value(const model::TimeConstant& stated, const model::Parameter& tau, Finding f) {
   const double apart = std::fabs(std::log(tau.value / stated.tau));
   const double u = std::hypot(tau.u / tau.value, stated.u / stated.tau);

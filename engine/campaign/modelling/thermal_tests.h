@@ -8,8 +8,7 @@
 
 namespace nonio::modelling {
 
-/// Returns findings about the time constants that thermal tests of the campaign determine for the
-/// axes of this part: which effects use them, or why none does. Empty if no effect needs one.
+/// States which effects use the time constants of thermal tests, or why none does.
 std::vector<Finding> time_constant_findings(const PartModel& part, const model::Fit& fit);
 
 }  // namespace nonio::modelling

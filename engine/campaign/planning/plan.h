@@ -15,23 +15,19 @@ namespace nonio::planning {
 
 using config::TerminalWords;
 
-/// Return sentences that state why a plan is listed, and its disadvantages compared with the best
-/// plan.
+/// State why a plan is listed, and its disadvantages compared with the best plan.
 std::string why_listed(const math::TriplePlan& plan, const TerminalWords& say);
 std::string gives_up(const math::TriplePlan& plan, const math::TriplePlan& best,
                      const TerminalWords& say);
-/// Returns a warning if the diagonals run nearly along one axis; otherwise empty.
 std::string aspect_warning(const math::TriplePlan& plan, const TerminalWords& say);
-/// Returns a sentence that states which limits to relax, as options of the command.
 std::string why_nothing(const math::TriplePlans& plans, const TerminalWords& say);
 
-/// Returns the JSON nonio-triples/1; its sentences are in the language of `say`.
 std::string triples_json(const math::TripleRequest& wish, const math::TriplePlans& plans,
                          const TerminalWords& say);
 
-/// Writes part programs with the output plugin of this name ("program-" may be omitted). `options`
-/// contains texts such as "2.5", "true" or "axes,diagonals". With the output plan-sheet it writes
-/// the plan as a sheet, which needs `templates`.
+/// Writes part programs with an output plugin, or the plan as a sheet (plan-sheet, requires
+/// `templates`). `options`: texts such as "2.5", "true" or "axes,diagonals". The prefix "program-"
+/// may be omitted.
 config::Checked<std::vector<Artifact>> write_programs(
     const loader::Plugins& plugins, const std::string& output, const Machine& machine,
     const PointTable& rows, const std::map<std::string, std::string>& options,

@@ -40,7 +40,6 @@ namespace {
 
 const Campaign& campaign_in(const ReadCampaign& out) { return out.manifest->campaign; }
 
-/// Reads the manifest into `out`. Returns false if it cannot be read or has errors.
 bool read_manifest(const CampaignSource& from, ReadCampaign& out) {
   from.stage("reading campaign.toml");
   const auto text = storage::read_small_file(from.folder / config::manifest_name);
@@ -66,8 +65,6 @@ bool read_manifest(const CampaignSource& from, ReadCampaign& out) {
   return true;
 }
 
-/// Sets the active compensation of an axis from the machine's record, unless the manifest states
-/// it.
 void take_present_state(const config::RecordFile& file, Axis& axis, ReadCampaign& out) {
   const auto found = file.record->axes.find(axis.name);
   if (found == file.record->axes.end()) return;
@@ -81,8 +78,7 @@ void take_present_state(const config::RecordFile& file, Axis& axis, ReadCampaign
   if (!axis.active_backlash) axis.active_backlash = state->backlash;
 }
 
-/// Adds the data about the machine that its record in the site contains and the manifest does not.
-/// Reports errors in the record, and contradictions between both.
+/// The manifest has precedence over the machine's record. Contradictions are reported.
 void look_up_machine(const CampaignSource& from, ReadCampaign& out) {
   Machine& machine = out.manifest->campaign.machine;
   const std::string input = config::machine_input(machine);
@@ -107,7 +103,6 @@ void look_up_machine(const CampaignSource& from, ReadCampaign& out) {
   for (Axis& axis : machine.axes) take_present_state(file, axis, out);
 }
 
-/// Records the digests of table files under the names in `list`, in its order.
 void note_tables(ReadCampaign& out, const std::string& list, const std::vector<Artifact>& files) {
   std::size_t from = 0;
   for (const Artifact& f : files) {
@@ -117,8 +112,6 @@ void note_tables(ReadCampaign& out, const std::string& list, const std::vector<A
   }
 }
 
-/// Reads the active tables that the manifest names, and reports a measurement without compensation
-/// on an axis with an active table.
 void look_up_active_tables(const CampaignSource& from, ReadCampaign& out) {
   for (const Axis& axis : campaign_in(out).machine.axes) {
     if (!axis.active_table || axis.active_table->empty() || out.active_tables.contains(axis.name))
@@ -138,8 +131,7 @@ void look_up_active_tables(const CampaignSource& from, ReadCampaign& out) {
                                "\"off\" contradicts active_table of axis " + m.axis));
 }
 
-/// Returns which existing effect a formula repeats on the readings, as a sentence; empty if it
-/// repeats none.
+/// Returns a sentence, or "" if the formula differs from all effects on the readings.
 std::string copied(const ReadCampaign& out, const std::vector<model::Part>& parts, const Axis& axis,
                    const Effect& effect) {
   for (const model::Part& part : parts) {
@@ -155,7 +147,6 @@ std::string copied(const ReadCampaign& out, const std::vector<model::Part>& part
   return {};
 }
 
-/// Adds the formulas of the campaign to the effects of the plugins.
 void add_own_effects(ReadCampaign& out) {
   if (campaign_in(out).formulas.empty()) return;
   const auto parts = model::parts_of(campaign_in(out), out.observations);
@@ -169,7 +160,6 @@ void add_own_effects(ReadCampaign& out) {
       blame("an effect of the catalogue has this name");
       continue;
     }
-    // The axis exists, because the manifest was checked
     const Axis& axis = *campaign_in(out).machine.axis(formula.axis);
     auto effect = config::formula_effect(formula, axis);
     if (!effect) {
@@ -183,7 +173,6 @@ void add_own_effects(ReadCampaign& out) {
   }
 }
 
-/// Whether the model names an effect that neither a plugin nor the campaign has.
 bool names_a_cause(const ReadCampaign& out) {
   const auto known = [&](const std::string& name) {
     return std::any_of(out.effects.begin(), out.effects.end(),
@@ -195,7 +184,6 @@ bool names_a_cause(const ReadCampaign& out) {
   });
 }
 
-/// Returns an error if the name of a cause is already used.
 std::optional<Error> name_taken(const config::Cause& cause, const ReadCampaign& read) {
   const std::string& name = cause.formula.name;
   for (const Formula& own : read.manifest->campaign.formulas)
@@ -212,8 +200,8 @@ std::optional<Error> name_taken(const config::Cause& cause, const ReadCampaign& 
   return std::nullopt;
 }
 
-/// Adds the library of causes, which an explanation searches. Its causes become effects if the
-/// context or the model requires it; only then is a name that is already used an error.
+/// Causes become effects if the context or the model requires them. Otherwise a repeated name is no
+/// error.
 void add_library(const Context& context, ReadCampaign& out) {
   auto causes = config::causes_in(context.templates);
   if (!causes) {

@@ -7,7 +7,7 @@
 
 namespace nonio::reading {
 
-/// Returns an error as text: "campaign.toml:12 (target_mm): ...".
+/// Returns, for example, "campaign.toml:12 (target_mm): ...".
 std::string text_of(const Error& error);
 
 }  // namespace nonio::reading

@@ -32,8 +32,7 @@ void take_out_zeros(const Observations& o, std::vector<double>& v) {
   for (std::size_t i = 0; i < v.size(); ++i) v[i] -= sum[line(i)] / count[line(i)];
 }
 
-/// Returns an orthonormal basis of the columns (Gram-Schmidt, twice) after subtraction of a zero
-/// for each line.
+/// Orthonormal basis (Gram-Schmidt, twice) of the columns without a zero for each line.
 Columns span_of(const Observations& o, Columns columns) {
   constexpr double dependent = 1e-8;
   Columns basis;
@@ -49,8 +48,8 @@ Columns span_of(const Observations& o, Columns columns) {
   return basis;
 }
 
-/// Returns the largest sine of the angle between a basis vector of the first span and the second
-/// span; 1 if their dimensions differ.
+/// Largest sine of an angle between a vector of the first span and the second span; 1 if their
+/// dimensions differ.
 double apart(const Columns& a, const Columns& b) {
   if (a.size() != b.size()) return 1.0;
   double most = 0.0;
@@ -61,7 +60,6 @@ double apart(const Columns& a, const Columns& b) {
   return most;
 }
 
-/// Searches the smallest distance between `own` and an effect over the values of its shape.
 class Nearest {
  public:
   Nearest(const Observations& o, const Axis& axis, const Effect& effect, const Columns& own)
@@ -79,7 +77,7 @@ class Nearest {
       if (!effect_.shapes[k].usual) searched = k, ++free;
     }
     if (free == 0) return at(usual_);
-    if (free > 1) return 1.0;  // no effect of the catalogue has two searched shapes
+    if (free > 1) return 1.0;  // the catalog has no effect with two searched shapes
     searched_ = searched;
     const auto grid = effect_.shapes[searched].grid(o_, axis_);
     double least = 1.0;
@@ -92,7 +90,6 @@ class Nearest {
   }
 
  private:
-  /// Returns the distance for this value of the searched shape and usual values of the others.
   double with(double value) const {
     std::vector<double> shape = usual_;
     shape[searched_] = value;
@@ -109,7 +106,7 @@ class Nearest {
   const Axis& axis_;
   const Effect& effect_;
   const Columns& own_;
-  std::vector<double> usual_{};  // usual value of each shape
+  std::vector<double> usual_{};
   std::size_t searched_ = 0;
 };
 

@@ -10,10 +10,9 @@
 
 namespace nonio::reading {
 
-/// Returns the name of the effect of the catalogue that equals `own` on these readings: its columns
-/// span the same space after subtraction of a zero for each line. "zero" if nothing remains after
-/// the subtraction, "" if `own` is new. Shapes of the catalogue are searched; those of `own` are in
-/// the middle of their grids.
+/// Returns the effect of the catalog with the same span as `own` on these readings, without zeros
+/// of lines; "zero" if nothing remains, "" if `own` is new. Shapes of the catalog are searched;
+/// those of `own` have the middle of their grids.
 Expected<std::string> copy_of(const Observations& observations, const Axis& axis, const Effect& own,
                               const std::vector<Effect>& catalogue);
 

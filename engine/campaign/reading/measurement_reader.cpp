@@ -24,8 +24,7 @@ void keep_distinct(std::vector<double>& x) {
   x.erase(std::unique(x.begin(), x.end()), x.end());
 }
 
-/// Returns the distinct positions, sorted. Memory is proportional to the number of positions, not
-/// of readings, because duplicates are removed whenever the list has doubled.
+/// Removes duplicates whenever the list has doubled, which limits memory.
 std::vector<double> distinct(const std::vector<double>& positions) {
   std::vector<double> out;
   std::size_t limit = 1U << 16U;
@@ -40,8 +39,6 @@ std::vector<double> distinct(const std::vector<double>& positions) {
   return out;
 }
 
-/// Groups positions that are closer together than `grid_tolerance`, with a count of 0 readings
-/// each. A group extends no further than this tolerance from its first position.
 std::vector<std::map<double, std::size_t>> groups_of(const std::vector<double>& x) {
   std::vector<std::map<double, std::size_t>> groups;
   for (std::size_t i = 0; i < x.size();) {
@@ -83,19 +80,17 @@ std::size_t join(std::vector<double>& positions) {
   return moved;
 }
 
-/// Joins positions of an axis within `grid_tolerance` of each other to the position with the most
-/// readings. Otherwise rounded digits in a file would make two targets of one, each with too few
-/// readings. Returns the number of positions that were changed.
+/// Joins positions within `grid_tolerance` to the position with the most readings, because rounded
+/// digits would otherwise split a target. Returns the number of changed positions.
 std::size_t join_targets(Observations& o) {
   std::size_t moved = 0;
   for (auto& axis : o.axes) moved += join(axis.position);
   return moved;
 }
 
-/// Returns the named reader, otherwise the first that recognizes the content, otherwise the one for
-/// the columns that the method declares. None, with a note, if no plugin reads this kind of
-/// measurement; other measurements are then evaluated. An error if no reader of this kind
-/// recognizes the content, or if a refused plugin may be the required one.
+/// Returns the named reader, otherwise the first that recognizes the content, otherwise the reader
+/// for the columns of the method. Null, with a note, if no plugin reads this kind. An error if no
+/// reader recognizes the content, or if a refused plugin may be required.
 Expected<const Reader*> choose_reader(const CampaignSource& from, const Measurement& m,
                                       std::string_view bytes, ReadCampaign& out) {
   const auto& readers = from.context.plugins->readers();
@@ -143,7 +138,6 @@ Expected<const Reader*> choose_reader(const CampaignSource& from, const Measurem
   return nullptr;
 }
 
-/// Removes the readings that the manifest excludes, with a note for each.
 Expected<void> exclude(const CampaignSource& from, const ReadCampaign& out, const Measurement& m,
                        Observations& o) {
   if (m.exclude.empty()) return {};
@@ -172,7 +166,6 @@ Expected<void> exclude(const CampaignSource& from, const ReadCampaign& out, cons
   return {};
 }
 
-/// Adds the manifest's data about recorded channels; an error if a channel does not exist.
 Expected<void> describe_channels(const CampaignSource& from, const ReadCampaign& out,
                                  const Measurement& m, Observations& o) {
   for (const Measurement::Channel& stated : m.channels) {
@@ -201,9 +194,7 @@ std::optional<Settings> settle_reader(const CampaignSource& from, const Info& in
   return std::nullopt;
 }
 
-/// Adds findings about an implausible end of the file and those of the reader, and a note about
-/// missing readings. If the measurement moves to targets, joins targets that differ by rounding,
-/// with a note.
+/// Notes about an implausible end of the file, missing readings and joined targets.
 void note_oddities(const Measurement& m, std::string_view bytes, Observations& o,
                    ReadCampaign& out) {
   auto ends = implausible_end(bytes, m.file);
@@ -212,18 +203,17 @@ void note_oddities(const Measurement& m, std::string_view bytes, Observations& o
       doubt.measurement = m.id;
       out.doubts.push_back(std::move(doubt));
     }
-  if (o.missing > 0 && m.kind != "axis")  // analyses of an axis report missing readings
+  if (o.missing > 0 && m.kind != "axis")
     o.notes.push_back(
         {"readings.not-taken", {{"missing", static_cast<double>(o.missing), Quantity::count}}});
-  // On an artefact the positions are those of its features, so they are not joined.
+  // Only targets at which the machine stops are joined; features of an artefact, for example, have
+  // positions of their own.
   if (m.motion != Measurement::Motion::targets) return;
   if (const std::size_t moved = join_targets(o); moved > 0)
     o.notes.push_back(
         {"targets.joined", {{"readings", static_cast<double>(moved), Quantity::count}}});
 }
 
-/// Reads a measurement into `into`, with notes and doubts in `out`. `into` stays empty if no plugin
-/// reads this kind.
 Expected<void> read_one_measurement(const CampaignSource& from, const Measurement& m,
                                     Observations& into, ReadCampaign& out) {
   const auto path = storage::path_inside(from.folder, m.file);

@@ -53,7 +53,6 @@ void locate(Error& error, const config::KeyLines& manifest, const config::KeyLin
   if (error.key.empty() || !error.file.empty()) return;
   error.file = config::manifest_name;
   const std::string of_plugin = "options." + plugin + ".";
-  // The key of the option comes first, then the tables that contain it, then the key itself.
   std::vector<std::string> keys{of_plugin + error.key};
   while (keys.back().rfind('.') >= of_plugin.size())
     keys.push_back(keys.back().substr(0, keys.back().rfind('.')));

@@ -10,17 +10,14 @@
 
 namespace nonio::reading {
 
-/// A table in a file whose columns a person can describe.
 struct StatedTable {
-  const Reader* reader = nullptr;  ///< reader that can read the table with its option `columns`
+  const Reader* reader = nullptr;  ///< reader of the table with option `columns`
   std::vector<std::vector<std::string>> rows;
 };
 
-/// Name of the option of a reader that describes the columns.
 inline constexpr const char* columns_option = "columns";
 
-/// Returns the first rows, at most `most`, of the table in a file; none if no reader finds a table
-/// with at least two columns.
+/// Returns at most `most` rows; nullopt if no reader finds two columns or more.
 std::optional<StatedTable> stated_table(const loader::Plugins& plugins, std::string_view bytes,
                                         std::size_t most);
 

@@ -11,7 +11,6 @@ constexpr std::string_view wanted =
     "expected a CSV file whose header row names the columns "
     "(run,direction,target_mm,deviation_um) with \",\", \";\" or a tab between them";
 
-/// Returns the first line that is neither blank nor a comment; `number` receives its line number.
 std::string_view first_content(std::string_view bytes, std::uint64_t& number) {
   number = 0;
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
@@ -36,8 +35,6 @@ std::string quoted(std::string_view line) {
   return out + (line.size() > most ? "...\"" : "\"");
 }
 
-/// Returns a message about a format whose layout is not public, recognized by the suffix of the
-/// file's name; empty for all other suffixes.
 std::string known_by_name(std::string_view file) {
   constexpr std::string_view keysight[] = {"lin", "ang", "str", "squ", "par", "rot", "way",
                                            "fla", "dia", "ltb", "atb", "stb", "lda"};

@@ -7,11 +7,10 @@
 
 namespace nonio::reading {
 
-/// Returns the line number of the first content of a text, from 1; 1 if it has none.
+/// Counted from 1; 1 if the text has no content.
 std::uint64_t first_content_line(std::string_view bytes);
 
-/// Returns what is wrong with a file that no reader recognizes: its format according to the file's
-/// name, its line ends, or its first line and what was expected in this line.
+/// Describes a file that no reader recognizes by its format, line ends or first line.
 std::string what_is_wrong(std::string_view bytes, std::string_view file);
 
 }  // namespace nonio::reading

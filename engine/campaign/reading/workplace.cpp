@@ -44,8 +44,8 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   };
   for (const Error& warning : context.site.warnings) note(warning);
   context.plugins = &place->plugins;
-  // Templates are read after the process for the plugins was forked: otherwise freeing them in that
-  // process would copy each page.
+  // Templates are read after the fork for plugins, because freeing them in the plugin process would
+  // copy each page.
   NONIO_TRY(const auto folders, config::with_site_templates(template_folders, site));
   std::vector<std::string> below;
   if (what != TemplatesFor::documents) below = config::words_in(context.site.language);

@@ -19,12 +19,11 @@ namespace {
 using Holds = config::Key::Holds;
 using Names = std::vector<std::string>;
 
-/// Escapes letters for use inside [ ] of a pattern.
 std::string in_class(std::string_view letters) {
   std::string out;
   for (const char c : letters) {
     if (std::string_view("\\]^").find(c) != std::string_view::npos) out += '\\';
-    if (c >= ' ') out += c;  // other characters never occur in a text of one line
+    if (c >= ' ') out += c;  // control characters never occur in one line of text
   }
   return out;
 }
@@ -52,7 +51,6 @@ std::string pattern_of(const config::TextRule& rule) {
   return "^(" + quoted_pattern(rule.begins) + letters + count + ")?$";
 }
 
-/// The names of all loaded plugins, sorted.
 class Loaded {
  public:
   explicit Loaded(const loader::Plugins& plugins) {
@@ -75,10 +73,7 @@ class Loaded {
     const auto found = names_.find(kind);
     return found == names_.end() ? none : found->second;
   }
-  /// Returns the plugins by name; two plugins of different kinds may have the same name.
   const std::map<std::string, std::vector<const Info*>>& owners() const { return owners_; }
-  /// Returns the pattern of entries of [model] effects, for campaigns without formulas of their
-  /// own.
   const std::string& effects() const { return effects_; }
 
  private:
@@ -132,8 +127,7 @@ class SchemaWriter {
     json_.end_object();
   }
 
-  /// Writes the schema of the value of a key. `assumed` is the default of the key that
-  /// distinguishes tables of this kind.
+  /// `assumed`: default that the name of the table implies for this key; empty if it implies none.
   void put_value(const config::Key& key, std::string_view assumed) {
     switch (key.holds) {
       case Holds::text:
@@ -188,7 +182,7 @@ class SchemaWriter {
     if (names.empty()) {
       put_pattern(key.text);
     } else {
-      if (!key.required) names.emplace_back();  // an empty text is treated as missing
+      if (!key.required) names.emplace_back();
       json_.member("enum", names);
     }
     if (key.required && names.empty()) json_.member("minLength", std::int64_t{1});
@@ -197,7 +191,6 @@ class SchemaWriter {
     if (!otherwise.empty()) json_.member("default", otherwise);
   }
 
-  /// Writes the description that an editor shows for each value.
   void put_meanings(const Names& meanings) {
     json_.key("x-taplo");
     json_.begin_object();
@@ -309,8 +302,7 @@ class SchemaWriter {
     put_conditions(table, assumed);
   }
 
-  /// Writes the conditions in the "then" of a condition that is always true, because taplo offers
-  /// no keys next to an "allOf".
+  /// taplo offers no keys next to an "allOf", so the conditions are in an unconditional "then".
   void put_conditions(const config::Key& table, std::string_view assumed) {
     const auto conditional = [&](const config::Key& key) {
       return !key.only.key.empty() || !key.needed.key.empty() ||
@@ -372,7 +364,7 @@ class SchemaWriter {
     json_.key("else");
     json_.begin_object();
     begin_rule_of(key);
-    // The only accepted value is a text, with which an editor shows why the key is not allowed.
+    // The only accepted text states why the key is not allowed.
     json_.member("enum", Names{"only where " + std::string(key.only.key) + " is " +
                                std::string(key.only.values.front())});
     end_rule();
@@ -380,7 +372,6 @@ class SchemaWriter {
     json_.end_object();
   }
 
-  /// Writes the rule that entries must name effects of plugins, unless the campaign has formulas.
   void put_effects(const config::Key& key) {
     json_.begin_object();
     json_.key("if");
@@ -491,7 +482,7 @@ class SchemaWriter {
     json_.end_object();
   }
 
-  /// Writes the type of tables of numbers; texts are allowed too, because they are the former form.
+  /// Texts are allowed too, because they are the former form.
   void put_number_tables() {
     json_.key("type");
     json_.begin_array();
@@ -554,7 +545,6 @@ class SchemaWriter {
 
   Loaded loaded_;
   JsonWriter json_;
-  /// key whose default depends on the name of the table that is being written; empty: none
   std::string_view by_name_;
 };
 

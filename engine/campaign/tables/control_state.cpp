@@ -36,8 +36,6 @@ std::string_view without_end(std::string_view text) {
   return text;
 }
 
-/// What the campaign states about the compensation of an axis, with the places of the keys for
-/// messages.
 class Stated {
  public:
   Stated(const reading::ReadCampaign& read, const Axis& axis) : read_(read), axis_(axis) {}
@@ -64,8 +62,7 @@ class Stated {
   const Axis& axis_;
 };
 
-/// Returns an error if the grid of the table fits the measurement in inches, but not in mm: most
-/// formats do not state their unit.
+/// Most formats have no unit. Returns an error if the grid fits the measurement only in inches.
 Expected<void> check_unit(const std::vector<LoadedTable>& own, const Campaign& campaign,
                           const std::vector<Observations>& readings, const std::string& axis,
                           const std::string& files, const std::string& by_hand) {
@@ -101,7 +98,6 @@ std::vector<LoadedTable> opposite(std::vector<LoadedTable> tables) {
   return tables;
 }
 
-/// Whether the record states that these tables were loaded on the day of the measurement or later.
 bool is_loaded_later(const reading::ReadCampaign& read, const Controller& controller,
                      const std::vector<LoadedTable>& backup, const std::string& axis,
                      const Settings& options) {

@@ -414,6 +414,9 @@ TableForecast forecast_of_axis(const Campaign& campaign, const Measurement& m,
   f.B[1] = math::predicted_after(was.B(), will.B(), U_B);
   f.M[1] = math::predicted_after(was.M(), will.M(), U.M);
   f.scatter = std::max(will.E() + range_of_scatter(test) - f.E[1], 0.0);
+  // Values of the axis require all targets.
+  if (measured.left_out > 0)
+    for (double* value : {f.E, f.B, f.M}) value[0] = value[1] = std::nan("");
   return f;
 }
 

@@ -15,10 +15,9 @@ bool is_own(const TableDifference& d, const std::string& axis) {
   return d.output == axis && d.input == std::vector{axis};
 }
 
-/// A campaign reduced to one measurement of an axis.
 struct OneAxis {
   Campaign campaign;
-  std::vector<Observations> readings;  ///< readings without the active compensation
+  std::vector<Observations> readings;  ///< without the active compensation
   std::vector<Observations> measured;
 };
 
@@ -38,7 +37,7 @@ Expected<OneAxis> one_axis(const reading::ReadCampaign& read, const std::string&
     one.readings.push_back(read.observations[i]);
     one.measured.push_back(read.observations[i]);
   }
-  if (one.readings.size() == 1) return one;  // exactly one measurement of the axis
+  if (one.readings.size() == 1) return one;
   if (!one.readings.empty())
     return fail("axis " + axis + " has " + std::to_string(one.readings.size()) +
                 " measurements; expected one");
@@ -47,8 +46,6 @@ Expected<OneAxis> one_axis(const reading::ReadCampaign& read, const std::string&
   return fail("no measurement of axis " + axis + "; there are " + (list.empty() ? "none" : list));
 }
 
-/// States the active compensation in the campaign and the options, and removes it from the
-/// readings, so that the new table contains the whole correction.
 void take_active(OneAxis& one, const MeasuredWith& with, const std::string& axis,
                  Settings& options) {
   for (Axis& a : one.campaign.machine.axes) {
@@ -60,11 +57,11 @@ void take_active(OneAxis& one, const MeasuredWith& with, const std::string& axis
   one.readings = without_tables(one.campaign, one.measured, with.tables);
 }
 
-/// Checks that the merge changes only the table of this axis and no backlash value, and that the
-/// control reads the new table back unchanged.
+/// Returns an error unless the merge changes only the table of this axis and no backlash value, and
+/// the control reads the new table back unchanged.
 Expected<void> only_this_axis(const ReadTables& present, const ReadTables& fresh,
                               const ReadTables& next, const std::string& axis) {
-  constexpr double nothing = 1e-12;  // largest difference that is regarded as rounding, m or rad
+  constexpr double nothing = 1e-12;  // largest difference regarded as rounding, m or rad
   for (const TableDifference& d : differences(present, next)) {
     if (is_own(d, axis)) continue;
     if (!d.present || !d.next || d.largest > nothing || d.present->backlash != d.next->backlash)
@@ -89,8 +86,8 @@ Expected<void> only_this_axis(const ReadTables& present, const ReadTables& fresh
   return there ? Expected<void>{} : fail("the merged file holds no table of " + axis);
 }
 
-/// Checks that the backup contains the last recorded tables of the other axes, because the whole
-/// file will be loaded.
+/// Because the whole file is loaded, the backup must contain the last recorded tables of other
+/// axes.
 Expected<void> not_outdated(const reading::ReadCampaign& read, const Controller& controller,
                             const ReadTables& present, const std::string& axis,
                             const Settings& options) {
@@ -163,9 +160,8 @@ Expected<MergedTables> merge_tables(const reading::ReadCampaign& read, const Con
                    .findings = written->findings,
                    .notes = written->notes};
   out.findings.insert(out.findings.begin(), findings.begin(), findings.end());
-  if (written->artifacts.empty()) return out;  // the table was refused; the findings state why
+  if (written->artifacts.empty()) return out;
   const Campaign& campaign = read.manifest->campaign;
-  // Files that contain one axis only are replaced as they are.
   const bool merges = controller.merge != nullptr;
   auto changed =
       merges ? process::guarded(

@@ -25,9 +25,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Day of a machine's next calibration, and the interval that gives it.
 struct Due {
-  std::string day, why;  ///< `why`: the interval in months, as text
+  std::string day, why;  ///< `why` is the interval in months
 };
 
 std::optional<int> months_of_rule(const std::string& machine, const store::StoredLogs& logs) {
@@ -38,7 +37,7 @@ std::optional<int> months_of_rule(const std::string& machine, const store::Store
 
 Due due_of(const AssessedMachine& m, const store::StoredLogs& logs) {
   const auto months = months_of_rule(m.state.machine.name, logs);
-  // Without a machine it is unknown when the next calibration is due.
+  // A campaign without a machine has no due date.
   if (!months || m.stored.campaigns.empty() || m.state.machine.name.empty()) return {};
   return {months_later(m.stored.campaigns.back().day, *months), std::to_string(*months)};
 }
@@ -75,7 +74,6 @@ class Assessment::State {
     return put_together();
   }
 
-  /// Returns a machine with everything that its page shows; the result is kept for later calls.
   Expected<const reports::MachineHistory*> whole(std::size_t i) {
     Assessed& m = machines_[i];
     if (!m.described)
@@ -85,13 +83,11 @@ class Assessment::State {
     return &*m.described;
   }
 
-  /// Returns a digest of everything that a machine's page is made from.
   std::string page_key(std::size_t i, const std::string& templates) const {
     const Assessed& m = machines_[i];
     const auto lines = lines_.find(m.state.machine.name);
     storage::ValueWriter w;
-    // `until` is included, so that the page is written again when the date of a forecast has
-    // passed.
+    // A page must be written again after the date of a forecast.
     w(m.kept.digest, m.kept.standing.until, templates,
       lines == lines_.end() ? std::string() : bytes_of(lines->second),
       bytes_of(site.machines[i].proposal));
@@ -116,7 +112,6 @@ class Assessment::State {
     machines_[i].described.reset();
   }
 
-  /// Stores what was computed for the next run. `what`: everything, or only the trends.
   void keep(Keep what) {
     KeptMachines::Changes changes;
     const bool all = what == Keep::all;
@@ -133,8 +128,6 @@ class Assessment::State {
     kept_.keep(changes);
   }
 
-  /// Returns the number of machines with a name, which are the first of `machines_` and the only
-  /// ones in `site`.
   std::size_t count() const { return machines_with_name_; }
 
   reports::SiteHistory site;
@@ -142,7 +135,7 @@ class Assessment::State {
  private:
   void take_entered(const config::SiteLogs& now) {
     logs_.acknowledged = now.acknowledged;
-    // An acknowledgement entered after the run applies at once, even if it is dated later.
+    // An acknowledgement entered after the run applies at once, even if its date is later.
     for (config::Acknowledgement& a : logs_.acknowledged) a.date = std::min(a.date, last_run_.date);
     for (const config::Event& e : now.events)
       if (std::none_of(logs_.events.begin(), logs_.events.end(), [&](const config::Event& known) {
@@ -154,17 +147,16 @@ class Assessment::State {
 
   struct Assessed {
     store::MachineState state;
-    std::string alone{};  ///< id of a campaign without a machine; `state` has no name then
-    /// Key of the stored results. A line break, which no machine name contains, marks a campaign.
+    std::string alone{};
+    /// A line feed, which is not valid in the name of a machine, marks a campaign.
     std::string key() const { return alone.empty() ? state.machine.name : '\n' + alone; }
     std::vector<config::Event> events;
-    std::vector<std::string> campaigns;  ///< campaigns whose evaluation is not superseded
+    std::vector<std::string> campaigns;
     KeptMachine kept;
-    bool is_new = false;                    ///< whether `kept` differs from the stored data
-    std::optional<Fits> fits{};             ///< cache of trends, loaded when the machine is read
-    std::optional<AssessedMachine> read{};  ///< data from the store, if they had to be read
-    bool fitted = false;                    ///< whether the trends of the series in `read` have
-                                            ///< been fitted
+    bool is_new = false;
+    std::optional<Fits> fits{};
+    std::optional<AssessedMachine> read{};  ///< data of the store, unless `kept` is sufficient
+    bool fitted = false;
     std::vector<std::vector<Adjusted>> adjusted{};
     std::optional<reports::MachineHistory> described{};
   };
@@ -173,8 +165,7 @@ class Assessment::State {
     return std::int64_t{info.st_mtim.tv_sec} * 1'000'000'000 + info.st_mtim.tv_nsec;
   }
 
-  /// Lists all machines; results of the previous run are reused for machines whose data are
-  /// unchanged.
+  /// Results of the previous run are used for machines with unchanged data.
   Expected<void> list_machines() {
     NONIO_TRY(auto states, store_.machines());
     NONIO_TRY(auto evaluations, store_.evaluations());
@@ -185,6 +176,9 @@ class Assessment::State {
     for (const auto& e : evaluations) of_machine[e.machine].push_back(&e);
     std::set<std::string> forgotten;
     for (const config::Forgotten& f : logs_.forgotten) forgotten.insert(f.campaign);
+    const MachineNames names(states, logs_);
+    for (config::Acknowledgement& a : logs_.acknowledged)
+      if (const std::string* name = names.of(a.machine)) a.machine = *name;
     const MachineEvents events(states, logs_);
     note_unknown(states, events);
     const auto add = [&](Assessed m, const std::vector<const store::StoredEvaluation*>& all) {
@@ -200,7 +194,7 @@ class Assessment::State {
       }
       if (std::all_of(m.campaigns.begin(), m.campaigns.end(),
                       [&](const std::string& id) { return forgotten.contains(id); }))
-        return;  // all its campaigns were removed on purpose
+        return;
       const std::string rows_key = storage::sha256(rows.take());
       if (const auto kept = before_.find(m.key());
           kept != before_.end() && kept->second.rows == rows_key)
@@ -216,8 +210,7 @@ class Assessment::State {
     std::map<std::string, std::vector<const store::StoredEvaluation*>> of_campaign;
     for (const store::StoredEvaluation* e : of_machine[""]) of_campaign[e->campaign].push_back(e);
     for (const auto& [id, all] : of_campaign) {
-      if (std::none_of(all.begin(), all.end(), [](const auto* e) { return e->counts; }))
-        continue;  // the campaign states a machine in its latest evaluation
+      if (std::none_of(all.begin(), all.end(), [](const auto* e) { return e->counts; })) continue;
       store::MachineState none{};
       for (const store::StoredEvaluation* e : all) none.run = std::max(none.run, e->run);
       add({.state = none, .alone = id, .events = {}, .campaigns = {}, .kept = {}}, all);
@@ -225,9 +218,9 @@ class Assessment::State {
     return {};
   }
 
-  /// Collects names of machines that no campaign states, from events, acknowledgements that have
-  /// not expired, and calibration intervals. Events of machines that have records with events are
-  /// left out, because records may precede the campaigns.
+  /// Collects machines that no campaign names, from events, valid acknowledgements and calibration
+  /// intervals. Machines with events in their records are excluded, because records may precede
+  /// campaigns.
   void note_unknown(const std::vector<store::MachineState>& states, const MachineEvents& events) {
     std::set<std::string> names;
     for (const store::MachineState& state : states) names.insert(state.machine.name);
@@ -256,7 +249,6 @@ class Assessment::State {
     rows(std::uint64_t{m.events.size()});
   }
 
-  /// Determines the number of tests of each run; counts of unchanged runs are reused.
   Expected<void> count_tests(const std::vector<store::StoredEvaluation>& evaluations) {
     std::map<std::uint64_t, storage::ValueWriter> of_run;
     for (const store::StoredEvaluation& e : evaluations)
@@ -336,7 +328,6 @@ class Assessment::State {
     return {};
   }
 
-  /// Decides which changes are significant, and makes the worklist lines of each machine.
   Expected<void> judge_all() {
     std::vector<const SeriesTests*> tests;
     for (const Assessed& m : machines_)
@@ -383,12 +374,11 @@ class Assessment::State {
       w(a->date, a->finding, a->machine, a->axis, a->quantity, a->until, a->value, a->U, a->by,
         a->why);
     for (const std::string& campaign : m.campaigns) w(links_.of(campaign));
-    // Results of the present run are reported as new, so the run is a part of the key.
+    // Results of the present run are reported as new, so its number is part of the key.
     if (m.state.run >= last_run_.run) w(last_run_.run);
     return storage::sha256(w.take());
   }
 
-  /// Completes a machine with its trends, significant changes and description.
   Expected<void> finish(Assessed& m) {
     if (!m.read)
       if (auto well = read(m); !well) return well;
@@ -400,13 +390,12 @@ class Assessment::State {
     ask_others(*m.read, *m.fits);
     const Due due = due_of(*m.read, logs_);
     m.described = describe(*m.read, out_, due.day, due.why, last_run_.date);
-    if (!m.alone.empty()) m.described->file.clear();  // a campaign without a machine has no page
+    if (!m.alone.empty()) m.described->file.clear();
     m.fitted = false;
     return {};
   }
 
   Expected<void> put_together() {
-    // The machine of each campaign is needed only for the lines of vanished and failed campaigns.
     Expected<std::map<std::string, std::string>> machine_of_campaign;
     if (!last_run_.vanished.empty() || !last_run_.failed.empty())
       machine_of_campaign = store_.machine_of_campaigns();
@@ -428,7 +417,7 @@ class Assessment::State {
       site.machines.push_back(s.shown);
       site.months.insert(site.months.end(), s.months.begin(), s.months.end());
     }
-    // campaigns without a machine come last and get no proposal
+    // Campaigns without a machine are last and get no proposal.
     intervals.resize(site.machines.size());
     auto proposals = proposals_of(intervals);
     for (std::size_t i = 0; i < proposals.size(); ++i)
@@ -446,7 +435,6 @@ class Assessment::State {
     return add_sparks();
   }
 
-  /// Adds the series of the machines whose small charts the first page shows.
   Expected<void> add_sparks() {
     for (const std::string& name : reports::drawn_first(site)) {
       const auto at = std::lower_bound(
@@ -470,16 +458,13 @@ class Assessment::State {
   std::map<std::uint64_t, KeptMachines::RunResult> runs_{};
   bool runs_are_new_ = false;
   Learned learned_{};
-  std::uint64_t learned_from_ = 0;  ///< number of evaluations that the statistics of the laboratory
-                                    ///< are estimated from
+  std::uint64_t learned_from_ = 0;
   std::vector<Assessed> machines_{};
   std::size_t machines_with_name_ = 0;
   std::vector<std::string> unknown_{};
   const Links links_{out_};
-  /// Day of the run; campaigns dated later are treated as not measured yet.
   const std::string until_ = last_run_.date.empty() ? "9999-12-31" : last_run_.date;
-  std::map<std::string, std::vector<reports::WorkItem>> lines_{};  ///< worklist lines, by name of
-                                                                   ///< the machine
+  std::map<std::string, std::vector<reports::WorkItem>> lines_{};
 };
 
 Assessment::Assessment(std::unique_ptr<State> state) : state_(std::move(state)) {}

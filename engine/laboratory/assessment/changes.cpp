@@ -15,15 +15,13 @@ namespace kernel = nonio::statistics;
 using Cause = kernel::Change::Cause;
 
 constexpr double excess_step = 0.05;
-constexpr double spread_step = 0.1;  // the logarithm of the spread is rounded to multiples of this
+constexpr double spread_step = 0.1;  // step of the logarithm of the spread
 
-/// A significant step where the instrument changed is attributed to the instrument, unless its p is
-/// below this value, because the error of the calibration would then be unusually large for its
-/// uncertainty, which is in the covariance.
+/// A step at a change of the instrument with a p below this value has another cause, because the
+/// calibration error would be unusually large for its uncertainty, which the covariance contains.
 constexpr double no_instrument_below = 1e-4;
 
-/// Returns the step to which a count is rounded: counts of 10,000 and more keep two digits, so that
-/// one more series or campaign does not change the trends of the others.
+/// Step to which counts are rounded, so that one more series hardly changes the trends of others.
 std::uint64_t step_of(std::uint64_t n) {
   constexpr std::uint64_t very_many = 10'000;
   std::uint64_t step = 1;
@@ -39,7 +37,6 @@ void fit_again(FollowedSeries& s, Fits& fits) {
   s.mailed.assign(s.trend.changes.size(), false);
 }
 
-/// Whether the instrument changed after point `gap` and contributes to the uncertainty.
 bool shows_instrument(const FollowedSeries& s, std::size_t gap) {
   const auto& parts = s.series.points[gap + 1].common;
   return std::any_of(parts.begin(), parts.end(),
@@ -50,14 +47,12 @@ bool shows_instrument(const FollowedSeries& s, std::size_t gap) {
                      });
 }
 
-/// One test of a run, and where its adjusted p is stored.
 struct Asked {
   double p = 1.0;
   Adjusted* adjusted = nullptr;
 };
 
-/// Adjusts the p of one run's tests by the procedure `by` and stores the results in the member
-/// `which`. `asked` is the number of tests; tests without a candidate enter with p = 1.
+/// There are `asked` tests; those without a candidate have p = 1.
 void adjust(const std::vector<Asked>& tests, std::size_t asked, double Adjusted::*which,
             std::vector<double> by(const std::vector<double>&)) {
   std::vector<double> p(std::max(asked, tests.size()), 1.0);
@@ -66,10 +61,9 @@ void adjust(const std::vector<Asked>& tests, std::size_t asked, double Adjusted:
   for (std::size_t i = 0; i < tests.size(); ++i) tests[i].adjusted->*which = all[i];
 }
 
-/// Two campaigns between which an axis changed significantly.
 struct Place {
   std::string axis;
-  std::string after, before;  ///< days of these campaigns
+  std::string after, before;
   bool operator<(const Place& o) const {
     return std::tie(axis, after, before) < std::tie(o.axis, o.after, o.before);
   }
@@ -89,8 +83,6 @@ std::set<Place> places_of(const AssessedMachine& m) {
   return out;
 }
 
-/// Returns the index of the point before the gap that contains a place; none without such a gap, or
-/// if the series has a step in this gap.
 std::optional<std::size_t> gap_of(const AssessedMachine& m, const FollowedSeries& s,
                                   const Place& place) {
   for (std::size_t k = 0; k + 1 < s.results.size(); ++k) {
@@ -102,8 +94,8 @@ std::optional<std::size_t> gap_of(const AssessedMachine& m, const FollowedSeries
   return std::nullopt;
 }
 
-/// Tests for a step at a place where another quantity of the axis changed significantly. Only this
-/// place is tested, so p needs no adjustment for the number of places.
+/// Tests for a step at a significant change of another quantity. p needs no adjustment for the
+/// number of positions, because only this position is tested.
 void ask_there(FollowedSeries& s, std::size_t gap, double level, Fits& fits) {
   FollowedSeries tried = s;
   tried.series.declared.push_back({gap, kernel::Declared::Kind::event});
@@ -119,7 +111,7 @@ void ask_there(FollowedSeries& s, std::size_t gap, double level, Fits& fits) {
     c.declared.reset();
     tried.significant[i] = true;
     tried.p_adjusted[i] = c.p;
-    // Keep what the run reports about the other changes.
+    // The added step does not affect the decisions on the other changes.
     for (std::size_t k = 0; k < s.trend.changes.size(); ++k)
       for (std::size_t j = 0; j < tried.trend.changes.size(); ++j)
         if (tried.trend.changes[j].after == s.trend.changes[k].after) {
@@ -199,15 +191,15 @@ SeriesTests tests_of(const FollowedSeries& s) {
   return out;
 }
 
-/// Changes without an event and changes with one are adjusted as separate families; for
-/// `Adjusted::any`, which decides about a mail, they are one family.
+/// Changes with and without an event are separate families for `Adjusted::news` and one family for
+/// `Adjusted::any`.
 std::vector<std::vector<Adjusted>> adjusted_by_run(
     const std::vector<const SeriesTests*>& tests,
     const std::map<std::uint64_t, std::uint64_t>& asked) {
   std::vector<std::vector<Adjusted>> out;
   for (const SeriesTests* s : tests) out.emplace_back(s->changes.size());
   std::map<std::uint64_t, std::vector<Asked>> unsaid, said;
-  // number of series with a model, by the run of their last point
+  // Number of series with a model, by run of the last point.
   std::map<std::uint64_t, std::size_t> still;
   for (std::size_t k = 0; k < tests.size(); ++k) {
     const SeriesTests& s = *tests[k];

@@ -21,7 +21,6 @@ std::string member_text(const dom::object& o, const char* name) {
   return o[name].get(text) == simdjson::SUCCESS ? std::string(text) : std::string();
 }
 
-/// Returns the control's axis of each followed measurement, by id of the measurement.
 std::map<std::string, std::string> axes_in(const dom::element& results) {
   std::map<std::string, std::string> out;
   dom::array followed;
@@ -32,7 +31,6 @@ std::map<std::string, std::string> axes_in(const dom::element& results) {
   return out;
 }
 
-/// Returns the error curve of one analysis; empty if it has no means at targets.
 reports::ErrorCurve curve_of(const dom::object& analysis) {
   reports::ErrorCurve curve;
   dom::array points;
@@ -86,7 +84,7 @@ void read_curves(const std::filesystem::path& file, const std::string& campaign,
 
 std::vector<reports::ErrorCurve> curves_of(const std::filesystem::path& out,
                                            const reports::MachineHistory& machine) {
-  // Pairs of day and campaign, sorted by day.
+  // Pairs of date and campaign.
   std::set<std::pair<std::string, std::string>> campaigns;
   for (const reports::HistorySeries& s : machine.series)
     for (const reports::HistoryPoint& p : s.points) campaigns.emplace(p.date, p.campaign);

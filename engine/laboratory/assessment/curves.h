@@ -8,9 +8,8 @@
 
 namespace nonio::assessment {
 
-/// Reads the mean deviations at the targets from results.json of all campaigns in a machine's
-/// series, ordered by day, to draw error curves. Campaigns whose results cannot be read are left
-/// out.
+/// Returns the error curves of all campaigns in the series of a machine, ordered by date: mean
+/// deviations at the targets from results.json. Campaigns without readable results are omitted.
 std::vector<reports::ErrorCurve> curves_of(const std::filesystem::path& out,
                                            const reports::MachineHistory& machine);
 

@@ -131,7 +131,7 @@ class Describing {
     const bool own = limit && limit->quantity == s.quantity;
     if (own) out.limit = si(limit->limit, q);
     if (!s.ended) out.forecast = forecast(s, q, limit);
-    // The limit is that of B, so B_mean alone has no probability of being out.
+    // The limit is that of B, so B_mean has no probability of being out of tolerance.
     if (out.forecast && !own) out.forecast->p_out = 0.0, out.forecast->leaves.clear();
     return out;
   }
@@ -140,8 +140,8 @@ class Describing {
     const Quantity q = quantity_of_unit(s.unit);
     HistorySeries out{.axis = s.axis, .quantity = s.quantity, .unit = q, .points = {}, .model = ""};
     out.ended = s.ended;
-    // The definitions of A, E and R differ between editions of the standard, so only results of the
-    // last result's edition are joined.
+    // The definitions of A, E and R depend on the edition of the standard, so only results with the
+    // conditions of the last result are joined.
     const StoredResult& last = m_.stored.results[s.results.back()];
     for (const std::size_t i : s.results) {
       out.points.push_back(point(i, q));
@@ -150,11 +150,11 @@ class Describing {
         out.points.back().joined = false, out.points.back().why_not = "edition";
     }
     if (s.judged.empty()) return out;
-    // A campaign that states no limit leaves the previous limit valid.
+    // A campaign without a limit does not change the limit.
     out.limit = si(*m_.stored.results[s.judged.back()].tolerance, q);
     if (s.ended) return out;
-    // Use the forecast of a series of a followed quantity on the same axis whose limit is that of
-    // this quantity.
+    // The forecast is that of a followed quantity of the axis whose limit is the limit of this
+    // quantity.
     for (const FollowedSeries& f : m_.followed) {
       if (f.axis != s.axis || f.unit != s.unit || f.ended || f.quantity == s.quantity) continue;
       const auto limit = limit_of(m_, f);
@@ -179,7 +179,8 @@ class Describing {
     const StoredResult& r = m_.stored.results[result];
     const StoredCampaign& c = m_.stored.campaigns[r.campaign];
     HistoryPoint p{c.id, c.day, links_[r.campaign], state_of(r.state), si(r.value, q)};
-    if (!r.followed) {  // the U of an analysis includes the part that campaigns have in common
+    // The U of an analysis includes the uncertainty that campaigns have in common.
+    if (!r.followed) {
       if (r.expanded) p.u = si(*r.expanded / r.k.value_or(2.0), q);
       return p;
     }
@@ -221,7 +222,7 @@ class Describing {
                          of ? of->beyond : kernel::Beyond{});
     reports::HistoryForecast out{day_text(*ahead_), si(f.value, q), si(f.u, q), f.p_out, {},
                                  name_of(f.answer)};
-    // Extrapolation by more than half of the observed span is not reliable.
+    // Extrapolation by more than half of the observed time span is not reliable.
     const double last = s.series.points.back().time, first = s.series.points.front().time;
     if (f.leaves && *f.leaves <= last + (last - first) / 2.0)
       out.leaves = day_text(static_cast<std::int64_t>(std::floor(*f.leaves * days_a_year)));
@@ -229,7 +230,7 @@ class Describing {
     if (!open && out.date < today_ && f.answer != kernel::Answer::cannot_say)
       out.answer = "overdue";
     if (!open) return out;
-    // A value that is out of its limit or indeterminate requires action, whatever the forecast is.
+    // A value that is out of tolerance or indeterminate requires action regardless of the forecast.
     if (f.answer == kernel::Answer::cannot_say)
       out.value = out.u = out.p_out = std::numeric_limits<double>::quiet_NaN();
     out.answer = name_of(kernel::Answer::act);
@@ -237,10 +238,10 @@ class Describing {
   }
 
   const AssessedMachine& m_;
-  std::vector<std::string> links_;  ///< link to the results of each campaign
+  std::vector<std::string> links_;  ///< by campaign
   std::string today_;
-  std::set<std::string> open_now_;  ///< axes with a value that is out of its limit or indeterminate
-  /// Index of the result that an analysis states, by campaign, measurement, quantity and unit.
+  std::set<std::string> open_now_;  ///< axes with a value that is out of tolerance or indeterminate
+  /// Index of the result of an analysis by campaign, measurement, quantity and unit.
   std::map<std::tuple<std::size_t, std::string, std::string, std::string>, std::size_t> stated_;
   std::optional<std::int64_t> ahead_{};
 };
@@ -322,7 +323,7 @@ std::optional<std::int64_t> usual_interval(const std::vector<StoredCampaign>& ca
 
 namespace {
 
-/// Estimates by how much B exceeded |B_mean| in the campaigns since the last significant change.
+/// Estimates by how much B exceeded |B_mean| since the last significant change.
 std::optional<kernel::Beyond> beyond_mean(const AssessedMachine& m, const FollowedSeries& mean,
                                           const ShownSeries& B) {
   std::size_t first = 0;
@@ -345,7 +346,7 @@ std::optional<kernel::Beyond> beyond_mean(const AssessedMachine& m, const Follow
   for (const double x : more) out.value += x / n;
   double squares = 0.0;
   for (const double x : more) squares += (x - out.value) * (x - out.value);
-  // With fewer campaigns the variation is estimated from U of B.
+  // With fewer values, the scatter is estimated from U of B.
   constexpr std::size_t fewest_for_scatter = 3;
   out.u =
       more.size() < fewest_for_scatter ? u_of_B : std::sqrt(squares / (n - 1.0) * (1.0 + 1.0 / n));
@@ -387,8 +388,8 @@ reports::MachineHistory describe(const AssessedMachine& machine, const fs::path&
   reports::MachineHistory m;
   m.id = named.name, m.maker = named.stated.maker;
   m.model = named.stated.model, m.serial = named.stated.serial;
-  // The customer is that of the last campaign; place and control are those of the last campaign
-  // that states them.
+  // The customer is that of the last campaign; location and control are the last ones that are
+  // stated.
   for (const StoredCampaign& c : machine.stored.campaigns) {
     m.customer = c.customer;
     if (!c.place.empty()) m.place = c.place;

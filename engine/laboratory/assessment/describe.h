@@ -13,18 +13,17 @@
 
 namespace nonio::assessment {
 
-/// Returns the quantity that has this unit symbol in results.json; Quantity::number for an unknown
+/// Returns the quantity with this unit symbol in results.json, or Quantity::number for an unknown
 /// symbol.
 Quantity quantity_of_unit(const std::string& symbol);
 /// Converts a value from the printed unit to SI, so that `printed` restores the same number.
 double si(double shown, Quantity quantity);
 
-/// Returns the name of a machine's page in OUT/machines: valid as a file name everywhere, and
-/// different for each machine.
+/// Returns the file name of the page in OUT/machines, which is portable and unique.
 std::string page_of_machine(const std::string& machine);
 
-/// Finds where a campaign's results are, relative to the output folder: its report if it has one,
-/// otherwise its results.json.
+/// Returns the path of report.pdf of a campaign, or of its results.json if there is no report,
+/// relative to the output folder.
 class Links {
  public:
   explicit Links(const std::filesystem::path& out);
@@ -33,35 +32,33 @@ class Links {
  private:
   std::string root_;
   bool hashed_;
-  bool packed_ = true;  ///< whether reports may be in packs
+  bool packed_ = true;  ///< whether packs may contain reports
 };
 std::string link_of(const std::filesystem::path& out, const std::string& campaign);
 
-/// Returns the median gap between campaign days, in days (of two middle gaps the larger); none for
-/// fewer than two days.
+/// Returns the median interval between the dates of campaigns in days (the larger one of two middle
+/// values); std::nullopt for fewer than two dates.
 std::optional<std::int64_t> usual_interval(const std::vector<store::StoredCampaign>& campaigns);
 
-/// The limit that applies to a followed quantity, in the unit of results.json: its own limit, or
-/// for B_mean that of B, with the amount by which B exceeds |B_mean|.
+/// Limit of a followed quantity in the unit of results.json. The limit of B_mean can be that of B,
+/// with the amount by which B exceeds |B_mean|.
 struct FollowedLimit {
-  std::string quantity;  ///< quantity that the limit is stated for
+  std::string quantity;  ///< quantity with the limit
   double limit = 0.0;
   nonio::statistics::Beyond beyond{};
 };
-/// Returns the limit of the quantity of `series`; for B_mean the limit of B, if B has one and was
-/// measured together with B_mean since the last significant change. None if there is no limit, or
-/// if the series with the limit has ended.
+/// Returns the limit of the quantity; for B_mean that of B, if both were measured together since
+/// the last significant change. std::nullopt without a limit.
 std::optional<FollowedLimit> limit_of(const AssessedMachine& machine, const FollowedSeries& series);
 
-/// Returns whether the table was loaded on this axis and the days between which it was loaded
-/// overlap with those between which the change occurred.
+/// Whether the table was loaded on this axis between dates that overlap with those of the change.
 bool is_at(const reports::TableLoaded& table, const std::string& axis,
            const reports::HistoryChange& change);
 
-/// Describes a machine for pages and programs. `due`: day of the next calibration by a rule; `why`:
-/// the interval of that rule in months, as text. If `due` is empty there is no rule, and forecasts
-/// look one usual interval ahead. A forecast for a day before `today` is marked as overdue, unless
-/// it has no answer or a value of the axis is out of its limit or indeterminate.
+/// Describes a machine for pages and JSON. `due` is the due date by a rule, `why` the interval of
+/// the rule in months. Without a rule, forecasts are for the usual interval after the last
+/// campaign. A forecast for a date before `today` is marked as overdue, unless it has no answer or
+/// a value is out of tolerance or indeterminate.
 reports::MachineHistory describe(const AssessedMachine& machine, const std::filesystem::path& out,
                                  const std::string& due, const std::string& why,
                                  const std::string& today = {});

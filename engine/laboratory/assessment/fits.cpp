@@ -22,12 +22,10 @@ namespace kernel = nonio::statistics;
 
 namespace {
 
-/// Returns the digest of the inputs of a result; `what`: 't' trend, 's' slope.
 std::string key_of(char what, const kernel::Series& s) {
   return storage::sha256(storage::pack(what, s));
 }
 
-/// Whether a stored trend is consistent with the series.
 bool fits_in(const kernel::Trend& t, const kernel::Series& s) {
   const std::size_t n = s.points.size();
   const bool segments =

@@ -16,21 +16,21 @@ NONIO_MEMBERS(statistics::Slope, a, b)
 
 namespace nonio::assessment {
 
-/// Cache of trends and slopes, by the digest of all their inputs, so that a run computes only those
-/// of its new campaigns. The cache changes no result: a damaged entry is computed again.
+/// Cache of trends and slopes by the digest of their inputs, so that a run computes only those of
+/// new campaigns. Damaged entries are computed again.
 class Fits {
  public:
   Fits() = default;
-  /// Returns a cache with the entries of an earlier `kept()`; empty if the bytes are damaged.
+  /// Returns a cache with the entries of `kept()` of an earlier run; empty if the bytes are
+  /// damaged.
   static Fits of(std::string_view kept);
 
   nonio::statistics::Trend trend(const nonio::statistics::Series& series);
   std::optional<nonio::statistics::Slope> slope(const nonio::statistics::Series& series);
 
-  /// Returns all entries that were requested, in the order of their keys.
+  /// Returns the entries that were used, sorted by key.
   std::string kept() const;
-  /// Returns whether the entries of `kept` differ from those at the start: an entry was computed,
-  /// or an entry was not requested.
+  /// Whether `kept` differs from the initial entries.
   bool is_new() const;
   std::size_t computed() const { return computed_; }
 

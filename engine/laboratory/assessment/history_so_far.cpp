@@ -27,7 +27,6 @@ std::string digest_of_basis(const HistoryBasis& b) {
   return storage::sha256(json.dump(-1, ' ', false, storage::Json::error_handler_t::replace));
 }
 
-/// Makes the bases of the campaigns of one machine.
 class BasisMachine {
  public:
   BasisMachine(const std::vector<store::MachineState>& machines, const std::string& name,
@@ -44,7 +43,6 @@ class BasisMachine {
     if (rule != logs.due.end()) basis_.months = rule->second;
   }
 
-  /// Returns the basis of the campaign `of`. `all`: the campaigns of this machine, by day and id.
   HistoryBasis basis(const store::CountedCampaign& of,
                      const std::vector<const store::CountedCampaign*>& all) const {
     HistoryBasis out = basis_;
@@ -91,7 +89,7 @@ Expected<std::vector<HistoryBasis>> history_bases(const fs::path& out,
 
 namespace {
 
-/// Returns the campaigns of the basis and the campaign itself, all with run 0, because the history
+/// Returns the campaigns of the basis and its own campaign. All have run 0, because the history
 /// does not depend on runs.
 store::StoredMachine campaigns_up_to(const store::StoredMachine& all, const HistoryBasis& basis) {
   std::set<std::string> wanted{basis.campaign};
@@ -119,7 +117,6 @@ store::StoredMachine campaigns_up_to(const store::StoredMachine& all, const Hist
   return out;
 }
 
-/// Adds the differences between the campaign's points and their predecessors in one series.
 Expected<void> add_steps(const AssessedMachine& m, const FollowedSeries& s,
                          const std::string& campaign, std::size_t series, HistorySoFar& to) {
   const Quantity q = quantity_of_unit(s.unit);

@@ -11,33 +11,32 @@
 #include "laboratory/store/identity.h"
 #include "nonio/sdk/history.h"
 
-/// Computes the machine's history that a campaign's report shows, from campaigns up to its own day.
-/// The history depends neither on other machines, nor on later campaigns, nor on the run, so that
-/// the order in which campaigns are evaluated does not change a report.
+/// Data for the machine history in a report, from campaigns up to the date of its campaign. Other
+/// machines, later campaigns and the number of the run have no effect, so that the order of
+/// evaluation does not change a report.
 namespace nonio::assessment {
 
 struct HistoryBasis {
   std::string campaign, day;
-  store::NamedMachine machine;  ///< machine of the campaign; it has no name if the campaign states
-                                ///< no machine
+  store::NamedMachine machine;  ///< has no name if the campaign states no machine
   std::vector<std::string> aliases;
-  /// The machine's other campaigns up to `day`, ordered by day and id; each with the digest of its
+  /// Other campaigns of the machine up to `day`, ordered by date and id, with the digests of their
   /// results.
   std::vector<std::pair<std::string, std::string>> campaigns;
-  std::vector<config::Event> events;  ///< events of the machine up to `day`
-  int months = 0;                     ///< interval of the site's rule in months; 0: there is no
-                                      ///< rule
-  /// Digest of all these data; the campaign's own results are not included.
+  std::vector<config::Event> events;  ///< up to `day`
+  /// Calibration interval of the site in months; 0 without a rule.
+  int months = 0;
+  /// Digest of the other members.
   std::string sha256{};
 };
 
-/// Returns the bases of those campaigns that the store contains. An error if no store of this
-/// version exists. Reads the list of campaigns and no results.
+/// Returns the bases of those campaigns that the store contains, without reading results. An error
+/// if there is no store of this version.
 Expected<std::vector<HistoryBasis>> history_bases(const std::filesystem::path& out,
                                                   const std::vector<std::string>& campaigns);
 
-/// Reads the results of one machine and computes the history, which has no series if the campaign
-/// states no machine or no valid day.
+/// Reads the results of the machine and computes the history, which has no series if the campaign
+/// states no machine or no valid date.
 Expected<HistorySoFar> history_so_far(const std::filesystem::path& out, const HistoryBasis& basis);
 
 }  // namespace nonio::assessment

@@ -12,7 +12,7 @@ NONIO_MEMBERS(Finding, a, b, c, d, e, f)
 NONIO_MEMBERS(reports::OpenValue, a, b, c, d, e, f, g, h, i)
 NONIO_MEMBERS(reports::WorkItem, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v)
 NONIO_MEMBERS(reports::IntervalProposal, a, b, c, d, e)
-/// Lists the members of a machine's description that are stored; its series are not stored.
+/// The series of the machine are not stored.
 template <class Archive, class T>
 requires std::same_as<std::remove_const_t<T>, reports::MachineHistory>
 void members(Archive& archive, T& m) {
@@ -44,11 +44,10 @@ using storage::Database;
 
 constexpr const char* kept_folder = ".nonio";
 constexpr const char* machines_name = "machines.sqlite";
-/// Versions of the stored data; another version of the program may compute other results or trends.
-constexpr std::string_view machines_version = "9 " NONIO_VERSION, trends_version = "4";
+/// Must change if a version of the program may compute other results or trends.
+constexpr std::string_view machines_version = "10 " NONIO_VERSION, trends_version = "4";
 constexpr std::size_t digest_size = 64;
-constexpr double patience = 5.0;  // longest wait for a lock in s; without the file, everything is
-                                  // computed again
+constexpr double patience = 5.0;  // s; without the file, everything is computed again
 
 constexpr const char* tables =
     "CREATE TABLE version(of TEXT PRIMARY KEY, is_ TEXT NOT NULL);"
@@ -57,7 +56,6 @@ constexpr const char* tables =
 
 std::string signed_bytes(std::string body) { return storage::sha256(body) + body; }
 
-/// Returns the bytes that follow their digest; none if the digest does not match.
 std::optional<std::string_view> body_of(std::string_view bytes) {
   if (bytes.size() < digest_size) return std::nullopt;
   const std::string_view body = bytes.substr(digest_size);
@@ -133,7 +131,7 @@ void KeptMachines::make_anew() {
 
 void KeptMachines::keep(const Changes& changes) {
   if (changes.machines.empty() && changes.gone.empty() && !changes.runs) return;
-  if (!file_) make_anew();  // the file is missing or cannot be read
+  if (!file_) make_anew();
   if (!file_) return;
   if (put(changes)) return;
   file_.reset();

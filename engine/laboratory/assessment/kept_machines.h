@@ -15,34 +15,33 @@
 
 namespace nonio::assessment {
 
-/// Results of a run for one machine, so that the next run assesses only machines with new data. The
-/// digests determine which results are still valid.
+/// Assessment of one machine, which the next run uses again if the digests are unchanged.
 struct KeptMachine {
-  std::string rows{};  ///< digest of the machine's data in the store and the site
+  std::string rows{};  ///< digest of the data of the machine in store and site
   struct Series {
     Lesson lesson;
-    Manner manner;      ///< parameters with which the trend was fitted
-    SeriesTests tests;  ///< tests of the changes of this trend
+    Manner manner;
+    SeriesTests tests;
   };
   std::vector<Series> series{};
-  std::string digest{};  ///< digest of everything that `standing` depends on, except the date
-  std::string date{};    ///< date of the run that made `standing`
+  std::string digest{};  ///< digest of the inputs of `standing` except the date
+  std::string date{};    ///< date of the run of `standing`
   Standing standing{};
   struct Page {
     std::string made_from{};
     std::uint64_t size = 0;
-    std::int64_t changed = 0;  ///< time of the last change of the page's file, ns
+    std::int64_t changed = 0;  ///< modification time of the file, ns
   };
   Page page{};
 };
 
-/// Cache in OUT/.nonio/machines.sqlite: results and trends of each machine of a site. It changes no
-/// result: entries that are missing, damaged or of another version are computed again. Errors of
-/// the file are ignored.
+/// Cache of assessments and trends in OUT/.nonio/machines.sqlite. It changes no result: entries
+/// that are missing, damaged or of another version are computed again, and errors of the file are
+/// ignored.
 class KeptMachines {
  public:
   struct RunResult {
-    std::string made_from{};  ///< digest of the run's evaluations
+    std::string made_from{};  ///< digest of the evaluations of the run
     std::uint64_t asked = 0;
   };
 
@@ -50,21 +49,18 @@ class KeptMachines {
 
   std::map<std::string, KeptMachine> machines();
   std::map<std::uint64_t, RunResult> runs();
-  /// Returns the bytes of `Fits::kept` that were stored for the machine.
   std::string trends_of(const std::string& machine);
 
-  /// Entries to be written. All of them are written in one transaction, or none.
+  /// Entries that are written in one transaction.
   struct Changes {
     struct Of {
       std::string machine;
-      const KeptMachine* kept = nullptr;    ///< data to be stored; null: they are unchanged or must
-                                            ///< not be stored
-      std::optional<std::string> trends{};  ///< trends to be stored, as returned by `Fits::kept`;
-                                            ///< none: they are unchanged
+      const KeptMachine* kept = nullptr;    ///< null if unchanged or not to be stored
+      std::optional<std::string> trends{};  ///< bytes of `Fits::kept`; std::nullopt if unchanged
     };
     std::vector<Of> machines;
-    std::set<std::string> gone;  ///< machines that no longer exist
-    /// All runs, if any of them changed; otherwise none.
+    std::set<std::string> gone;
+    /// All runs if any has changed.
     std::optional<std::map<std::uint64_t, RunResult>> runs{};
   };
   void keep(const Changes& changes);
@@ -77,10 +73,10 @@ class KeptMachines {
 
   std::filesystem::path out_;
   std::optional<storage::Database> file_;
-  bool has_machines_ = false;  ///< whether the file contains machines of this version
+  bool has_machines_ = false;
 };
 
-/// Returns the value as bytes; equal values give equal bytes.
+/// Equal values give equal bytes.
 std::string bytes_of(const std::vector<reports::WorkItem>& lines);
 std::string bytes_of(const reports::IntervalProposal& proposal);
 

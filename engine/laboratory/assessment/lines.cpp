@@ -16,17 +16,16 @@ using Kind = WorkItem::Kind;
 
 namespace {
 
-// Largest number of failures with the same message that are listed one by one.
 constexpr std::size_t most_alike = 3;
-constexpr std::size_t most_machines = 5;  // largest number of machine names in one line
+constexpr std::size_t most_machines = 5;
 
 void put_count(WorkItem& line, const char* name, std::size_t n) {
   line.finding.evidence.push_back({name, static_cast<double>(n), Quantity::count});
 }
 
-/// Makes the lines of vanished campaigns: one per machine, and one for each campaign without a
-/// machine. If campaigns of more than `most_machines` machines vanished, it makes one line per top
-/// folder instead. A vanished part that is not a campaign has a line of its own.
+/// Makes one line per machine with missing campaigns, or one per top folder if there are more than
+/// `most_machines` machines. Campaigns without a machine and other parts of the site have separate
+/// lines.
 std::vector<WorkItem> lost(const Known& known) {
   std::map<std::string, std::vector<const LastRun::Vanished*>> by_machine, by_folder;
   std::vector<WorkItem> out;
@@ -69,9 +68,8 @@ std::vector<WorkItem> lost(const Known& known) {
   return out;
 }
 
-/// Makes the lines of failed campaigns, and one if the history could not be stored. More than
-/// `most_alike` failures with the same message, for example from a mistake in site.toml, are one
-/// line.
+/// More than `most_alike` failures with the same message, such as a mistake in site.toml, are one
+/// line. An error of the history is a separate line.
 std::vector<WorkItem> failed(const Known& known) {
   std::map<std::string, std::vector<const LastRun::Failed*>> by_message;
   for (const LastRun::Failed& f : known.last_run.failed) by_message[f.message].push_back(&f);
@@ -104,8 +102,6 @@ std::vector<WorkItem> failed(const Known& known) {
   return out;
 }
 
-/// Adds a line for machines that have results but no stated limit, so that their conformity was not
-/// assessed.
 void not_judged(const Known& known, std::vector<WorkItem>& out) {
   std::string names;
   std::size_t count = 0;
@@ -119,8 +115,6 @@ void not_judged(const Known& known, std::vector<WorkItem>& out) {
   put_text(out.back(), "machines", names + (count > most_machines ? ", ..." : ""));
 }
 
-/// Adds a line for campaigns that state neither an asset nor maker and serial, and so cannot be
-/// joined to others.
 void without_machine(const Known& known, std::vector<WorkItem>& out) {
   WorkItem line = line_of(Kind::information, "worklist.no-machine", "site");
   for (const Standing* m : known.machines)
@@ -131,7 +125,6 @@ void without_machine(const Known& known, std::vector<WorkItem>& out) {
   out.push_back(std::move(line));
 }
 
-/// Adds a line for drafts of certificates that wait for approval.
 void drafts(const Known& known, std::vector<WorkItem>& out) {
   if (known.last_run.waiting.empty()) return;
   out.push_back(line_of(Kind::information, "worklist.draft", "site"));
@@ -140,8 +133,6 @@ void drafts(const Known& known, std::vector<WorkItem>& out) {
   put_count(out.back(), "count", known.last_run.waiting.size());
 }
 
-/// Adds a line for machines whose last campaign has findings with severity warning, although every
-/// judged value conforms.
 void conforming(const Known& known, std::vector<WorkItem>& out) {
   std::size_t machines = 0, lost_motion = 0;
   for (const Standing* m : known.machines) {
@@ -155,8 +146,6 @@ void conforming(const Known& known, std::vector<WorkItem>& out) {
   put_count(out.back(), "reversal", lost_motion);
 }
 
-/// Adds a line for entries that name a machine without campaigns, which is probably a spelling
-/// mistake.
 void unknown(const Known& known, std::vector<WorkItem>& out) {
   const std::size_t count = known.unknown.size();
   if (count == 0) return;
@@ -198,8 +187,8 @@ std::vector<WorkItem> of_site(const Known& known) {
   return out;
 }
 
-/// Replaces more than `most_alike` new lines with this finding by one line of the site. Example:
-/// many campaigns dated after the run mean that the run's date is wrong.
+/// Replaces more than `most_alike` new lines with this finding by one line. If many campaigns are
+/// dated after the run, for example, the date of the run is probably wrong.
 void fold(std::vector<WorkItem>& lines, const char* finding, const char* several) {
   const auto is_one = [&](const WorkItem& l) {
     return l.finding.id == finding && l.state == WorkItem::State::fresh;
@@ -221,16 +210,14 @@ void fold(std::vector<WorkItem>& lines, const char* finding, const char* several
   lines.push_back(std::move(all));
 }
 
-/// Returns |value| / limit, or |value| / u without a limit, or 0 without both: within one kind,
-/// lines are sorted by this, largest first.
+/// Returns |value| / limit, or |value| / u without a limit, otherwise 0. Lines of one kind are
+/// sorted by this number, largest first.
 double size_of(const WorkItem& l) {
   if (l.value && l.limit && *l.limit > 0.0) return std::fabs(*l.value) / *l.limit;
   if (l.value && l.u && *l.u > 0.0) return std::fabs(*l.value) / *l.u;
   return 0.0;
 }
 
-/// Whether the value went out of its limit gradually. Such lines come after those with a sudden
-/// change.
 bool wears(const WorkItem& l) {
   return l.kind == Kind::out && !l.finding.id.starts_with("worklist.out-changed");
 }

@@ -27,7 +27,6 @@ void put(Json& json, const char* name, const std::string& text) {
   if (!text.empty()) json[name] = text;
 }
 
-/// Puts value, u and limit into `json` in the printed unit.
 void put_numbers(Json& json, const std::optional<double>& value, const std::optional<double>& u,
                  const std::optional<double>& limit, Quantity unit) {
   const double per_si = unit_of(unit).per_si;

@@ -22,17 +22,15 @@ using Kind = WorkItem::Kind;
 
 namespace {
 
-/// A change of one axis between two campaigns, with all quantities that show it.
 struct AxisChange {
-  std::string after, before;  ///< days of these campaigns
+  std::string after, before;
   struct Seen {
     const HistorySeries* series = nullptr;
     const HistoryChange* change = nullptr;
     double size() const { return std::fabs(change->size) / change->u; }
   };
-  std::vector<Seen> seen;  ///< quantities that show the change, sorted by |size| / u, largest first
-  bool listed = false;     ///< whether the change is already part of the line of values that do not
-                           ///< conform
+  std::vector<Seen> seen;  ///< sorted by |size| / u, largest first
+  bool listed = false;
 };
 
 bool is_correction(const HistoryChange& c) {
@@ -69,15 +67,14 @@ class OfMachine {
     return l;
   }
 
-  /// Returns the name of the machine, or the id of a campaign without a machine.
   const std::string& name() const {
     return d_.id.empty() && !m_.stored.campaigns.empty() ? m_.stored.campaigns.back().id : d_.id;
   }
 
   void add(WorkItem l) { out_.push_back(std::move(l)); }
 
-  /// Collects the changes of each axis since its last repair or compensation, except those that are
-  /// attributed to the instrument or to a table that was loaded wrongly.
+  /// Collects the changes of each axis since its last repair or compensation, except those caused
+  /// by the instrument or by an incorrectly loaded table.
   void causes_by_axis() {
     for (const HistorySeries& s : d_.series) {
       std::string repaired;
@@ -94,16 +91,14 @@ class OfMachine {
                          [](const auto& a, const auto& b) { return a.size() > b.size(); });
   }
 
-  /// Returns whether the change was caused by a table that was loaded wrongly, which has its own
-  /// worklist line.
   bool is_fault(const std::string& axis, const HistoryChange& c) const {
     return std::any_of(d_.tables_loaded.begin(), d_.tables_loaded.end(), [&](const auto& t) {
       return t.kind != "loaded" && t.kind != "removed" && is_at(t, axis, c);
     });
   }
 
-  /// Whether an event states that the axis was repaired or compensated after the day `after`.
-  /// Events dated after the run are ignored.
+  /// Whether an event states a repair or compensation of the axis after the date `after`. Events
+  /// after the run are ignored.
   bool is_repaired(const std::string& axis, const std::string& after) const {
     return std::any_of(m_.events.begin(), m_.events.end(), [&](const config::Event& e) {
       return (e.kind == "repair" || e.kind == "compensation") && e.date > after &&
@@ -112,7 +107,7 @@ class OfMachine {
   }
 
   void put_change(const std::string& axis, const HistorySeries& s, const HistoryChange& c) {
-    // Not every campaign has all quantities, so changes that overlap in time are taken as one.
+    // Changes that overlap in time are one change, because not every campaign has all quantities.
     for (AxisChange& cause : causes_[axis])
       if (c.after < cause.before && c.before > cause.after) {
         cause.after = std::max(cause.after, c.after);
@@ -123,8 +118,6 @@ class OfMachine {
     causes_[axis].push_back({c.after, c.before, {{&s, &c}}});
   }
 
-  /// Adds size, U, p, days, kind of the quantity and event of a change to the finding, and the
-  /// other quantities that show the change.
   void describe(WorkItem& l, const AxisChange& cause) const {
     const AxisChange::Seen& first = cause.seen.front();
     const Quantity q = first.series->unit;
@@ -157,8 +150,6 @@ class OfMachine {
                        [](const AxisChange::Seen& s) { return !s.change->event.empty(); });
   }
 
-  /// Returns the table that may be the cause of a change, because one of the campaigns does not
-  /// state which table was active; null if there is none.
   const reports::TableLoaded* unstated(const std::string& axis, const AxisChange& cause) const {
     for (const reports::TableLoaded& t : d_.tables_unstated)
       if (t.axis == axis && !has_event(cause) && cause.after <= t.before && cause.before >= t.after)
@@ -202,14 +193,10 @@ class OfMachine {
     return l;
   }
 
-  /// Returns the axis of a result; for results without an axis (circle, spindle), the analysis, so
-  /// that each analysis has one line.
   const std::string& place_of(const store::StoredResult& r) const {
     return r.axis.empty() ? r.source : r.axis;
   }
 
-  /// Adds one line per axis for all values that do not conform or are indeterminate and for limits
-  /// without a value, and one for values that conform again.
   void judged() {
     std::map<std::string, std::vector<Judged>> out, open, good, anew;
     std::map<std::string, std::vector<reports::OpenValue>> missing;
@@ -248,7 +235,6 @@ class OfMachine {
       if (!out.contains(axis) && !good.contains(axis)) add_fixed("worklist.judged-anew", all);
   }
 
-  /// Adds indeterminate values and limits without a value to the line.
   void also(WorkItem& l, std::vector<Judged> open,
             const std::vector<reports::OpenValue>& missing) const {
     worst_first(open);
@@ -256,7 +242,6 @@ class OfMachine {
     l.also.insert(l.also.end(), missing.begin(), missing.end());
   }
 
-  /// Returns the line for limits that no value could be compared with.
   WorkItem no_value(const std::string& place, const std::vector<reports::OpenValue>& all) const {
     WorkItem l = line(Kind::undecided, "worklist.no-value", place);
     const reports::OpenValue& first = all.front();
@@ -272,12 +257,11 @@ class OfMachine {
   void add_fixed(const char* finding, std::vector<Judged>& all) {
     add(limit_line(Kind::out, finding, all));
     out_.back().state = WorkItem::State::fixed;
-    out_.back().also.clear();  // all values conform
+    out_.back().also.clear();
   }
 
-  /// Returns whether the last two judgements used the same source and conditions, and the last
-  /// limit is not wider. Only then does a value that conforms again show that the machine has
-  /// improved.
+  /// Whether the last two decisions have the same source and conditions and the last limit is not
+  /// wider. Only then does a value that conforms again prove that the machine has improved.
   bool is_judged_alike(const ShownSeries& s) const {
     const auto& last = m_.stored.results[s.judged.back()];
     const auto& before = m_.stored.results[s.judged[s.judged.size() - 2]];
@@ -303,8 +287,6 @@ class OfMachine {
                      [&](const Judged& a, const Judged& b) { return share(a) > share(b); });
   }
 
-  /// Returns the day of the first of the consecutive judgements that have the same decision as this
-  /// result, up to the campaign of this result.
   std::string since(const ShownSeries& s, const store::StoredResult& r) const {
     std::size_t first = s.judged.size() - 1;
     while (first > 0 && m_.stored.results[s.judged[first]].campaign > r.campaign) --first;
@@ -329,8 +311,6 @@ class OfMachine {
     return l;
   }
 
-  /// Returns the line of values beyond their limit, with the change that explains them, if there is
-  /// one.
   WorkItem beyond(const std::string& axis, std::vector<Judged>& all) {
     WorkItem l = limit_line(Kind::out, "worklist.out", all);
     l.id = "worklist.out:" + name() + ":" + axis;
@@ -338,7 +318,7 @@ class OfMachine {
     std::string first = l.since;
     for (const Judged& j : all)
       first = std::min(first, since(*j.series, m_.stored.results[j.result]));
-    AxisChange* explains = nullptr;  // largest change since the first day beyond the limit
+    AxisChange* explains = nullptr;
     for (AxisChange& cause : causes_[axis]) {
       if (cause.before < first) continue;
       cause.listed = true;
@@ -357,9 +337,8 @@ class OfMachine {
     return l;
   }
 
-  /// Adds a line for the last table of each axis if it was loaded wrongly, or if neither a campaign
-  /// nor an event states that it was loaded. No line is added if the axis was repaired or
-  /// compensated later.
+  /// Adds a line for the last table of an axis if it was loaded incorrectly or without a record,
+  /// unless the axis was repaired or compensated later.
   void loaded() {
     std::map<std::string, const reports::TableLoaded*> last;
     for (const reports::TableLoaded& t : d_.tables_loaded) last[t.axis] = &t;
@@ -380,8 +359,8 @@ class OfMachine {
     }
   }
 
-  /// Returns whether an event between the days of both campaigns states the compensation, or the
-  /// later campaign has readings of the axis as left.
+  /// Whether an event between both campaigns, or readings as left in the later campaign, document
+  /// the compensation.
   bool is_declared(const reports::TableLoaded& t) const {
     return std::any_of(m_.events.begin(), m_.events.end(),
                        [&](const config::Event& e) {
@@ -399,8 +378,6 @@ class OfMachine {
       return l.axis == axis && l.finding.id.starts_with("worklist.table-");
     });
   }
-
-  // ---- lines about tables that achieved less than predicted
 
   void tables() {
     for (const reports::TableKept& t : d_.tables) {
@@ -425,18 +402,17 @@ class OfMachine {
     });
   }
 
-  /// Adds one line per kind, campaign and axis for tables, results and certificates that were
-  /// withheld and for expired calibrations.
   void held_back() {
     std::map<std::string, WorkItem> all;
     for (const Withheld& w : withheld(m_.stored)) {
       const store::StoredCampaign& c = m_.stored.campaigns[w.campaign];
       const bool table = w.finding.starts_with("table.");
       WorkItem l = line(Kind::withheld,
-                        table                       ? "worklist.no-table"
-                        : is_calibration(w.finding) ? "worklist.calibration"
-                        : is_refusal(w.finding)     ? "worklist.no-result"
-                                                    : "worklist.certificate",
+                        table                               ? "worklist.no-table"
+                        : is_failed_compensation(w.finding) ? "worklist.compensation"
+                        : is_calibration(w.finding)         ? "worklist.calibration"
+                        : is_refusal(w.finding)             ? "worklist.no-result"
+                                                            : "worklist.certificate",
                         c.id + (w.axis.empty() ? "" : ":" + w.axis));
       l.axis = w.axis, l.campaign = c.id, l.since = c.day;
       put_text(l, "campaign", c.id);
@@ -455,8 +431,6 @@ class OfMachine {
       if ((", " + at->second + ", ").find(", " + one + ", ") == std::string::npos)
         at->second += (at->second.empty() ? "" : ", ") + one;
   }
-
-  // ---- forecasts
 
   void soon() {
     for (const HistorySeries& s : d_.series) {
@@ -497,7 +471,6 @@ class OfMachine {
     add(std::move(l));
   }
 
-  /// Adds a line for each campaign that is dated after the run.
   void later() {
     for (const store::StoredMachine::Later& c : m_.stored.later) {
       WorkItem l = line(Kind::undecided, "worklist.later", c.campaign);
@@ -509,8 +482,6 @@ class OfMachine {
     }
   }
 
-  /// Adds a line for each change, in a series with a new point of this run, that is attributed to
-  /// another instrument.
   void instruments() {
     for (std::size_t i = 0; i < m_.followed.size(); ++i) {
       if (m_.followed[i].run != last_run_.run) continue;
@@ -534,10 +505,7 @@ class OfMachine {
   const reports::MachineHistory& d_;
   const LastRun& last_run_;
   std::map<std::string, std::vector<AxisChange>> causes_;
-  /// axes for which the worklist already has an entry about values out of their limit, or about a
-  /// forecast
   std::map<std::string, bool> told_;
-  /// axis and quantity of values that are out of their limit or indeterminate
   std::set<std::pair<std::string, std::string>> open_;
   std::vector<WorkItem> out_;
 };

@@ -14,8 +14,6 @@ namespace nonio::assessment {
 
 namespace {
 
-/// Returns the index of the axis' only measurement with readings. An error if there is none, or
-/// more than one.
 Expected<std::size_t> only_measurement(const reading::ReadCampaign& read, const std::string& axis) {
   const Campaign& campaign = read.manifest->campaign;
   std::optional<std::size_t> found;
@@ -46,7 +44,6 @@ statistics::MeasuredCurve measured_curve(const evaluation::ControlTables& t) {
   return {c.position, c.plus, c.minus, t.u * unit_of(deviation_of(t.rotary)).per_si};
 }
 
-/// Returns a campaign that contains both measurements, one as "before" and one as "after".
 Campaign pair_of(const Campaign& before, std::size_t one, const Campaign& after, std::size_t two) {
   Campaign pair = before;
   pair.measurements = {before.measurements[one], after.measurements[two]};
@@ -55,8 +52,6 @@ Campaign pair_of(const Campaign& before, std::size_t one, const Campaign& after,
   return pair;
 }
 
-/// Finds the analysis before-after: the one that applies to both measurements together, and not to
-/// the last one alone.
 const Analysis* comparing(const loader::Plugins& plugins, const Campaign& pair) {
   Campaign alone = pair;
   alone.measurements.erase(alone.measurements.begin());

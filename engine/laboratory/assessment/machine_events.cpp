@@ -3,24 +3,31 @@
 
 namespace nonio::assessment {
 
-MachineEvents::MachineEvents(const std::vector<store::MachineState>& all,
-                             const store::StoredLogs& logs) {
-  // Name of the machine by name or serial; null: several machines have this serial.
-  std::map<std::string, const std::string*> named;
+MachineNames::MachineNames(const std::vector<store::MachineState>& all,
+                           const store::StoredLogs& logs)
+    : logs_(logs) {
   for (const store::MachineState& m : all)
     for (const std::string& serial : m.serials) {
-      const auto [at, is_new] = named.try_emplace(serial, &m.machine.name);
+      const auto [at, is_new] = named_.try_emplace(serial, &m.machine.name);
       if (!is_new) at->second = nullptr;
     }
-  for (const store::MachineState& m : all) named[m.machine.name] = &m.machine.name;
-  for (const config::Event& e : logs.events) {
-    const auto alias = logs.aliases.find(e.machine);
-    const auto machine = named.find(alias == logs.aliases.end() ? e.machine : alias->second);
-    if (machine == named.end() || machine->second == nullptr)
-      of_none_.push_back(e);
+  for (const store::MachineState& m : all) named_[m.machine.name] = &m.machine.name;
+}
+
+const std::string* MachineNames::of(const std::string& stated) const {
+  const auto alias = logs_.aliases.find(stated);
+  const auto found = named_.find(alias == logs_.aliases.end() ? stated : alias->second);
+  return found == named_.end() ? nullptr : found->second;
+}
+
+MachineEvents::MachineEvents(const std::vector<store::MachineState>& all,
+                             const store::StoredLogs& logs) {
+  const MachineNames names(all, logs);
+  for (const config::Event& e : logs.events)
+    if (const std::string* machine = names.of(e.machine))
+      by_machine_[*machine].push_back(e);
     else
-      by_machine_[*machine->second].push_back(e);
-  }
+      of_none_.push_back(e);
 }
 
 const std::vector<config::Event>& MachineEvents::of(const std::string& machine) const {

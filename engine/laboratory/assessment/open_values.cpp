@@ -19,11 +19,10 @@ namespace {
 
 bool is_open(const StoredResult& r) { return !r.decision.empty() && r.decision != conforms; }
 
-/// Returns, by axis, the newest campaign that has a result of the axis.
 std::map<std::string, std::size_t> newest_of_axes(const StoredMachine& m) {
   std::map<std::string, std::size_t> out;
   for (const StoredResult& r : m.results)
-    // Results are sorted by day, so the last one remains.
+    // Results are sorted by date, so the last one remains.
     if (!r.axis.empty()) out[r.axis] = r.campaign;
   return out;
 }
@@ -36,7 +35,6 @@ bool has_value(const StoredMachine& m, const LimitWithoutValue& limit) {
   });
 }
 
-/// Returns the axis of a measurement of a campaign; empty if it has none.
 std::string axis_of_measurement(const StoredMachine& m, std::size_t campaign,
                                 const std::string& measurement) {
   for (const StoredResult& r : m.results)
@@ -44,8 +42,7 @@ std::string axis_of_measurement(const StoredMachine& m, std::size_t campaign,
   return {};
 }
 
-/// Returns whether a later campaign has measured this axis. With an empty `axis`, returns whether
-/// all axes of the campaign were measured later; false if it has none.
+/// Whether a later campaign measured `axis`; if `axis` is empty, all axes of the campaign.
 bool is_measured_later(const StoredMachine& m, const std::map<std::string, std::size_t>& newest,
                        std::size_t campaign, const std::string& axis) {
   if (!axis.empty()) {
@@ -63,7 +60,7 @@ bool is_measured_later(const StoredMachine& m, const std::map<std::string, std::
 }  // namespace
 
 std::vector<Judged> open_results(const StoredMachine& m, const ShownSeries& s) {
-  // A campaign without a limit makes no decision, so the previous decisions remain valid.
+  // A campaign without a limit makes no decision, so previous decisions remain valid.
   std::map<std::string, std::vector<std::size_t>> groups;
   for (const std::size_t i : s.results)
     if (const StoredResult& r = m.results[i]; !r.decision.empty())
@@ -126,8 +123,10 @@ std::vector<Withheld> withheld(const StoredMachine& m) {
   for (std::size_t i = 0; i < m.asked.size(); ++i)
     for (const store::FindingRow& f : m.asked[i]) {
       const bool is_table = f.id.starts_with("table.");
-      const std::string axis = is_table ? axis_of_measurement(m, i, f.measurement) : std::string();
-      if (is_table && is_measured_later(m, newest, i, axis)) continue;
+      const bool is_of_axis = is_table || is_failed_compensation(f.id);
+      const std::string axis =
+          is_of_axis ? axis_of_measurement(m, i, f.measurement) : std::string();
+      if (is_of_axis && is_measured_later(m, newest, i, axis)) continue;
       if ((is_calibration(f.id) || (!is_table && is_refusal(f.id))) &&
           is_measured_later(m, newest, i, {}))
         continue;

@@ -35,20 +35,17 @@ IntervalProposal because(const char* method, const std::string& why) {
   return out;
 }
 
-/// Sets the interval in whole months, at least one. It is rounded down, so that it does not exceed
-/// what the data support.
+/// Rounds down to whole months, at least one, so that the interval is supported by the data.
 void propose(IntervalProposal& p, double months) {
   constexpr double rounding = 1e-9;
   p.months = std::max(1, static_cast<int>(std::floor(months + rounding)));
 }
 
-/// A calibration before this fraction of the interval has passed does not test the interval.
+/// A calibration before this fraction of the interval does not test the interval.
 constexpr double early_below = 0.75;
 
 bool is_early(const IntervalFacts& m) { return m.tested < early_below * m.months; }
 
-/// Returns the worst decision among the last results as found of all quantities with a limit, and
-/// the campaign of that result.
 std::optional<std::pair<Found, std::size_t>> last_found(const AssessedMachine& m) {
   std::optional<std::pair<Found, std::size_t>> worst;
   for (const ShownSeries& s : m.shown) {
@@ -78,8 +75,7 @@ std::optional<Fleet> fleet_of(const IntervalFacts& m) {
   return Fleet(m.maker, m.model, m.months);
 }
 
-/// Returns the months between a campaign and the previous day on which the machine was measured; 0
-/// if there is none.
+/// Returns the months since the previous date of measurement; 0 without one.
 double tested_until(const AssessedMachine& m, std::size_t campaign) {
   const auto day = day_number(m.stored.campaigns[campaign].day);
   std::optional<std::int64_t> before;
@@ -106,8 +102,6 @@ IntervalProposal staircase(const IntervalFacts& m) {
   return out;
 }
 
-/// Returns the proposal from the machines of one model; none if they are too few, or if no change
-/// of the interval is significant.
 std::optional<IntervalProposal> fleet(const IntervalFacts& m, const Counted& counted) {
   if (static_cast<std::size_t>(counted.machines) < fewest_of_a_fleet) return std::nullopt;
   const kernel::Proposal p =
@@ -122,8 +116,7 @@ std::optional<IntervalProposal> fleet(const IntervalFacts& m, const Counted& cou
   return out;
 }
 
-/// Returns the point before the last significant change; none without one. Changes that are not
-/// significant affect only the uncertainty of the level in the forecast.
+/// Other changes affect only the uncertainty of the level.
 std::optional<std::size_t> last_significant(const FollowedSeries& s) {
   for (std::size_t i = s.trend.changes.size(); i-- > 0;)
     if (s.significant[i]) return s.trend.changes[i].after;
@@ -131,9 +124,8 @@ std::optional<std::size_t> last_significant(const FollowedSeries& s) {
 }
 
 /// Returns the shortest interval after which the forecast of a followed quantity meets its limit;
-/// none if no forecast does. It has no months if it is shorter than one month, or if the bound of
-/// the forecast is beyond the limit already. `refusal` is set if the last change of a quantity is
-/// not explained yet.
+/// without months if it is shorter than one month. std::nullopt if no forecast meets a limit. Sets
+/// `refusal` if the last change of a quantity is not explained.
 std::optional<IntervalProposal> chart(const AssessedMachine& m,
                                       std::optional<IntervalProposal>& refusal) {
   std::optional<IntervalProposal> shortest;
@@ -166,7 +158,6 @@ std::optional<IntervalProposal> chart(const AssessedMachine& m,
   return shortest;
 }
 
-/// Returns the worst of the values that are beyond their limit today; none if there is none.
 std::optional<IntervalProposal> out_now(const AssessedMachine& m) {
   std::optional<IntervalProposal> out;
   double worst = 0.0;
@@ -188,7 +179,8 @@ std::optional<IntervalProposal> out_now(const AssessedMachine& m) {
 
 IntervalProposal proposal_of(const IntervalFacts& m, const Counted& counted) {
   constexpr std::uint64_t fewest_campaigns = 2;
-  if (m.out_now) return *m.out_now;  // a machine that is out today needs repair, not an interval
+  // A machine that is out of tolerance needs a repair instead of an interval.
+  if (m.out_now) return *m.out_now;
   if (m.days < fewest_campaigns) {
     IntervalProposal out = because(staircase_name, "few-campaigns");
     put(out, "campaigns", static_cast<double>(m.days));
@@ -200,8 +192,8 @@ IntervalProposal proposal_of(const IntervalFacts& m, const Counted& counted) {
   const auto by_fleet = fleet(m, counted);
   if (by_fleet && (*m.found == Found::conforms || *by_fleet->months < *out.months)) out = *by_fleet;
   if (m.chart && (!m.chart->months || *m.chart->months < *out.months)) out = *m.chart;
-  // It is unknown how long an unexplained change lasts, so the proposal is refused. After a
-  // failure, the staircase halves the interval anyway.
+  // The duration of an unexplained change is unknown, so no interval is proposed. After a failure,
+  // the staircase halves the interval in any case.
   if (m.refusal && *m.found != Found::fails) out = *m.refusal;
   return out;
 }

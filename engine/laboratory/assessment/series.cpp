@@ -17,8 +17,8 @@ namespace {
 
 using storage::Json;
 
-constexpr double same_place = 0.01;  // largest difference of positions that are treated as equal,
-                                     // as a fraction of the span
+// Largest difference of equal positions, as a fraction of the span.
+constexpr double same_place = 0.01;
 bool near(double a, double b, double span) { return std::fabs(a - b) <= same_place * span; }
 
 double number_at(const Json& o, const char* key) {
@@ -26,10 +26,9 @@ double number_at(const Json& o, const char* key) {
   return it != o.end() && it->is_number() ? it->get<double>() : 0.0;
 }
 
-/// Returns why two results cannot be points of one series; returns an empty text if they can.
-/// Switching a table on or off is a known step and does not separate the results. If
-/// `common_stretch` is true, results with different ends can be compared over the stretch that they
-/// have in common.
+/// Returns the id of the difference that prevents a common series; empty if there is none. A table
+/// that is switched on or off is a known step and no such difference. With `common_stretch`,
+/// different ends are none either.
 std::string difference(const Json& a, const Json& b, bool common_stretch) {
   const double span = number_at(a, "to") - number_at(a, "from");
   if (!common_stretch && (a.contains("from") != b.contains("from") ||
@@ -48,13 +47,11 @@ std::string difference(const Json& a, const Json& b, bool common_stretch) {
   return {};
 }
 
-/// Parses the conditions; text that is not an object gives an empty object.
 Json parsed(const std::string& conditions) {
   Json json = storage::parse_or_discard(conditions);
   return json.is_object() ? json : Json::object();
 }
 
-/// Returns the state of the compensation: on, off, or empty if it is not stated.
 std::string compensation(const Json& conditions) {
   const auto it = conditions.find("compensation");
   return it != conditions.end() && it->is_string() ? it->get<std::string>() : "";
@@ -68,20 +65,18 @@ using store::StoredMachine;
 using store::StoredResult;
 namespace kernel = nonio::statistics;
 
-/// Campaigns are compared over their common stretch if it is at least this fraction of the longer
-/// span.
+/// Smallest part of the longer span that the common stretch must cover.
 constexpr double least_in_common = 0.5;
 
-/// Returns the source of uncertainty that is an instrument under one certificate; empty if there is
-/// none.
+/// Returns the source of uncertainty of the instrument with its certificate, or an empty text.
 std::string instrument_in(const StoredResult& r) {
   for (const store::CommonPart& c : r.common)
     if (c.source.starts_with("instrument")) return c.source;
   return {};
 }
 
-/// Returns the FNV-1a hash of campaigns and quantities up to each result, as the seed of the series
-/// up to that point.
+/// Returns for each result the FNV-1a hash of the campaigns and quantities up to this result, which
+/// is the seed of the series up to this point.
 std::vector<std::uint64_t> seeds_of(const StoredMachine& m,
                                     const std::vector<std::size_t>& results) {
   std::uint64_t hash = 0xcbf29ce484222325U;
@@ -94,8 +89,8 @@ std::vector<std::uint64_t> seeds_of(const StoredMachine& m,
   return out;
 }
 
-/// Replaces each variance by its mean with the median of the series. A campaign's u is estimated
-/// from few runs, and a u that is small by chance would turn noise into a step.
+/// Replaces each variance by its mean with the median of the series, because u is estimated from
+/// few runs, and a u that is small by chance would turn noise into a step.
 void pool(std::vector<kernel::Point>& points) {
   std::vector<double> variances;
   for (const kernel::Point& p : points) variances.push_back(p.u * p.u);
@@ -104,8 +99,7 @@ void pool(std::vector<kernel::Point>& points) {
   for (kernel::Point& p : points) p.u = std::sqrt((p.u * p.u + *middle) / 2.0);
 }
 
-/// Returns whether result `a` precedes result `b`: results are ordered by day, as found before as
-/// left, then by campaign and by their order in its manifest.
+/// Results are ordered by date, as found before as left, campaign and position in the manifest.
 bool before(const StoredMachine& m, std::size_t a, std::size_t b) {
   const auto key = [&](std::size_t i) {
     const StoredResult& r = m.results[i];
@@ -124,7 +118,6 @@ bool concerns(const config::Event& e, const FollowedSeries& s) {
              std::string::npos;
 }
 
-/// Declares the events that happened between the points of a series.
 class Happenings {
  public:
   Happenings(const StoredMachine& m, const std::vector<config::Event>& events, FollowedSeries& s)
@@ -152,8 +145,8 @@ class Happenings {
   const StoredResult& result(std::size_t k) const { return m_.results[s_.results[k]]; }
   const std::string& day(std::size_t k) const { return m_.campaigns[result(k).campaign].day; }
 
-  /// Returns why a known step is between points k and k + 1: an adjustment (as found, as left), a
-  /// change within one campaign, or a table that was switched on or off. Empty if there is none.
+  /// Returns the reason of a known step after point k: an adjustment (as found, as left), a change
+  /// within one campaign, or a table that was switched on or off; otherwise empty.
   std::string table_between(std::size_t k) const {
     const StoredResult &a = result(k), &b = result(k + 1);
     if (b.state == "as-left") return "as-left";
@@ -168,8 +161,8 @@ class Happenings {
     return concerns(e, s_) && day(k) <= e.date && e.date <= day(k + 1);
   }
 
-  /// Returns whether the event is on the first or last day of a gap in `table`; it is then treated
-  /// as the adjustment in this gap.
+  /// Whether the event has the date of a campaign before or after an adjustment in `table`, which
+  /// already represents this event.
   bool on_day_of_table(const config::Event& e, const std::vector<bool>& table) const {
     for (std::size_t k = 0; k < table.size(); ++k)
       if (table[k] && (day(k) == e.date || day(k + 1) == e.date)) return true;
@@ -195,7 +188,6 @@ class Happenings {
   FollowedSeries& s_;
 };
 
-/// Groups the points of one quantity by what can be joined into one series.
 class Joining {
  public:
   Joining(const StoredMachine& m, const std::vector<std::optional<StoredTargets>>& targets,
@@ -231,8 +223,8 @@ class Joining {
   struct Group {
     Json conditions;
     std::vector<std::size_t> results;
-    /// Stretch that all results have in common, and the longest span; none: targets of a result are
-    /// unknown.
+    /// Stretch common to all results; std::nullopt if targets are unknown. `longest` is the longest
+    /// span.
     std::optional<kernel::Stretch> common{};
     double longest = 0.0;
   };
@@ -269,7 +261,7 @@ class Joining {
     if (!(r.u_repeat.value_or(0.0) > 0.0) || !std::isfinite(r.value) ||
         !day_number(m_.campaigns[r.campaign].day))
       return;
-    // Compare the text first, because most campaigns state the same conditions.
+    // The texts are compared first, because most campaigns state the same conditions.
     for (Group& g : groups_) {
       const StoredResult& first = m_.results[g.results.front()];
       if (first.unit == r.unit && first.conditions == r.conditions) {
@@ -328,8 +320,7 @@ class Joining {
   std::vector<Group> groups_;
 };
 
-/// Whether a result is shown as a series of its own. Followed quantities without a limit are not,
-/// since they have a series already.
+/// Followed quantities without a limit have a series already.
 bool is_shown(const StoredResult& r) {
   return r.tolerance || !(r.quantity == "B_mean" || r.quantity.starts_with("centre_") ||
                           r.quantity.starts_with("direction_"));
@@ -358,7 +349,8 @@ std::vector<FollowedSeries> followed_series(const StoredMachine& machine,
 
 namespace {
 
-/// Severity of a decision: 0 conforms or not judged, 1 indeterminate, 2 does not conform.
+/// Returns 0 if the result conforms or has no decision, 1 if it is indeterminate, 2 if it does not
+/// conform.
 int gravity(const StoredResult& r) {
   if (r.decision.empty() || r.decision == "conforms") return 0;
   return r.decision == "does not conform" ? 2 : 1;
@@ -368,8 +360,8 @@ double share_of_limit(const StoredResult& r) {
   return r.tolerance && *r.tolerance > 0.0 ? std::fabs(r.value) / *r.tolerance : 0.0;
 }
 
-/// Returns the deciding result of each campaign that compares the quantity with a limit. `results`:
-/// in the order of `before`.
+/// Returns the deciding result of each campaign with a limit. `results` must be in the order of
+/// `before`.
 std::vector<std::size_t> deciding(const StoredMachine& m, const std::vector<std::size_t>& results) {
   const auto decides = [&](const StoredResult& a, const StoredResult& b) {
     const auto key = [](const StoredResult& r) {
@@ -413,8 +405,8 @@ std::vector<ShownSeries> shown_series(const StoredMachine& machine) {
   for (auto& [key, results] : by_quantity(machine, false)) {
     std::sort(results.begin(), results.end(),
               [&](std::size_t a, std::size_t b) { return before(machine, a, b); });
-    // Values in um and in arcsec are not points of one series: the axis was changed from rotary to
-    // linear or back.
+    // Values in um and in arcsec are not comparable: the axis was changed between linear and
+    // rotary.
     std::map<std::string, std::vector<std::size_t>> of_unit;
     for (const std::size_t i : results) of_unit[machine.results[i].unit].push_back(i);
     const std::string& last = machine.results[results.back()].unit;

@@ -12,62 +12,61 @@
 #include "laboratory/statistics/trend.h"
 #include "laboratory/store/reader.h"
 
-/// Joins the results of a machine's campaigns to series, and declares the known events between
-/// their points.
 namespace nonio::assessment {
 
-/// One quantity of one axis over the campaigns that can be compared.
+/// A quantity of an axis over the campaigns that can be compared.
 struct FollowedSeries {
   std::string axis, quantity, unit;
   std::vector<std::size_t> results;          ///< index of each point into StoredMachine::results
-  std::vector<std::uint64_t> evaluations{};  ///< number of each point's evaluation
-  std::vector<nonio::statistics::Point> stated{};  ///< the points as their campaigns state them
-  std::vector<PointTargets> targets{};             ///< targets of each point; empty unless known
-                                                   ///< for all
-  /// Stretch of the axis over which the points are compared; none: the points are used as stated.
+  std::vector<std::uint64_t> evaluations{};  ///< number of the evaluation of each point
+  std::vector<nonio::statistics::Point> stated{};  ///< points as stated by their campaigns
+  /// Targets of each point; empty unless known for all points.
+  std::vector<PointTargets> targets{};
+  /// Stretch of the axis over which the points are compared; std::nullopt if the points are used as
+  /// stated.
   std::optional<nonio::statistics::Stretch> over{};
   std::vector<std::uint64_t> seeds{};  ///< seed of the series up to each point
-  /// A result of the same quantity before this series began that cannot be joined to it.
+  /// An earlier result of the quantity that is not comparable with the series.
   struct Apart {
     std::size_t result = 0;
-    std::string why;  ///< why it cannot be joined, as the id of a text: span, place, across, model,
-                      ///< period, radius, feed, other
+    /// Id of the reason: span, place, across, model, period, radius, feed or other.
+    std::string why;
   };
   std::vector<Apart> apart{};
   nonio::statistics::Series series;
-  std::vector<std::string> said{};   ///< text of each declared event, as entered
-  std::vector<std::string> kinds{};  ///< kind of each declared event: crash, repair, ..., table,
-                                     ///< instrument
-  bool ended = false;                ///< whether later campaigns measure the quantity in a way that
-                                     ///< cannot be joined
-  std::uint64_t run = 0;             ///< run that added the last point
+  std::vector<std::string> said{};  ///< text of each declared event, as entered
+  /// Kind of each declared event, such as crash, repair, table or instrument.
+  std::vector<std::string> kinds{};
+  /// Whether later campaigns measure the quantity in a way that is not comparable.
+  bool ended = false;
+  std::uint64_t run = 0;  ///< run of the last point
   nonio::statistics::Trend trend{};
-  /// p of each change of the trend, adjusted for all tests of its run.
+  /// p of each change, adjusted for all tests of its run.
   std::vector<double> p_adjusted{};
-  /// Whether each change is reported, and whether a mail reports it.
+  /// Whether each change is reported in the worklist and in a mail.
   std::vector<bool> significant{}, mailed{};
 };
 
-/// A quantity of one axis that is shown and compared with limits, such as A, E or R.
+/// A quantity of an axis that is compared with limits but has no trend, such as A, E or R.
 struct ShownSeries {
   std::string axis, quantity, unit;
   std::vector<std::size_t> results;
-  /// Deciding result of each campaign that compares the quantity with a limit: as left before as
-  /// found, and the worst of several measurements of the axis.
+  /// Deciding result of each campaign with a limit: as left before as found, and the worst of
+  /// several measurements.
   std::vector<std::size_t> judged{};
-  bool ended = false;  ///< whether later campaigns use another unit, since the axis was changed
-                       ///< between linear and rotary
+  /// Whether later campaigns use another unit, because the axis was changed between linear and
+  /// rotary.
+  bool ended = false;
 };
 
-/// Returns all followed series of a machine, by axis and quantity. `events`: those of this machine.
+/// Returns the followed series by axis and quantity. `events` are those of this machine.
 std::vector<FollowedSeries> followed_series(const store::StoredMachine& machine,
                                             const std::vector<config::Event>& events);
 
-/// Returns the series as it was when it had only its first `count` points; later points have no
-/// effect on it.
+/// Returns the series of the first `count` points, on which later points have no effect.
 nonio::statistics::Series first_points(const FollowedSeries& series, std::size_t count);
 
-/// Returns the points as compared over the common stretch, with the u of their campaigns instead of
+/// Returns the points compared over the common stretch, with the u of their campaigns instead of
 /// the pooled u.
 std::vector<nonio::statistics::Point> compared_points(const FollowedSeries& series);
 
@@ -81,9 +80,22 @@ struct AssessedMachine {
   std::vector<ShownSeries> shown;
 };
 
-/// Finds the events of each machine, in the order of `logs`. An event may name the machine, an
-/// alias, or a serial number that belongs to no other machine and is not the name of another
-/// machine.
+/// Finds machines by a present or former name or a serial number. Keeps references to both
+/// arguments.
+class MachineNames {
+ public:
+  MachineNames(const std::vector<store::MachineState>& all, const store::StoredLogs& logs);
+  /// Returns the present name; null if no machine, or several machines, have this name.
+  const std::string* of(const std::string& stated) const;
+
+ private:
+  const store::StoredLogs& logs_;
+  std::map<std::string, const std::string*>
+      named_{};  ///< null: a serial number of several machines
+};
+
+/// Finds the events of each machine, in the order of `logs`. An event names the machine, an alias,
+/// or a serial number that is unique and not the name of another machine.
 class MachineEvents {
  public:
   MachineEvents(const std::vector<store::MachineState>& all, const store::StoredLogs& logs);

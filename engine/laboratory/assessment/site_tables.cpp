@@ -58,7 +58,8 @@ std::string name_of(const store::InstrumentAsStated& i) {
 }  // namespace
 
 std::vector<MonthOfMachine> months_of(const AssessedMachine& m,
-                                      const reports::MachineHistory& described) {
+                                      const reports::MachineHistory& described,
+                                      const std::vector<reports::WorkItem>& lines) {
   std::vector<MonthOfMachine> out;
   Months months(m.state.machine.name);
   for (const store::StoredCampaign& c : m.stored.campaigns)
@@ -73,6 +74,9 @@ std::vector<MonthOfMachine> months_of(const AssessedMachine& m,
   for (const reports::HistorySeries& s : described.series)
     for (const reports::HistoryChange& c : s.changes)
       if (c.cause == "undeclared") months.grave(c.before, Kind::changed);
+  for (const reports::WorkItem& l : lines)
+    if (l.since.size() == 10 && (l.kind == Kind::changed || l.kind == Kind::withheld))
+      months.grave(l.since, l.kind);
   for (const config::Event& e : m.events) months.at(e.date).event = true;
   months.append_to(out);
   return out;

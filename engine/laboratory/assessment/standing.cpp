@@ -19,14 +19,13 @@ using reports::WorkItem;
 
 namespace {
 
-/// Whether the acknowledgement names this line: by the line's id, by the finding's id, or by the
-/// finding's id up to its first dash.
+/// An acknowledgement names a line by its id, by the id of the finding, or by this id without the
+/// suffix after the first dash.
 bool is_of(const config::Acknowledgement& a, const WorkItem& l) {
   const std::string& id = l.finding.id;
   return a.finding == l.id || a.finding == id || a.finding == id.substr(0, id.find('-', 8));
 }
 
-/// The last value that was measured up to a day, and its U, in the unit of results.json.
 struct Knew {
   double value = 0.0, U = 0.0;
 };
@@ -44,8 +43,8 @@ std::optional<Knew> known_on(const AssessedMachine& m, const WorkItem& l, const 
   return out;
 }
 
-/// Whether the value has moved by more than U since the acknowledgement. A forecast is acknowledged
-/// until the stated day, so false is returned for it.
+/// Whether the value has changed by more than U since the acknowledgement. An acknowledged forecast
+/// is accepted until the stated date.
 bool has_moved(const config::Acknowledgement& a, const AssessedMachine& m, const WorkItem& l) {
   if (!l.value || l.kind == WorkItem::Kind::soon) return false;
   const double now = *l.value * unit_of(l.unit).per_si;
@@ -60,8 +59,8 @@ bool is_of_quantity(const config::Acknowledgement& a, const std::string& quantit
   return a.quantity.empty() || a.quantity == quantity;
 }
 
-/// Whether this value did not conform or was indeterminate on the day of the acknowledgement, and
-/// has since moved by at most U.
+/// Whether the value did not conform or was indeterminate at the acknowledgement and has changed by
+/// at most U since.
 bool was_known(const config::Acknowledgement& a, const AssessedMachine& m, const WorkItem& l,
                const reports::OpenValue& v) {
   if (a.finding != l.id && !is_of_quantity(a, v.quantity)) return false;
@@ -84,7 +83,6 @@ bool was_known(const config::Acknowledgement& a, const AssessedMachine& m, const
   return open && v.value && std::fabs(*v.value * unit_of(v.unit).per_si - knew.value) <= knew.U;
 }
 
-/// Returns a separate line for the values of a line that are not acknowledged.
 WorkItem line_of_rest(const WorkItem& known, std::vector<reports::OpenValue> rest) {
   const auto first = std::find_if(rest.begin(), rest.end(),
                                   [](const reports::OpenValue& v) { return !v.undecided; });
@@ -104,17 +102,15 @@ WorkItem line_of_rest(const WorkItem& known, std::vector<reports::OpenValue> res
   return l;
 }
 
-/// Whether the line reports a change that a campaign after the acknowledgement showed.
 bool is_later(const config::Acknowledgement& a, const WorkItem& l) {
   const auto before = std::find_if(l.finding.texts.begin(), l.finding.texts.end(),
                                    [](const auto& t) { return t.first == "before"; });
   return before != l.finding.texts.end() && before->second > a.date;
 }
 
-/// Marks a line as known if a person has acknowledged it until this date or later. It stays new if
-/// a later campaign showed its change, or if its value has moved by more than U from the value that
-/// the acknowledgement states, otherwise from the last value up to the day of the acknowledgement.
-/// The values in `also` that are not acknowledged (`was_known`) are returned as a new line.
+/// Marks an acknowledged line as known until the stated date, unless a later campaign showed the
+/// change or the value has changed by more than U. Values in `also` that are not acknowledged are
+/// returned as a new line.
 std::optional<WorkItem> acknowledge(WorkItem& l, const AssessedMachine& m,
                                     const store::StoredLogs& logs, const std::string& date) {
   if (l.state == WorkItem::State::fixed) return std::nullopt;
@@ -149,9 +145,6 @@ reports::MachineHistory without_series(const reports::MachineHistory& whole) {
   return out;
 }
 
-/// Returns the last day on which the lines of a machine remain the same: "overdue" begins after the
-/// due date, an event takes effect on its day, and the wording of a forecast changes after its
-/// date.
 std::string same_until(const AssessedMachine& m, const reports::MachineHistory& described,
                        const std::vector<WorkItem>& lines, const std::string& date) {
   std::string until = for_ever;
@@ -196,10 +189,9 @@ Standing standing_of(const AssessedMachine& m, const reports::MachineHistory& de
   s.until = acknowledgements_of(described.id, logs).empty()
                 ? same_until(m, described, s.lines, last_run.date)
                 : last_run.date;
-  for (std::size_t i = 0; i < s.lines.size(); ++i)  // lines of values that are not acknowledged are
-                                                    // appended
+  for (std::size_t i = 0; i < s.lines.size(); ++i)
     if (auto rest = acknowledge(s.lines[i], m, logs, last_run.date)) s.lines.push_back(*rest);
-  s.months = months_of(m, described);
+  s.months = months_of(m, described, s.lines);
   s.instruments = instruments_of(m, out);
   s.has_results = !m.stored.results.empty();
   s.judged = !m.stored.without_value.empty();

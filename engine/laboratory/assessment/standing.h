@@ -14,32 +14,32 @@
 
 namespace nonio::assessment {
 
-/// Result of the assessment of one machine: everything that the lists over all machines need.
+/// Assessment of one machine, as far as the lists of all machines need it.
 struct Standing {
-  std::string name;               ///< name of the machine, or id of a campaign without a machine
+  std::string name;
   bool alone = false;             ///< whether this is a campaign without a machine
-  reports::MachineHistory shown;  ///< description of the machine without its series
+  reports::MachineHistory shown;  ///< without series
   std::vector<ComparedValue> compared{};
   std::vector<reports::WorkItem> lines{};
   std::vector<reports::MonthOfMachine> months{};
   std::vector<reports::InstrumentUse> instruments{};
   bool has_results = false;
-  bool judged = false;  ///< whether a result was compared with a limit, or a limit has no value
-  /// whether all values that were judged last conform, and no limit lacks a value
+  bool judged = false;  ///< whether any result has a tolerance limit
+  /// Whether all last decisions are "conforms" and no limit lacks a value.
   bool conforms = false;
-  bool attention = false;  ///< whether the last campaign has a finding with severity warning
-  bool reversal = false;   ///< whether such a finding of the last campaign is about reversal
+  bool attention = false;  ///< whether the last campaign has a finding of severity warning
+  bool reversal = false;   ///< whether such a finding is about reversal
   IntervalFacts interval{};
-  std::string until{};  ///< last date of a run for which the lines are the same
+  std::string until{};  ///< last date of a run with the same worklist
 };
 
-/// Assesses one machine: makes its lines, applies the acknowledgements to them, and collects its
-/// entries in the lists over all machines. `described`: result of `describe` for the same machine.
+/// Makes the worklist of one machine with acknowledgements and its entries in the lists of all
+/// machines. `described` is the result of `describe`.
 Standing standing_of(const AssessedMachine& machine, const reports::MachineHistory& described,
                      const store::StoredLogs& logs, const LastRun& last_run,
                      const std::filesystem::path& out);
 
-/// Returns acknowledgements that name this machine or no machine.
+/// Returns acknowledgements of this machine and those that name no machine.
 std::vector<const config::Acknowledgement*> acknowledgements_of(const std::string& machine,
                                                                 const store::StoredLogs& logs);
 

@@ -19,8 +19,7 @@ using store::StoredTables;
 
 namespace {
 
-/// Number of the last tables of an axis that are considered, because older tables are hardly loaded
-/// again.
+/// Number of latest tables that are tried, because older ones are hardly ever loaded again.
 constexpr std::size_t most_known = 8;
 
 std::vector<double> numbers(const Json& of, const char* name, bool rotary, bool position) {
@@ -46,7 +45,6 @@ struct Known {
   kernel::TableCurve table;
 };
 
-/// One measurement of an axis and the tables that its campaign states.
 struct Taken {
   std::size_t campaign = 0;
   std::string state, measurement;
@@ -54,7 +52,7 @@ struct Taken {
   kernel::MeasuredCurve curve;
   std::optional<kernel::TableCurve> active, written;
   std::vector<Known> recorded;
-  /// Standard uncertainty of the slope without the contributions of the instrument, um/mm or
+  /// Standard uncertainty of the slope without contributions of the instrument, um/mm or
   /// arcsec/deg.
   double u_slope = 0.0;
 };
@@ -136,8 +134,8 @@ class LoadedOnAxis {
   }
 
  private:
-  /// Stores in `out` the table that explains most of the change, with the rms of the change and of
-  /// the unexplained part, if the latter is at most half of the former.
+  /// Stores the table that explains most of the change, if the RMS of the rest is at most half of
+  /// the RMS of the change.
   static void put_nearest(const Taken& before, const Taken& after, const std::vector<Known>& those,
                           reports::TableLoaded& out) {
     constexpr double most_left = 0.5;
@@ -164,8 +162,8 @@ class LoadedOnAxis {
     known.push_back({day, *table});
   }
 
-  /// Returns the last `most_known` tables that were known before the later campaign: those that
-  /// earlier campaigns wrote, those recorded up to its day, and those that were active.
+  /// Returns the last `most_known` tables: written by earlier campaigns, recorded up to the date of
+  /// the later campaign, or active.
   std::vector<Known> known(std::size_t last, const Taken& after) const {
     std::vector<Known> out;
     for (std::size_t k = 0; k <= last; ++k) add(out, day(all_[k]), all_[k].written);
@@ -203,8 +201,7 @@ class LoadedOnAxis {
     return out;
   }
 
-  /// Returns the change of the stated table; none if a campaign does not state its active table, or
-  /// if both are equal. Its rms is NaN, because the shape of the change does not show the table.
+  /// The RMS is NaN, because the shape of the change does not show the table.
   std::optional<reports::TableLoaded> stated(const Taken& before, const Taken& after,
                                              const std::vector<Known>& all_known) const {
     if (!before.active || !after.active || is_same(*before.active, *after.active))

@@ -9,21 +9,20 @@
 
 namespace nonio::assessment {
 
-/// Returns the standard uncertainty of the change of scale that normally occurs between campaigns
-/// without a particular cause, in um/mm or arcsec/deg.
+/// Returns the standard uncertainty of the usual change of scale between campaigns, um/mm or
+/// arcsec/deg.
 double usual_scale_change(bool rotary);
-/// Returns the name used in ids of findings, for example wrong-sign or in-addition.
+/// Returns the name in ids of findings, such as "wrong-sign" or "in-addition".
 const char* loading_name(statistics::Loading loading);
 /// Smallest standard uncertainty of a difference between two campaigns, um or arcsec.
 inline constexpr double change_resolution = 0.1;
 
-/// Returns the changes between two successive campaigns of an axis that were caused by loading or
-/// removing a table, for campaigns whose results.json has `control_tables`. Known tables are those
-/// that earlier campaigns wrote or had active, and those in the record of the machine; of more than
-/// eight, the last eight.
+/// Returns the changes between successive campaigns of an axis that were caused by loading or
+/// removing a table, from `control_tables` in results.json. The last eight known tables are tried:
+/// those written by or active in earlier campaigns and those in the machine record.
 std::vector<reports::TableLoaded> tables_loaded(const AssessedMachine& machine);
-/// Returns the pairs of successive campaigns of an axis in which at least one campaign does not
-/// state the active table.
+/// Returns the pairs of successive campaigns of an axis of which one does not state the active
+/// table.
 std::vector<reports::TableLoaded> tables_unstated(const AssessedMachine& machine);
 
 }  // namespace nonio::assessment

@@ -15,9 +15,8 @@ using store::StoredResult;
 
 namespace {
 
-constexpr double scatter_allowed = 2.0;  // multiple of s that is added to the uncertainty of the
-                                         // prediction
-constexpr double not_good_below = 0.01;  // significance level over all results of a table
+constexpr double scatter_allowed = 2.0;  // multiple of s in the uncertainty of the prediction
+constexpr double not_good_below = 0.01;  // significance level for all results of a table together
 
 class OfAxis {
  public:
@@ -36,7 +35,7 @@ class OfAxis {
  private:
   const std::string& day(std::size_t campaign) const { return m_.stored.campaigns[campaign].day; }
 
-  /// Returns the last campaign with results as left of the axis; campaigns are sorted by day.
+  /// Campaigns are sorted by date.
   std::optional<std::size_t> last_left() const {
     std::optional<std::size_t> out;
     for (const StoredResult& r : m_.stored.results)
@@ -53,8 +52,8 @@ class OfAxis {
     return left.size() == 1;
   }
 
-  /// Returns the last campaign up to `left` that predicts the effect of a table; none if it has
-  /// predictions for several measurements, or is older than `longest_until_left` days.
+  /// Returns the last campaign with a prediction, at most `longest_until_left` days before `left`;
+  /// std::nullopt if it has predictions of several measurements.
   std::optional<std::size_t> last_promised(std::size_t left) const {
     std::optional<std::size_t> out;
     std::set<std::string> measurements;
@@ -69,7 +68,6 @@ class OfAxis {
     return out;
   }
 
-  /// Returns the pooled standard deviation of a single pass at a target; none if it is not known.
   std::optional<double> scatter(std::size_t campaign) const {
     for (const StoredResult& r : m_.stored.results)
       if (r.followed && r.axis == axis_ && r.campaign == campaign && r.state == "as-left" &&
@@ -98,8 +96,7 @@ class OfAxis {
     std::optional<reports::TableKept> out;
     double most = 0.0, p = 1.0;
     std::size_t asked = 0;
-    std::set<std::string> seen;  // the predictions of several controllers are equal, so the first
-                                 // one is used
+    std::set<std::string> seen;
     for (const StoredResult& promised : m_.stored.predicted) {
       if (promised.axis != axis_ || promised.campaign != found_in ||
           !seen.insert(promised.quantity).second)
@@ -113,7 +110,7 @@ class OfAxis {
       if (!check) continue;
       ++asked;
       const double zeta =
-          check->from_predicted.zeta();  // below 0: the result is better than predicted
+          check->from_predicted.zeta();  // negative for a result better than predicted
       if (zeta > 0.0) p = std::min(p, check->from_predicted.p);
       if (out && zeta <= most) continue;
       most = zeta;

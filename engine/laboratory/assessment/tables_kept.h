@@ -8,16 +8,14 @@
 
 namespace nonio::assessment {
 
-/// Largest number of days between the readings that a table was made from and the readings as left.
+/// Largest number of days between the readings that a table was computed from and those as left.
 inline constexpr int longest_until_left = 31;
 
-/// Checks for each axis whether its last table achieved the E, B and M that results.json had
-/// predicted, by comparing the last as-left measurement with the last prediction in its campaign or
-/// before. A prediction refers to means, so 2 s of the readings as left is added to its uncertainty
-/// for the scatter of runs (the range of 80 means of two runs each is 3.5 s). A table is not good
-/// if one of these results is worse than predicted with p < 1 % (Bonferroni). Axes are left out if
-/// several lines were measured, if the repeatability is unknown, or if more than
-/// `longest_until_left` days are between the two measurements.
+/// Checks by axis whether the last table achieved the E, B and M that results.json predicted.
+/// Because a prediction refers to means, 2 s of the readings as left is added to its uncertainty
+/// for the scatter of runs (the range of 80 means of two runs is 3.5 s). A table is not good if a
+/// result is worse than predicted with p < 1 % (Bonferroni). Axes with several measured lines or
+/// without a known repeatability are omitted.
 std::vector<reports::TableKept> tables_kept(const AssessedMachine& machine);
 
 }  // namespace nonio::assessment

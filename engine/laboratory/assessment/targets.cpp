@@ -24,8 +24,6 @@ std::vector<double> numbers(const dom::object& o, const char* name) {
   return out;
 }
 
-/// Returns the full symmetric matrix of n rows from its upper triangle; empty if the size does not
-/// match.
 std::vector<double> whole(const std::vector<double>& upper, std::size_t n) {
   if (upper.size() != n * (n + 1) / 2) return {};
   std::vector<double> out(n * n);
@@ -61,14 +59,11 @@ StoredTargets targets_in(const dom::object& o) {
   return out;
 }
 
-/// Returns the part of the name after the last dot: "straightness:Y.curve_2" gives "curve_2".
 std::string name_in(const std::string& quantity) {
   const auto dot = quantity.rfind('.');
   return dot == std::string::npos ? quantity : quantity.substr(dot + 1);
 }
 
-/// Returns the degree of the polynomial whose coefficient this quantity is; none for quantities
-/// that are not polynomial coefficients.
 std::optional<std::size_t> degree_of(const std::string& kind) {
   if (kind == "B_mean") return 0;
   if (kind == "scale") return 1;
@@ -77,8 +72,8 @@ std::optional<std::size_t> degree_of(const std::string& kind) {
   return std::nullopt;
 }
 
-/// Returns the index of a quantity's sinusoid in the fit; none if it is not a sinusoid. The first
-/// two sinusoids are those of one turn, the last two the cyclic error of the drive.
+/// Returns the index of a sinusoid: the first two have the period of one turn, the last two that of
+/// the drive.
 std::optional<std::size_t> sinusoid_of(const std::string& kind, std::size_t count) {
   if (count < 2) return std::nullopt;
   for (const auto& [name, at] :
@@ -88,20 +83,19 @@ std::optional<std::size_t> sinusoid_of(const std::string& kind, std::size_t coun
   return std::nullopt;
 }
 
-/// Returns the factor from the coefficient of P1 (um over a stretch in mm) to the scale in um/m;
-/// returns 1 for other quantities.
+/// Returns the factor from the coefficient of P1 (um, stretch in mm) to the scale in um/m,
+/// otherwise 1.
 double factor_of(const std::string& kind, const kernel::Stretch& over) {
   constexpr double mm_per_m = 1000.0;
   return kind == "scale" ? 2.0 * mm_per_m / over.length() : 1.0;
 }
 
-/// Number of targets and degrees of freedom of a fit. Fits of equal kind are compared target by
-/// target.
+/// Number of targets and degrees of freedom. Fits of equal kind are compared target by target.
 using Kind = std::pair<std::size_t, double>;
 Kind kind_of(const StoredFit& f) { return {f.residuals.size(), f.dof}; }
 
-/// Returns the variance of the machine's errors about the fits, without that of the readings and
-/// pooled over all points; not below 0.
+/// Returns the pooled variance of the machine error about the fits, without that of the readings;
+/// at least 0.
 double beyond_of(const std::vector<PointTargets>& targets) {
   double sum = 0.0, dof = 0.0;
   for (const PointTargets& t : targets) sum += t.fit.dof * t.fit.beyond, dof += t.fit.dof;
@@ -112,9 +106,9 @@ double of_squares(const std::vector<double>& v) {
   return std::inner_product(v.begin(), v.end(), v.begin(), 0.0);
 }
 
-/// Returns half the variance of the difference between the residuals of two fits of equal kind,
-/// minus the part of the readings. The sum of squares is divided by `divisor`: the ratio of median
-/// to mean of chi-square if a median of many differences is taken, otherwise 1.
+/// Returns half the variance of the difference between residuals of two fits of equal kind, without
+/// the part of the readings. `divisor` is the ratio of median to mean of chi-square if a median of
+/// many results is taken, otherwise 1.
 double half_difference(const StoredFit& a, const StoredFit& b, double divisor) {
   std::vector<double> d(a.residuals.size());
   std::transform(a.residuals.begin(), a.residuals.end(), b.residuals.begin(), d.begin(),
@@ -124,18 +118,18 @@ double half_difference(const StoredFit& a, const StoredFit& b, double divisor) {
   return (of_squares(d) / divisor - noise) / (2.0 * a.dof);
 }
 
-/// Enlarges a variance with few degrees of freedom, so that a normal test at 1 in 2,000 equals that
-/// of Student's distribution. Source: D. L. Wallace 1959, t^2 = dof (exp(z^2/dof) - 1).
+/// Enlarges a variance with few degrees of freedom, so that a normal test at 1 in 2,000 equals a
+/// test with Student's distribution. Source: D. L. Wallace 1959, t^2 = dof (exp(z^2/dof) - 1).
 double of_few(double variance, double dof) {
   constexpr double z2 = 12.1;
   return variance * dof / z2 * std::expm1(z2 / dof);
 }
 
-/// Returns for each point of a history the variance due to the choice of its targets, at most
-/// `beyond`. Each pair of successive points of equal kind gives one estimate (`half_difference`).
-/// The variance of a point is the mean of two values, enlarged by `of_few`: the median over all
-/// pairs, which a single change of the machine hardly affects, and the mean estimate from its pairs
-/// with the two nearest points. A kind with fewer than four points gets `beyond`.
+/// Returns the variance of each point due to the choice of its targets, at most `beyond`.
+/// Successive points of equal kind give estimates (`half_difference`). The result is the mean,
+/// enlarged by `of_few`, of the median of all estimates, which a single change of the machine
+/// hardly affects, and of the estimates with the two nearest points. A kind with fewer than four
+/// points gets `beyond`.
 std::vector<double> drawn_anew(const std::vector<PointTargets>& targets, double beyond) {
   constexpr std::size_t fewest = 4;
   std::map<Kind, std::vector<std::size_t>> kinds;

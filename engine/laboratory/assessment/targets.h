@@ -9,63 +9,61 @@
 #include "laboratory/statistics/series.h"
 #include "laboratory/statistics/stretch.h"
 
-/// Compares campaigns with different targets. ISO 230-2 requires random offsets of the targets, so
-/// their ends differ from campaign to campaign.
+/// Compares campaigns whose targets have different ends, because ISO 230-2 requires random offsets
+/// of the targets.
 namespace nonio::assessment {
 
-/// A fit to values at the targets of a campaign, in the units of the store.
+/// A fit to the values at the targets of a campaign, in the units of the store.
 struct StoredFit {
-  double beyond = 0.0, dof = 0.0;          ///< variance about the fit in excess of that of the
-                                           ///< readings, and degrees of freedom of the fit
-  nonio::statistics::FittedCurve curve{};  ///< fitted curve; without coefficients if its quantities
-                                           ///< do not refer to the ends of the targets
-  /// Coefficients of cosine and sine of each sinusoid in addition to the curve.
+  /// Excess of the variance about the fit over that of the readings, and degrees of freedom.
+  double beyond = 0.0, dof = 0.0;
+  /// Has no coefficients if the quantities do not depend on the ends of the targets.
+  nonio::statistics::FittedCurve curve{};
+  /// Coefficients of cosine and sine of each sinusoid.
   std::vector<nonio::statistics::CoefficientOver> sinusoids{};
-  std::vector<double> residuals{};  ///< residual at each target; empty: not stored
+  std::vector<double> residuals{};  ///< by target; empty if not stored
 };
 
-/// Data of one measurement in the store (results.json, `other_targets`).
+/// Data of one measurement (`other_targets` in results.json).
 struct StoredTargets {
-  std::string digest;  ///< digest of the targets; equal for equal targets
+  std::string digest;  ///< equal for equal targets
   nonio::statistics::Stretch span{};
-  std::vector<double> other_variance, share;  ///< one value for each quantity, with the meaning of
-                                              ///< the members of `PointTargets`
+  std::vector<double> other_variance, share;  ///< by quantity; see `PointTargets`
   StoredFit mean{}, reversal{};
 };
 
-/// Parses the texts of the store; none for each text that cannot be read.
+/// An entry is std::nullopt if its text cannot be parsed.
 std::vector<std::optional<StoredTargets>> read_targets(const std::vector<std::string>& texts);
 
 struct PointTargets {
   std::string digest;
   nonio::statistics::Stretch span{};
-  double other_variance = 0.0;  ///< variance that does not come from the readings
-  double share = 0.0;           ///< variance for independent values of variance 1 at the targets
+  double other_variance = 0.0;  ///< variance of other origin than the readings
+  /// Variance of the quantity for independent values of variance 1 at the targets.
+  double share = 0.0;
   StoredFit fit{};
 };
 
-/// Selects the data of a quantity: the fit of the reversal for B_mean, otherwise of the means.
-/// `place`: index of the quantity in the measurement.
+/// Returns the fit of the reversal for B_mean, otherwise that of the means. `place` is the index of
+/// the quantity in the measurement.
 PointTargets targets_of(const StoredTargets&, const std::string& quantity, std::size_t place);
 
-/// Points compared over a common stretch of the axis. If all points have the same targets, if the
-/// targets of a point are unknown, or if the points have no stretch in common, the points are
-/// unchanged and `over` is none.
+/// Points compared over a common stretch of the axis. They are unchanged, with `over` std::nullopt,
+/// if all targets are equal, if targets are unknown, or without a common stretch.
 struct Compared {
   std::vector<nonio::statistics::Point> points;
   std::optional<nonio::statistics::Stretch> over{};
 };
 
-/// Computes the points of one quantity for comparison. scale, curve_2, curve_3 and B_mean are
-/// recomputed from the fitted curves over the stretch that all points have in common; other
-/// quantities do not refer to the ends of the targets. Errors between the targets affect each
-/// choice of targets differently; their variance, estimated from the variances about the fits of
-/// all points, is added as a part that points with these targets have in common. `targets`: one per
-/// point, or empty.
+/// Computes comparable points of one quantity: scale, curve_2, curve_3 and B_mean are computed
+/// again from the fitted curves over the common stretch. The error between targets affects each
+/// choice of targets differently; its variance, estimated from the fits of all points, is added as
+/// an uncertainty that points with equal targets have in common. `targets` has one entry per point
+/// or is empty.
 Compared compared(std::vector<nonio::statistics::Point> points,
                   const std::vector<PointTargets>& targets, const std::string& quantity);
 
-/// Whether the source of a common uncertainty is a choice of targets (`compared`).
+/// Whether the common uncertainty is due to the choice of targets.
 bool is_targets(const std::string& source);
 
 }  // namespace nonio::assessment

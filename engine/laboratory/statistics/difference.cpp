@@ -12,7 +12,6 @@
 namespace nonio::statistics {
 namespace {
 
-/// Returns, by source, the signed common uncertainty that remains in after - before.
 std::map<std::string, double> left_of_common(const Point& before, const Point& after) {
   std::map<std::string, double> out;
   for (const Common& c : before.common) out[c.source] -= c.u;
@@ -26,7 +25,7 @@ Expected<Difference> difference(const Point& before, const Point& after, double 
                                 double u_expected) {
   Series both;
   both.points = {before, after};
-  both.points[1].time = both.points[0].time;  // equal times, because a difference has no order
+  both.points[1].time = both.points[0].time;
   if (auto sound = check(both); !sound) return fail(sound.error());
   if (!std::isfinite(expected) || !std::isfinite(u_expected) || u_expected < 0.0)
     return fail("expected a difference and its uncertainty, found what is not a number");

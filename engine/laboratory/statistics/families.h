@@ -7,12 +7,10 @@
 /// is below the level.
 namespace nonio::statistics {
 
-/// Returns the adjusted p according to Benjamini and Hochberg (1995), which limit the mean fraction
-/// of false positives among the significant tests, if the tests are independent or positively
-/// correlated.
+/// Benjamini and Hochberg (1995): controls the expected fraction of false positives among the
+/// significant tests, if these are independent or positively correlated.
 std::vector<double> benjamini_hochberg(const std::vector<double>& p);
-/// Returns the adjusted p according to Holm (1979), which limit the probability that any of the
-/// tests is significant by chance.
+/// Holm (1979): controls the probability that any test is significant by chance.
 std::vector<double> holm(const std::vector<double>& p);
 
 }  // namespace nonio::statistics

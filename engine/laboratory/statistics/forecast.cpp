@@ -11,8 +11,8 @@ namespace {
 
 constexpr double act_beyond = 0.5;
 constexpr double one_sided = 1.6448536269514722;  // quantile of the one-sided 95 % bound
-constexpr double farthest = 0.5;                  // largest extrapolation with an answer, as a
-                                                  // fraction of the observed span
+// Largest extrapolation, as a fraction of the time span.
+constexpr double farthest = 0.5;
 constexpr double years_ahead = 20.0;
 
 struct State {
@@ -33,7 +33,7 @@ State state_at(const Series& s, const Trend& t, double time) {
   return out;
 }
 
-/// Returns P(|state| + more > limit) for a normally distributed state and a normal `more`.
+/// Returns P(|state| + more > limit) for normally distributed state and `more`.
 double p_beyond(double value, double u_value, double limit, const Beyond& more) {
   const double u = std::hypot(u_value, more.u), left = limit - more.value;
   if (!(u > 0.0)) return std::fabs(value) > left ? 1.0 : 0.0;

@@ -12,7 +12,7 @@ namespace {
 using Method = Proposal::Method;
 
 constexpr double months_a_year = 12.0;
-constexpr double five_days = 5.0 * 12.0 / 365.25;  // five days, in months
+constexpr double five_days = 5.0 * 12.0 / 365.25;  // in months
 constexpr std::size_t fewest_after_a_change = 2, fewest_campaigns = 3;
 
 Proposal refused(Method method, std::string why,
@@ -23,7 +23,7 @@ Proposal refused(Method method, std::string why,
 bool is_share(double p) { return p > 0.0 && p < 1.0; }
 bool is_time(double t) { return std::isfinite(t) && t > 0.0; }
 
-/// Returns the binomial P(at most `passed` of `machines`) if each passes with probability `target`.
+/// Binomial P(at most `passed` of `machines`) with probability `target`.
 double cdf(int passed, int machines, double target) {
   if (passed < 0) return 0.0;
   return math::binomial_lower(passed, machines, target);

@@ -9,13 +9,12 @@
 namespace nonio::statistics {
 namespace {
 
-// Median of chi-square with 1 degree of freedom.
+// median of chi-square with 1 degree of freedom
 constexpr double median_of_chi2 = 0.45493642311957;
 constexpr std::size_t fewest_ratios = 20;
 
-/// Returns the squared distance of a point from the line through its neighbors, divided by the
-/// variance of the distance; see `Scatter`. None if an event other than a change of the instrument
-/// is declared next to the point, or if the neighbors have the same time.
+/// Returns the ratio of `Scatter`. std::nullopt if an event other than a change of the instrument
+/// is declared next to the point, or if its neighbors have equal times.
 std::optional<double> off_line(const Series& s, std::size_t i) {
   for (const Declared& d : s.declared)
     if (d.kind != Declared::Kind::instrument && (d.after == i || d.after + 1 == i))

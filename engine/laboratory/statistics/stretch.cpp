@@ -18,7 +18,7 @@ std::vector<double> times_w(const std::vector<double>& p) {
   return out;
 }
 
-/// Returns the coefficient of P_degree(w) in each of P_0(z) .. P_last(z), with z = middle + half w,
+/// Returns the coefficient of P_degree(w) in each of P_0(z) .. P_last(z) for z = middle + half w,
 /// by the recurrence (k + 1) P_k+1(z) = (2 k + 1) z P_k(z) - k P_k-1(z).
 std::vector<double> parts_along(std::size_t degree, double middle, double half, std::size_t last) {
   std::vector<double> out, before, now{1.0};

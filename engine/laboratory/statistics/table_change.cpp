@@ -11,20 +11,20 @@
 namespace nonio::statistics {
 namespace {
 
-constexpr double least_p = 1e-3;  // smallest p at which the unexplained part is regarded as noise
-// Largest rms of an unexplained part that is regarded as noise, as a fraction of the change.
+constexpr double least_p = 1e-3;  // smallest p of an unexplained part that is noise
+// Largest RMS of an unexplained part that is noise, as a fraction of the change.
 constexpr double most_noise = 0.4;
-// If the shape of the table is significant, an unexplained part that is not noise is accepted up to
-// this fraction of the rms of h (table_change.h).
+// Largest RMS of an unexplained part that is not noise, as a fraction of the RMS of the change h by
+// the table (table_change.h).
 constexpr double most_left = 0.1;
 // Required difference of chi2 from a change without a table.
 constexpr double clear = 25.0;
-constexpr double distinct = 9.0;          // required difference of chi2 from any other candidate
-constexpr double slope_seen = 8.0;        // smallest slope of h in units of u_slope, if h is a line
-constexpr int most_points = 5;            // largest offset of a table that is recognized, in points
-constexpr std::size_t fewest_places = 4;  // smallest number of differences in both directions
+constexpr double distinct = 9.0;  // required difference of chi2 from any other candidate
+// Smallest slope of h, in units of u_slope, if h is recognized by its size and not by its shape.
+constexpr double slope_seen = 8.0;
+constexpr int most_points = 5;            // largest offset of a table, in points
+constexpr std::size_t fewest_places = 4;  // smallest number of positions
 
-/// Interpolated value of a curve, and the variance of the interpolation.
 struct Between {
   double value = 0.0, variance = 0.0;
 };
@@ -37,7 +37,7 @@ Between between(const std::vector<double>& position, const std::vector<double>& 
   if (i > 0 && x - position[i - 1] <= near) return {value[i - 1], 0.0};
   i = std::clamp<std::size_t>(i, 1, position.size() - 1);
   const double part = (x - position[i - 1]) / (position[i] - position[i - 1]);
-  double bend = 0.0;  // larger bend of the curve at the two ends of the interval
+  double bend = 0.0;  // larger bend of the curve at the ends of the interval
   for (const std::size_t k : {i - 1, i})
     if (k > 0 && k + 1 < position.size()) {
       const double left = (value[k] - value[k - 1]) / (position[k] - position[k - 1]),
@@ -48,9 +48,9 @@ Between between(const std::vector<double>& position, const std::vector<double>& 
   return {value[i - 1] + part * (value[i] - value[i - 1]), wrong * wrong};
 }
 
-/// Returns the standard uncertainty of a mean. If the curve does not state it (single run), it is
-/// estimated from the scatter of the reversal along the axis, or from the second differences of one
-/// direction; both estimates are rather too large. 0 for fewer than three positions.
+/// Returns the standard uncertainty of a mean. Without a stated one (single run), it is estimated
+/// from the scatter of the reversal along the axis, or from second differences of one direction;
+/// both estimates are rather too large. 0 for fewer than three positions.
 double u_of(const MeasuredCurve& c) {
   if (c.u > 0.0) return c.u;
   const auto& one = c.plus.empty() ? c.minus : c.plus;
@@ -71,12 +71,12 @@ double u_of(const MeasuredCurve& c) {
   return n > 0.0 ? std::sqrt(squares / n) : 0.0;
 }
 
-/// Difference between two curves at the targets of the later campaign.
 struct CurveChange {
   std::vector<double> x, value, variance;
   std::vector<int> direction;
   double middle = 0.0, length = 0.0;
-  double dof_of_noise = 0.0;  ///< degrees of freedom of the noise; 0: it is known from repeats
+  /// Degrees of freedom of the noise; 0 if it is known from repeated runs.
+  double dof_of_noise = 0.0;
 };
 
 CurveChange change_of(const MeasuredCurve& before, const MeasuredCurve& after, double resolution) {
@@ -123,8 +123,8 @@ Three solved(std::array<Three, 3> a, Three b) {
   return x;
 }
 
-/// Fits both constants and the slope. `u_slope` is the standard uncertainty of the slope about 0
-/// before the fit: 0 fixes the slope at 0, infinity leaves it free.
+/// Fits two constants and a slope whose prior is 0 with standard uncertainty `u_slope`: 0 fixes the
+/// slope at 0, infinity is no prior.
 Three fitted(const CurveChange& d, const std::vector<double>& r, double u_slope) {
   std::array<Three, 3> a{};
   Three b{};
@@ -165,7 +165,7 @@ double rms_of(const CurveChange& d, const std::vector<double>& r, double u_slope
   return std::sqrt(sum);
 }
 
-/// One hypothesis about the loaded table, with its change h at the positions of the comparison.
+/// A hypothesis about the loaded table, with its change h at the compared positions.
 struct Candidate {
   Loading loading;
   std::size_t table;
@@ -213,8 +213,7 @@ class Recognizing {
           c.table == best->table && c.chi2 - best->chi2 < distinct)
         best = &c;
     const auto dof = static_cast<double>(d_.x.size() - constants());
-    // The noise of single runs is itself an estimate with as many values as there are targets, so F
-    // is used.
+    // The F distribution applies because the noise of single runs is an estimate.
     const double p = d_.dof_of_noise > 0.0 ? math::f_upper(best->chi2 / dof, dof, d_.dof_of_noise)
                                            : math::chi2_upper(best->chi2, dof);
     const double scale = std::max(1.0, best->chi2 / dof);
@@ -230,7 +229,8 @@ class Recognizing {
     const bool is_noise =
         p > least_p && rms_of(d_, left, 0.0) < most_noise * rms_of(d_, d_.value, 0.0);
     if (!is_noise && !small) return std::nullopt;
-    // A change of scale explains a table that is a line, unless the slope equals that of the table.
+    // A change of scale can look like a table that is a line, so the slope of the table must be
+    // much larger than usual changes of scale.
     const bool by_shape = chi2_of(d_, d_.value, inf) - best->chi2 > clear * scale;
     const bool by_size = is_noise && chi2_of(d_, d_.value, u_slope_) - best->chi2 > clear &&
                          std::fabs(fitted(d_, best->h, inf)[2]) > slope_seen * u_slope_;
@@ -271,14 +271,14 @@ class Recognizing {
       c.h.push_back(of_t * t[i] + of_s * s[i]);
       r[i] -= c.h[i];
     }
-    // A candidate whose change does not exceed twice the noise is left out.
+    // A change of less than twice the noise is not identifiable.
     if (rms_of(d_, c.h, 0.0) < 2.0 * std::sqrt(mean_variance())) return;
     c.chi2 = chi2_of(d_, r, u_slope_);
     all_.push_back(std::move(c));
   }
 
-  /// Whether the candidates `a` and `b`, the best one, need not be distinguished: offsets of one
-  /// table that differ by a point, or the table itself as `b` and any offset of it.
+  /// Whether `a` need not be distinguished from the best candidate `b`: offsets of one table that
+  /// differ by a point, or any offset if `b` is the table itself.
   static bool is_alike(const Candidate& a, const Candidate& b) {
     const auto is_offset = [](const Candidate& c) {
       return c.loading == Loading::offset || c.loading == Loading::loaded;
@@ -331,7 +331,8 @@ TableCurve TableCurve::shifted(int points) const {
 
 namespace {
 
-/// Returns the change if it is known at enough positions over more than half of the axis.
+/// Returns std::nullopt unless the change is known at enough positions, over more than half of the
+/// range of `after`.
 std::optional<CurveChange> comparable(const MeasuredCurve& before, const MeasuredCurve& after,
                                       double resolution) {
   if (before.position.size() < 2 || after.position.size() < 2) return std::nullopt;
@@ -341,8 +342,6 @@ std::optional<CurveChange> comparable(const MeasuredCurve& before, const Measure
   return d;
 }
 
-/// Makes all candidates: each combination of a known table with a table that may have been active
-/// before.
 Recognizing with_bases(const CurveChange& d, const std::optional<TableCurve>& active,
                        const std::vector<TableCurve>& known, double u_slope) {
   Recognizing all(d, known, u_slope);

@@ -17,18 +17,16 @@ namespace {
 constexpr int most_steps = 3;
 constexpr int draws = 10000, batch = 100;
 constexpr double sharp = 1e-3;  // p below which Bonferroni's bound is nearly exact
-// Difference of chi2 below which a line and a step cannot be separated.
+// Difference of chi2 below which a line and a step cannot be distinguished.
 constexpr double inseparable = 4;
 constexpr std::size_t fewest_for_walk = 8;
 
-/// Terms of the model in addition to the level.
 struct Shape {
   std::vector<Change> changes;
   bool drifts = false;
   bool free = false;  ///< whether the slope is fitted without its prior
 };
 
-/// Computes the columns of the model, with one row per point.
 class Columns {
  public:
   explicit Columns(const Series& s) : s_(s), n_(static_cast<Index>(s.points.size())) {}
@@ -39,7 +37,7 @@ class Columns {
     out.tail(n_ - static_cast<Index>(after) - 1).setOnes();
     return out;
   }
-  /// Time since the first point, so that the level is that of the beginning.
+  /// Time since the first point, so that the level is that of the first point.
   VectorXd time() const {
     VectorXd out(n_);
     for (Index i = 0; i < n_; ++i)
@@ -93,8 +91,8 @@ class Trending {
     return out;
   }
 
-  /// Adds a step for each declared event. A change of the instrument gets no step, because the
-  /// uncertainty of the instruments is in the covariance; a step found there gets it as its cause.
+  /// No step is added at a change of the instrument, because the covariance contains the
+  /// uncertainty of the instruments. If a step is found at this point, its cause is the instrument.
   void declare() {
     for (std::size_t d = 0; d < s_.declared.size(); ++d) {
       const Declared& known = s_.declared[d];
@@ -123,11 +121,12 @@ class Trending {
                        [&](const Change& c) { return c.after == after; });
   }
 
-  /// Whitened steps at all places without a step, orthogonal to the present model.
+  /// Columns of a step after each point that has none yet: whitened, orthogonal to the present
+  /// model and of unit length. Steps that are not identifiable are omitted.
   struct Places {
     std::vector<std::size_t> after;
-    MatrixXd direction;  // one column of unit length per place
-    VectorXd length;     // 1/u of the step's size
+    MatrixXd direction;
+    VectorXd length;  // 1/u of the size of the step
   };
 
   Places places(const Gls& base) const {
@@ -153,7 +152,7 @@ class Trending {
     return out;
   }
 
-  /// Returns P(largest G over these places > G) for a series without a step.
+  /// P(largest G > G) for a series without a step.
   double p_of_largest(const Places& places, double G) const {
     const auto many = static_cast<double>(places.after.size());
     const double of_one = normal_two_sided(std::sqrt(G));
@@ -172,23 +171,22 @@ class Trending {
           math::transposed_times(places.direction, noise.head(w_.y.size())).cwiseAbs2().maxCoeff() >
           G;
       if ((draw % batch == 0 && is_surely_more(beyond, draw)) ||
-          // The first full batch will exceed the limit in any case.
+          // The first batch will exceed the limit in any case.
           (draw < batch && is_surely_more(beyond, batch)))
         return std::min(bound, (beyond + 1.0) / (draw + 1.0));
     }
     return std::min(bound, (beyond + 1.0) / (draws + 1.0));
   }
 
-  /// Whether the exceedances are more than 5 standard deviations above the number expected at the
-  /// significance level, so that more draws would not change the decision.
+  /// Whether more draws would not change the decision: the exceedances are more than 5 standard
+  /// deviations above the number expected at the significance level.
   static bool is_surely_more(int beyond, int of) {
     const double expected = named_below * of;
     return beyond > expected + 5.0 * std::sqrt(expected);
   }
 
-  /// Adds the step with the largest decrease of chi2, or a drift, if it is significant. If both
-  /// are, the drift is added unless its chi2 is more than `inseparable` larger. Returns false if
-  /// neither is.
+  /// Adds the most significant step or a drift; of both the drift, unless its chi2 is more than
+  /// `inseparable` larger. Returns false if neither is significant.
   bool improve() {
     const auto base = fit(shape_);
     if (!base || !(base->dof > 0.0)) return false;
@@ -225,8 +223,6 @@ class Trending {
     return true;
   }
 
-  /// Returns the cause of a step after point `after`: the instrument, if it changed after this
-  /// point and the next point has common uncertainties; otherwise undeclared.
   Change::Cause cause_at(std::size_t after) const {
     for (const Declared& d : s_.declared)
       if (d.kind == Declared::Kind::instrument && d.after == after &&
@@ -235,8 +231,8 @@ class Trending {
     return Change::Cause::undeclared;
   }
 
-  /// Removes the prior of the slope. The prior helps to detect steps, but the stated slope has to
-  /// come from this machine's own points, so that its interval does not depend on other machines.
+  /// The prior helps to detect steps, but the reported slope must come from the points of this
+  /// machine alone.
   void free_slope(Shape& shape) const {
     Shape own = shape;
     own.drifts = own.free = true;
@@ -276,8 +272,7 @@ class Trending {
     return out;
   }
 
-  /// Whether the slope is a drift. A slope that is in the model without a test has to be
-  /// significant.
+  /// A slope that is in the model without a test must be significant.
   bool is_drift(const Gls& last) const {
     const Index i = last.b.size() - 1;
     return shape_.drifts &&
@@ -319,13 +314,14 @@ class Trending {
     out.smallest_change = (critical + math::normal_quantile(0.8)) / at.length(at.length.size() - 1);
   }
 
-  /// Replaces the model by a random walk (local level, variance by maximum likelihood, independent
-  /// u) for eight points or more without steps at declared events, if a level does not fit or there
-  /// are two or more undeclared steps, and if the walk is likelier than the steps at their penalty.
-  /// At the border q = 0 the likelihood ratio is half a chi-square with 1 degree of freedom.
+  /// Uses a random walk (local level, variance by maximum likelihood, independent u) for eight
+  /// points or more without steps at declared events, if a level does not fit or there are two or
+  /// more undeclared steps, and if its likelihood is larger than that of the steps with their
+  /// penalty. At the border q = 0 the likelihood ratio is half a chi-square with 1 degree of
+  /// freedom.
   void walk(Trend& out) const {
-    constexpr double at_border = 5.412;  // 99 % quantile of half a chi-square with 1 degree of
-                                         // freedom
+    // 99 % quantile of half a chi-square with 1 degree of freedom.
+    constexpr double at_border = 5.412;
     const bool restless = math::chi2_upper(out.chi2, out.dof) < named_below;
     if (s_.steps && !s_.steps->empty()) return;
     if (s_.points.size() < fewest_for_walk || static_cast<int>(shape_.changes.size()) > steps_ ||
@@ -342,8 +338,8 @@ class Trending {
     for (Segment& s : out.segments) s.last = walk.state, s.u_last = std::sqrt(walk.variance);
   }
 
-  /// Returns the decrease of chi2 from a constant level to `out`, minus the penalties: 3 ln n per
-  /// step and 2 for a slope.
+  /// Returns the decrease of chi2 from a constant level minus the penalties: 3 ln n per step and 2
+  /// for a slope.
   double gained(const Trend& out) const {
     const auto level = fit(Shape{});
     const double price = 3.0 * std::log(static_cast<double>(s_.points.size()));

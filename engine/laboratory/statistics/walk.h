@@ -3,21 +3,20 @@
 
 #include "laboratory/statistics/series.h"
 
-/// Random walk of the level (local level model): a_t = a_(t-1) + N(0, q dt), y = a + N(0, u^2),
-/// started at the first point (exactly diffuse), with independent u. Source: the Kalman filter of
-/// J. Durbin, S. J. Koopman, Time Series Analysis by State Space Methods (general knowledge;
-/// reference values of the Nile in tests/unit/history).
+/// Random walk of the level (local level model): a_t = a_(t-1) + N(0, q dt), y = a + N(0, u^2) with
+/// independent u, started at the first point (exactly diffuse). Source: Kalman filter of J. Durbin,
+/// S. J. Koopman, Time Series Analysis by State Space Methods (general knowledge; reference values
+/// of the Nile data in tests/unit/history).
 namespace nonio::statistics {
 
 struct Walk {
   double q = 0.0;                      ///< variance of the change of the level per year
-  double log_likelihood = 0.0;         ///< logarithm of the diffuse likelihood, over the points
-                                       ///< after the first
-  double state = 0.0, variance = 0.0;  ///< level at the last point, and its variance
+  double log_likelihood = 0.0;         ///< diffuse log-likelihood of the points after the first
+  double state = 0.0, variance = 0.0;  ///< level at the last point and its variance
 };
 
 Walk walk_with(const Series&, double q);
-/// Returns the walk with the q of maximum likelihood; q = 0 if no other value is likelier.
+/// Maximizes the likelihood over q; q = 0 if no other value is likelier.
 Walk likeliest_walk(const Series&);
 
 }  // namespace nonio::statistics

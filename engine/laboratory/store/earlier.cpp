@@ -36,7 +36,6 @@ bool may_pass(const Record& record) {
   return record.status == evaluation::Status::failed && record.retry;
 }
 
-/// The record of the results that are in force, and their folder.
 struct Kept {
   fs::path folder;
   Record record;
@@ -57,8 +56,6 @@ std::string if_restored(const fs::path& folder) {
          (folder / evaluation::record_name).string() + " to go on without what was known before";
 }
 
-/// Returns the digest of earlier.json that the record states; empty if it states none, or if the
-/// record is incomplete.
 std::string recorded_digest(const fs::path& folder) {
   const auto last = evaluation::last_record(folder);
   if (!last || !*last || !(*last)->whole) return {};
@@ -67,8 +64,8 @@ std::string recorded_digest(const fs::path& folder) {
   return {};
 }
 
-/// Returns the bytes of earlier.json; empty if it does not exist and no record states it. It is the
-/// only copy, so a file that a record states and that is missing or changed is an error.
+/// Returns an empty text if the file does not exist. It is the only copy, so a recorded file that
+/// is missing or modified is an error.
 Expected<std::string> earlier_bytes(const fs::path& campaign) {
   for (const fs::path& folder : {campaign, campaign / evaluation::last_good_name}) {
     const fs::path path = folder / earlier_name;
@@ -103,7 +100,6 @@ Known known_in(dom::object json) {
           read_entry(json["results"], inputs)};
 }
 
-/// Parses earlier.json. A damaged file is an error.
 Expected<FolderHistory> earlier_in(const std::string& bytes, const fs::path& folder) {
   FolderHistory history;
   if (bytes.empty()) return history;
@@ -140,7 +136,6 @@ std::string text_of(const std::vector<CertificateRow>& certificates) {
   return all.dump(-1, ' ', false, storage::Json::error_handler_t::replace);
 }
 
-/// Returns one evaluation as JSON, with its results unchanged.
 std::string text_of(const IndexedSince& since, const reading::Inputs& inputs,
                     std::string_view results) {
   storage::Json json = {{"night", since.run.number},
@@ -156,8 +151,6 @@ std::string text_of(const IndexedSince& since, const reading::Inputs& inputs,
   return out + '}';
 }
 
-/// Returns earlier.json with another list of certificates and, unless `more` is empty, one more
-/// evaluation.
 std::string extended(const std::string& before, const std::vector<CertificateRow>& certificates,
                      const std::string& more) {
   std::string list;
@@ -177,8 +170,7 @@ void add_number(const std::optional<CertificateRow>& more, std::vector<Certifica
   if (!known) numbers.push_back(*more);
 }
 
-/// Returns the results of a record; none if they are no longer stored unchanged. Results that were
-/// being replaced are already in earlier.json.
+/// Results that were being replaced are already in earlier.json.
 std::optional<std::string> still_there(const Kept& kept) {
   auto bytes = storage::read_file(kept.folder / evaluation::results_name);
   if (!bytes) return std::nullopt;
@@ -190,8 +182,8 @@ std::optional<std::string> still_there(const Kept& kept) {
   return std::move(*bytes);
 }
 
-/// Appends the results in `kept` to `carried.earlier` unless `carried.indexed` or the last entry
-/// has the same results, and adds their certificate unless its number is `number`.
+/// Appends the results in `kept` to `carried.earlier`, unless `carried.indexed` or the last entry
+/// is equal, and their certificate, unless its number is `number`.
 Expected<void> put_aside(const Kept& kept, const fs::path& folder, const std::string& id,
                          const std::string& number, Carried& carried) {
   const auto before = still_there(kept);

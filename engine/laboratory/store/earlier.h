@@ -11,40 +11,35 @@
 #include "campaign/evaluation/record.h"
 #include "laboratory/store/entry.h"
 
-/// File with the earlier evaluations of a campaign, OUT/<campaign>/earlier.json. It exists only if
-/// an earlier evaluation differed.
+/// File of a campaign with earlier evaluations. It exists only if an earlier evaluation differs.
 namespace nonio::store {
 
 inline constexpr const char* earlier_name = "earlier.json";
 
-/// One evaluation of a campaign.
 struct Known {
   evaluation::IndexedSince since;
   Entry entry;
 };
 
-/// The evaluations and certificates in the output folder of a campaign.
 struct FolderHistory {
-  std::vector<Known> evaluations;            ///< oldest first; each supersedes the one before
-  std::vector<CertificateRow> certificates;  ///< all certificates issued for the campaign
+  std::vector<Known> evaluations;            ///< oldest first; each supersedes the previous one
+  std::vector<CertificateRow> certificates;  ///< all issued certificates
 };
 
-/// Reads the evaluations up to the one in force: that of the record, or the last good one if the
-/// campaign failed temporarily. Empty if nothing was evaluated yet. An error names the damaged
-/// file.
+/// Reads the evaluations up to the one in force, which is the last good one after a temporary
+/// failure. Empty before the first evaluation. An error names the damaged file.
 Expected<FolderHistory> history_of(const std::filesystem::path& folder, const std::string& id);
 
-/// Returns the runs of the evaluations that `history_of` returns, without reading results.json.
+/// Returns the runs of the evaluations of `history_of` without reading results.json.
 Expected<std::vector<std::uint64_t>> runs_of(const std::filesystem::path& folder);
 
-/// Data to be stored with new results, so that earlier evaluations are kept.
+/// Data that must be stored with new results, so that earlier evaluations are kept.
 struct Carried {
   std::optional<evaluation::IndexedSince> indexed{};
-  std::string earlier{};  ///< bytes of earlier.json; empty: none
+  std::string earlier{};  ///< content of earlier.json; empty if no file is needed
 };
 
-/// Returns what has to be stored before the new results with the record `fresh` replace those in
-/// the folder.
+/// Call before new results with the record `fresh` replace the stored results.
 Expected<Carried> carry_over(const std::filesystem::path& folder, const evaluation::Record& fresh,
                              std::string_view results, const std::string& id);
 

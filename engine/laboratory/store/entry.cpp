@@ -21,7 +21,6 @@ namespace dom = simdjson::dom;
 
 namespace {
 
-/// Returns the text of a member; empty if there is none.
 std::string text_at(dom::object of, std::string_view key) {
   std::string_view text;
   return of[key].get(text) == simdjson::SUCCESS ? std::string(text) : std::string();
@@ -101,8 +100,8 @@ class EntryReader {
                            text_at(i, "certificate"), text_at(i, "valid_until")};
   }
 
-  /// Returns the state of a result: `said`, or as-found if it is empty. In a check campaign it is
-  /// always check, because a check is a separate series.
+  /// The state is "check" for all results of a check campaign, because they are a separate series;
+  /// by default "as-found".
   std::string state(std::string said) const {
     if (entry_.purpose == "check") return "check";
     return said.empty() ? "as-found" : said;
@@ -170,7 +169,6 @@ class EntryReader {
     entry_.results.push_back(std::move(row));
   }
 
-  /// Adds a result that a table predicts.
   void read_prediction(dom::object p, const std::string& plugin) {
     const std::string measurement = text_at(p, "measurement");
     entry_.results.push_back({.measurement = measurement,
@@ -182,9 +180,8 @@ class EntryReader {
                               .value = p["predicted"]});
   }
 
-  /// Reads the parts of the uncertainty budget. The parts of an instrument with a serial number and
-  /// of the expansion of an axis are common to several campaigns; all other parts are independent
-  /// between campaigns.
+  /// The contributions of an instrument with a serial number and of the expansion of an axis are
+  /// common to several campaigns; all others are independent.
   void read_parts(dom::object budget, std::string_view name, ResultRow& row) {
     dom::object results, one, parts;
     if (budget["results"].get(results) != simdjson::SUCCESS ||
@@ -216,7 +213,7 @@ class EntryReader {
   void read_certificate(dom::object c) {
     CertificateRow row{text_at(c, "number"), text_at(c, "date"), text_at(c, "replaces"),
                        entry_.campaign_sha256};
-    if (!row.number.empty()) entry_.certificate = std::move(row);  // a draft has no number
+    if (!row.number.empty()) entry_.certificate = std::move(row);
   }
 
   std::string axis_of(const std::string& measurement) const {
@@ -230,11 +227,10 @@ class EntryReader {
 
   dom::object json_;
   Entry entry_;
-  std::map<std::string, std::string> axes_, states_;  ///< axis and state of each measurement, by
-                                                      ///< the measurement's id
+  std::map<std::string, std::string> axes_, states_;
 };
 
-/// Writes fields with their lengths, so that two different entries never give the same text.
+/// Writes each field with its length, so that different entries never give the same text.
 class Canonical {
  public:
   Canonical& operator()(std::string_view text) {
@@ -311,7 +307,7 @@ Expected<Entry> entry_of(std::string_view results, const reading::Inputs& inputs
   try {
     dom::parser parser;
     Entry entry = read_entry(parser.parse(results), inputs);
-    // A database server cannot store a character 0, and no manifest contains one.
+    // A database server cannot store a character 0.
     if (canonical_of(entry).find('\0') != std::string::npos)
       return fail(std::string(evaluation::results_name) + ": a text with a character 0 in it");
     if (entry.campaign == id) return entry;

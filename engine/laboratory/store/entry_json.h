@@ -7,8 +7,8 @@
 
 namespace nonio::store {
 
-/// Makes an entry like `entry_of` from results.json inside another document, without its checks.
-/// Throws simdjson_error and std::runtime_error.
+/// Like `entry_of`, for results.json inside another document and without its checks. Throws
+/// simdjson_error and std::runtime_error.
 Entry read_entry(simdjson::dom::object results, const reading::Inputs& inputs);
 
 }  // namespace nonio::store

@@ -8,8 +8,7 @@ namespace nonio::store {
 
 namespace {
 
-/// Returns the name without differences that are easily overlooked: case, spaces, punctuation, O
-/// and 0, I, l and 1.
+/// Removes differences that are easily overlooked: case, spaces, punctuation, O and 0, I, l and 1.
 std::string carelessly(const std::string& name) {
   std::string out;
   for (const char c : name) {

@@ -8,14 +8,14 @@
 
 namespace nonio::store {
 
-/// Returns the name of a machine in the history: its asset, otherwise maker and serial. Empty if
-/// the asset is missing and the maker or the serial too; the campaign then belongs to no machine.
+/// Returns the name of a machine in the history: its asset, otherwise maker and serial number.
+/// Empty if neither is complete; the campaign then has no machine.
 std::string machine_of(const MachineAsStated& machine);
 
-/// Two names that may denote one machine. They are joined only if site.toml states an alias.
+/// Names that may denote one machine. Only an alias in site.toml joins them.
 struct Spelling {
-  std::string one, other;  ///< names of two machines; `one` is the name that more campaigns state
-  std::string why;         ///< why the names may denote one machine, in words
+  std::string one, other;  ///< `one` is the name that more campaigns state
+  std::string why;
 };
 
 struct NamedMachine {
@@ -25,7 +25,7 @@ struct NamedMachine {
 };
 
 /// Finds names that differ only in case, spaces, punctuation, O and 0, or I, l and 1, and machines
-/// of different names whose maker and serial are the same except for such differences.
+/// whose maker and serial number differ only in this way.
 std::vector<Spelling> spellings(const std::vector<NamedMachine>& machines);
 
 }  // namespace nonio::store

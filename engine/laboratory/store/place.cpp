@@ -46,7 +46,7 @@ bool is_of_somebody_else(const fs::path& path) {
   return ::stat(path.c_str(), &info) != 0 || (info.st_uid != ::geteuid() && info.st_uid != 0);
 }
 
-/// End of the message about an error that only a person can resolve.
+/// End of the message if the schema belongs to another output folder.
 constexpr const char* another_owner =
     " holds the history of another output folder: give each site a schema of its own ([database] "
     "schema in site.toml). If the output folder of this site was lost, restore OUT/.nonio/database "
@@ -136,9 +136,9 @@ Expected<Database> open_store(const fs::path& out) {
 
 namespace {
 
-/// Adds a new random turn to `place`. It is stored in the output folder before it is written to the
-/// server, so that the folder contains the server's turn even after a crash. An error if `place`
-/// lacks the server's turn `last`, because a copy of this folder has then written to the schema.
+/// The turn is stored in the output folder before it is written to the server, so that the folder
+/// contains it even after a crash. An error if `place` lacks the turn `last` of the server, because
+/// a copy of this folder has written to the schema.
 Expected<void> take_turn(Database& database, const fs::path& out, StorePlace& place,
                          const std::string& last) {
   constexpr std::size_t most = 500;

@@ -25,7 +25,6 @@ Expected<std::vector<NamedMachine>> machines_of(Database& database, const char* 
   return machines;
 }
 
-/// Returns the name under which the campaigns of a machine are stored; resolves an alias.
 Expected<std::string> known_machine(Database& database, const std::string& name) {
   const std::string alias =
       database.first("SELECT machine FROM machine_alias WHERE alias = ?", {name});
@@ -41,8 +40,7 @@ Expected<std::string> known_machine(Database& database, const std::string& name)
               storage::suggestion(name, names));
 }
 
-/// Returns an error if no result has this axis or quantity, because it is probably a spelling
-/// mistake.
+/// A name that no result contains is an error, because it is probably a spelling mistake.
 Expected<void> check_name(Database& database, const char* what, const char* sql,
                           const std::string& name) {
   if (name.empty()) return {};
@@ -71,8 +69,6 @@ WHERE (? = '' OR COALESCE(a.machine, c.machine) = ?) AND (? = '' OR r.axis = ?) 
 ORDER BY name, r.axis, r.quantity, r.source, c.day, r.state, c.campaign, e.evaluation, r.item
 )sql";
 
-/// Completes a followed quantity: U from all parts unless an analysis states it, and k = 2 for both
-/// (the query has converted U).
 void complete(Point& p) {
   if (p.source != "followed") return;
   if (p.expanded.empty() && !p.u_repeat.empty())

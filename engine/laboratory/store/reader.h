@@ -23,122 +23,117 @@ struct StoredCampaign {
   std::string id, day, customer, purpose, status;
   InstrumentAsStated instrument;
   std::int64_t evaluation = 0;
-  std::uint64_t run = 0;  ///< run of `evaluation`
-  std::string number{};   ///< number of the campaign's last certificate; empty: none
+  std::uint64_t run = 0;
+  std::string number{};  ///< number of the last certificate; empty if none was issued
   std::string place{}, control{};
 };
 
-/// A result of a campaign: a followed quantity, a value with a limit, or one of the values of
-/// analyses that the history shows, such as A, B, E, M and R.
+/// A followed quantity, a value with a limit, or another value that the history contains, such as
+/// A, B, E, M and R.
 struct StoredResult {
   std::size_t campaign = 0;  ///< index into StoredMachine::campaigns
   std::string measurement, axis, quantity;
-  /// origin of the result: "followed", the name of the analysis, or for a prediction the name of
-  /// the controller plugin
+  /// "followed", the analysis, or for a prediction the controller plugin.
   std::string source{};
   std::string unit, state, decision, conditions;
   bool followed = false;
   double value = 0.0;
   std::optional<double> u_repeat{}, expanded{}, k{}, tolerance{};
   std::vector<CommonPart> common{};
-  /// Index into StoredMachine::other_targets, and the index of the quantity there; none if the
-  /// result does not depend on the choice of targets.
+  /// Index into StoredMachine::other_targets, with the index `place` of the quantity. std::nullopt
+  /// if the result does not depend on the choice of targets.
   std::optional<std::size_t> targets{};
   std::size_t place = 0;
 };
 
-/// A limit that no value of the campaign could be compared with.
 struct LimitWithoutValue {
   std::size_t campaign = 0;  ///< index into StoredMachine::campaigns
   std::string measurement, axis, quantity, unit;
   double tolerance = 0.0;
 };
 
-/// The control's tables as a measurement of an axis states them.
 struct StoredTables {
   std::size_t campaign = 0;  ///< index into StoredMachine::campaigns
   std::string measurement, axis;
-  std::string json{};  ///< JSON: the entry of `control_tables` of results.json
+  std::string json{};  ///< entry of `control_tables` in results.json
 };
 
-/// Everything that the store contains about one machine, without failed campaigns.
+/// Data of one machine without failed campaigns.
 struct StoredMachine {
-  std::vector<StoredCampaign> campaigns;  ///< sorted by day, then by id
+  std::vector<StoredCampaign> campaigns;  ///< sorted by date and id
   std::vector<StoredResult> results;      ///< sorted by campaign
-  std::vector<StoredResult> predicted{};  ///< results predicted by tables, sorted by campaign
-  /// Members `other_targets` of results.json, each as JSON.
+  std::vector<StoredResult> predicted{};  ///< predicted by tables, sorted by campaign
+  /// Members `other_targets` of results.json.
   std::vector<std::string> other_targets{};
-  /// Highest severity by finding id, for the last evaluation of each campaign.
+  /// Highest severity by id of the finding, for each campaign.
   std::vector<std::map<std::string, std::string>> findings;
-  /// Findings with severity warning that withhold a table, a certificate or a result, or report an
-  /// invalid calibration, for the last evaluation of each campaign.
+  /// Findings of severity warning that withhold a table, a certificate or a result or report an
+  /// invalid calibration, for each campaign.
   std::vector<std::vector<FindingRow>> asked{};
   std::vector<LimitWithoutValue> without_value{};
   std::vector<StoredTables> tables{};  ///< sorted by campaign
   struct Later {
     std::string campaign, day;
   };
-  std::vector<Later> later{};  ///< campaigns after the requested day; they are not in `campaigns`
+  std::vector<Later> later{};  ///< campaigns after the requested date, which `campaigns` excludes
 };
 
-/// A machine, with its aliases joined.
+/// A machine; data of campaigns that state one of its aliases are included.
 struct MachineState {
   NamedMachine machine;
-  std::uint64_t run = 0;            ///< run of its last evaluation in force
-  std::set<std::string> serials{};  ///< serial numbers that its campaigns state
+  std::uint64_t run = 0;  ///< run of its last evaluation in force
+  std::set<std::string> serials{};
 };
 
-/// An evaluation, superseded or not.
 struct StoredEvaluation {
-  std::string machine;  ///< name of the machine, with aliases joined; empty: none
+  /// Name of the machine, even if the campaign states an alias; empty without a machine.
+  std::string machine;
   std::string campaign, sha256, day;
   std::uint64_t run = 0;
-  bool counts = true;  ///< whether the evaluation is in force, that is, not superseded
+  bool counts = true;  ///< whether the evaluation is not superseded
 };
 
 /// The last evaluation of a campaign.
 struct CountedCampaign {
-  std::string machine;  ///< name of the machine, with aliases joined; empty: none
+  /// Name of the machine, even if the campaign states an alias; empty without a machine.
+  std::string machine;
   std::string campaign, day, sha256;
 };
 
-/// Entries made by people (events, acknowledgements, campaigns removed on purpose), aliases and
-/// calibration intervals, as stored.
+/// Logs (events, acknowledgements, campaigns removed on purpose), aliases and calibration
+/// intervals.
 struct StoredLogs {
   std::vector<config::Event> events;
   std::vector<config::Acknowledgement> acknowledged;
   std::vector<config::Forgotten> forgotten;
-  std::map<std::string, std::string> aliases;  ///< names of the machines, by alias
-  std::map<std::string, int> due;              ///< calibration interval in months, by machine; "":
-                                               ///< all others
-  std::set<std::string> recorded{};            ///< machines that have records with events
+  std::map<std::string, std::string> aliases;  ///< name by alias
+  /// Calibration interval in months by machine; "" for all others.
+  std::map<std::string, int> due;
+  std::set<std::string> recorded{};  ///< machines with events in their records
 };
 
 /// Reads a store. Superseded evaluations are skipped unless stated otherwise.
 class StoreReader {
  public:
-  /// Opens the store. An error if it does not exist, or is of another version.
+  /// An error if there is no store of this version.
   static Expected<StoreReader> open(const std::filesystem::path& out);
 
-  /// Returns the machines by name, with aliases joined; campaigns without a machine are left out.
+  /// Sorted by name. Campaigns that state an alias belong to its machine; those without a machine
+  /// are omitted.
   Expected<std::vector<MachineState>> machines();
-  /// Reads one machine. `until`: campaigns after this day are listed in `later` only.
+  /// Campaigns after the date `until` are only listed in `later`.
   Expected<StoredMachine> machine(const std::string& name, const std::string& until = "9999-12-31");
-  /// Reads a single campaign that states no machine. It is unknown which of these campaigns belong
-  /// to one machine.
   Expected<StoredMachine> campaign(const std::string& id, const std::string& until = "9999-12-31");
   Expected<StoredLogs> logs();
-  /// Returns the machine of each campaign, with aliases joined.
+  /// Returns the name of the machine, even if the campaign states an alias, by id of the campaign.
   Expected<std::map<std::string, std::string>> machine_of_campaigns();
-  /// Returns all evaluations, including superseded ones, in the order of the store.
+  /// Includes superseded evaluations, in the order of the store.
   Expected<std::vector<StoredEvaluation>> evaluations();
-  /// Returns the evaluation in force of each campaign, without failed ones; by machine, day and id.
+  /// Returns the campaigns that have not failed, by machine, date and id.
   Expected<std::vector<CountedCampaign>> counted_campaigns();
-  /// Returns, by campaign, the numbers of its certificates and of the certificates that they
-  /// replace, as one text.
+  /// Returns the numbers of certificates, and of those that they replace, as one text by campaign.
   Expected<std::map<std::string, std::string>> certificates();
-  /// Returns, for each run from `run` on, the number of different followed quantities of axes of
-  /// all machines that it evaluated.
+  /// Returns the number of different followed quantities of all machines by run, from `run` on.
   Expected<std::map<std::uint64_t, std::uint64_t>> followed_since(std::uint64_t run);
 
  private:

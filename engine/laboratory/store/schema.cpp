@@ -10,8 +10,8 @@ using storage::Database;
 
 namespace {
 
-/// Tables with types and keywords that both SQLite and PostgreSQL have. Sequence numbers and
-/// doubles have 8 bytes.
+/// Types and keywords are common to SQLite and PostgreSQL. Sequence numbers and doubles have 8
+/// bytes.
 constexpr const char* tables = R"sql(
 CREATE TABLE store (name TEXT PRIMARY KEY, value BIGINT NOT NULL);
 CREATE TABLE machine (
@@ -76,7 +76,7 @@ CREATE VIEW point AS
   LEFT JOIN machine_alias a ON a.alias = c.machine;
 )sql";
 
-/// SQL of the table whose types differ between SQLite and PostgreSQL.
+/// The types of this table differ between SQLite and PostgreSQL.
 constexpr const char* covariance_table = R"sql(
 CREATE TABLE covariance (
   evaluation BIGINT NOT NULL, first_item BIGINT NOT NULL, items BIGINT NOT NULL, upper_triangle BLOB NOT NULL,
@@ -84,19 +84,19 @@ CREATE TABLE covariance (
   PRIMARY KEY (evaluation, first_item));
 )sql";
 
-/// Tables in which rows are only added until the store is rebuilt.
+/// Rows are only added to these tables until the store is rebuilt.
 constexpr const char* append_only[] = {
     "machine",    "campaign", "evaluation",          "result",        "common_part",
     "covariance", "finding",  "limit_without_value", "control_table", "certificate"};
-/// All tables, child tables before their parents.
+/// Child tables precede their parents.
 constexpr const char* all_tables[] = {
     "common_part",   "covariance",    "finding",     "limit_without_value",
     "control_table", "result",        "certificate", "evaluation",
     "campaign",      "machine",       "event",       "acknowledgement",
     "forgotten",     "machine_alias", "store",       "due_rule"};
 
-/// Returns the SQL of triggers that reject changes of the append-only tables on a server. They are
-/// per statement, so that TRUNCATE is rejected as well.
+/// Triggers of a server that reject changes of append-only tables. They are per statement, so that
+/// TRUNCATE is rejected too.
 std::string server_triggers() {
   std::string sql =
       "CREATE FUNCTION append_only() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN "
@@ -132,8 +132,7 @@ std::optional<std::int64_t> version_of(Database& database) {
   std::int64_t version = 0;
   std::from_chars(text.data(), text.data() + text.size(), version);
   if (database.kind() != Database::Kind::sqlite) return version;
-  // A newer program may store its version in another table, so the mark in the file is read as
-  // well.
+  // A newer program may store its version in another table, so the mark in the file is read too.
   const std::string mark = database.first("PRAGMA user_version");
   std::int64_t marked = 0;
   std::from_chars(mark.data(), mark.data() + mark.size(), marked);
@@ -141,7 +140,7 @@ std::optional<std::int64_t> version_of(Database& database) {
 }
 
 void make_tables(Database& database) {
-  // Lock the table that readers lock first, so that no deadlock can occur.
+  // Readers lock this table first; the same order excludes a deadlock.
   if (database.kind() == Database::Kind::postgresql && has_table(database, "store"))
     database.script("LOCK TABLE store IN ACCESS EXCLUSIVE MODE");
   std::string sql = "DROP VIEW IF EXISTS point;\nDROP VIEW IF EXISTS latest;\n";

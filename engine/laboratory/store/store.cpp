@@ -27,9 +27,8 @@ using storage::Database;
 
 namespace {
 
-/// The evaluation of a campaign that a new one supersedes.
 struct Before {
-  std::int64_t evaluation = 0;  ///< number of the evaluation; 0: there is none
+  std::int64_t evaluation = 0;
   std::string campaign_sha256, version;
 };
 
@@ -39,7 +38,7 @@ Database::Value value_of(const std::optional<double>& x) {
 
 std::int64_t number(std::size_t n) { return static_cast<std::int64_t>(n); }
 
-/// Returns doubles as 8 bytes each, the least significant byte first.
+/// Little-endian, 8 bytes per double.
 std::string bytes_of(const std::vector<double>& numbers) {
   std::string out;
   for (const double x : numbers) {
@@ -85,7 +84,6 @@ const char* why(const Known& known, const Before& before) {
   return before.version != known.since.version ? "version" : "settings";
 }
 
-/// Inserts one evaluation with all its rows under this sequence number.
 void insert(Database& database, std::int64_t evaluation, const Known& known, const Before& before) {
   const Entry& e = known.entry;
   insert_campaign(database, e);
@@ -128,8 +126,8 @@ void insert(Database& database, const std::string& campaign,
                  {c.number, campaign, c.campaign_sha256, c.day, c.replaces});
 }
 
-/// Replaces the entries of people, the events of the machines' records, the aliases and the
-/// calibration intervals by those in the site's present files.
+/// Replaces logs, events of machine records, aliases and calibration intervals by those in the
+/// files of the site.
 void replace_logs(Database& database, const config::SiteLogs& logs,
                   const std::vector<config::Alias>& aliases,
                   const std::vector<config::Event>& of_records,
@@ -166,11 +164,10 @@ void replace_logs(Database& database, const config::SiteLogs& logs,
 constexpr const char* known_folder = ".nonio";
 constexpr const char* known_name = "history";
 
-/// Position of an evaluation in the store: by run, campaign and index in the campaign.
 struct Place {
   std::uint64_t run = 0;
   std::string campaign;
-  std::size_t in_chain = 0;  ///< index among the evaluations of its campaign
+  std::size_t in_chain = 0;
   auto key() const { return std::tie(run, campaign, in_chain); }
 };
 bool operator<(const Place& a, const Place& b) { return a.key() < b.key(); }
@@ -190,11 +187,10 @@ class Filling {
           Updated& updated)
       : out_(out), database_(database), alive_(alive), updated_(updated) {}
 
-  /// Fills empty tables with all evaluations.
   Expected<void> all() {
     NONIO_TRY(auto places, all_places());
     std::int64_t number = 0;
-    std::map<std::string, Before> last;  // only for campaigns with more than one evaluation
+    std::map<std::string, Before> last;  // only for campaigns with several evaluations
     for (const Place& place : places) {
       alive_();
       const auto history =
@@ -215,8 +211,8 @@ class Filling {
     return {};
   }
 
-  /// Adds the new evaluations of these campaigns. Returns false if the rows of the store contradict
-  /// the files, or if a new evaluation belongs before the last one in the store.
+  /// Adds new evaluations of these campaigns. Returns false if the store contradicts the files or
+  /// if an evaluation precedes the last one in the store.
   Expected<bool> some(const std::vector<std::string>& campaigns) {
     const Place last = last_place();
     std::map<Place, std::pair<Known, Before>> added;
@@ -281,7 +277,7 @@ class Filling {
 
   Expected<std::vector<Place>> all_places() {
     std::vector<Place> places;
-    // The evaluations of a campaign keep their order, even if the number of runs was reset.
+    // The order in a campaign is kept even if the numbers of runs were reset.
     const auto listed = storage::each_results_folder(out_, [&](const fs::path& folder) {
       alive_();
       const std::string campaign = folder.filename().string();
@@ -316,13 +312,13 @@ class Filling {
 Expected<Database> open(const fs::path& out) {
   auto database = Database::open(out / store_name, Database::Use::create);
   if (!database) return database;
-  database->rows("PRAGMA cache_size = -65536");  // 64 MB
+  database->rows("PRAGMA cache_size = -65536");
   if (auto well = database->take_error(); !well) return fail(well.error());
   return database;
 }
 
-/// Opens the store. A file that cannot be read is replaced, because it can be rebuilt; one that
-/// another process has locked is not.
+/// A file that cannot be read is replaced, because it can be rebuilt, but not a file that another
+/// process has locked.
 Expected<Database> open_or_replace(const fs::path& out, const StorePlace& place) {
   if (place.server) return Database::open(*place.server);
   auto database = open(out);
@@ -349,8 +345,8 @@ Expected<void> check_version(std::optional<std::int64_t> version, const std::str
               ": use the newer program, or remove it; it is made again");
 }
 
-/// Removes history.sqlite, which would become outdated now that the store is on a server, and notes
-/// the number of evaluations in the server's store.
+/// Removes history.sqlite, which would become outdated, and notes the number of evaluations on the
+/// server.
 Expected<void> leave_to_server(const fs::path& out, std::int64_t evaluations) {
   std::error_code error;
   const fs::path path = out / store_name;
@@ -359,7 +355,6 @@ Expected<void> leave_to_server(const fs::path& out, std::int64_t evaluations) {
   return note_evaluations(out, evaluations);
 }
 
-/// Updates or rebuilds the store in one transaction.
 Expected<Updated> write(const fs::path& out, bool all, const std::vector<std::string>& campaigns,
                         const SiteRecords& records, const std::function<void()>& alive) {
   const auto place = place_of(out);
@@ -374,7 +369,7 @@ Expected<Updated> write(const fs::path& out, bool all, const std::vector<std::st
   if (place->server)
     if (auto ours = take_schema(database, out); !ours) return fail(ours.error());
   bool again = all || version != schema_version;
-  // A server that was restored from a backup, or replaced by its standby, may lack the last runs.
+  // A server that was restored from a backup or replaced by its standby may lack the last runs.
   if (!again && place->server) again = last_number(database) != place->evaluations;
   Filling filling(out, database, alive, updated);
   if (!again) {
@@ -421,7 +416,7 @@ Expected<std::optional<std::uint64_t>> known_run(const fs::path& out) {
 }
 
 Expected<void> forget_known_run(const fs::path& out) {
-  // The note is overwritten and not removed, because on some shares files cannot be removed.
+  // The note is overwritten, because files cannot be removed on some network shares.
   return storage::publish(out / known_folder, {{known_name, "none\n"}});
 }
 

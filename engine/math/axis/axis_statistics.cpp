@@ -21,7 +21,7 @@ AxisStatistics::Side side_of(std::span<const AxisTest::Reading> readings) {
   const auto [low, high] = std::minmax_element(x.begin(), x.end());
   side.low = *low;
   side.high = *high;
-  side.first = x.front();  // readings are in the order of the runs
+  side.first = x.front();
   side.run = readings.front().run;
   return side;
 }

@@ -18,8 +18,7 @@ void keep_distinct(std::vector<double>& x) {
   x.erase(std::unique(x.begin(), x.end()), x.end());
 }
 
-// Returns the distinct targets. Duplicates are removed whenever the list has doubled, so that
-// memory grows with the number of targets, not of rows.
+// Duplicates are removed whenever the list has doubled: memory grows with the targets, not rows.
 std::vector<double> distinct_targets(const Observations& o) {
   std::vector<double> targets;
   std::size_t limit = 1U << 16U;
@@ -49,7 +48,7 @@ AxisTest AxisTest::arrange(const Observations& o) {
   if (axis.position.size() != o.size() || axis.approach.size() != o.size()) return test;
   test.targets = distinct_targets(o);
 
-  std::size_t last = 0;  // adjacent rows often share a target or step to the next one
+  std::size_t last = 0;
   const auto part_of = [&](std::size_t row) {
     const double position = axis.position[row];
     if (last >= test.targets.size() || test.targets[last] != position)

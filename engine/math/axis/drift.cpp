@@ -13,7 +13,7 @@
 namespace nonio::math {
 namespace {
 
-struct Runs {  // values by run; those of passes have one entry per pass
+struct Runs {
   std::vector<double> number, y;
   std::vector<double> pass_number[2], pass_y[2];
 };
@@ -74,8 +74,7 @@ bool goes_one_way(const std::vector<double>& y) {
   return up || down;
 }
 
-// Computes the drift of an offset or slope; per_pass: its variance from the scatter of single
-// readings.
+// `per_pass`: variance of the offset or slope of a pass, from the scatter of single readings.
 Drift::Part part_of(const Runs& runs, double per_pass, double dof) {
   Drift::Part part;
   const Line passes = common_line(
@@ -100,8 +99,7 @@ Drift::Part part_of(const Runs& runs, double per_pass, double dof) {
   return part;
 }
 
-// Returns whether the pass in direction - precedes that in direction +, according to the order of
-// the rows of one run. False if the rows do not contain these passes one after the other.
+// Returns whether the rows of the first run contain all of direction - before direction +.
 bool minus_first(const AxisTest& test) {
   std::uint32_t low[2] = {UINT32_MAX, UINT32_MAX}, high[2] = {0, 0};
   const std::uint32_t run = test.readings().empty() ? 0 : test.readings().front().run;
@@ -127,7 +125,6 @@ std::vector<double> lags(const AxisTest& test) {
 double square_of(double x) { return x * x; }
 
 // Fits B_i = constant + fraction b_i, because drift within the passes adds b_i to the reversal.
-// Stores the fraction and its p-value in `drift`.
 void compare_with_reversal(const AxisTest& test, double variance, double dof, Drift& drift) {
   std::vector<double> B, b;
   double per = 0.0;
@@ -149,8 +146,7 @@ void compare_with_reversal(const AxisTest& test, double variance, double dof, Dr
   drift.p_reversal = t_two_sided(test_ratio(drift.seen_in_reversal, std::sqrt(of_B / bb)), dof);
 }
 
-// Returns the factor that the largest of `values` standard normal values exceeds with a probability
-// of 4.55 %, but at least 2.
+// Factor that the largest of `values` normal values exceeds at 4.55 %, at least 2.
 double factor_of_largest(std::size_t values) {
   const double tail = 0.0455 / static_cast<double>(values);
   double low = 2.0, high = 10.0;
@@ -161,8 +157,8 @@ double factor_of_largest(std::size_t values) {
   return low;
 }
 
-/// Returns what `compute` returns. The last result is kept, because analyses, uncertainties and the
-/// table of each control need the same one. Results of long tests are not kept, to save memory.
+/// The last result is kept, because analyses, uncertainties and the table of each control need it.
+/// Results of long tests are not kept, to save memory.
 template <auto compute>
 auto kept(const AxisTest& test) {
   constexpr std::size_t most_readings = 10'000;
@@ -197,9 +193,9 @@ Drift fit_drift(const AxisTest& test) {
   return drift;
 }
 
-// Returns the contribution of drift to the largest standard deviation of a direction, from which R
-// is computed: s minus the square root of s^2 minus the mean square that drift may contribute.
-// Among equal values of s the larger contribution is used, so that rounding does not decide.
+// Returns the contribution of drift to the largest s of a direction: s minus the square root of s^2
+// minus the mean square that drift may contribute. Among equal values of s the larger contribution
+// is used, so that rounding does not decide.
 double in_scatter(const AxisTest& test, const Drift& drift, bool minus) {
   constexpr double equal = 1e-9;
   double largest = 0.0, share = 0.0;

@@ -22,7 +22,6 @@ constexpr double noise_alone = 3.0, of_noise = 1.25;
 // tolerance for the rounding of printed targets, as a fraction of a period
 constexpr double as_written = 1e-6;
 
-/// Returns the length of the shortest pass and the widest step of all passes.
 std::pair<double, double> extent(std::span<const Pass> passes) {
   double length = INFINITY, step = 0.0;
   for (const Pass& p : passes) {
@@ -39,7 +38,7 @@ struct Design {
   Eigen::VectorXd y;
   /// index of each reading for path_noise, ascending; passes are 10000 apart
   std::vector<int> place;
-  std::vector<double> phase;  ///< phase within the period, 0..1
+  std::vector<double> phase;
 };
 
 constexpr Eigen::Index waves = 4;
@@ -77,8 +76,7 @@ Design design_of(std::span<const Pass> passes, double period, double step) {
   return out;
 }
 
-/// Computes the means, over the readings of one phase, of the deviations minus the lines of the
-/// passes, and the scatter about these means.
+/// Sets folded, range, s, u_folded and dof. `left`: deviations minus the lines of the passes.
 void fold(const Design& d, const Eigen::VectorXd& left, std::size_t passes, std::size_t n,
           PeriodicError& out) {
   std::vector<double> sum(n, 0.0), count(n, 0.0);
@@ -154,7 +152,6 @@ PeriodicError periodic_error(std::span<const Pass> passes, double period) {
     if (wave.amplitude < noise_alone * wave.u) wave.u *= of_noise;
   }
   const Eigen::VectorXd left = residual(d.y, left_columns(d.X, k - waves), beta.head(k - waves));
-  // At least twenty bins, more if the step allows.
   const auto bins =
       static_cast<std::size_t>(std::max(steps_of_period, std::floor(period / step + 1e-3)));
   fold(d, left, passes.size(), bins, out);
@@ -168,11 +165,10 @@ constexpr double same_size = 1e-3;
 // smallest fraction of the commanded step that the axis must follow: docs/dev/constants.md, A21
 constexpr double followed_from = 0.5;
 
-/// Place of a step: position at its end in 1/1000 of a step, direction, and whether it is the first
-/// step after a reversal.
+/// Position at the end of a step in 1/1000 of a step, its direction, and whether it is the first
+/// after a reversal.
 using Place = std::tuple<long long, int, bool>;
 
-/// Computes the standard deviation of a step about the mean of the steps at the same place.
 void scatter_of(SmallSteps& out) {
   std::map<Place, std::vector<double>> places;
   const double unit = out.commanded / 1000.0;
@@ -188,9 +184,8 @@ void scatter_of(SmallSteps& out) {
   out.s = out.dof > 0.0 ? std::sqrt(squares / out.dof) : not_given;
 }
 
-/// The targets of one run from one direction, in the order of motion.
 struct OnePass {
-  std::vector<std::pair<double, double>> at;  ///< position and deviation
+  std::vector<std::pair<double, double>> at;
 };
 
 std::map<std::uint32_t, std::map<int, OnePass>> passes_of(
@@ -209,7 +204,7 @@ std::map<std::uint32_t, std::map<int, OnePass>> passes_of(
   return out;
 }
 
-/// Adds the step between two readings; false if its size differs from the other steps.
+/// Returns false if the size of the step differs from that of the other steps.
 bool add_step(const std::pair<double, double>& a, const std::pair<double, double>& b,
               std::uint32_t run, int direction, bool first, SmallSteps& out) {
   const double commanded = std::fabs(b.first - a.first);
@@ -220,7 +215,6 @@ bool add_step(const std::pair<double, double>& a, const std::pair<double, double
   return true;
 }
 
-/// Adds the steps of a run; false if they differ in size.
 bool add_run(std::uint32_t run, const std::map<int, OnePass>& passes, SmallSteps& out) {
   for (const auto& [direction, pass] : passes)
     for (std::size_t i = 1; i < pass.at.size(); ++i)

@@ -1,20 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// ISO 230-2: accuracy and repeatability of positioning of an axis.
-//
-//   x_ij            deviation at target i, approach j = 1..n: actual - target         m or rad
-//   xm_i+-          = sum_j x_ij / n, one direction;  xm_i = (xm_i+ + xm_i-)/2
-//   B_i             = xm_i+ - xm_i-;  B = max |B_i|;  B_mean = sum B_i / m, with its sign
-//   s_i+-           = sqrt(sum_j (x_ij - xm_i)^2 / (n - 1))
-//   R_i+-           = 2 k s_i;  R_i = max(k s_i+ + k s_i- + |B_i|; R_i+; R_i-)
-//   R+, R-, R       = the largest over the targets
-//   E+, E-          = max xm_i - min xm_i in one direction; E: over both directions together
-//   M               = max xm_i - min xm_i of the bidirectional means
-//   A+, A-          = max(xm_i + k s_i) - min(xm_i - k s_i); A: over both directions together
-//
-// Source: ISO 230-2:2014 clause 2 (symbols; k = 2 since 1997); 1988 with k = 3: its forms 6 s and
-// 3 s. The text of the standards was not available; docs/formulas.md states the source of each.
-// Valid for: any number of targets; s, R and A need two approaches at every target.
 #include "nonio/math/iso230_2.h"
 
 #include <algorithm>

@@ -12,7 +12,7 @@
 namespace nonio::math {
 namespace {
 
-struct Sums {  // sums of one pass, for the line through its residuals
+struct Sums {
   double n = 0, z = 0, zz = 0, r = 0, zr = 0;
 };
 
@@ -21,12 +21,11 @@ void keep_distinct(std::vector<std::uint32_t>& x) {
   x.erase(std::unique(x.begin(), x.end()), x.end());
 }
 
-/// Finds run numbers in a sorted list. The readings of a target are sorted by run, so the next
-/// number is tried first.
+/// The readings of a target are sorted by run, so the next run number is tried first.
 class PlaceOfRun {
  public:
   explicit PlaceOfRun(const std::vector<std::uint32_t>& runs) : runs_(runs) {}
-  /// Returns the index of a run; runs.size() if the list does not contain it.
+  /// Returns runs.size() if the list does not contain the run.
   std::size_t of(std::uint32_t run) {
     if (next_ >= runs_.size() || runs_[next_] != run)
       next_ = static_cast<std::size_t>(std::lower_bound(runs_.begin(), runs_.end(), run) -
@@ -42,7 +41,7 @@ class PlaceOfRun {
   std::size_t next_ = 0;
 };
 
-// Returns the distinct runs; memory grows with the number of runs, not of readings.
+// Memory grows with the number of runs, not of readings.
 std::vector<std::uint32_t> runs_of(const AxisTest& test) {
   std::vector<std::uint32_t> runs, fresh;
   const auto take_fresh = [&] {
@@ -80,8 +79,7 @@ void index_readings(const AxisTest& test, PassModel& m) {
     }
 }
 
-// Subtracts from e its mean over each target and direction; returns the largest absolute mean, m or
-// rad.
+// Returns the largest absolute mean that was subtracted, m or rad.
 double take_target_means(const AxisTest& test, PassModel& m) {
   double largest = 0.0;
   for (std::size_t i = 0; i < test.targets.size(); ++i)
@@ -101,7 +99,6 @@ double take_target_means(const AxisTest& test, PassModel& m) {
   return largest;
 }
 
-// Subtracts from e the offset (and slope) of each pass; returns the largest change.
 double take_passes(const AxisTest& test, PassModel& m, bool slopes) {
   std::vector<Sums> sums(m.passes.size());
   for (std::size_t k = 0; k < m.e.size(); ++k) {
@@ -183,8 +180,7 @@ PassModel fitted(const AxisTest& test, bool slopes, std::span<const std::size_t>
   double size = 0.0;
   for (const double e : m.e)
     if (!std::isnan(e)) size = std::max(size, std::fabs(e));
-  // Equal runs need one round, others converge geometrically; with millions of readings the number
-  // of rounds is limited.
+  // Equal runs need one round, others converge geometrically; long tests have a limit of rounds.
   const double readings = static_cast<double>(m.e.size());
   const int most_rounds = static_cast<int>(std::clamp(2e8 / std::max(readings, 1.0), 4.0, 60.0));
   for (int round = 0; round < most_rounds; ++round) {
@@ -195,7 +191,6 @@ PassModel fitted(const AxisTest& test, bool slopes, std::span<const std::size_t>
   return m;
 }
 
-/// Returns whether the targets and readings of two tests are equal, bit for bit.
 bool same_bits(const AxisTest& a, const AxisTest& b) {
   const auto same = [](const auto& x, const auto& y) {
     return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0;
@@ -218,12 +213,11 @@ struct Fitted {
 
 }  // namespace
 
-// Caches the last fits, because findings, reversal and each table need those of the same few tests:
-// 24 times for a campaign with two analyses and four controls. A cached fit is returned only for
-// identical bits. The limit on readings bounds the memory (32 bytes per reading) of a worker.
+// Findings, reversal and each table need the fits of the same few tests. A cached fit is returned
+// only for identical bits; the limit on readings bounds the memory (32 bytes per reading).
 PassModel fit_passes(const AxisTest& test, bool slopes, std::span<const std::size_t> left_out) {
   constexpr std::size_t most_kept = 8, most_readings = 24'000'000;
-  thread_local std::deque<Fitted> kept;  // oldest first
+  thread_local std::deque<Fitted> kept;
   for (const Fitted& known : kept)
     if (known.slopes == slopes && std::ranges::equal(known.left_out, left_out) &&
         same_bits(known.test, test))

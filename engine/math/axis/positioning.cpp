@@ -1,24 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Rules of positioning over the statistics of axis_statistics.h. Values are ranges, or half ranges
-// if +- precedes them.
-//
-//   iso    as iso230_2.cpp, with k of the edition
-//   upr    min(R+, R-), k = 2
-//   vdi    as vdi3441.cpp
-//   nmtba  +- accuracy+      = max |xm_i+ - o| + k s_i+;  likewise -; accuracy: the larger
-//          +- repeatability+ = max k s_i+; both directions: half of max_i of [max(xm+ + k s+, xm- +
-//             k s-) - min(xm+ - k s+, xm- - k s-)], which is R/2 of iso with the same k
-//          o: 0, or without offset a constant (offset_of)
-//   raw    R'+ = max_i of high - low in one direction; R': of both directions together at a target
-//          A'+ = largest minus smallest reading of all targets in one direction; A': of both
-//          directions; B as iso
-//   jis    accuracy      = max x - min x of the first pass in one direction
-//          +- repeatability = half of the largest high - low at the first, middle and last target
-//          lost_motion   = the largest |B_i| at these three targets
-//
-// Sources: docs/formulas.md, Rules of positioning; the texts of the standards were not available.
-// The table of rules states the confidence of each.
+// Rules of positioning over the statistics of axis_statistics.h. Formulas and sources:
+// docs/formulas.md, Rules of positioning; the texts of the standards were not available. The table
+// of rules states the confidence of each.
 #include "nonio/math/positioning.h"
 
 #include <algorithm>
@@ -35,7 +19,7 @@ namespace {
 using Form = RuleForm;
 using Sure = Confidence;
 
-/// Declares a rule of ranges of mean +- k s; E and M exist since the editions with k = 2.
+/// E and M exist since the editions with k = 2.
 constexpr PositioningRule ranges(double k, std::string_view name, std::string_view title,
                                  std::size_t approaches, Confidence confidence) {
   return {name, title, Form::iso, k, k < 3.0, false, approaches, confidence};
@@ -123,8 +107,7 @@ std::vector<RuleValue> nmtba(const PositioningRule& rule, const AxisStatistics& 
       accuracy[minus ? 1 : 0].put(std::fabs(side.mean - o) + rule.k * side.s);
       repeatability[minus ? 1 : 0].put(rule.k * side.s);
     }
-  // The commanded position refers to the zero of the display, set by one reading; a subtracted
-  // offset is a mean.
+  // The commanded position refers to a zero set by one reading; a subtracted offset is a mean.
   RuleShare of_accuracy{true, 1.0, rule.k / 2.0, 0.0};
   if (rule.without_offset)
     of_accuracy.means = 2.0;
@@ -142,7 +125,7 @@ std::vector<RuleValue> nmtba(const PositioningRule& rule, const AxisStatistics& 
           {"+-repeatability-", repeatability[1].largest(), scatter}};
 }
 
-double spread(const AxisStatistics::Side& one) {  // a single reading has no spread
+double spread(const AxisStatistics::Side& one) {
   return one.n < 2 ? not_given : one.high - one.low;
 }
 
@@ -167,8 +150,7 @@ std::vector<RuleValue> raw(const AxisStatistics& axis) {
           {"B", B.largest(), share_of_reversal}};
 }
 
-// Returns the index of the target nearest to the middle of the travel; the lower one of two at
-// equal distance.
+// Of two targets at equal distance from the middle of the travel, the lower one is used.
 std::size_t middle_of(const AxisStatistics& axis) {
   const double middle = (axis.targets.front().target + axis.targets.back().target) / 2.0;
   std::size_t best = 0;
@@ -179,8 +161,8 @@ std::size_t middle_of(const AxisStatistics& axis) {
   return best;
 }
 
-// Returns the range of the first pass: the earliest reading of every target in one direction (+ if
-// it was measured). NaN unless all of them are from the same run.
+// The first pass consists of the earliest readings of one direction, + if it was measured. NaN
+// unless all of them are from the same run.
 double first_pass(const AxisStatistics& axis) {
   const auto whole = [&](auto side) {
     return std::all_of(axis.targets.begin(), axis.targets.end(), [&](const auto& t) {

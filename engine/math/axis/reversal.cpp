@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Classification of the reversal error of an axis.
-//   B_i = xm_i+ - xm_i-    reversal at target i, m or rad (ISO 230-2:2014 clause 2)
-//   does it vary?   F = [sum (B_i - B_mean)^2/(m - 1)] / [s+^2/n+ + s-^2/n-], level 1 %,
-//                   s of single readings about the means of their target and their pass
-//   does it exist?  t = B_mean/u(B_mean), level 1 %; u from the scatter of the run-wise differences
-//                   b_j (an error shared by a pass does not average out over targets), pooled with
-//                   the scatter of single readings unless the runs scatter more (when to pool:
-//                   T. A. Bancroft 1964, Biometrics 20, p. 427)
-// With one run, the runs have no scatter, and the spread of B_i over the targets is used as an
-// upper bound of it.
+// s is that of single readings about the means of their target and pass. u(B_mean) uses the
+// differences between runs, because an error shared by a pass does not average out over the
+// targets. With one run, the spread of B_i over the targets is an upper bound of u.
 #include "nonio/math/reversal.h"
 
 #include <algorithm>
@@ -25,12 +18,10 @@
 namespace nonio::math {
 namespace {
 
-// Runs are pooled with single readings unless they differ at this level; a pair of runs has only
-// one degree of freedom, so a stricter level is required.
-// docs/dev/constants.md, A3.
+// Runs are pooled with single readings above this p; a pair of runs has only one degree of freedom
+// (docs/dev/constants.md, A3).
 constexpr double pooling_level = 0.5, pooling_level_of_pair = 0.05;
-// Largest remainder after compensation by a single value, as a fraction of the largest |B_i|:
-// docs/dev/constants.md, A4.
+// Largest fraction of max |B_i| that one backlash value may leave: docs/dev/constants.md, A4.
 constexpr double tolerated_share = 0.5;
 constexpr double negligible = 1e-12;  // m or rad; smaller values are rounding errors
 
@@ -50,8 +41,7 @@ std::vector<double> means(const AxisTest& test, bool minus) {
   return out;
 }
 
-// Returns the mean over the targets of s+^2/n_i+ + s-^2/n_i- with its degrees of freedom, which are
-// 0 if the scatter of a direction cannot be estimated.
+// Mean over the targets of s+^2/n_i+ + s-^2/n_i-; 0 degrees of freedom without scatter.
 Estimate scatter_of_B_i(const AxisTest& test, const PassModel& model) {
   double per[2] = {0.0, 0.0};
   for (std::size_t i = 0; i < test.targets.size(); ++i) {
@@ -63,9 +53,8 @@ Estimate scatter_of_B_i(const AxisTest& test, const PassModel& model) {
   return {a + b, joined_dof(a, model.side[0].dof, b, model.side[1].dof)};
 }
 
-// Returns the variance of B_mean from the scatter of passes: from the runs with both directions if
-// there are at least two, otherwise from the passes of each direction. The degrees of freedom are 0
-// if a direction has fewer than two passes.
+// Uses the runs with both directions if there are at least two, otherwise the passes of each
+// direction. 0 degrees of freedom if a direction has fewer than two passes.
 Estimate scatter_of_passes(const PassModel& model) {
   std::vector<double> pairs, alone[2];
   for (std::size_t p = 0; p + 1 < model.passes.size(); p += 2) {
@@ -115,8 +104,8 @@ void fit_turn(const AxisTest& test, const std::vector<double>& plus,
     half_B.push_back((plus[i] - minus[i]) / 2.0);
     middle.push_back((plus[i] + minus[i]) / 2.0);
   }
-  // Reason for this limit: docs/dev/constants.md, A5.
-  constexpr double most = 0.5;  // smallest fraction of the variance that a sinusoid must explain
+  // Least fraction of the variance that a sinusoid must explain: docs/dev/constants.md, A5.
+  constexpr double most = 0.5;
   const Harmonic opposed = fit_harmonic(test.targets, half_B);
   const Harmonic concordant = fit_harmonic(test.targets, middle);
   if (!opposed.known || !concordant.known) return;

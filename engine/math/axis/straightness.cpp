@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Straightness about three reference lines.
-//   least squares   b = sum (x_i - xm) e_i / sum (x_i - xm)^2
-//   end points      b = (e_m - e_1)/(x_m - x_1)
-//   minimum zone    W(b) = max (e_i - b x_i) - min (e_i - b x_i) is convex and piecewise linear in b;
-//                   its corners are the slopes of the edges of the two convex hulls, so that the
-//                   smallest W is at one of them: an edge on one side, a point between its ends on
-//                   the other
+// The zone width W(b) = max (e_i - b x_i) - min (e_i - b x_i) is convex and piecewise linear in b.
+// Its corners, one of which is the minimum, are the slopes of the edges of the two convex hulls.
 #include "nonio/math/straightness.h"
 
 #include <array>

@@ -1,18 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// VDI/DGQ 3441: statistical testing of the operational and positional accuracy of machine tools.
-// At target j, with the means xm+, xm- and the standard deviations S+, S- of the two directions:
-//
-//   xs_j = (xm_j+ + xm_j-)/2;  S_j = (S_j+ + S_j-)/2                                   m or rad
-//   U_j  = |xm_j+ - xm_j-|     reversal; U_max, U_mean over the targets, without sign
-//   Ps_j = 6 S_j               scatter;  Ps_max, Ps_mean
-//   Pa   = max xs_j - min xs_j                                         (M of ISO 230-2)
-//   P    = max(xs_j + (U_j + Ps_j)/2) - min(xs_j - (U_j + Ps_j)/2)
-//   one direction: P+ = max(xm+ + 3 S+) - min(xm+ - 3 S+), Pa+ = max xm+ - min xm+
-//   S    = sqrt(sum (x - xm)^2/(n - 1)), or from the range: S = (max x - min x)/d_n
-//
-// Source: VDI/DGQ 3441:1977. The text was not available; see docs/formulas.md. Note that S is the
-// mean of both directions, not pooled: sqrt((S+^2 + S-^2)/2) is another number.
+// S of VDI/DGQ 3441 is the mean of both directions, not the pooled sqrt((S+^2 + S-^2)/2).
 #include "nonio/math/vdi3441.h"
 
 #include <algorithm>
@@ -25,9 +13,8 @@
 namespace nonio::math {
 namespace {
 
-// Mean range of n normal values in units of their standard deviation, the integral of
-// 1 - Phi^n - (1 - Phi)^n (L. H. C. Tippett 1925, Biometrika 17, p. 364); tests/unit/math computes
-// it again. Tables print three digits: 1.128, 1.693, 2.059, 2.326, ...
+// Mean range of n normal values in units of their standard deviation: the integral of 1 - Phi^n -
+// (1 - Phi)^n (L. H. C. Tippett 1925, Biometrika 17, p. 364).
 constexpr std::array<double, 11> d_n = {
     not_given,      not_given,      1.128379167096, 1.692568750643, 2.058750746008, 2.325928947281,
     2.534412721223, 2.704356751214, 2.847200612091, 2.970026324418, 3.077505461670};
@@ -54,7 +41,7 @@ double extent(const std::vector<double>& x, const std::vector<double>& h) {
   return largest(high) + largest(low);
 }
 
-struct Sided {  // values of one direction, over the targets that were approached in it
+struct Sided {
   std::vector<double> mean, band, flat;
   void put(double x, double S) {
     mean.push_back(x);

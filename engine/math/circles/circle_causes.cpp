@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The causes of a circular path. Both directions are compared at the same angles: of their mean s =
-// (ccw + cw)/2 and half difference h = (ccw - cw)/2, s contains the causes that do not depend on
-// the direction of travel, h those that do. The noise of s and h is estimated separately, because a
-// shape that the model does not contain is in s, equally in both directions, and is not noise of h.
-// Decisions of the analysis that are based on the fit: docs/dev/constants.md, A12 (shares of the
-// causes); docs/dev/constants.md, A13 (spikes); docs/dev/constants.md, A14 (causes that cannot be
-// separated).
+// The mean s and the half difference h of both directions are fitted at equal angles, each with
+// noise of its own: a shape that the model does not contain is in s, equally in both directions,
+// and is not noise of h.
+// Decisions based on the fit: docs/dev/constants.md, A12 (shares of the causes);
+// docs/dev/constants.md, A14 (causes that cannot be separated).
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -22,8 +20,8 @@ namespace {
 constexpr double bin_width = full_turn / 360.0;
 constexpr int bins_of_turn = 360;
 constexpr std::size_t at_least = 24;  // fewest bins; more if the number of causes requires it
-// fraction of the squared norm of a column that is independent of the other columns; the cause is
-// not fitted if the fraction is not above this limit
+// Least fraction of the squared norm of a column that is independent of the other columns;
+// otherwise the cause is not fitted.
 constexpr double singular = 1e-10;
 
 std::size_t index_of(Cause c) { return static_cast<std::size_t>(c); }
@@ -31,7 +29,6 @@ double sign_of(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
 
 double within_turn(double t) { return t - full_turn * std::floor(t / full_turn); }
 
-/// Means of the readings within each degree, by direction of travel.
 struct Bins {
   struct Bin {
     double n = 0.0, deviation = 0.0, angle = 0.0;
@@ -60,8 +57,7 @@ struct Bins {
   }
 };
 
-/// Rows with one kind of noise: the mean of both directions, half their difference, or one
-/// direction.
+/// Rows of the mean of both directions, of half their difference, or of one direction.
 struct Block {
   std::vector<int> place;
   Eigen::MatrixXd X;
@@ -130,8 +126,7 @@ class Fit {
     for (Eigen::Index k = 0; k < block.X.cols(); ++k) {
       double largest = 0.0;
       for (const Block& other : blocks_) largest = std::max(largest, other.X.col(k).norm());
-      // A remainder caused by slightly different angles of the two directions is not treated as a
-      // column.
+      // A column that remains only because the angles of both directions differ is omitted.
       if (block.X.col(k).norm() > 0.1 * largest) here.push_back(k);
     }
     Eigen::MatrixXd X(block.X.rows(), at(here.size()));
@@ -158,8 +153,7 @@ class Fit {
     const Eigen::Index k = at(columns_.size());
     Eigen::MatrixXd plain(rows, k), white(rows, k);
     Eigen::VectorXd y(rows);
-    // The whitening, applied to unit vectors, gives its matrix, which the derivatives by each mean
-    // need.
+    // The whitened unit vectors are the matrix of the filter, which the derivatives need.
     std::vector<Eigen::MatrixXd> filters;
     Eigen::Index row = 0;
     for (const Block& b : blocks_) {
@@ -248,7 +242,6 @@ class Fit {
     out_.s_reading = scatter_of_readings();
   }
 
-  /// Returns the standard deviation of the residuals of readings in the fit.
   double scatter_of_readings() const {
     double squares = 0.0, n = 0.0;
     for (const CircleReading& r : readings_) {

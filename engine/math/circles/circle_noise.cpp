@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Bias of the largest value of a path by noise. The residuals of the fit serve as noise with the
-// right correlation: they are added to the fitted path, rotated by fractions of the turn.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +10,6 @@ namespace nonio::math {
 CircleNoise::CircleNoise(std::span<const CircleReading> readings, const CircleModel& model,
                          const CauseFit& fit)
     : truth_(readings.begin(), readings.end()), from_(readings.size()) {
-  // Sort the readings of each direction and run by angle.
   std::vector<std::size_t> order(readings.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   const auto group = [&](std::size_t i) {
@@ -25,7 +21,7 @@ CircleNoise::CircleNoise(std::span<const CircleReading> readings, const CircleMo
   for (std::size_t first = 0; first < order.size();) {
     std::size_t end = first;
     std::vector<double> residuals;
-    std::vector<std::size_t> place;  // index of each reading among the residuals
+    std::vector<std::size_t> place;
     for (; end < order.size() && group(order[end]) == group(order[first]); ++end) {
       const std::size_t i = order[end];
       place.push_back(residuals.size());

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Circles of a whole path: least-squares circle, minimum zone, hysteresis.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -25,8 +23,7 @@ double radial(const CircleReading& r, double R, const Centre& c) {
   return square / (std::sqrt(R * R + square) + R);
 }
 
-/// Finds the best center of the zone for a few readings only: nested golden sections of a function
-/// that is convex except for terms of second order.
+/// Nested golden sections, because the width is convex except for terms of second order.
 class Few {
  public:
   Few(PathReadings all, const std::vector<std::size_t>& which, double R)

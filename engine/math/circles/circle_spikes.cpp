@@ -21,8 +21,7 @@ constexpr double begins = 2.24, goes_on = 1.0, wide = 2.0 * full_turn / 360.0;
 // Sum and number of residuals by angle since the reversal, rad.
 using Residuals = std::map<double, std::pair<double, double>>;
 
-/// Returns the sum and the number of the residuals of one direction by angle, for the angles
-/// between `from` and `to`, rad, after a reversal.
+/// Residuals of one direction at angles between `from` and `to`, rad, after a reversal.
 Residuals behind(std::span<const CircleReading> readings, const CircleModel& model,
                  const CauseFit& fit, int direction, double reversal, double from, double to) {
   Residuals out;
@@ -68,16 +67,14 @@ std::vector<Spike> reversal_spikes(std::span<const CircleReading> readings,
 
 namespace {
 
-/// Returns the mean residual over the angles, m; NaN without angles.
 double mean_of(const Residuals& residuals) {
   double sum = 0.0, n = 0.0;
   for (const auto& [way, of] : residuals) sum += of.first / of.second, n += 1.0;
   return sum / n;
 }
 
-/// Returns the scatter of differences of residuals between windows that have one window between
-/// them: the standard deviation for normal noise, m, computed from the median, because long spikes
-/// affect only some windows. 0 if there are no such windows.
+/// Standard deviation of differences of residuals between windows that have one window between
+/// them, m; 0 without such windows. From the median, because long spikes affect only some windows.
 double scatter_of_windows(const CauseFit& fit) {
   std::map<std::pair<int, int>, std::pair<double, double>> windows;
   for (const auto& bin : fit.bins) {
@@ -95,10 +92,9 @@ double scatter_of_windows(const CauseFit& fit) {
   return *middle / normal_quartile;
 }
 
-/// Returns the remainder of the spikes after the omitted zone, of the axis for which it is larger.
-/// The remainder of an axis combines both directions and both reversals: the difference between the
-/// mean residual in the next window and that two windows later, in u of such differences. 0 if no
-/// difference can be computed.
+/// Returns the remainder of the spikes after the omitted zone for the axis with the larger one: the
+/// difference between the mean residuals of the next window and of that two windows later, over
+/// both directions and reversals, in u of such differences. 0 if there is no difference.
 double left_over(std::span<const CircleReading> readings, const CircleModel& model,
                  const CauseFit& fit) {
   const double edge = model.leave_out, scatter = scatter_of_windows(fit);
@@ -131,7 +127,7 @@ Expected<CauseFit> fit_causes_without_spikes(std::span<const CircleReading> read
     CircleModel wider = model;
     wider.leave_out += step;
     auto next = fit_causes(readings, wider);
-    if (!next) break;  // too few readings remain
+    if (!next) break;
     model = wider, fit = std::move(next);
   }
   return fit;

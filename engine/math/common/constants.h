@@ -7,11 +7,10 @@
 namespace nonio::math {
 
 inline constexpr double full_turn = 2.0 * std::numbers::pi;  // rad
-// Reason for this level: docs/dev/constants.md, A1.
-inline constexpr double significance = 0.01;  // level of the tests of findings
-inline constexpr double rounding = 1e-10;     // m or rad; smaller than the scatter of any machine
-/// Standard uncertainty of a quantity with a rectangular distribution over a full range of 1, and
-/// over +-1.
+// Level of the tests of findings: docs/dev/constants.md, A1.
+inline constexpr double significance = 0.01;
+inline constexpr double rounding = 1e-10;  // m or rad; smaller than the scatter of any machine
+/// Standard uncertainty of a rectangular distribution over a full range of 1, and over +-1.
 inline constexpr double of_full_range = std::numbers::inv_sqrt3 / 2.0,
                         of_limit = std::numbers::inv_sqrt3;
 // largest accepted coordinate, m; adjacent doubles of this size differ by about 0.1 nm

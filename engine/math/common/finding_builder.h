@@ -9,7 +9,7 @@
 
 namespace nonio::math {
 
-/// Builds a finding about an axis, with quantities by its kind (linear or rotary).
+/// `rotary` selects the quantities of deviations, positions and slopes.
 class FindingBuilder {
  public:
   FindingBuilder(std::string id, bool attention, bool rotary) : rotary_(rotary) {

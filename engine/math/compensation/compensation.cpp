@@ -55,7 +55,6 @@ std::int64_t power_up(std::int64_t units) {
   return p;
 }
 
-// The curve's range, in integer units of the grid.
 struct Plan {
   const GridRule& rule;
   std::int64_t from, to, origin;
@@ -73,7 +72,7 @@ struct Plan {
     return points(step) <= static_cast<std::int64_t>(rule.most) &&
            (!rule.turn || full % step == 0) && (!rule.power_of_two || (step & (step - 1)) == 0);
   }
-  // Returns the smallest step not below this one that the control allows.
+  // Returns the smallest step, not below the argument, that the control accepts.
   std::int64_t allowed(std::int64_t step) const {
     if (rule.power_of_two) return power_up(step);
     if (!rule.turn) return step;
@@ -120,7 +119,6 @@ Expected<std::int64_t> wished_step(const Plan& plan) {
   return step;
 }
 
-// Returns a step for interpolation, if no coarse grid contains the measured positions.
 Expected<std::int64_t> interpolating_step(const Plan& plan, std::int64_t smallest_gap,
                                           std::int64_t mean_gap) {
   const GridRule& rule = plan.rule;
@@ -132,10 +130,9 @@ Expected<std::int64_t> interpolating_step(const Plan& plan, std::int64_t smalles
   return fail(plan.too_many(std::min(step, plan.allowed(std::max<std::int64_t>(1, mean_gap)))));
 }
 
-// Returns the step of targets that are even to within 10 units of the grid, because they were
-// rounded. The step is rounded up so that there are as many points as targets. 0 if the targets are
-// not evenly spaced, the grid does not begin at the first one, or the rule is for a turn or powers
-// of two.
+// Targets are even within 10 units of the grid, because they were rounded; the step is rounded up
+// so that there are as many points as targets. 0 if they are not even, if the grid does not begin
+// at the first one, or for a turn or powers of two.
 std::int64_t even_step(const Plan& plan, const std::vector<std::int64_t>& knots) {
   const auto gaps = static_cast<std::int64_t>(knots.size() - 1);
   const std::int64_t span = knots.back() - knots.front();

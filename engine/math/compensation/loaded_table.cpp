@@ -7,8 +7,7 @@
 namespace nonio::math {
 namespace {
 
-/// The interval of points that contains a position; `part`: fraction of the interval from the lower
-/// point.
+/// `part`: distance from point `below`, as a fraction of the interval.
 struct Place {
   std::size_t below = 0;
   double part = 0.0;

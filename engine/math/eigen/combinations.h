@@ -9,14 +9,13 @@
 
 namespace nonio::math {
 
-/// A combination of unknowns that changes no reading: indices and coefficients of the unknowns, the
-/// first coefficient 1.
+/// A combination that changes no reading: indices and coefficients of unknowns, the first one 1.
 using OpenCombination = std::vector<std::pair<std::size_t, double>>;
 
 /// Returns the combinations that the readings do not determine, by elimination from the left: a
-/// column without a pivot is a linear combination of the pivot columns before it. `told`: unit
-/// vectors of the determined directions, as columns. Coefficients up to `least` are treated as 0.
-/// An unknown on which no reading depends is a combination by itself.
+/// column without a pivot is a linear combination of the pivot columns before it. The columns of
+/// the argument are unit vectors of the determined directions. Coefficients up to `least` are
+/// treated as 0. An unknown on which no reading depends is a combination by itself.
 inline std::vector<OpenCombination> open_combinations(const Eigen::MatrixXd& told, double least) {
   Eigen::MatrixXd R = told.transpose();
   std::vector<Eigen::Index> pivots;

@@ -20,45 +20,34 @@ extern template LLT<MatrixXd>& LLT<MatrixXd>::compute(const EigenBase<MatrixXd>&
 
 namespace nonio::math {
 
-/// Eigenvalues in ascending order, and the unit eigenvectors as columns in the same order.
+/// Eigenvalues in ascending order, and their unit eigenvectors as columns.
 struct Spectrum {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;
 };
 
-/// Returns the eigenvalues and eigenvectors of a symmetric matrix. Not inline, so that its loops
-/// are compiled only in one file: -O3 makes them 1.7 times as fast.
+/// Not inline, so that its loops are compiled only in one file: -O3 makes them 1.7 times as fast.
 Spectrum spectrum(const Eigen::MatrixXd& symmetric);
 
-/// Products and solutions of dense matrices, compiled once in statistics/dense.cpp. A product
-/// written with operators is compiled again for each combination of blocks and transposes, and in
-/// each source. Functions of a vector have different names, so that they also accept vector
-/// expressions.
+/// A product written with operators is compiled again for each combination of blocks and transposes
+/// in each source. Functions of a vector have other names, to accept vector expressions.
 Eigen::MatrixXd product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 Eigen::VectorXd times(const Eigen::MatrixXd& A, const Eigen::VectorXd& x);
-/// Return A' B, or A' x.
 Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 Eigen::VectorXd transposed_times(const Eigen::MatrixXd& A, const Eigen::VectorXd& x);
-/// Returns A B'.
 Eigen::MatrixXd product_transposed(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
-/// Returns B' S B.
 Eigen::MatrixXd quadratic_form(const Eigen::MatrixXd& S, const Eigen::MatrixXd& B);
-/// Returns y - A x.
 Eigen::VectorXd residual(const Eigen::VectorXd& y, const Eigen::MatrixXd& A,
                          const Eigen::VectorXd& x);
-/// Returns |y - A x|^2.
 double squared_residual(const Eigen::VectorXd& y, const Eigen::MatrixXd& A,
                         const Eigen::VectorXd& x);
-/// Returns y - Q Q' y: the part of each column of y that is orthogonal to the orthonormal columns
-/// of Q.
+/// Returns y - Q Q' y, for orthonormal columns of Q.
 Eigen::MatrixXd orthogonal_part(const Eigen::MatrixXd& Q, const Eigen::MatrixXd& y);
 Eigen::VectorXd orthogonal_part(const Eigen::MatrixXd& Q, const Eigen::VectorXd& y);
-/// Replaces y by its orthogonal part y - Q Q' y.
+/// Replaces y by y - Q Q' y.
 void take_out(const Eigen::MatrixXd& Q, Eigen::MatrixXd& y);
 void take_out(const Eigen::MatrixXd& Q, Eigen::VectorXd& y);
-/// Returns U diag(d).
 Eigen::MatrixXd scaled_columns(const Eigen::MatrixXd& U, const Eigen::VectorXd& d);
-/// Returns diag(d) U.
 Eigen::MatrixXd scaled_rows(const Eigen::VectorXd& d, const Eigen::MatrixXd& U);
 
 Eigen::VectorXd solution(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr,
@@ -71,19 +60,14 @@ Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& y
 /// Returns L^-1 y, with N = L L'.
 Eigen::VectorXd whitened(const Eigen::LLT<Eigen::MatrixXd>& N, const Eigen::VectorXd& y);
 Eigen::MatrixXd whitened(const Eigen::LLT<Eigen::MatrixXd>& N, const Eigen::MatrixXd& Y);
-/// Return the inverse of the decomposed matrix.
 Eigen::MatrixXd inverse(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr);
 Eigen::MatrixXd inverse(const Eigen::LDLT<Eigen::MatrixXd>& ldlt);
-/// Returns the Moore-Penrose pseudo-inverse, with the rank of the decomposition.
 Eigen::MatrixXd pseudo_inverse(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr);
-/// Returns the inverse of a square matrix, by elimination.
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& A);
 Eigen::MatrixXd inverse_of_upper(const Eigen::MatrixXd& R);
-/// Returns R^-1 y for an upper triangular R.
 Eigen::VectorXd solution_of_upper(const Eigen::MatrixXd& R, const Eigen::VectorXd& y);
 Eigen::MatrixXd solutions_of_upper(const Eigen::MatrixXd& R, const Eigen::MatrixXd& Y);
 
-/// Returns the first columns of the orthogonal factor of a decomposition.
 Eigen::MatrixXd orthonormal(const Eigen::HouseholderQR<Eigen::MatrixXd>& qr, Eigen::Index columns);
 Eigen::MatrixXd orthonormal(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr,
                             Eigen::Index columns);
@@ -92,12 +76,10 @@ Eigen::VectorXd rotated(const Eigen::HouseholderQR<Eigen::MatrixXd>& qr, const E
 /// Returns the upper triangle of the first `rows` rows of a decomposition.
 Eigen::MatrixXd upper(const Eigen::HouseholderQR<Eigen::MatrixXd>& qr, Eigen::Index rows);
 
-/// Return copies of columns: the first `count`, or `count` from `first` on.
 Eigen::MatrixXd left_columns(const Eigen::MatrixXd& A, Eigen::Index count);
 Eigen::MatrixXd columns(const Eigen::MatrixXd& A, Eigen::Index first, Eigen::Index count);
 Eigen::MatrixXd with_column(const Eigen::MatrixXd& A, const Eigen::VectorXd& y);
 
-/// Converts a count or index to the type of Eigen.
 inline Eigen::Index at(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
 }  // namespace nonio::math

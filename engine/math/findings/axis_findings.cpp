@@ -27,9 +27,8 @@ bool is_reversal_known(double mean, double U) {
 
 namespace {
 
-// Returns the finding for a positive reversal. It has no specific cause: clearances and friction,
-// or an active backlash value that is too large. The latter is named only if the active value is
-// stated.
+// A positive reversal is due to clearances and friction, or to an active backlash value that is too
+// large. The latter is named only if the active value is stated.
 const char* positive_reversal(std::optional<double> active) {
   return !active         ? "reversal.positive"
          : *active > 0.0 ? "reversal.over-compensated"
@@ -82,8 +81,7 @@ void reversal_findings(const AxisTest& test, std::vector<Finding>& findings,
 }
 
 namespace {
-/// Reports an offset common to all targets, which does not affect E, A and M, because these are
-/// ranges.
+/// An offset common to all targets does not affect E, A and M, because these are ranges.
 void common_offset(const AxisTest& test, std::vector<Finding>& findings) {
   double low = INFINITY, high = -INFINITY, sum = 0.0, n = 0.0;
   for (std::size_t i = 0; i < test.targets.size(); ++i)

@@ -1,24 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Drift: passes that shift in the same direction from run to run.
-//   o_j, q_j   offset and slope of run j (mean of its passes; drift.h), m and m/m
-//   scatter    the slope of the common line through the passes exceeds the scatter within them, t
-//              test at 0.2 %: with this level for each of both parts, fewer than 1 % of all tests
-// and one of
-//   trend      line through o_j (or q_j) over the run number, t test at 1 % with n - 2 degrees of
-//              freedom, so that offsets that are random from run to run are not a drift
-//   one way    at least five runs, each further in the same direction than the one before (by
-//              chance 2/n!, 1.7 % for n = 5), and the line through the single passes significant
-//              at 1 %: a machine that warms up does not drift in a straight line
-//   within     offsets, at least two runs: both directions agree, and the readings also move within
-//              the passes, which the reversal shows along the axis (0.5 to 1.5 of the drift, t test
-//              at 1 %). A zero that was reset between two runs does not have this effect
-//   slopes     both directions agree, and for more than two runs, line through the single passes at
-//              1 %. A zero that was reset does not tilt a pass
-// and  the shift from the first run to the last exceeds the scatter of a single reading
-// A drift of less than a fifth of A is information, because it is already part of the scatter; its
-// size is extrapolated to five runs, because with fewer runs a larger part of it is in the
-// reversal. Parallel: the whole travel shifts. Wedge: the far end shifts, the near end does not.
+// docs/dev/estimators.md describes the tests. A drift of less than a fifth of A is information,
+// because it is already part of the scatter; its size is extrapolated to five runs, because with
+// fewer runs a larger part of the drift is in the reversal.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -78,8 +62,7 @@ void drift_findings(const AxisTest& test, std::vector<Finding>& findings) {
       wedge_found(drift) && std::fabs(wedge) > scatter && std::fabs(wedge) >= 0.25 * largest;
   const bool is_parallel = parallel_found(drift) && std::fabs(shift.total) > scatter &&
                            (!is_wedge || common > std::max(scatter, 0.5 * std::fabs(wedge)));
-  // The directions of a run follow one another, so the mean shift over half a run is part of
-  // B_mean.
+  // The directions of a run follow one another, so half of the shift per run is part of B_mean.
   const double in_B = std::fabs(shift.per_run) / 2.0;
   const auto finding = [&](const char* id, double total, const Drift::Part& part, double per_run) {
     const double size = std::max(std::fabs(total), steps_of_five_runs * std::fabs(per_run));

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Compares limits that a manifest states with the readings, and uses the larger ones.
 #include <algorithm>
 #include <cmath>
 
@@ -12,8 +10,7 @@ namespace nonio::math {
 
 namespace {
 
-/// Returns the largest drift from the first run to the last among the findings about drift, m or
-/// rad; 0 if there is no such finding.
+/// Returns the largest total drift of the findings about drift, m or rad; 0 without findings.
 double drift_of(const Observations& o) {
   if (o.axes.empty() || o.axes.front().approach.empty()) return 0.0;
   std::vector<Finding> found;
@@ -39,8 +36,7 @@ double duration_of(const Observations& o) {
   return last > first ? last - first : 0.0;
 }
 
-/// Replaces a stated limit by the value found in the readings if that is larger, and adds a
-/// finding.
+/// Uses the value found in the readings if it is larger than the stated limit, and reports this.
 void hold(std::optional<double>& stated, double found, const char* key, Quantity quantity,
           std::vector<Finding>& findings) {
   constexpr double slack = 1e-9;  // relative tolerance for rounding in files

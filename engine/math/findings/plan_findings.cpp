@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Differences between a campaign and the test plan of ISO 230-2:2014 (clauses on tests for linear
-// and rotary axes):
+// Differences of a campaign from the test plan of ISO 230-2:2014 for linear and rotary axes:
 //   linear to 2 m   5 targets per meter, at least 5; 5 approaches from each direction
 //   linear above    the whole travel once, targets every 250 mm; 2 m of it by the full test
 //   rotary          3, 5, 8 targets for travels up to 90, 180, 360 deg; 0, 90, 180, 270 among them
@@ -29,7 +28,7 @@ bool is_long(const AxisTest& test) {
 std::size_t wanted_targets(const AxisTest& test) {
   const double L = test.length();
   const auto whole = [](double x) {
-    constexpr double most = 1e9;  // bound for very large lengths
+    constexpr double most = 1e9;
     return static_cast<std::size_t>(std::min(most, std::ceil(x - 1e-9)));
   };
   if (test.rotary) return static_cast<std::size_t>(rotary_points(L));
@@ -53,8 +52,7 @@ bool has_full_test(const AxisTest& test) {
   return false;
 }
 
-// Returns whether four or more targets are evenly spaced within rounding; a plan that varies by 1 %
-// is uneven.
+// Targets are even within rounding; a plan that varies by 1 % is uneven.
 bool even(const AxisTest& test) {
   constexpr double rounding = 5e-4;  // tolerance, as a fraction of an interval
   const std::size_t m = test.targets.size();
@@ -127,7 +125,6 @@ void counts(const AxisTest& test, const Observations& o, std::vector<Finding>& f
                            .done());
 }
 
-// Reports targets outside of the stated travel, because either the targets or the travel are wrong.
 void outside_travel(const AxisTest& test, const Axis* axis, std::vector<Finding>& findings) {
   if (axis == nullptr || !axis->travel) return;
   const auto [from, to] = *axis->travel;

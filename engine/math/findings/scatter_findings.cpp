@@ -1,20 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Scatter of the two directions, suspect readings, and a single outlying target.
-//
-// repeatability.asymmetric: F tests between the directions, two-sided, of the scatter of single
-//   readings (about the means of their target and pass) and of the scatter of the passes (shared by
-//   their readings; P - 1 degrees of freedom, whatever the number of targets). 0.5 % each,
-//   1 % in all; the ratio of the whole standard deviations >= 1.5; both also without the largest
-//   residual of each direction.
-// reading.suspect: externally studentized residual t = e/(s sqrt(1 - h)), s without that reading,
-//   of the model of pass_model.h; R. D. Cook, S. Weisberg 1982, Residuals and Influence in
-//   Regression, section 2.1. 1 % over all readings (Bonferroni). At least three readings at the
-//   target.
-// target.worst: q_i = distance of the mean at i from the line between its neighbors, scaled to the
-//   variance of one mean. A single outlying target gives the pattern (-w, 1, -w) in q; its height
-//   is compared with the q_j that it does not affect: t, 1 % over all targets. It must also exceed
-//   four times its u by the scatter of the readings. At least five targets.
+// docs/dev/estimators.md describes the tests. Externally studentized residuals: R. D. Cook, S.
+// Weisberg 1982, Residuals and Influence in Regression, section 2.1.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -118,7 +105,7 @@ struct Suspect {
   double t = 0.0, p = 1.0, expected = 0.0;
 };
 
-struct Spread {  // spread of the targets of a pass about their middle
+struct Spread {
   double n = 0, zz = 0;
 };
 
@@ -221,7 +208,7 @@ void worst_target_finding(const AxisTest& test, std::vector<Finding>& findings) 
   const Worst worst = worst_of(curve);
   if (!significant(worst.p, significance) || std::fabs(worst.height) < 10.0 * rounding) return;
   const PassModel m = fit_passes(test, false);
-  double variance = 0.0;  // variance of the mean of a target, estimated from the readings
+  double variance = 0.0;
   for (const auto& side : m.side)
     if (side.dof > 0.0 && side.passes > 0)
       variance +=

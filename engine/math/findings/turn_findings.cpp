@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Tests whether the deviation of a rotary axis repeats after one turn.
-//   g_p   mean over the pairs of targets one turn apart of x(later) - x(earlier), both readings of
-//         pass p (errors shared by a pass cancel), rad
-//   t     mean of the two directions' mean g relative to the scatter of g_p about them; level 1 %,
-//         degrees of freedom: passes minus directions. A drift within the passes has opposite signs
-//         in the two directions and cancels as well.
-// With one pass in each direction the scatter is not known, and nothing is reported.
+// Errors shared by a pass cancel in the difference of two readings of the pass one turn apart. A
+// drift within the passes has opposite signs in the two directions and cancels as well. With one
+// pass in each direction the scatter is not known, and nothing is reported.
 #include <cmath>
 #include <map>
 #include <vector>
@@ -37,7 +33,7 @@ std::vector<Pair> pairs_a_turn_apart(const AxisTest& test) {
   return pairs;
 }
 
-// Returns g_p of the passes of one direction.
+// Returns the mean of x(later) - x(earlier), rad, of each pass of one direction.
 std::vector<double> gaps(const AxisTest& test, const std::vector<Pair>& pairs, bool minus) {
   struct Sum {
     double sum = 0.0, n = 0.0;

@@ -18,13 +18,11 @@ constexpr double largest_gap = full_turn / 3.0;
 constexpr double most_inflated = 2.0;
 constexpr std::size_t fewest_for_curve = 5, fewest_for_sinusoid = 10;
 
-/// Intermediate results for one test.
 struct Following {
   const AxisTest& test;
   RunComponents components;
   FollowedAxis out{};
-  std::vector<TargetWeights> weights{};  ///< weights of each quantity except ln_s
-  /// Periods of the sinusoids that are fitted in addition to a line or polynomial.
+  std::vector<TargetWeights> weights{};
   std::vector<double> periods{};
 };
 
@@ -52,8 +50,7 @@ void add_curve(Following& work) {
   add_followed(work, "curve_3", deviation_along(test), of_means(test, curve.row(3)));
 }
 
-/// Adds the sinusoid of this period, if the targets determine it. others: columns that are fitted
-/// together with it.
+/// `others`: columns that are fitted together with the sinusoid.
 void add_sinusoid(Following& work, const std::string& name, double period,
                   const Eigen::MatrixXd& others) {
   const AxisTest& test = work.test;
@@ -101,8 +98,6 @@ void put_uncertainties(Following& work) {
   for (std::size_t i = 0; i < n; ++i) work.out.quantities[i].u = std::sqrt(C[i * n + i]);
 }
 
-/// Computes the data for comparisons with campaigns that have other targets, and stores them in
-/// `work.out`.
 void put_other_targets(Following& work) {
   OtherTargets to;
   for (const Followed& f : work.out.quantities) to.of_readings.push_back(f.u * f.u);
@@ -114,7 +109,6 @@ void put_other_targets(Following& work) {
   work.out.other_targets = std::move(to);
 }
 
-/// Adds the contributions to the uncertainty of the scale that the manifest states.
 void of_the_scale(Following& work, const Campaign& c, const std::string& name,
                   std::optional<double> material) {
   auto& all = work.out.quantities;

@@ -15,7 +15,6 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd;
 using RunPart = RunComponents::Part;
 
-/// Number of readings of one pass, and the moments of their positions.
 struct PassExtent {
   double n = 0.0, z = 0.0, zz = 0.0;
   double spread() const { return n > 0.0 ? zz - z * z / n : 0.0; }
@@ -33,15 +32,13 @@ std::vector<PassExtent> pass_extents(const AxisTest& test, const PassModel& pass
 
 double squared(double x) { return x * x; }
 
-/// Computes the variance component from values of the runs; noise: contribution of single readings
-/// to their variance.
+/// `noise`: contribution of single readings to the variance of the values.
 RunPart run_part(const std::vector<double>& values, double noise) {
   const double s = standard_deviation(values);
   return {std::max(0.0, s * s - noise), noise, s * s};
 }
 
-/// Offsets and slopes of the complete runs, and the mean contribution of single readings to their
-/// variance.
+/// Values of the complete runs. `noise`: mean contribution of single readings to their variance.
 struct RunValues {
   std::vector<double> shared_offset, own_offset, shared_slope, own_slope;
   double offset_noise = 0.0, slope_noise = 0.0;
@@ -75,13 +72,11 @@ RunValues run_values(const RunComponents& c, const std::vector<PassExtent>& exte
 
 /// Effects of correlated adjacent readings on a pass of m readings from which a line is subtracted.
 struct Alike {
-  double lag1 = 0.0;  ///< expected lag-1 correlation of the residuals
-  /// residual variance per degree of freedom, relative to that of a reading
-  double residual = 1.0;
+  double lag1 = 0.0;      ///< expected lag-1 correlation of the residuals
+  double residual = 1.0;  ///< residual variance per degree of freedom, relative to a reading
   /// variances of mean and slope, relative to those with independent readings
   double offset = 1.0, slope = 1.0;
-  /// degrees of freedom of the residuals, relative to those with independent readings
-  double dof = 1.0;
+  double dof = 1.0;  ///< degrees of freedom, relative to those of independent readings
 };
 
 Alike alike(Index m, double r) {
@@ -101,8 +96,7 @@ Alike alike(Index m, double r) {
           squared(e.trace()) / e.squaredNorm() / (n - 2.0)};
 }
 
-/// Returns the lag-1 correlation of the residuals if it is significant (one-sided 5 %); otherwise
-/// nothing.
+/// Returns nothing unless the lag-1 correlation is significant (one-sided 5 %).
 std::optional<double> lag_of_residuals(const PassModel& m, const Alike& white) {
   std::vector<double> before(m.passes.size(), std::numeric_limits<double>::quiet_NaN());
   double products = 0.0, squares = 0.0, pairs = 0.0, readings = 0.0;
@@ -120,9 +114,8 @@ std::optional<double> lag_of_residuals(const PassModel& m, const Alike& white) {
   return lag;
 }
 
-/// Finds the correlation of adjacent readings that explains the lag-1 correlation of the residuals,
-/// stores it in `c`, and returns its effects. Nothing is stored if the lag-1 correlation is not
-/// significant, or with fewer than four targets.
+/// Stores in `c` the correlation of adjacent readings that explains the lag-1 correlation of the
+/// residuals (0 if not significant or with fewer than four targets), and returns its effects.
 Alike find_neighbours(RunComponents& c, std::size_t targets) {
   constexpr double most = 0.95;
   constexpr std::size_t longest = 80;  // with more targets the effect of the ends is negligible
@@ -137,7 +130,6 @@ Alike find_neighbours(RunComponents& c, std::size_t targets) {
   return alike(m, c.neighbours);
 }
 
-/// Sums over each pass of the weights, and of the weights times the distance from the middle.
 struct PassSums {
   std::vector<double> offset, slope;
 };
@@ -157,8 +149,7 @@ PassSums pass_sums(const AxisTest& test, const PassModel& m, const TargetWeights
   return out;
 }
 
-/// Returns the covariance of two linear functions due to single readings, if adjacent readings are
-/// independent.
+/// Contribution of single readings, if adjacent readings are independent.
 double covariance_of_singles(const AxisTest& test, const RunComponents& c, const TargetWeights& a,
                              const TargetWeights& b) {
   double sum = 0.0;
@@ -168,13 +159,12 @@ double covariance_of_singles(const AxisTest& test, const RunComponents& c, const
   return sum;
 }
 
-/// Returns the covariance of two linear functions due to single readings, if readings k and l of a
-/// pass have the correlation r^|k - l|.
+/// Contribution of single readings, if readings k and l of a pass have the correlation r^|k - l|.
 double covariance_of_neighbours(const RunComponents& c, const TargetWeights& a,
                                 const TargetWeights& b) {
   const PassModel& m = c.passes;
   double sum = 0.0;
-  std::vector<double> tail_a(m.passes.size(), 0.0), tail_b = tail_a;  // running sums of each pass
+  std::vector<double> tail_a(m.passes.size(), 0.0), tail_b = tail_a;
   for (std::size_t k = 0; k < m.pass.size(); ++k) {
     const double wa = a[place_of(m, k)], wb = b[place_of(m, k)];
     double &ta = tail_a[m.pass[k]], &tb = tail_b[m.pass[k]];

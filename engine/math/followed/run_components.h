@@ -9,7 +9,6 @@
 
 namespace nonio::math {
 
-/// Variance components of the scatter of a test (followed.h).
 struct RunComponents {
   /// A variance over the runs: the estimate from the values of the runs (`whole`), the contribution
   /// of single readings to it (`noise`), and their difference, at least 0 (`variance`).
@@ -21,14 +20,12 @@ struct RunComponents {
   double reading[2] = {};  ///< variance of a single reading in directions + and -
   /// Correlation of adjacent targets of a pass; at distance k its k-th power. 0 if not significant.
   double neighbours = 0.0;
-  /// Ratio of the residual degrees of freedom of a pass with the correlation `neighbours` to those
-  /// without.
+  /// Residual degrees of freedom of a pass, relative to those without correlation.
   double independent = 1.0;
   /// Variance over the runs, m^2 or rad^2, of the offset that both passes of a run share (their
   /// mean), and of half the difference of their offsets.
   Part shared_offset, own_offset;
-  /// Variance over the runs, (m/m)^2 or (rad/rad)^2, of the slope that both passes of a run share
-  /// (their mean), and of half the difference of their slopes.
+  /// Variances over the runs of the corresponding slopes of the passes, (m/m)^2 or (rad/rad)^2.
   Part shared_slope, own_slope;
 };
 
@@ -44,9 +41,8 @@ double value_of(const AxisTest&, const TargetWeights&);
 std::vector<double> covariance_of(const AxisTest&, const RunComponents&,
                                   const std::vector<TargetWeights>&);
 
-/// Root mean square scatter at a target, and the standard uncertainty of its logarithm. The mean
-/// square is the sum of those of residuals, run offsets and run slopes, which are independent, each
-/// with its degrees of freedom.
+/// Root mean square scatter at a target, and the standard uncertainty of its logarithm. Residuals,
+/// run offsets and run slopes contribute independently, each with its degrees of freedom.
 struct PooledScatter {
   double s = 0.0, u_ln = 0.0;
 };

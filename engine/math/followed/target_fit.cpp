@@ -11,9 +11,8 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-/// Largest degree of the polynomial, and fewest targets for a cubic one of the means and of the
-/// reversals. Above a cubic, the degree is less than half of the number of targets, so that the
-/// residuals show the variation between targets and the ends do not depend on few targets.
+/// Above a cubic, the degree is less than half of the number of targets, so that the residuals show
+/// the variation between targets and the ends do not depend on few targets.
 constexpr std::size_t most_degree = 7, fewest_for_cubic = 5, fewest_for_cubic_reversal = 11;
 constexpr std::size_t least_rest = 3;
 
@@ -23,8 +22,7 @@ bool has_both(const AxisTest& test, std::size_t i) {
 
 double share(const AxisTest& test, std::size_t i) { return has_both(test, i) ? 0.5 : 1.0; }
 
-/// Returns the weights of the readings in sum t_i m_i, or with `reversal` in sum t_i B_i; m_i and
-/// B_i are defined in followed.h.
+/// Weights of the readings in sum t_i m_i, or with `reversal` in sum t_i B_i (followed.h).
 TargetWeights spread_over(const AxisTest& test, const VectorXd& t, bool reversal) {
   TargetWeights out(2 * test.targets.size(), 0.0);
   for (std::size_t i = 0; i < test.targets.size(); ++i)
@@ -37,7 +35,6 @@ TargetWeights spread_over(const AxisTest& test, const VectorXd& t, bool reversal
   return out;
 }
 
-/// Returns the variance of m_i or B_i caused by single readings.
 double variance_at(const AxisTest& test, const RunComponents& c, std::size_t i, bool reversal) {
   double sum = 0.0;
   for (const bool minus : {false, true})
@@ -46,8 +43,8 @@ double variance_at(const AxisTest& test, const RunComponents& c, std::size_t i, 
   return reversal ? sum : sum * share(test, i) * share(test, i);
 }
 
-/// Fits the values at the targets. The first `polynomial` columns of X are the polynomial, the
-/// others are sinusoids. For B_i, targets approached from one direction are omitted.
+/// The first `polynomial` columns of X are the polynomial, the others are sinusoids. For B_i,
+/// targets approached from one direction are omitted.
 TargetFit fit_columns(const AxisTest& test, const RunComponents& c, const MatrixXd& X,
                       Index polynomial, bool reversal) {
   std::vector<std::size_t> seen;

@@ -9,7 +9,7 @@ namespace nonio::math {
 
 namespace {
 
-/// Returns the model of the readings: two consecutive readings for each value.
+/// The model has two consecutive readings for each value.
 ReadingModel model_of(const Campaign& campaign, const std::vector<Difference>& all) {
   std::vector<BudgetLine> lines;
   double largest = 0.0;
@@ -39,7 +39,6 @@ ReadingModel model_of(const Campaign& campaign, const std::vector<Difference>& a
   return model;
 }
 
-/// Adds the form error of the ball as an input, if it is stated and contained in a value.
 void put_ball(const Campaign& campaign, const std::vector<Difference>& all, ReadingModel& model) {
   const bool any =
       std::any_of(all.begin(), all.end(), [](const Difference& d) { return d.with_ball; });

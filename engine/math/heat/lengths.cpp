@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formulas: nonio/math/lengths.h.
 #include "nonio/math/lengths.h"
 
 #include <algorithm>
@@ -106,8 +105,7 @@ LengthPlan length_plan(const std::vector<LengthError>& all) {
 
 namespace {
 
-/// Solves four linear equations in place, by elimination with pivots; the last column is the
-/// right-hand side. Returns false if the matrix is singular.
+/// The last column is the right-hand side. Returns false if the matrix is singular.
 bool solve_four(std::array<std::array<double, 5>, 4>& A) {
   for (std::size_t c = 0; c < 4; ++c) {
     std::size_t pivot = c;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formulas: nonio/math/spindle.h. Decisions of the analysis:
-// docs/dev/constants.md, A18 (few turns); docs/dev/constants.md, A19 (waves).
+// Decisions: docs/dev/constants.md, A18 (few turns); docs/dev/constants.md, A19 (waves).
 #include "nonio/math/spindle.h"
 
 #include <algorithm>
@@ -17,8 +16,7 @@ constexpr std::size_t fewest_in_turn = 16, fewest_turns = 2;
 constexpr double widest_gap = full_turn / 8.0;
 constexpr double as_read = 1e-4;  // rad: tolerance for angles at even steps
 
-/// Returns the number of steps per turn if the readings are at even steps that divide the turn;
-/// else 0.
+/// Returns 0 unless the readings are at even steps that divide the turn.
 std::size_t even_steps(const SpindleTrack& k) {
   const double step = (k.angle.back() - k.angle.front()) / static_cast<double>(k.angle.size() - 1);
   const double n = std::round(full_turn / step);
@@ -28,8 +26,7 @@ std::size_t even_steps(const SpindleTrack& k) {
   return static_cast<std::size_t>(n);
 }
 
-/// Interpolates by the cubic through four readings about x (Lagrange); at the ends through the
-/// first or last four.
+/// Cubic through the four readings about x (Lagrange); at the ends through the first or last four.
 double cubic(const SpindleTrack& k, std::size_t behind, double x) {
   const std::size_t first = std::min(behind < 2 ? 0 : behind - 2, k.angle.size() - 4);
   double sum = 0.0;
@@ -122,7 +119,6 @@ double ErrorMotion::eccentricity() const { return std::hypot(a, b); }
 
 namespace {
 
-/// Coefficients m, a, b of a single turn.
 struct OfTurn {
   double m = 0.0, a = 0.0, b = 0.0;
 };
@@ -138,8 +134,7 @@ std::vector<OfTurn> turn_by_turn(const Turns& k) {
   return out;
 }
 
-/// Returns the effective number of turns in a mean, N (1 - rho)/(1 + rho), at least 1.5, with rho
-/// the correlation of the asynchronous motion with that of the previous turn, over all angles.
+/// N (1 - rho)/(1 + rho), at least 1.5; rho: correlation of successive turns' asynchronous motion.
 double turns_that_count(const Turns& k, const std::vector<double>& left) {
   double with = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < left.size(); ++i) {
@@ -214,8 +209,7 @@ Separated multi_step(std::span<const std::vector<double>> T) {
   out.spindle.assign(n, 0.0), out.ball.assign(n, 0.0);
   for (const auto& one : T)
     for (std::size_t i = 0; i < n; ++i) out.spindle[i] += one[i] / static_cast<double>(K);
-  // T_k(t) - S(t) = P(-t - 360 k/K): average the curves of all set-ups, turned back to the first
-  // one.
+  // T_k(t) - S(t) = P(-t - 360 k/K): the curves are averaged, turned back to the first set-up.
   for (std::size_t k = 0; k < K; ++k)
     for (std::size_t i = 0; i < n; ++i) {
       const double from =

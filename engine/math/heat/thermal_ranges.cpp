@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ranges in windows, by two queues of candidates, which takes O(n). Formulas: nonio/math/thermal.h.
-// Decision of the analysis: docs/dev/constants.md, A16.
+// Two queues of candidates find the largest range in O(n). Decision of the analysis:
+// docs/dev/constants.md, A16.
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -13,8 +13,7 @@ namespace nonio::math {
 
 namespace {
 
-/// Tolerance for times that are rounded to about a millisecond: a window of an hour includes the
-/// reading after exactly one hour.
+/// s; tolerance for rounding, so that a window of an hour includes the reading after one hour.
 constexpr double time_slack = 1e-6;
 
 RangeOf range_between(const Track& k, std::size_t first, std::size_t last) {
@@ -45,8 +44,7 @@ std::optional<RangeOf> first_range(const Track& k, double w) {
 
 std::optional<RangeOf> largest_range(const Track& k, double w) {
   if (k.size() < 2 || k.time.back() - k.time.front() < w - time_slack) return {};
-  // Indices of readings that may become the smallest or the largest of a window. In both, the index
-  // ascends; the values ascend in `low` and descend in `high`.
+  // Indices ascend; the values ascend in `low` and descend in `high`.
   std::deque<std::size_t> low, high;
   std::optional<RangeOf> best;
   std::size_t first = 0;
@@ -103,14 +101,12 @@ namespace {
 
 using ByPlace = std::map<std::pair<double, int>, const Visits*>;
 
-/// Returns the number of cycles in which every target was read from all of its sides.
 std::size_t whole_cycles(const std::vector<Visits>& all) {
   std::size_t n = all.empty() ? 0 : all.front().track.size();
   for (const Visits& v : all) n = std::min(n, v.track.size());
   return n;
 }
 
-/// Returns the mean time of the visits of a cycle, to which the slope over all targets refers.
 double time_of_cycle(const std::vector<Visits>& all, std::size_t j) {
   double sum = 0.0;
   for (const Visits& v : all) sum += v.track.time[j] / static_cast<double>(all.size());

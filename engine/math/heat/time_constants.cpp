@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// d(t) = d0 + sum_k c_k (1 - exp(-t/tau_k)) + noise. Readings are averaged in at most 120 equal
-// intervals. tau_k: search over ln tau, then Gauss-Newton in (d0, c_k, ln tau_k); the noise is
-// white plus a slow part (statistics/path_noise.h), estimated with the columns of the last step.
-// cov = s^2 (J' V^-1 J)^-1. Effective degrees of freedom: n/g minus the parameters/g, with g the
-// variance of a slow column relative to that of white noise, at least 1. A second constant is
-// fitted only if it makes the residuals significantly smaller (F, level 1 %).
+// The noise is white plus a slow part (statistics/path_noise.h). Effective degrees of freedom: (n -
+// parameters)/g, with g the variance of a slow column relative to that of white noise, at least 1.
+// A second constant is fitted only if it makes the residuals significantly smaller (F, level 1 %).
 #include <algorithm>
 #include <cmath>
 
@@ -27,7 +24,7 @@ constexpr double largest_u_tau = 0.25;  // largest relative uncertainty of a tim
 constexpr double second_level = 0.01;
 constexpr double apart = 2.0;  // smallest ratio of two time constants
 
-/// Means over equal intervals, the variance of the times in each, and the index of the interval.
+/// `v`: variance of the times in each interval; `place`: index of the interval.
 struct Means {
   Vector t, d, v;
   std::vector<int> place;
@@ -62,7 +59,7 @@ Means means_of(const Track& k) {
 
 struct Curve {
   std::vector<double> log_tau;
-  Vector beta;  ///< linear coefficients: d0, c_k
+  Vector beta;
   Matrix jacobian;
   double rss = INFINITY;  ///< whitened residual sum of squares
 };
@@ -72,8 +69,7 @@ Matrix columns_for(const Means& m, const std::vector<double>& log_tau) {
   X.col(0).setOnes();
   for (std::size_t k = 0; k < log_tau.size(); ++k) {
     const double tau = std::exp(log_tau[k]);
-    // The mean of exp(-t/tau) over times of variance v is the value at their mean, times 1 + v/(2
-    // tau^2).
+    // Mean of exp(-t/tau) over times of variance v: 1 + v/(2 tau^2) times its value at their mean.
     X.col(at(k + 1)) = m.t.binaryExpr(m.v, [tau](double t, double v) {
       return -std::expm1(-t / tau) - std::exp(-t / tau) * v / (2.0 * tau * tau);
     });
@@ -81,7 +77,6 @@ Matrix columns_for(const Means& m, const std::vector<double>& log_tau) {
   return X;
 }
 
-/// Fits the linear coefficients for given time constants.
 Curve linear(const Means& m, const std::vector<double>& log_tau, const PathNoise& noise) {
   Matrix both = with_column(columns_for(m, log_tau), m.d);
   whiten(both, m.place, noise);
@@ -133,9 +128,8 @@ Curve searched(const Means& m, std::size_t parts, const PathNoise& noise) {
   return best;
 }
 
-/// Improves a curve by Gauss-Newton steps in ln tau, which are halved while they increase the
-/// residuals. Near the minimum, where the sum of squares is flat, small steps are always accepted,
-/// so that rounding does not decide where the search ends.
+/// Gauss-Newton steps in ln tau are halved while they increase the residuals. Small steps are
+/// always accepted, so that rounding does not decide where the search ends.
 void refine(const Means& m, const PathNoise& noise, Curve& c) {
   constexpr int most = 60;
   constexpr double near = 1e-4, reached = 1e-11;
@@ -190,9 +184,8 @@ double rss_with(const Means& m, const Curve& c, const PathNoise& noise) {
   return rest.squaredNorm();
 }
 
-/// Returns whether a second time constant reduces the residuals significantly and differs from the
-/// first by a factor of `apart` or more. Both curves are compared under the noise estimated with
-/// two time constants.
+/// Returns whether a second time constant is significant and differs by a factor of `apart` or
+/// more. Both curves are compared under the noise estimated with two time constants.
 bool two_parts(const Means& m, const Fitted& two) {
   Curve one = searched(m, 1, two.noise);
   refine(m, two.noise, one);
@@ -272,7 +265,7 @@ TimeConstants::Time TimeConstants::settled(double limit) const {
   for (const Part& p : parts) {
     const double e = std::exp(-out.t / p.tau);
     slope -= p.c / p.tau * e;
-    by.push_back(e), by.push_back(p.c * out.t / p.tau * e);  // derivatives by c and by ln tau
+    by.push_back(e), by.push_back(p.c * out.t / p.tau * e);
   }
   double variance = 0.0;
   for (std::size_t a = 0; a < by.size(); ++a)

@@ -12,11 +12,9 @@ namespace {
 
 constexpr double nearly_one = 1.0 + 1e-9;  // tolerance against rounding before truncation
 
-/// Returns a uniform number in [0, 1); distributions of the standard library differ between
-/// implementations.
+/// Uniform in [0, 1); distributions of the standard library differ between implementations.
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
-/// Rounds to the nearest multiple of the resolution between first and last.
 double rounded(double value, const AxisTargets& wish) {
   const double nearest = std::round(value / wish.resolution) * wish.resolution;
   const double slack = 1e-6 * wish.resolution;
@@ -24,8 +22,7 @@ double rounded(double value, const AxisTargets& wish) {
   return nearest > wish.last + slack ? nearest - wish.resolution : nearest;
 }
 
-/// Returns the moves forward and back over the stops, in the requested number of runs; `before` and
-/// `after` are the points of reversal.
+/// `before` and `after`: points of reversal.
 std::vector<MeasuringMove> to_and_fro(const std::vector<std::vector<double>>& stops,
                                       const std::vector<double>& before,
                                       const std::vector<double>& after,

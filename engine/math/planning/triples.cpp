@@ -14,7 +14,7 @@ namespace nonio::math {
 
 namespace {
 
-constexpr double per_metre = 1e9;         // the search uses integer nanometres
+constexpr double per_metre = 1e9;         // the search uses integer nanometers
 constexpr std::int64_t fewest_steps = 4;  // five points per axis
 constexpr double longest_travel = 1e3;    // m; keeps every product far below the limit of 64 bits
 constexpr std::int64_t largest_hypotenuse = 1'000'000;
@@ -33,20 +33,18 @@ std::string mm(double m) {
   return std::string(text.data(), end) + " mm";
 }
 
-/// The request in integers: lengths, steps and pitches in nm, and the triples in both orders of
-/// their legs.
+/// Lengths, steps and pitches in nm; triples in both orders of their legs.
 struct Search {
   std::int64_t ux = 0, uy = 0, unit = 0;
   std::int64_t of_x = 1, of_y = 1, of_d = 1;  // units of which the steps must be integer multiples
-  std::int64_t step_x = 0, step_y = 0;        // largest allowed steps
+  std::int64_t step_x = 0, step_y = 0;
   std::int64_t least_n = fewest_steps, most_n = 0;
   std::vector<std::int64_t> pitch_x, pitch_y;
   bool even = false;
   std::vector<Triple> triples;
 };
 
-/// Smallest number of steps, and largest step in m, that ISO 230-2 allows for an axis of this
-/// length.
+/// Limits of ISO 230-2 for the number of steps and for a step, m, of an axis of this length.
 struct Sampling {
   std::int64_t steps = fewest_steps;
   double largest_step = 1e9;
@@ -103,8 +101,7 @@ std::int64_t work(const Search& s) {
   return sum;
 }
 
-/// Returns the number of which q must be a multiple, so that each step is a multiple of its own
-/// resolution: q leg = 0 mod k.
+/// Returns the divisor of q with which each step is a multiple of its own resolution.
 std::int64_t multiple_of(const Search& s, const Triple& t) {
   const auto of = [](std::int64_t k, std::int64_t leg) { return k / std::gcd(k, leg); };
   return std::lcm(std::lcm(of(s.of_x, t.a), of(s.of_y, t.b)), of(s.of_d, t.c));
@@ -115,8 +112,8 @@ bool is_multiple(std::int64_t step, const std::vector<std::int64_t>& pitches) {
                      [&](std::int64_t pitch) { return step % pitch == 0; });
 }
 
-/// Returns the largest multiple of `m` up to `q` with which no step is a multiple of a pitch; 0 if
-/// there is none.
+/// Largest multiple of `m` up to `q` with which no step is a multiple of a pitch; 0 if there is
+/// none.
 std::int64_t with_pitch(const Search& s, const Triple& t, std::int64_t q, std::int64_t m) {
   // A pitch excludes every q, or every m-th q with m >= 2. Therefore, if any multiple is allowed,
   // one of a few consecutive multiples is allowed.
@@ -133,8 +130,7 @@ struct Found {
   std::int64_t q, n;
 };
 
-/// Calls `take` for every triple and number of steps within the limits, with the largest step,
-/// until `take` returns true.
+/// Each plan has the largest step within the limits. The search ends when `take` returns true.
 template <class Take>
 void for_each_plan(const Search& s, const Take& take) {
   for (const Triple& t : s.triples) {
@@ -286,8 +282,8 @@ std::vector<TriplePlan> chosen(const Search& s, const TripleRequest& w) {
   return plans;
 }
 
-/// Returns the request with one of its limits removed, or for max_points and hypotenuse with a
-/// limit 20 times as large; nothing if the request does not have this limit.
+/// Returns std::nullopt if the request has no such limit. max_points and hypotenuse become 20 times
+/// as large.
 std::optional<TripleRequest> without(TripleRequest w, TripleLimit limit) {
   bool had = true;
   switch (limit) {
@@ -421,7 +417,6 @@ double measuring_time(const TriplePlan& p, const MeasuringCost& cost) {
 
 namespace {
 
-/// Returns the search; error if the request is invalid or the search would be too long.
 Expected<Search> sound_search(const TripleRequest& wish) {
   if (std::string complaint = wrong(wish); !complaint.empty()) return fail(std::move(complaint));
   Search search = search_of(wish);

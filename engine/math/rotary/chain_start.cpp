@@ -28,9 +28,8 @@ using Eigen::VectorXd;
 constexpr std::size_t kept = 4;  // number of starts that are refined
 // relative eigenvalue below which a combination is undetermined
 constexpr double least_share = 1e-12;
-constexpr double good_enough =
-    0.05;  // rms residual of a start relative to the rms distance from the first reading
-constexpr double same_angle = 1e-9;  // tolerance for equal angles, rad
+constexpr double good_enough = 0.05;  // rms residual relative to the rms distance from reading 1
+constexpr double same_angle = 1e-9;   // tolerance for equal angles, rad
 
 using Directions = std::vector<Vector3>;
 
@@ -53,7 +52,6 @@ Directions directions(bool between) {
   return out;
 }
 
-/// Linear least-squares problem for given directions; three rows per reading.
 class Linear {
  public:
   Linear(const std::vector<ChainReading>& all, const ChainOrder& order, Directions n)
@@ -127,8 +125,7 @@ class Linear {
   double sum_ = 0.0;
 };
 
-/// Returns up to `kept` solutions, the best over all directions of each axis, the best first; for
-/// an axis at rest, one direction is sufficient.
+/// For an axis at rest, one direction is sufficient.
 std::vector<Linear> best_of(const std::vector<ChainReading>& all, const ChainOrder& order,
                             bool between) {
   std::vector<Directions> tried(1);

@@ -21,8 +21,8 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 constexpr double thinnest = 1e-6;    // smallest ratio of second to first singular value of a plane
 constexpr double same_angle = 1e-6;  // smallest difference of two angles of the axis, rad
-// Reason for this limit: docs/dev/constants.md, A9.
-constexpr double worst_follow = 0.1;  // largest rms difference between encoder and circle, rad
+// Largest rms difference between encoder and circle, rad: docs/dev/constants.md, A9.
+constexpr double worst_follow = 0.1;
 
 double wrapped(double angle) { return std::remainder(angle, full_turn); }
 
@@ -49,7 +49,7 @@ std::optional<RotaryRefusal> bad_input(std::span<const BallCentre> centres) {
 struct Plane {
   Vector3d origin;
   Matrix3d axes;
-  Points flat;  ///< coordinates u, v, h of the points
+  Points flat;
   Eigen::VectorXd weight;
 };
 
@@ -63,16 +63,14 @@ std::optional<Plane> plane_of(std::span<const BallCentre> centres) {
     points.row(i) << c.at[0], c.at[1], c.at[2];
     plane.weight[i] = c.weight;
   }
-  // The first point is subtracted before the mean, so that a large offset causes no loss of
-  // precision.
+  // Subtracting the first point before the mean preserves precision if the offset is large.
   const Vector3d first = points.row(0).transpose();
   points.rowwise() -= first.transpose();
   const Vector3d mean = points.transpose() * plane.weight / plane.weight.sum();
   points.rowwise() -= mean.transpose();
   plane.origin = first + mean;
   const Points weighted = plane.weight.cwiseSqrt().asDiagonal() * points;
-  // R of the QR decomposition has the singular values and right singular vectors of the whole
-  // matrix.
+  // R has the singular values and right singular vectors of the whole matrix.
   const MatrixXd small = upper(Eigen::HouseholderQR<MatrixXd>(weighted), 3);
   const Eigen::JacobiSVD<MatrixXd> svd(small, Eigen::ComputeFullV);
   const auto& size = svd.singularValues();
@@ -84,8 +82,7 @@ std::optional<Plane> plane_of(std::span<const BallCentre> centres) {
   return plane;
 }
 
-/// Circle in the plane: center, radius, their covariance for a standard uncertainty of 1 m, and the
-/// shift of the center per unit of shear.
+/// `cofactor`: covariance for a standard uncertainty of 1 m; `shear_shift`: see RotaryFit.
 struct Circle {
   Vector2d centre = Vector2d::Zero();
   double radius = 0.0;
@@ -94,8 +91,7 @@ struct Circle {
   double shear_shift = 0.0;
 };
 
-/// Returns the starting circle by linear least squares (Kasa); none if the points do not determine
-/// it. It is exact for points on a circle, and biased inwards on short arcs with noise.
+/// The fit of Kasa is exact for points on a circle, and biased inwards on short arcs with noise.
 std::optional<Circle> kasa(const Plane& p) {
   Points a(p.flat.rows(), 3);
   a << 2.0 * p.flat.col(0), 2.0 * p.flat.col(1), Eigen::VectorXd::Ones(p.flat.rows());
@@ -155,9 +151,8 @@ std::optional<Circle> geometric(const Plane& p) {
   return {};
 }
 
-/// Sense of the points about the normal relative to the encoder, +1 or -1, and the angle of the
-/// point at encoder zero. `sense_of` returns the sense that agrees better, or nothing if neither
-/// agrees to within `worst_follow`.
+/// Sense of the points about the normal relative to the encoder, and angle of the point at encoder
+/// zero. `sense_of` returns std::nullopt if neither sense agrees to within `worst_follow`.
 struct Sense {
   double sign = 1.0, zero = 0.0;
 };
@@ -186,7 +181,6 @@ std::optional<Sense> sense_of(std::span<const BallCentre> centres, const Plane& 
   return best;
 }
 
-/// Fits (u, v)_i = (a, b) + R(phi_i)(c, d) with the encoder's angles.
 Circle with_angles(std::span<const BallCentre> centres, const Plane& p, double sign) {
   using Matrix4d = Eigen::Matrix4d;
   using TwoRows = Eigen::Matrix<double, 2, 4>;

@@ -36,8 +36,7 @@ bool sound(const std::vector<ChainReading>& all, const ChainOrder& order) {
   });
 }
 
-/// Returns the largest range of a coordinate of the readings, at least 1 mm, m: the lever that
-/// converts a tilt to a length.
+/// Lever that converts a tilt to a length: the largest range of a coordinate, at least 1 mm, m.
 double extent_of(const std::vector<ChainReading>& all) {
   double size = 1e-3;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -82,7 +81,6 @@ ChainState moved(ChainState s, const VectorXd& by) {
   return s;
 }
 
-/// Gauss-Newton fit from one start.
 class Descent {
  public:
   Descent(const std::vector<ChainReading>& all, const ChainOrder& order, ChainState start)
@@ -112,7 +110,7 @@ class Descent {
         const ChainState next = moved(state_, by);
         const VectorXd there = residual(next);
         if (there.squaredNorm() <= before || half == 12) {
-          if (there.squaredNorm() > before) by.setZero();  // no further decrease is possible
+          if (there.squaredNorm() > before) by.setZero();
           if (!by.isZero(0.0)) state_ = next, left = there;
           break;
         }
@@ -129,7 +127,6 @@ class Descent {
 
   const ChainState& state() const { return state_; }
   double sum() const { return left_.squaredNorm(); }
-  /// Returns whether the readings determine the direction of an axis.
   bool identifies_direction(std::size_t axis) const {
     for (const Index k : {4 * at(axis) + 2, 4 * at(axis) + 3})
       if (std::fabs(V_.row(k).norm() - 1.0) > open_changes_nothing) return false;
@@ -184,8 +181,7 @@ class Descent {
   MatrixXd V_, U_, open_;
 };
 
-/// Reorders a vector over n readings from index 3 i + k of a fit (reading i, coordinate k) to index
-/// k n + i of a budget.
+/// Reorders from index 3 i + k of a fit (reading i, coordinate k) to index k n + i of a budget.
 std::vector<double> by_coordinate(const VectorXd& row) {
   const Index n = row.size() / 3;
   std::vector<double> out(static_cast<std::size_t>(row.size()));
@@ -268,8 +264,7 @@ bool other_chain(const Descent& best, const ChainState& other) {
   return false;
 }
 
-/// Moves the point of each line to the position nearest to the first ball (tables) or to the tip of
-/// the first tool (heads).
+/// The point of a line is the one nearest to the first ball (tables) or first tool tip (heads).
 void settle(ChainState& s, const ChainOrder& order) {
   for (std::size_t l = 0; l < s.lines.size(); ++l)
     s.lines[l].point = nearest_on(s.lines[l], l < order.tables ? s.ball.front() : Vector3{});

@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Conclusions from a fitted rotary axis: waves in its residuals, and its position relative to
-// another axis.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -103,15 +100,13 @@ LineRelation relation_of(const RotaryFit& a, double sigma_a, const RotaryFit& b,
   const double sine = cross.norm();
   LineRelation out;
   out.angle = std::atan2(sine, m.dot(n));
-  // Derivatives with respect to (center, direction) of each line.
   Eigen::Matrix<double, 6, 1> da = Eigen::Matrix<double, 6, 1>::Zero(), db = da, ta = da, tb = da;
   if (sine > 1e-6) {
     const Vector3d normal = cross / sine, gap = q - p;
     const double signed_distance = gap.dot(normal);
     const double sign = signed_distance < 0.0 ? -1.0 : 1.0;
     out.distance = sign * signed_distance;
-    // d(gap . m x n / |m x n|): the component of the gap perpendicular to the normal turns with the
-    // directions.
+    // The component of the gap perpendicular to the normal turns with the directions.
     const Vector3d across = (gap - signed_distance * normal) / sine;
     da.head<3>() = -sign * normal;
     db.head<3>() = sign * normal;

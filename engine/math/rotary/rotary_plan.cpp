@@ -46,7 +46,6 @@ Expected<void> sound(const RotaryPlan& p) {
   return {};
 }
 
-/// Returns the ball positions of the plan about Z through the origin.
 std::vector<BallCentre> places_of(const RotaryPlan& p) {
   const bool full = p.arc > full_turn * (1.0 - 1e-9);
   const double n = static_cast<double>(p.balls), step = full ? p.arc / n : p.arc / (n - 1.0);

@@ -31,8 +31,8 @@ Matrix3d turn(const Vector3d& n, double angle) {
   return Matrix3d::Identity() + std::sin(angle) * cross + (1.0 - std::cos(angle)) * cross * cross;
 }
 
-/// Fits a circle to the commanded positions of one line. Returns nothing if the positions do not
-/// follow a circle, or if its radius is below `least_radius`.
+/// Returns std::nullopt if the positions follow no circle, or one with a radius below
+/// `least_radius`.
 std::optional<RotaryFit> circle_of(const std::vector<RtcpReading>& all, std::size_t line) {
   std::map<long long, BallCentre> places;
   for (const RtcpReading& r : all) {
@@ -54,7 +54,6 @@ std::optional<RotaryFit> circle_of(const std::vector<RtcpReading>& all, std::siz
   return std::move(*fit);
 }
 
-/// The readings, with the geometry that they share.
 class Readings {
  public:
   Readings(const std::vector<RtcpReading>& all, const RtcpWish& wish) : all_(all), wish_(wish) {}
@@ -124,7 +123,6 @@ class Readings {
     return out;
   }
 
-  /// Returns the derivative of a reading by the position of the ball.
   Vector3d by_ball(const RtcpReading& r) const {
     return (wish_.head ? 1.0 : -1.0) * (turn(n0_, r.angle).transpose() * eigen(r.sense));
   }
@@ -136,10 +134,9 @@ class Readings {
   }
 
  private:
-  /// Returns the mean position of a line's ball in the control, with the axis at 0, and raises
-  /// `off` to the largest distance of a reading's position from it, m. With a table, the linear
-  /// axes follow the ball; with a head, they move back by the vector from its pivot (at c0) to the
-  /// ball.
+  /// Returns the mean position of the ball of a line in the control, with the axis at 0, and raises
+  /// `off` to the largest distance of a reading from it, m. With a head, the linear axes move back
+  /// by the vector from its pivot (at c0) to the ball.
   Vector3d place_of(std::size_t line, const Vector3d& middle, double& off) const {
     Vector3d mean = Vector3d::Zero();
     double n = 0.0;
@@ -165,8 +162,8 @@ class Readings {
     across_ = {along == 0 ? 1U : 0U, along == 2 ? 1U : 2U};
   }
 
-  /// Chooses the point to which a and b refer: at the mean height of the balls that are sensed
-  /// across the axis, or of all balls if none is sensed across it.
+  /// a and b refer to the mean height of the balls that are sensed across the axis, otherwise of
+  /// all balls.
   void choose_point() {
     double height[2] = {0.0, 0.0}, n[2] = {0.0, 0.0};
     for (const RtcpReading& r : all_) {
@@ -204,9 +201,9 @@ class Readings {
   const RtcpWish& wish_;
   Vector3d n0_, c0_;
   std::array<std::size_t, 2> across_{0, 1};
-  std::vector<Vector3d> ball_;      // ball position of each line
-  std::vector<Vector3d> known_;     // positions of the distinct balls
-  std::vector<std::size_t> which_;  // index of the ball of each line
+  std::vector<Vector3d> ball_;   // ball position of each line
+  std::vector<Vector3d> known_;  // positions of the distinct balls
+  std::vector<std::size_t> which_;
   // by line: first index of the ball's unknown position; -1: known
   std::vector<Eigen::Index> ball_at_;
   std::vector<Eigen::Index> zero_at_;  // by line: index of its unknown zero; -1: known
@@ -215,14 +212,13 @@ class Readings {
 
 /// Least squares by singular values: combinations that the columns do not determine are set to 0.
 struct Solved {
-  MatrixXd inverse;  ///< pseudoinverse
+  MatrixXd inverse;
   Eigen::Index rank = 0;
   std::array<bool, 4> identifiable{};
 };
 
 Solved solved(const MatrixXd& j) {
-  // Use one scale for all lengths and one for both tilts. A column that is nearly zero must remain
-  // nearly zero, because it contains only rounding errors of positions.
+  // One scale for all lengths and one for both tilts: a column of rounding errors remains small.
   const VectorXd norm = j.colwise().norm();
   const double tilt = std::max(norm[2], norm[3]);
   double length = 0.0;
@@ -261,9 +257,8 @@ tl::expected<RtcpFit, RtcpRefusal> fit_rtcp(const std::vector<RtcpReading>& all,
   if (const auto refused = readings.prepare()) return tl::unexpected(*refused);
   const VectorXd y = readings.deviations();
   VectorXd x = VectorXd::Zero(readings.unknowns());
-  // Which parameters are identifiable depends on the set-up only, that is, on the Jacobian at the
-  // axis of the control. With errors of 1e-3 rad, each iteration reduces the remainder by a factor
-  // of about 1000.
+  // With errors of 1e-3 rad, each iteration with the Jacobian at the axis of the control reduces
+  // the remainder by a factor of about 1000.
   const MatrixXd j = readings.jacobian(x);
   const Solved solution = solved(j);
   for (int round = 0; round < 6; ++round) x += times(solution.inverse, y - readings.predicted(x));

@@ -16,8 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-/// A coordinate of the center whose uncertainty exceeds that of a touched point by more than this
-/// factor is not determined.
+/// Largest u of a coordinate of the center, in units of that of a touched point.
 constexpr double largest_growth = 20.0;
 
 struct Sphere {
@@ -25,8 +24,7 @@ struct Sphere {
   double radius;
 };
 
-/// Returns a sphere as starting values; nothing if the points do not determine one. The points are
-/// relative to their mean.
+/// `points`: relative to their mean. Returns std::nullopt if they do not determine a sphere.
 std::optional<Sphere> start(const MatrixXd& points) {
   MatrixXd columns(points.rows(), 4);
   columns << 2.0 * points, VectorXd::Ones(points.rows());
@@ -40,7 +38,7 @@ std::optional<Sphere> start(const MatrixXd& points) {
   return Sphere{centre, std::sqrt(square)};
 }
 
-/// Computes the residuals and their derivatives; false if a point coincides with the center.
+/// Returns false if a point coincides with the center.
 bool linearise(const MatrixXd& points, const Sphere& s, MatrixXd& J, VectorXd& e) {
   for (Index i = 0; i < points.rows(); ++i) {
     const Vector3d out = points.row(i).transpose() - s.centre;

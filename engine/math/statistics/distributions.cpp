@@ -67,8 +67,7 @@ namespace {
 
 constexpr double within = 0.95449973610364158;  // erf(2/sqrt 2)
 
-/// Returns P(|X| <= x) for X of variance 1: the sum of a rectangular part of variance share^2 and a
-/// normal part.
+/// P(|X| <= x) for X of variance 1: a rectangular part of variance share^2 and a normal part.
 double share_within(double x, double share) {
   const double half = share * std::sqrt(3.0), sigma = std::sqrt(std::max(0.0, 1.0 - share * share));
   if (sigma < 1e-6) return std::min(1.0, x / half);

@@ -10,11 +10,10 @@ struct Harmonic {
   bool known = false;      ///< false if the angles do not cover the turn or a value is not finite
   double amplitude = 0.0;  ///< sqrt(a^2 + b^2), in the unit of y
   double share = 0.0;      ///< fraction of the variance of y explained by the sinusoid, 0..1
-  double p = 1.0;          ///< p-value of the F test against the residuals
+  double p = 1.0;
 };
 
-/// Fits the sinusoid. The angles (rad) cover the turn if there are 5 different ones and no gap is
-/// above 120 deg.
+/// `angle` in rad. The turn is covered by 5 different angles without a gap above 120 deg.
 Harmonic fit_harmonic(std::span<const double> angle, std::span<const double> y);
 
 }  // namespace nonio::math

@@ -62,8 +62,7 @@ PathNoise path_noise(const Eigen::MatrixXd& X, const Eigen::VectorXd& y,
   for (const double rho : {0.3, 0.6, 0.85, 0.95})
     for (const double w : {0.3, 1.0}) attempt(rho, w);
   if (best.w == 0.0) return best;
-  // Improve by steps of the correlation length and of the odds of w, until no step is an
-  // improvement.
+  // Steps of the correlation length and of the odds of w, until no step is an improvement.
   for (double step = 0.8; step > 0.09; step /= 2.0)
     for (bool moved = true; moved;) {
       moved = false;

@@ -17,9 +17,7 @@ struct Knots {
   int intervals;
 };
 
-/// Returns the interval of x and the four cubic B-splines on equally spaced knots that are not zero
-/// at x: with s = 0..1 the position in the interval, (1-s)^3/6, (3s^3-6s^2+4)/6,
-/// (-3s^3+3s^2+3s+1)/6, s^3/6.
+/// Returns the interval of x and the four cubic B-splines that are not zero at x.
 std::pair<int, std::array<double, 4>> b_splines(const Knots& knots, double x) {
   const double at = (x - knots.first) / knots.step;
   const double last = knots.intervals - 1;
@@ -41,9 +39,8 @@ Eigen::MatrixXd b_spline_matrix(const Knots& knots, const std::vector<double>& x
   return b;
 }
 
-/// Returns the coefficients of the basis. B-splines times N span the functions that are orthogonal
-/// to constant and slope over the targets; R, from the QR decomposition of these, makes them
-/// orthonormal.
+/// B-splines times N span the functions that are orthogonal to constant and slope over the targets;
+/// R, from their QR decomposition, makes them orthonormal.
 Expected<Eigen::MatrixXd> coefficients(const Eigen::MatrixXd& b,
                                        const std::vector<double>& targets) {
   Eigen::MatrixXd line(b.rows(), 2);

@@ -8,10 +8,7 @@
 #include "common/constants.h"
 
 namespace nonio::math {
-namespace {}
-
-// Returns the mean. The second pass removes the rounding error of the first: sum(x - m)/n is 0 only
-// in exact arithmetic.
+// The second pass removes the rounding error of the first.
 double mean(std::span<const double> x) {
   if (x.empty()) return not_given;
   const double n = static_cast<double>(x.size());
@@ -23,8 +20,7 @@ double mean(std::span<const double> x) {
   return first + rest / n;
 }
 
-// Returns the standard deviation: s^2 = (sum d^2 - (sum d)^2/n)/(n - 1), d = x - mean; the second
-// term is 0 except for rounding.
+// s^2 = (sum d^2 - (sum d)^2/n)/(n - 1), d = x - mean; the second term is 0 except for rounding.
 double standard_deviation(std::span<const double> x) {
   if (x.size() < 2) return not_given;
   const double n = static_cast<double>(x.size());

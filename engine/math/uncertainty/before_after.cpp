@@ -13,7 +13,6 @@ namespace {
 
 constexpr double table_level = 0.01;
 
-/// Returns the covariance matrix of linear functions of the readings (rows of J).
 Eigen::MatrixXd covariance_of(const std::vector<std::vector<double>>& J,
                               const ReadingModel& model) {
   const auto variance = [&](const std::vector<double>& row) {
@@ -38,8 +37,7 @@ Eigen::MatrixXd covariance_of(const std::vector<std::vector<double>>& J,
   return V;
 }
 
-/// Returns the rows that give, for each stop, the weighted sum of both lines minus the same at the
-/// first stop.
+/// Rows: weighted sum of both lines at each stop, minus that at the first stop.
 std::vector<std::vector<double>> contrasts(std::size_t n, double before, double after) {
   std::vector<std::vector<double>> J;
   for (std::size_t i = 1; i < n; ++i) {
@@ -50,8 +48,7 @@ std::vector<std::vector<double>> contrasts(std::size_t n, double before, double 
   return J;
 }
 
-/// Returns W: the covariance of the errors that remain because a table has points and entries of
-/// its own.
+/// Returns W of before_after.h.
 Eigen::MatrixXd covariance_of_table(std::span<const double> means, const std::vector<double>& place,
                                     double entry_step) {
   const std::size_t n = means.size(), m = n - 1;

@@ -1,22 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A quantity within a full range r, with all values equally likely, has the standard uncertainty
-// r/(2 sqrt 3). A limit that bounds a quantity of one sign (the short path of a misaligned beam),
-// and that is not corrected, has the root mean square r/sqrt 3.
-//   device-fixed   U_fixed/2                   independent per reading (coordinates: per line)
-//   device-length  U_per_length/2 d            common to the instrument (coordinates: to a line)
-//   misalignment   R_mis^2/(2 L^2)/sqrt 3 d    per line of length L; its mean, half of the limit,
-//                                              is in all lines: 3/4 of the variance
-//   temperature    alpha R(theta)/(2 sqrt 3) d per line if the sensor is placed anew, common to all
-//                                              if it stays: the larger
-//   expansion      dT R(alpha)/(2 sqrt 3) d    per line if each has a temperature of its own,
-//                                              common to all if the shop keeps one: the larger
-//   device-temperature, device-expansion       as above for a device with a length of its own,
-//                                              common to the instrument
-//   drift          E_VE/sqrt 3 at a line's end a random walk along each line; not reduced by runs
-//   sphere         r/(2 sqrt 3)                independent per reading: the ball turns under the
-//                                              probe
-//   probe          r/(2 sqrt 3)                common to a coordinate
+// The inputs are listed in docs/uncertainty.md. A limit that bounds a quantity of one sign (the
+// short path of a misaligned beam), and that is not corrected, has the root mean square r/sqrt 3.
 #include "nonio/math/budget.h"
 
 #include <algorithm>
@@ -33,12 +18,12 @@ namespace {
 
 using LineKind = BudgetLine::Kind;
 
-// Reason for this limit: docs/dev/constants.md, A8.
-constexpr double as_if_known = 500.0;  // degrees of freedom above which k is 2.00
+// Degrees of freedom above which k is 2.00: docs/dev/constants.md, A8.
+constexpr double as_if_known = 500.0;
 
 double k_of(double dof) { return dof < as_if_known ? coverage_factor(dof) : 2.0; }
 
-/// Returns the coverage factor. excess: kurtosis of the whole distribution minus 3, at most 0.
+/// `excess`: kurtosis of the whole distribution minus 3, at most 0.
 double k_of(double dof, double excess) { return k_of(dof) * shape_factor(excess); }
 
 constexpr double of_rectangle = -1.2;  // excess of a rectangular distribution
@@ -53,7 +38,6 @@ double extent(const BudgetLine& line) {
   return most;
 }
 
-/// Adds the input quantities to the model, with the values that the manifest states.
 class Builder {
  public:
   Builder(const Campaign& c, const Environment& e, ReadingModel& out) : c_(c), e_(e), out_(out) {
@@ -88,11 +72,10 @@ class Builder {
     if (std::find(all.begin(), all.end(), key) == all.end()) all.push_back(key);
   }
 
-  /// Sets, for the last input, the fraction of variance that lines have in common.
+  /// `share`: fraction of the variance of the last input that lines have in common.
   void together(std::optional<double> share) { out_.inputs.back().together = share; }
 
-  /// Adds an input. of: returns the standard uncertainty by line, per m if it grows with the
-  /// length.
+  /// `of`: returns the standard uncertainty by line, per m if it grows with the length.
   template <class Of>
   void add(const char* id, Distribution d, Correlation c, bool with_length, std::string source,
            const Of& of, bool angles = false) {
@@ -216,7 +199,6 @@ std::vector<double> reading_times(const Observations& o) {
   const bool timed =
       o.time.size() == o.size() &&
       std::all_of(o.time.begin(), o.time.end(), [](double t) { return std::isfinite(t); });
-  // Without times, the order is run by run, up and then down, whatever the order of the rows.
   const auto when = [&](std::size_t i) {
     if (timed) return std::tuple(o.time[i], 0, 0.0);
     const bool down =
@@ -264,7 +246,6 @@ void put_expansion(BudgetLine& line, const Campaign& c, std::span<const std::str
 
 namespace {
 
-/// Returns the variance of a reading by the inputs that are independent per reading.
 double variance_of_each(const ReadingModel& model) {
   double squares = 0.0;
   for (const auto& input : model.inputs)

@@ -2,6 +2,8 @@
 #include "nonio/math/compensated.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "nonio/math/along.h"
 #include "nonio/math/budget.h"
@@ -9,6 +11,8 @@
 #include "nonio/math/uncertainty.h"
 
 namespace nonio::math {
+
+static constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 CompensatedUncertainty compensated_uncertainty(const Campaign& campaign, const Measurement& m,
                                                const Observations& readings, const AxisTest& test,
@@ -18,7 +22,7 @@ CompensatedUncertainty compensated_uncertainty(const Campaign& campaign, const M
   auto budget = uncertainty_budget(campaign, limits.environment, m.axis, test).budget;
   if (budget && !has_drift) budget->seen = {};
   const double seen = has_drift ? drift_share(test).B_mean : 0.0;
-  if (!budget) return {seen, 0.0, 0.0};
+  if (!budget) return {seen, not_known, not_known};
   const auto U = iso230_2_uncertainty(*budget, approaches_per_mean(test), 2.0);
   return {std::max(U.B_mean, seen), U.E, U.M};
 }
@@ -26,16 +30,18 @@ CompensatedUncertainty compensated_uncertainty(const Campaign& campaign, const M
 double compensated_uncertainty_along(const Campaign& campaign, const Measurement& m,
                                      const Observations& readings) {
   const Observations line = along_diagonal(readings, m);
-  if (readings.size() == 0 || line.axes.front().approach.size() != readings.size()) return 0.0;
+  if (readings.size() == 0 || line.axes.front().approach.size() != readings.size())
+    return not_known;
   const AxisTest test = AxisTest::arrange(line);
   const Observations* own = &readings;
   const auto budget =
       budget_along(campaign, limits_held(campaign, {&own, 1}).environment, m, test).budget;
-  return budget ? iso230_2_uncertainty(*budget, approaches_per_mean(test), 2.0).E : 0.0;
+  return budget ? iso230_2_uncertainty(*budget, approaches_per_mean(test), 2.0).E : not_known;
 }
 
 double predicted_after(double before, double after, double U) {
-  return after < before ? std::min(before, std::max(after, U)) : after;
+  if (!(after < before)) return after;
+  return std::isnan(U) ? not_known : std::min(before, std::max(after, U));
 }
 
 }  // namespace nonio::math

@@ -61,8 +61,7 @@ std::size_t MeasuredLine::find(double position) const {
 
 namespace {
 
-/// Returns the contribution of a random walk with variance 1 to the sum of squares, about their
-/// mean, of readings at these times.
+/// Returns the sum of squares, about the mean, of a random walk with variance 1 at these times.
 double squares_of_walk(const std::vector<double>& times) {
   double sum = 0.0, common = 0.0;
   for (const double t : times) {

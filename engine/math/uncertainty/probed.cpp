@@ -6,8 +6,8 @@
 namespace nonio::math {
 namespace {
 
-/// Returns the name of the machine's linear axis along a coordinate: "X", or another such as "X1"
-/// if the machine has no X; "X" if it has neither.
+/// Returns "X" for coordinate 0 or, if the machine has no such axis, another linear axis along X
+/// such as "X1"; "X" if there is none either.
 std::string axis_along(const Campaign& c, std::size_t coordinate) {
   const std::string letter(1, "XYZ"[coordinate]);
   if (c.machine.axis(letter) != nullptr) return letter;
@@ -16,8 +16,7 @@ std::string axis_along(const Campaign& c, std::size_t coordinate) {
   return letter;
 }
 
-/// Returns an error of coordinate `of` that is proportional to coordinate `by`, relative to the
-/// middle.
+/// An error of coordinate `of` in proportion to coordinate `by`, relative to the middle.
 std::vector<double> pattern(const ProbedPlaces& places, std::size_t of, std::size_t by, double u) {
   const std::size_t n = places.at.size();
   std::vector<double> out(3 * n, 0.0);
@@ -25,8 +24,7 @@ std::vector<double> pattern(const ProbedPlaces& places, std::size_t of, std::siz
   return out;
 }
 
-/// Returns the input for squareness and scale differences of the axes that measure the coordinates:
-/// each within +-bound.
+/// Squareness and scale differences of the axes that measure the coordinates, within +-bound.
 ReadingModel::Input linear_axes_input(const ProbedPlaces& places, double bound) {
   const double u = bound / std::numbers::sqrt3;
   ReadingModel::Input input;

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Contribution of each input of a budget to a result: J V J', input by input (budget.h).
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -21,9 +19,8 @@ class Variance {
   Variance(const ReadingModel& model, const ReadingModel::Input& input, std::span<const double> J)
       : model_(model), input_(input), J_(J) {}
 
-  /// Returns the variance of this input in a result that the repetition already contains: by the
-  /// residuals of the fit, and by the random walk of the input. (`all(in_residuals)` is restricted
-  /// to lines whose readings are in the residuals.)
+  /// Returns the variance that the repetition already contains: by the residuals of the fit, and by
+  /// the random walk of the input.
   double seen_elsewhere() const {
     double variance = 0.0;
     std::size_t first = 0;

@@ -32,7 +32,6 @@ const SquarePlane* square_plane_of(const Measurement& m) {
   return nullptr;
 }
 
-/// One line measured against a face.
 struct SquareFace {
   MeasuredLine line;
   int direction = 0;
@@ -70,8 +69,7 @@ BudgetLine line_of_face(const SquareFace& f, std::size_t group) {
   return line;
 }
 
-/// Returns the square's angle error as an input: an error of the readings on the second face, which
-/// is tilted by it.
+/// The angle error of the square is an error of the readings on the second face, which it tilts.
 ReadingModel::Input error_of_square(const ReadingModel& model, double U) {
   ReadingModel::Input input;
   input.is = {.id = "square",

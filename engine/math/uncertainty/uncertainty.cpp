@@ -1,23 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Uncertainty of a positioning test, according to ISO/TR 230-9:2005 Annex C and ISO 230-2:2006
-// Annex A.
-//
-// A quantity within a full range r, with all values equally likely, has the standard uncertainty
-// r/(2 sqrt 3) and the expanded one (k = 2) r/sqrt 3 = 0.577 r, rounded up to 0.6 r.
-//   U_DEV = U_fixed + U_per_length L        m   certificate of the instrument
-//   U_MIS = 0.6 R_mis^2/(2 L)               m   R_mis: beam relative to axis over L, m
-//   U_M   = 0.6 alpha L R(theta)            m   alpha: 1/K, R(theta): K
-//   U_E   = 0.6 dT L R(alpha)               m   dT: largest distance from 20 degC, K
-//   U_EVE = 0.6 E_VE                        m   E_VE: range of the drift test
-// and U_MD, U_ED like U_M, U_E for a device that has a length of its own, if it is stated.
-// With S2 = U_DEV^2 + U_MIS^2 + U_M^2 + U_E^2 (+ U_MD^2 + U_ED^2), n approaches, and R+ = 2 k s, A
-// with k s:
-//   U(B)^2 = 2 U_EVE^2/n + D^2      systematic parts cancel; D: drift and repetition (drift.h)
-//   U(M)^2 = S2 + U_EVE^2/n;   U(E)^2 = S2 + 2 U_EVE^2/n
-//   U(R+)^2 = (k U_EVE)^2 + (2 k D_s)^2; U(R)^2 = U(R+)^2 + U(B)^2
-//   U(A)^2 = U(E)^2 + (k U_EVE)^2
-// S2 is that of the whole length, hence an upper bound.
 #include "nonio/math/uncertainty.h"
 
 #include <algorithm>
@@ -30,8 +11,8 @@
 namespace nonio::math {
 namespace {
 
-// Reason for this factor: docs/dev/constants.md, A7.
-constexpr double of_range = 0.6;  // 2/(2 sqrt 3), rounded up
+// 2/(2 sqrt 3), rounded up: docs/dev/constants.md, A7.
+constexpr double of_range = 0.6;
 
 double get(const std::optional<double>& given, const std::string& key,
            std::vector<std::string>& missing) {
@@ -121,9 +102,8 @@ Iso230Uncertainty iso230_2_uncertainty(const Budget& b, std::size_t n, double k)
   return U;
 }
 
-// Takes the uncertainties of VDI/DGQ 3441 from those of ISO 230-2, because Pa corresponds to M, U_j
-// to |B_i|, Ps_j = 6 s_j to R_i and P to A. The factor k is 3, because Ps_j and P contain 3 s_j on
-// each side of the mean.
+// Pa corresponds to M of ISO 230-2, U_j to |B_i|, Ps_j = 6 s_j to R_i and P to A. k is 3, because
+// Ps_j and P contain 3 s_j on each side of the mean.
 VdiUncertainty vdi3441_uncertainty(const Budget& b, std::size_t n) {
   const Iso230Uncertainty iso = iso230_2_uncertainty(b, n, 3.0);
   return {iso.A, iso.M, iso.R_plus, iso.R_plus, iso.B, iso.B};

@@ -18,8 +18,7 @@ struct OneError {
   const char* name;
   std::size_t axis;  ///< axis that moves; for a squareness the second axis
   char kind;         ///< 'p' positioning, 's' straightness, 'a' angle, 'q' squareness
-  /// For positioning and straightness: component of the error. For angles and squarenesses, the
-  /// levers contain the component, the coordinate of the arm, and the sign.
+  /// Component of positioning and straightness; angles and squarenesses have levers instead.
   std::size_t component;
   struct Lever {
     std::size_t component, arm;

@@ -30,7 +30,6 @@ Expected<void> check_line(const GridLine& line, std::size_t n, const std::string
   return {};
 }
 
-/// Checks that positioning, and yaw, exist for the directions in which a line was read.
 Expected<void> check_positioning(const DiagonalReadings& r, const GridLine& line,
                                  const std::string& what) {
   const auto X = of_direction(r.X, line.x_direction);

@@ -8,7 +8,6 @@
 
 namespace nonio::math {
 
-/// Returns the indices of the curves with this direction of approach.
 template <class T>
 std::vector<std::size_t> of_direction(const std::vector<T>& curves, int direction) {
   std::vector<std::size_t> out;

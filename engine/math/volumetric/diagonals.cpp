@@ -22,8 +22,8 @@ using Row = Eigen::RowVectorXd;
 
 /// smallest pivot that counts for the rank, relative to the largest one
 constexpr double rank_threshold = 1e-10;
-// Reason for this limit: docs/dev/constants.md, A6.
-constexpr double closure_limit = 4.0;  ///< limit of the closure error, in standard uncertainties
+// Limit of the closure error, in standard uncertainties: docs/dev/constants.md, A6.
+constexpr double closure_limit = 4.0;
 
 /// The linear equations A theta = y + N e for theta = (f_1..f_{n-1}, g_1..g_{n-1}, k Ly, slopes of
 /// directly measured straightness). e: errors of the readings; other symbols as in diagonals.h.
@@ -62,11 +62,9 @@ class System {
   std::size_t first_of_X() const { return r_.Y.size() * (n_ + 1); }
   std::size_t first_of_yaw() const { return first_of_X() + r_.X.size() * (n_ + 1); }
   const Vector& y() const { return y_; }
-  /// Standard uncertainties of the readings by repetition. If one is not known, they are 1 for all
-  /// lengths and 0 for yaw; readings that are 0 by definition have 0.
+  /// If one is not known, 1 for lengths and 0 for yaw. Readings that are 0 by definition have 0.
   const std::vector<double>& sigma() const { return sigma_; }
-  /// Returns the index of the first reading of the directly measured straightness EYX, or if
-  /// `second` of EXY.
+  /// Index of the first reading of the measured straightness EYX, or if `second` of EXY.
   std::size_t first_of_direct(bool second) const {
     const std::size_t last = r_.EXY ? r_.EXY->readings() : 0;
     return sigma_.size() - last - (!second && r_.EYX ? r_.EYX->readings() : 0);
@@ -77,8 +75,7 @@ class System {
     const Matrix root = scaled(sigma_);
     return product_transposed(root, root);
   }
-  /// Returns a matrix B such that B B' is the covariance of the rows if only the readings of lines
-  /// and of direct straightness have noise, with a standard deviation of 1.
+  /// B with B B' = covariance of the rows for noise of 1 in readings of lines and straightness.
   Matrix unit_noise() const { return scaled(unit_); }
 
   Row f(std::size_t i) const { return place(i, 0); }
@@ -99,8 +96,7 @@ class System {
     return scaled_columns(N_, Eigen::Map<const Vector>(sigma.data(), at(sigma.size())));
   }
 
-  /// Adds the sources of noise: Y, X, yaw, then lines and direct straightness. False if some noise
-  /// is not known; then all lengths have equal weights.
+  /// Order: Y, X, yaw, lines, direct straightness. Returns false if some noise is not known.
   bool add_sources() {
     bool known = true;
     const auto add = [&](const MeanCurve& c, double unit) {
@@ -136,9 +132,7 @@ class System {
     return known;
   }
 
-  /// Subtracts `factor` times a reading of a positioning curve, relative to its first stop, from
-  /// the row. Each curve has a zero of its own, because a common zero of two lines of X would
-  /// contain squareness.
+  /// Each curve has its own zero, because a common zero of two lines of X would contain squareness.
   void subtract(Eigen::Index row, const MeanCurve& c, std::size_t source, std::size_t i,
                 double factor) {
     y_[row] -= factor * (c.mean[i] - c.mean[0]);
@@ -146,7 +140,6 @@ class System {
     N_(row, at(source)) += factor;
   }
 
-  /// Adds sign times the model of the reading at a stop, without the reading itself.
   void add_stop(Eigen::Index row, const GridLine& line, std::size_t j, double sign) {
     const std::size_t a = line.ix[j], b = line.iy[j];
     const double y = r_.Ly * static_cast<double>(b) / static_cast<double>(n_);
@@ -178,7 +171,6 @@ class System {
     }
   }
 
-  /// Adds factor times point i of a straightness to the next row.
   void put_direct(const DirectStraightness& c, std::size_t source, std::size_t i, double factor) {
     y_[next_] += factor * c.mean_of(i);
     const std::size_t curves = c.reversed ? 2 : 1;
@@ -188,8 +180,7 @@ class System {
 
   double way(std::size_t i) const { return static_cast<double>(i) / static_cast<double>(n_); }
 
-  /// Adds rows for the odd part only; the even part may be known better from the diagonals than
-  /// from a straightness on another line by another instrument.
+  /// The even part may be known better from the diagonals than from another instrument.
   void add_odd(const DirectStraightness& c, std::size_t source, std::size_t first,
                std::size_t slope) {
     for (std::size_t i = 0; 2 * i < n_; ++i, ++next_) {
@@ -218,8 +209,7 @@ class System {
   Eigen::Index next_ = 0;
 };
 
-/// Generalized least squares with the rank determined numerically. The value of a functional is
-/// valid only if the rows determine it (`determined`).
+/// Generalized least squares. A value is valid only if the rows determine it (`determined`).
 class Solution {
  public:
   Solution(const System& system, const ReadingModel* model) : model_(model) {
@@ -257,7 +247,6 @@ class Solution {
   }
   /// Returns the derivatives of a functional by the readings; requires a model.
   Row by_readings(const Row& h) const { return by(h, jacobian_); }
-  /// Returns the uncertainty shares of a result with these derivatives by the readings.
   Shares shares_of_readings(const Row& J) const {
     if (model_ == nullptr) return {};
     return model_->shares({J.data(), static_cast<std::size_t>(J.size())});
@@ -312,7 +301,6 @@ Row slope(const Functional& h, double length) {
   return sum / squares;
 }
 
-/// Returns the functional minus its least-squares line.
 Functional less_line(const Functional& h) {
   const double n = static_cast<double>(h.size() - 1);
   const Row tilt = slope(h, 1.0);
@@ -324,8 +312,8 @@ Functional less_line(const Functional& h) {
   return out;
 }
 
-/// Computes the closure error S = d1 + d2, of which only the even part can be an error of the
-/// machine. The limits use the whole budget, if there is a model of the readings.
+/// Only the even part of S = d1 + d2 can be an error of the machine. With a model of the readings,
+/// the limits use the whole budget.
 Closure closure_of(const System& system, std::size_t n, const Solution& solution) {
   const Matrix C = system.covariance();
   const auto S = [&](std::size_t i) {
@@ -356,7 +344,7 @@ Closure closure_of(const System& system, std::size_t n, const Solution& solution
   return c;
 }
 
-/// Returns the range of the difference of the second and first line of X; both must exist.
+/// Both lines of X must exist.
 DiagonalResult::Racking racking_of(const DiagonalReadings& r, const System& system,
                                    const Solution& s, const std::vector<double>& ECX) {
   const auto X = of_direction(r.X, r.D1.x_direction);
@@ -426,7 +414,6 @@ void fill_yaw(const DiagonalReadings& r, const System& system, const Solution& s
   out.racking = racking_of(r, system, s, out.ECX.value);
 }
 
-/// Returns the variance of a linear function of the readings, by repetition and all inputs.
 double variance_of(const System& system, const Solution& s, const Row& J) {
   double sum = 0.0;
   for (Eigen::Index i = 0; i < J.size(); ++i) {
@@ -538,8 +525,7 @@ Band straightness_band(const DiagonalResult& r, double Lx, double Ly, double G) 
   const std::size_t n = r.q_odd.value.size() - 1;
   for (std::size_t i = 0; i <= n; ++i) {
     const double q = r.q_odd.value[i];
-    // The odd part is 0 at the ends and at mid-travel, so that both bounds are equal at these
-    // points.
+    // The odd part is 0 at the ends and at mid-travel.
     const double half = i == 0 || i == n || 2 * i == n ? 0.0 : c * G / s;
     band.low.push_back(r.EYX_even.value[i] + q / s - half);
     band.high.push_back(r.EYX_even.value[i] + q / s + half);

@@ -7,18 +7,15 @@
 #include "nonio/math/budget.h"
 #include "nonio/math/volume_map.h"
 
-/// Linear functions of the results of a fit: value, u of the repetition, shares of the inputs.
 namespace nonio::math {
 
-/// Fitted unknowns with their covariance and, if there is a model, their derivatives by the
-/// readings.
+/// Fitted unknowns with their covariance; `of_readings` needs a model.
 struct Estimator {
   Eigen::VectorXd x;
   Eigen::MatrixXd covariance;
   Eigen::MatrixXd of_readings{};
   const ReadingModel* model = nullptr;
-  /// Returns the degrees of freedom of the repetition for a row of derivatives by the readings. If
-  /// empty, those of the budget apply.
+  /// Degrees of freedom of the repetition for derivatives by the readings; empty: of the budget.
   std::function<double(const Eigen::RowVectorXd&)> dof{};
 
   double value(const Eigen::RowVectorXd& row) const { return row.dot(x); }

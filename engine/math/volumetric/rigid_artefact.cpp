@@ -17,16 +17,15 @@ using Eigen::Vector3d;
 
 // a rotation that moves a ball by less, relative to the size of the artefact, is ignored
 constexpr double no_lever = 1e-6;
-// largest width, relative to the length, of balls that are treated as being on one line; such balls
-// do not determine the rotation about the line
+// Largest width, relative to the length, of balls that are treated as being on one line, about
+// which they determine no rotation.
 constexpr double no_plane = 1e-3;
 constexpr double least_u = 1e-9;  // m, m/m; smallest standard uncertainty used for stated values
 
 Vector3d vector_of(const Corner& c) { return {c[0], c[1], c[2]}; }
 
-/// Returns the position of a ball. A coordinate that was not measured is set to 0, as if all balls
-/// were in the plane perpendicular to it, because a tilt of the artefact out of this plane changes
-/// the other coordinates in second order only.
+/// A coordinate that was not measured is set to 0, because a tilt out of the plane of the other
+/// coordinates changes them in second order only.
 Vector3d place_of(const ArtefactPlacement& p, std::size_t i) {
   Vector3d at = vector_of(p.at[i]);
   for (std::size_t k = 0; k < 3; ++k)
@@ -38,14 +37,12 @@ Vector3d place_of(const ArtefactPlacement& p, std::size_t i) {
 struct Stand {
   Matrix3d R = Matrix3d::Identity();
   Vector3d from = Vector3d::Zero(), to = Vector3d::Zero();
-  /// whether the balls are not on one line, so that all rotations are determined
-  bool turned_by_all = false;
+  bool turned_by_all = false;  ///< whether the balls are not on one line
   Vector3d place(const Vector3d& q) const { return R * (q - from) + to; }
   Vector3d back(const Vector3d& p) const { return R.transpose() * (p - to) + from; }
 };
 
-/// Returns the position and orientation that fits the pairs best: rotation U diag(1, 1, det) V' of
-/// the matrix sum p q'.
+/// Returns the best fit of the pairs: rotation U diag(1, 1, det) V' of the matrix sum p q'.
 Stand best_stand(const std::vector<Vector3d>& q, const std::vector<Vector3d>& p) {
   Stand s;
   const auto n = static_cast<double>(q.size());
@@ -61,7 +58,6 @@ Stand best_stand(const std::vector<Vector3d>& q, const std::vector<Vector3d>& p)
   return s;
 }
 
-/// Determines the coordinates of all balls in one frame, and the placements relative to it.
 class Frame {
  public:
   explicit Frame(const Artefact& a) : a_(a), q_(a.balls.size()), is_placed_(a.placements.size()) {}
@@ -91,9 +87,8 @@ class Frame {
   const Stand& stand(std::size_t p) const { return *is_placed_[p]; }
 
  private:
-  /// Fits a placement by its balls with known coordinates, and derives the coordinates of its other
-  /// balls. Returns false if no ball is known, or if the known balls are on one line and other
-  /// balls are not known.
+  /// Fits a placement by its known balls, and derives its other balls. Returns false if no ball is
+  /// known, or if the known balls are on one line and others are not known.
   bool link(std::size_t p) {
     const ArtefactPlacement& placement = a_.placements[p];
     std::vector<Vector3d> q, at;
@@ -177,8 +172,7 @@ void put_placement(const Artefact& a, const Frame& frame, std::size_t p, std::si
   }
 }
 
-/// Builds the line of the values that the certificate states, and of their scale, which is the last
-/// unknown.
+/// The scale of the stated values is the last unknown.
 class Stated {
  public:
   void add(double value, double u, const std::vector<std::pair<std::size_t, double>>& shares) {

@@ -23,7 +23,7 @@ using Eigen::VectorXd;
 constexpr double changes_nothing = 1e-6;
 constexpr double shows_nothing = 1e-9;  // norm of a row of V below which a term affects no reading
 constexpr double same_share = 1e-6;
-constexpr std::size_t places_of_curve = 21;  // number of points of a curve
+constexpr std::size_t places_of_curve = 21;
 
 std::string name_of(const RigidTerm& term) {
   return term.kind == RigidTerm::Kind::squareness ? term.error
@@ -46,8 +46,7 @@ void find_combinations(const RigidFit& f, RigidSolution& out) {
   }
 }
 
-/// Returns the terms of the least identifiable direction whose coefficients exceed 0.3 of the
-/// largest, in descending order; the coefficients are relative to the largest.
+/// Terms of the least identifiable direction above 0.3 of the largest, relative to it, descending.
 Combination weakest_of(const RigidFit& f) {
   Combination out;
   if (f.solved.rank == 0) return out;
@@ -63,7 +62,6 @@ Combination weakest_of(const RigidFit& f) {
   return out;
 }
 
-/// Computes the requested results of the fit that are identifiable.
 class Results {
  public:
   Results(const RigidFit& f, const RigidBox& box, const ReadingModel* model) : f_(f), box_(box) {
@@ -74,8 +72,7 @@ class Results {
     e_.model = model;
     if (model == nullptr) return;
     e_.of_readings = f.solved.map;
-    // The model contains the inputs of stated values, so subtract them: the repetition is that of
-    // the readings alone.
+    // The model contains the inputs of stated values; the repetition is that of the readings alone.
     for (std::size_t i = 0; i < f.table.stated.size(); ++i)
       if (const double u = f.table.stated[i]; u > 0.0) {
         const VectorXd by = u * f.solved.map.col(at(i));
@@ -91,8 +88,7 @@ class Results {
            orthogonal_part(f_.solved.V, VectorXd(row.transpose())).norm() < changes_nothing * size;
   }
 
-  /// Returns the row of an error at a position of its axis; for positioning, relative to the start
-  /// of the travel.
+  /// Positioning is relative to the start of the travel.
   RowVectorXd row_of(const std::string& error, const Corner& place) const {
     RowVectorXd row = RowVectorXd::Zero(at(f_.terms.size()));
     for (std::size_t k = 0; k < f_.terms.size(); ++k) {
@@ -184,8 +180,7 @@ void put_results(const RigidFit& f, const RigidBox& box, const RigidWish& wish,
       wish.parts);
 }
 
-/// Returns the largest degree, 2 to 8, that the positions of the readings allow: at least two
-/// positions for each polynomial of an axis.
+/// Each polynomial of an axis needs at least two positions of the readings.
 std::size_t allowed_degree(const std::vector<RigidLine>& lines, const RigidBox& box) {
   std::size_t least = most_degree;
   for (std::size_t k = 0; k < 3; ++k) {

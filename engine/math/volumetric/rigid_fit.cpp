@@ -14,7 +14,6 @@ using Eigen::VectorXd;
 
 constexpr std::size_t scatter_rounds = 20;
 
-/// Returns the number of unknowns that lines share: the largest index plus 1.
 std::size_t shared_unknowns(const std::vector<RigidLine>& lines) {
   std::size_t count = 0;
   for (const RigidLine& line : lines)

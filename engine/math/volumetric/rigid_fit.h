@@ -6,7 +6,6 @@
 #include "dense.h"
 #include "rigid_terms.h"
 
-/// The least-squares fit of rigid_body.h: terms, identifiable combinations, scatter of the groups.
 namespace nonio::math {
 
 /// Matrices of the terms and of the set-up, one row per reading.
@@ -18,7 +17,6 @@ struct RigidTable {
   std::size_t groups = 0;
 };
 
-/// One fit, with the readings divided by the scatter of their groups.
 struct RigidSolved {
   Eigen::VectorXd x, residual;  ///< solution; residuals of the readings divided by their scatter
   /// right singular vectors up to the rank, as columns; matrix from readings to unknowns

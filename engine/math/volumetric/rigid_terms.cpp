@@ -15,8 +15,7 @@ struct Named {
   Kind kind;
   std::size_t axis, along;
 };
-/// Order of the errors: if several errors explain the same readings, a later one is reported as
-/// undetermined.
+/// If several errors explain the same readings, a later one is reported as undetermined.
 constexpr std::array<Named, 21> all_named{{
     {"EXX", Kind::positioning, 0, 0},  {"EYY", Kind::positioning, 1, 1},
     {"EZZ", Kind::positioning, 2, 2},  {"C0Y", Kind::squareness, 1, 2},
@@ -45,8 +44,8 @@ Corner unit_along(std::size_t k) {
   return out;
 }
 
-/// Returns the vector from the pivot of an axis to the tool, along the axes that it carries. A
-/// squareness rotates the second axis itself.
+/// Returns the position relative to the center of the box, with the coordinates of the axes that
+/// the moving axis carries; for a squareness, with that of the second axis itself.
 Corner carried(const RigidTerm& term, const RigidBox& box, const Corner& at) {
   Corner out{};
   if (term.kind == Kind::squareness)
@@ -63,7 +62,6 @@ double largest_in(const RigidTerm& term, const RigidBox& box) {
   return most;
 }
 
-/// Returns two unit vectors perpendicular to a direction.
 std::array<Corner, 2> across_of(const Corner& sense) {
   const Corner up = std::fabs(sense[2]) < 0.9 ? unit_along(2) : unit_along(0);
   Corner level = cross_product(up, sense);
@@ -89,8 +87,7 @@ Corner farthest_way(const RigidLine& line) {
   return best;
 }
 
-/// Returns the direction of travel of a line: the unit vector from the first reading to the reading
-/// farthest from it.
+/// Unit vector from the first reading to the reading farthest from it.
 Corner travel_of(const RigidLine& line) {
   Corner best{};
   for (std::size_t i = 0; i < line.readings.size(); ++i)

@@ -19,7 +19,6 @@ struct RigidTerm {
   double scale = 1.0;  ///< scale of the unknown: a coefficient of 1 causes at most 1 in the volume
 };
 
-/// The volume as a box.
 struct RigidBox {
   Corner low{}, high{};
   double length(std::size_t k) const { return high[k] - low[k]; }
@@ -30,16 +29,13 @@ struct RigidBox {
   double lever(std::size_t k, const Corner& at) const { return at[k] - (low[k] + high[k]) / 2.0; }
 };
 
-/// Returns the terms of these errors, or if `errors` is empty, of all, with polynomials up to
-/// `degree`, in the order of `rigid_errors`; errors of axes that do not move have none.
+/// `errors`: empty for all. Errors of axes that do not move have no terms.
 std::vector<RigidTerm> rigid_terms(const RigidBox&, const std::vector<std::string>& errors,
                                    std::size_t degree);
 
 double legendre(std::size_t degree, double t);
-/// Returns P_k at the position of the axis of the term.
 double shape_of(const RigidTerm&, const RigidBox&, const Corner& at);
-/// Returns the error e of the tool point, m, for a coefficient of 1 m of the unscaled term, or of 1
-/// rad for an angle.
+/// Returns e of the tool point, m, for an unscaled coefficient of 1 m, or of 1 rad for an angle.
 Corner error_of_term(const RigidTerm&, const RigidBox&, const Corner& at);
 
 /// Derivatives of each reading of a line by the terms (scaled), and by the unknowns of the set-up.

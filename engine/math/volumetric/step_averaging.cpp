@@ -10,11 +10,9 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// One move of an axis over its interval i. Its size is the reading after the move minus the
-/// reading before it; the reading before the first move is the zero of the pass.
+/// A move of an axis over one interval. The reading before the first move is the zero of the pass.
 struct Increment {
-  /// after: number of moves of the pass up to and including this one
-  std::size_t pass = 0, after = 0;
+  std::size_t pass = 0, after = 0;  ///< after: number of moves up to and including this one
 };
 
 /// Returns the move of `axis` over interval i (from position i to i + 1) in a pass.
@@ -33,7 +31,6 @@ double size_of(const StepDiagonals& d, const Increment& r) {
   return read(d, r.pass, r.after) - read(d, r.pass, r.after - 1);
 }
 
-/// Returns the index of the body diagonal, 0 to 3, of a pass.
 std::size_t line_of(const StepDiagonals::Pass& p) {
   return (p.sign[0] * p.sign[1] > 0 ? 0U : 1U) + (p.sign[0] * p.sign[2] > 0 ? 0U : 2U);
 }
@@ -45,8 +42,7 @@ std::array<double, 4> shares(const StepDiagonals& d) {
   return share;
 }
 
-/// Returns the matrix from the readings of all passes, each with its zero first, to the function
-/// values.
+/// From the readings of all passes, each with its zero first, to the function values.
 Eigen::MatrixXd averaging(const StepDiagonals& d) {
   const std::size_t each = 3 * d.n + 1;
   const auto share = shares(d);

@@ -18,16 +18,14 @@ using Index = Eigen::Index;
 // limit of eigenvalues, relative to the largest; directions below this limit are not determined
 constexpr double undetermined = 1e-10;
 constexpr double unmoved = 1e-6;  // largest change by an undetermined unit vector that is ignored
-constexpr int corrections = 2;    // number of corrections of second order
+constexpr int corrections = 2;
 
-/// Returns two unit vectors perpendicular to u.
 std::array<Vector3d, 2> across(const Vector3d& u) {
   const Vector3d one = u.unitOrthogonal();
   return {one, u.cross(one)};
 }
 
-/// Layout of the columns: function values, set-up angles times L, zeros of the passes, zeros of the
-/// series.
+/// Columns: function values, set-up angles times L, zeros of the passes, zeros of the series.
 struct Layout {
   Index functions = 0, set_up = 0, zeros = 0, series = 0;
   Index first_zero() const { return functions + set_up; }
@@ -36,7 +34,7 @@ struct Layout {
 };
 
 struct ReadingRow {
-  std::size_t pass, moves;  ///< index of the pass, number of moves; 0 moves: zero of the pass
+  std::size_t pass, moves;  ///< index of the pass; number of moves, 0 for the zero of the pass
 };
 
 /// Rows of readings (weight 1), of series, and of the gauge.
@@ -79,8 +77,7 @@ void put_reading(const StepDiagonals& d, const ReadingRow& row, Design& design, 
   design.b[r] = row.moves == 0 ? 0.0 : pass.reading[row.moves - 1];
 }
 
-/// Adds E_aa, interpolated between its positions, to a row of the function values. Returns false if
-/// x is outside of the travel.
+/// E_aa is interpolated between its positions. Returns false if x is outside of the travel.
 bool put_position(const StepDiagonals& d, std::size_t axis, double x, double weight,
                   Eigen::Ref<Eigen::RowVectorXd> row) {
   const double steps = (x - d.low[axis]) / d.travel[axis] * static_cast<double>(d.n);
@@ -134,8 +131,7 @@ Design design_of(const StepDiagonals& d, const std::vector<AxisSeries>& series,
     }
   }
   if (choices.set_up_known) return design;
-  // Mirrors of unknown orientation leave the rotations undetermined: set EYX, EZX, EZY to 0 at the
-  // far end.
+  // Mirrors of unknown orientation leave rotations undetermined: EYX, EZX, EZY end at 0.
   for (const auto& [axis, along] : {std::pair{0U, 1U}, std::pair{0U, 2U}, std::pair{1U, 2U}})
     design.A(r++, static_cast<Index>(function_column(axis, along, d.n, d.n))) = 1.0;
   return design;
@@ -188,8 +184,7 @@ Vector3d set_up_of(const StepDiagonals& d, std::size_t pass, const Design& desig
   return (sides[0] * x[first] + sides[1] * x[first + 1]) / d.diagonal();
 }
 
-/// Returns the readings minus the terms of second order: nu.E, and the shorter path of a beam that
-/// is not parallel to the diagonal.
+/// Terms of second order: nu.E, and the shorter path of a beam not parallel to the diagonal.
 VectorXd without_second_order(const StepDiagonals& d, const Design& design, const VectorXd& x,
                               const StepChoices& choices) {
   VectorXd b = design.b;
@@ -225,8 +220,7 @@ std::array<bool, 3> known_scales(const StepDiagonals& d, const Factor& f) {
   return known;
 }
 
-/// Returns whether there are at most eight undetermined directions, and none of them changes a
-/// curve or squareness that is given.
+/// At most eight directions are undetermined, and none of them changes a result.
 bool complete(const StepDiagonals& d, const Factor& f, const std::array<bool, 3>& known) {
   const auto size = static_cast<Index>(9 * d.n);
   if (f.open.cols() > 8) return false;
@@ -242,8 +236,7 @@ bool complete(const StepDiagonals& d, const Factor& f, const std::array<bool, 3>
   return true;
 }
 
-/// Returns the derivatives of the function values by the readings in the order of the model: passes
-/// with their zeros, then series.
+/// The order is that of the model: passes with their zeros, then series.
 Sensitivity sensitivity_of(const StepDiagonals& d, const Design& design, const Factor& f,
                            const ReadingModel* model) {
   Sensitivity out{model, {}};
@@ -300,7 +293,6 @@ AxisSeries inside(const StepDiagonals& d, const AxisSeries& s) {
   return in;
 }
 
-/// Compares each series with the functions from the diagonals alone.
 std::vector<ShapeContrast> contrast_shapes(const StepDiagonals& d,
                                            const std::vector<AxisSeries>& series,
                                            const StepChoices& choices, const Design& design,

@@ -9,8 +9,7 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// Returns the matrix that subtracts a line from n + 1 values of which the first is 0; it applies
-/// to the other n.
+/// Subtracts a line from n + 1 values of which the first is 0; applies to the other n.
 Eigen::MatrixXd without_line(std::size_t n, const Eigen::RowVectorXd& slope, bool centred) {
   const Index m = at(n) + 1;
   const Eigen::VectorXd i = Eigen::VectorXd::LinSpaced(m, 0.0, static_cast<double>(n));

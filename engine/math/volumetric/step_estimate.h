@@ -4,7 +4,6 @@
 #include "dense.h"
 #include "nonio/math/step_diagonals.h"
 
-/// Functions shared by both methods of step_diagonals.h.
 namespace nonio::math {
 
 /// Returns the column of function E_ba at position i of 1..n; at 0 every function is 0.
@@ -13,7 +12,6 @@ inline std::size_t function_column(std::size_t axis, std::size_t along, std::siz
   return (3 * axis + along) * n + i - 1;
 }
 
-/// Returns the direction of a pass, a unit vector.
 Eigen::Vector3d direction(const StepDiagonals&, const StepDiagonals::Pass&);
 /// Returns the nominal displacement after t moves, m.
 Eigen::Vector3d displacement(const StepDiagonals&, const StepDiagonals::Pass&, std::size_t t);
@@ -24,8 +22,7 @@ struct Sensitivity {
   Eigen::MatrixXd of_readings{};  ///< function values x readings, in the order of the model
 };
 
-/// Computes curves and squareness in the gauge of ISO 230-1 from function values and their
-/// covariance. known: whether the scale of X, Y, Z is known.
+/// Uses the gauge of ISO 230-1. `known`: whether the scale of X, Y, Z is known.
 void present(const StepDiagonals&, const Eigen::VectorXd& values, const Eigen::MatrixXd& covariance,
              const Sensitivity&, const std::array<bool, 3>& known, StepSolution& out);
 

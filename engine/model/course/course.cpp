@@ -13,9 +13,8 @@ namespace nonio::model {
 
 namespace {
 
-/// Estimates the standard deviation of readings from the second differences of residuals, in which
-/// a smooth course nearly vanishes. The median of their absolute values is used, because outliers
-/// hardly affect it. None for fewer than 20 residuals.
+/// A smooth course nearly vanishes in second differences, and outliers hardly affect the median of
+/// their absolute values. Returns nothing for fewer than 20 residuals.
 std::optional<NoiseFloor> floor_of(const std::vector<double>& residual) {
   if (residual.size() < 20) return std::nullopt;
   std::vector<double> d;
@@ -31,8 +30,7 @@ std::optional<NoiseFloor> floor_of(const std::vector<double>& residual) {
   return out;
 }
 
-/// Tests whether the residuals differ between classes (F-test). `fewer`: number of readings per
-/// independent reading. None if there are too few independent readings.
+/// F-test between classes. `fewer`: number of readings per independent reading.
 std::optional<Place> place_of(Where where, const std::vector<double>& residual,
                               const std::vector<std::size_t>& classes, std::size_t count,
                               double fewer) {
@@ -66,7 +64,6 @@ std::optional<Place> place_of(Where where, const std::vector<double>& residual,
   return place;
 }
 
-/// Divides values into `count` classes of equal width between the smallest and the largest value.
 std::vector<std::size_t> classes_of(const std::vector<double>& values, std::size_t count,
                                     double& low, double& width) {
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
@@ -79,8 +76,7 @@ std::vector<std::size_t> classes_of(const std::vector<double>& values, std::size
   return out;
 }
 
-/// Returns the number of residuals per independent residual: 1 + 2 x sum of the autocorrelations,
-/// added in pairs until the first pair that is not positive.
+/// 1 + 2 x sum of the autocorrelations, added in pairs until the first pair that is not positive.
 double fewer_than(const VectorXd& residual) {
   const Index n = residual.size();
   const VectorXd r = residual.array() - residual.mean();
@@ -96,9 +92,7 @@ double fewer_than(const VectorXd& residual) {
   return sum;
 }
 
-/// Returns the places of the residuals: tests whether they differ between classes of time, and of
-/// each channel. The means of the bins of the search are tested, so differences within a bin are
-/// not found.
+/// The means of the bins of the search are tested, so differences within a bin are not found.
 std::vector<Place> places_of(const Part& part, const std::vector<double>& all) {
   constexpr std::size_t classes = 8;
   const CourseData data(part);

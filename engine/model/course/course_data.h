@@ -9,7 +9,6 @@
 #include "data/design.h"
 #include "nonio/model/explain.h"
 
-/// Displacements over time: the data that the fit and the search of a course share.
 namespace nonio::model {
 
 /// One shape of a term, and its columns in the bins.
@@ -18,9 +17,8 @@ struct CourseColumns {
   MatrixXd columns;
 };
 
-/// Rows of a course, averaged in at most `most_bins` bins of nearly equal numbers of rows (the
-/// number of bins minus 1 has no prime factors except 2, 3 and 5, for the Fourier transform of the
-/// changes), divided into consecutive blocks.
+/// Rows averaged in at most `most_bins` bins of nearly equal size. The number of bins minus 1 has
+/// only the prime factors 2, 3 and 5, for the Fourier transform of the changes.
 class CourseData {
  public:
   static constexpr Index blocks = course_blocks, most_bins = 751;
@@ -33,16 +31,13 @@ class CourseData {
   MatrixXd means(const Effect::Columns& columns) const;
   /// Returns the first bin of block b; for b = count the end of the last block.
   Index begin_of(Index b, Index count = blocks) const { return b * size() / count; }
-  /// `time` returns the mean time of the readings of bin b, s, and `duration` the time from the
-  /// first to the last bin, s.
+  /// Mean time of the readings of bin b, and time from the first to the last bin, s.
   double time(Index b) const { return time_(b); }
   double duration() const { return size() > 1 ? time_(size() - 1) - time_(0) : 0.0; }
-  /// Returns the displacement of this part, then those of parts that move with it: bins x
-  /// displacements, m.
+  /// Displacement of this part, then those that move together with it: bins x displacements, m.
   const MatrixXd& displacements() const { return displacements_; }
   const Part& part() const { return part_; }
-  /// Returns the columns for every shape on the grid of a term (`shapes_of`), except shapes for
-  /// which the effect returns an error. Computed once for each term.
+  /// Columns for the grid of a term, without shapes for which the effect returns an error.
   const std::vector<CourseColumns>& on_grid(const Term& term) const;
 
  private:

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Fits terms by generalized least squares on the means of bins, with noise that is correlated in
-// time. The shapes are those with the largest evidence, first on their grids and then between grid
-// values.
+// Shapes with the largest evidence, first on their grids and then between grid values.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -50,8 +48,7 @@ class CourseFit {
     return out;
   }
 
-  /// Returns -ln of the evidence with the shapes at these indices of their grids; infinite if two
-  /// terms have the same column.
+  /// Infinite if two terms have the same column.
   double cost_with(const std::vector<std::size_t>& at) const {
     std::vector<Index> columns;
     for (std::size_t k = 0; k < at.size(); ++k)
@@ -106,8 +103,7 @@ class CourseFit {
     return least;
   }
 
-  /// Returns -ln of the evidence with `instead` as the columns of term k and the chosen columns of
-  /// the other terms.
+  /// -ln of the evidence with `instead` as the columns of term k.
   double cost_of_chosen(std::size_t k, const MatrixXd& instead) const {
     CoursePool pool(data_, noise_);
     std::vector<Index> columns;
@@ -124,8 +120,7 @@ class CourseFit {
     return data_.means(*columns);
   }
 
-  /// Optimizes the continuous shapes of searched terms between adjacent values of their grids, in
-  /// two rounds.
+  /// Two rounds over the continuous shapes of searched terms, between adjacent grid values.
   void refine() {
     for (int round = 0; round < 2; ++round)
       for (std::size_t k = 0; k < terms_.size(); ++k) {
@@ -163,8 +158,7 @@ class CourseFit {
       terms_[k].shape = chosen_[k].shape;
   }
 
-  /// Decomposes the columns of all terms; a rank below their number means that the terms cannot be
-  /// separated.
+  /// If the rank is below the number of columns, the terms cannot be separated.
   Eigen::ColPivHouseholderQR<MatrixXd> decomposed() const {
     Eigen::ColPivHouseholderQR<MatrixXd> qr(
         of_unit_length(CourseWhitening(data_, noise_).of(chosen().columns)));
@@ -222,7 +216,6 @@ class CourseFit {
     return "these readings cannot separate the effects of the model";
   }
 
-  /// Computes u of the coefficients and of the searched shapes from the linearized problem.
   void uncertainties(const CourseModel& model, const VectorXd& x, Fit& out) const {
     const MatrixXd& a = model.columns;
     CourseModel linearised = model;

@@ -57,8 +57,7 @@ MatrixXd CourseWhitening::of(MatrixXd columns) const {
 
 namespace {
 
-/// Calls `visit` for every combination of correlation time and scatter that is searched; the
-/// correlation time is the duration of the test divided by `part_of_test`.
+/// The correlation time is the duration of the test divided by `part_of_test`.
 template <class Visit>
 void for_each_noise(const CourseData& data, const CourseModel& model, const MatrixXd& displacements,
                     const Visit& visit) {

@@ -3,32 +3,26 @@
 
 #include "course_data.h"
 
-/// Noise of displacements over time, which is correlated from bin to bin.
 namespace nonio::model {
 
-/// Noise that is the sum of a part with exponential correlation in time and of a part that is
-/// independent in each bin.
+/// Sum of a part with exponential correlation in time and a part that is independent in each bin.
 struct CourseNoise {
   double correlation_time;  ///< correlation time of the correlated part, s
   double scatter = 0.0;     ///< variance of the independent part / variance of the correlated part
 };
 
-/// Returns the noise with which effects are fitted and searched: a correlation time of 1/24 of the
-/// test, and scatter 0.
+/// For the fit and the search: a correlation time of 1/24 of the test, and scatter 0.
 CourseNoise noise_of_fit(const CourseData& data);
 
-/// Whitens columns for generalized least squares: the noise of the result is independent from bin
-/// to bin, and an unknown constant (zero) in a column is eliminated. The result has the unit of the
-/// column, and its noise has the same variance as the correlated part of the noise of the column.
-/// Source: Kalman 1960; Harvey, Forecasting, structural time series models and the Kalman filter,
-/// 3.4.
+/// Whitens columns for generalized least squares, and eliminates an unknown constant (zero). The
+/// result has the unit of the column, and noise with the variance of the correlated part. Source:
+/// Kalman 1960; Harvey, Forecasting, structural time series models and the Kalman filter, 3.4.
 class CourseWhitening {
  public:
   CourseWhitening(const CourseData& data, const CourseNoise& noise);
 
   MatrixXd of(MatrixXd columns) const;
-  /// Returns half the natural logarithm of the determinant of the noise covariance, including the
-  /// term of the unknown zero.
+  /// Half the log-determinant of the noise covariance, including the term of the unknown zero.
   double half_log_determinant() const { return half_log_determinant_; }
   /// Returns the variance of the zero divided by that of the correlated part of the noise.
   double variance_of_zero() const { return variance_of_zero_; }
@@ -47,26 +41,21 @@ struct CourseModel {
   MatrixXd columns;  ///< one row per bin
   std::vector<Quantity> of{};
 
-  /// Appends the columns of a term; `quantities` are those of its coefficients, and the last one
-  /// applies to all further columns.
+  /// `quantities`: of the coefficients; the last one applies to all further columns.
   void add(const MatrixXd& more, const std::vector<Quantity>& quantities);
 };
 
-/// Returns which of the values in `CoursePool::scatters` gives the largest evidence for these
-/// columns, as the value of `CourseNoise::scatter`.
+/// Returns the value of `CoursePool::scatters` with the largest evidence for these columns.
 double most_likely_scatter(const CourseData& data, const CourseNoise& noise,
                            const CourseModel& model);
 
-/// Returns -ln of the evidence of these columns with the most likely noise, averaged over the
-/// displacements.
+/// -ln of the evidence with the most likely noise, averaged over the displacements.
 double likely_cost(const CourseData& data, const CourseModel& model);
 
-/// Uncertainties that remain after a fit of some columns.
 struct CourseUncertainty {
-  /// standard deviation of the part of the displacement that the columns do not explain, m
-  double s = 0.0;
-  double zero = 0.0;    ///< standard uncertainty of the zero, m
-  MatrixXd covariance;  ///< covariance matrix of the coefficients
+  double s = 0.0;     ///< standard deviation of what the columns do not explain, m
+  double zero = 0.0;  ///< standard uncertainty of the zero, m
+  MatrixXd covariance;
 };
 
 /// Returns the uncertainties with the noise that is most likely for the first displacement.

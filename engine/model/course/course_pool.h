@@ -9,7 +9,6 @@
 
 #include "course_noise.h"
 
-/// Evaluates the evidence of many sets of columns over time.
 namespace nonio::model {
 
 struct CourseSides;
@@ -24,46 +23,40 @@ class CoursePool {
 
   CoursePool(const CourseData& data, const CourseNoise& noise);
 
-  /// Adds columns (bins x k) and returns their indices in the pool. A column that the pool already
-  /// contains is not added again. `of`: quantities of the coefficients; the last one applies to all
-  /// further columns.
+  /// Columns: bins x k. Returns their indices in the pool, which contains equal columns once. `of`:
+  /// quantities of the coefficients; the last one applies to all further columns.
   std::vector<Index> add(const MatrixXd& columns, const std::vector<Quantity>& of);
-  /// Computes the products of all columns. Call it after the last `add` and before any other
-  /// member.
+  /// To be called after the last `add` and before any other member.
   void finish();
 
-  /// Returns -ln of the evidence of these columns for each displacement of `sides`, with the zero,
-  /// the coefficients and the variance of the noise integrated out.
+  /// -ln of the evidence for each displacement of `sides`, with the zero, the coefficients and the
+  /// variance of the noise integrated out.
   Eigen::RowVectorXd cost(const std::vector<Index>& columns, const CourseSides& sides) const;
   /// Returns the coefficients of the unscaled columns: columns x displacements.
   MatrixXd coefficients(const std::vector<Index>& columns, const CourseSides& sides) const;
-  /// Returns the variance of the noise when the columns are fitted to the first displacement, m^2.
+  /// Variance of the noise for the first displacement, m^2.
   double variance(const std::vector<Index>& columns, const CourseSides& sides) const;
-  /// Returns the covariance of the coefficients of the unscaled columns for noise of unit variance.
-  /// `variance`: variance of the noise, m^2, which sets the weight of the prior.
+  /// Covariance of the coefficients of the unscaled columns for noise of unit variance. `variance`:
+  /// of the noise, m^2, for the weight of the prior.
   MatrixXd covariance(const std::vector<Index>& columns, double variance) const;
-  /// Returns the residuals after these columns are fitted to displacements, bins x displacements.
+  /// Result: bins x displacements.
   MatrixXd remainder(const std::vector<Index>& columns, const MatrixXd& displacements) const;
-  /// Returns the RMS of cross-validation of displacement `side` over blocks of time, m: each block
-  /// is predicted from the other blocks and has a zero of its own.
+  /// RMS of cross-validation of displacement `side`, m; each block of time has a zero of its own.
   double left_out(const std::vector<Index>& columns, const CourseSides& sides, Index side) const;
 
   static constexpr std::size_t most_columns = 6;
 
-  /// Result of a greedy search that adds at most `most_columns` columns to `columns` one by one,
-  /// each time the one with the largest gain of evidence.
+  /// Columns that a greedy search adds one by one, each with the largest gain of evidence.
   struct Greedy {
     std::vector<Index> added;
     /// largest gain of ln evidence after any number of columns, each reduced by the penalty
     double gain = 0.0;
     double variance = 0.0;  ///< variance of the noise after the last added column, m^2
   };
-  /// Returns the result for the displacements `from` to `from + count - 1` together, with the same
-  /// columns for all of them.
+  /// For the displacements `from` to `from + count - 1` together, with the same columns.
   Greedy greedy(const std::vector<Index>& columns, const CourseSides& sides, Index from,
                 Index count) const;
-  /// Returns the ridge parameter: the variance of the noise divided by the variance of a
-  /// coefficient that is scaled by its prior, m^2.
+  /// Variance of the noise divided by that of a coefficient that is scaled by its prior, m^2.
   double ridge() const { return ridge_; }
   /// Returns ln of the number of columns: the evidence that each additional column must exceed.
   double penalty() const;
@@ -85,22 +78,19 @@ class CoursePool {
   std::vector<double> prior_;
   std::map<std::pair<double, double>, std::vector<Index>> places_;
   MatrixXd raw_, white_, products_;
-  /// Products of the columns within each block: of the whitened columns, and of the columns reduced
-  /// by their means in the block.
+  /// Products within each block: of whitened columns, and of columns minus their block means.
   struct Blocks {
     std::vector<MatrixXd> white, centred;
   };
   const Blocks& blocks() const;
   mutable std::optional<Blocks> blocks_;  ///< computed at the first cross-validation
   double sd_ = 0.0;                       ///< largest standard deviation of a displacement, m
-  double ridge_ = 0.0;  ///< variance of the noise / variance of a scaled coefficient, m^2
+  double ridge_ = 0.0;
 };
 
-/// Displacements to which sets of a pool's columns are fitted, and their products with these
-/// columns, computed once.
+/// Displacements, and their products with the columns of a pool, computed once.
 struct CourseSides {
-  /// products of the pool's columns with the displacements: pool x displacements
-  MatrixXd products;
+  MatrixXd products;           ///< pool x displacements
   Eigen::RowVectorXd squares;  ///< whitened sum of squares of each displacement, m^2
   struct Blocks {
     /// products in each block, as in CoursePool::Blocks, of the columns with the displacements

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Searches the effects that the model of a course lacks: sets of at most six, compared by their
-// evidence under noise that is correlated in time. What the search would find by chance is
-// determined by the same search in surrogates of the residual with random phases (Theiler et al.
-// 1992).
+// Sets of at most six effects are compared by their evidence under noise that is correlated in
+// time. The effect of chance is determined by the same search in surrogates of the residual with
+// random phases (Theiler et al. 1992).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -33,18 +32,16 @@ constexpr std::size_t most_instances = 64;
 struct Entry {
   std::size_t term;
   std::vector<double> shape;
-  MatrixXd made;               ///< columns of this shape in the bins
-  std::vector<Index> columns;  ///< indices of these columns in the pool
+  MatrixXd made;
+  std::vector<Index> columns;
 };
 
-/// Support for added columns: the gain of ln evidence, and the decrease of ln(RMS) of the
-/// cross-validation.
+/// Gain of ln evidence, and decrease of ln(RMS) of the cross-validation, by added columns.
 struct Shown {
   double evidence, fall;
 };
 
-/// Distribution of the largest gain that a search finds in surrogates of a residual: a Gumbel
-/// distribution.
+/// Gumbel distribution of the largest gain that a search finds in surrogates of a residual.
 struct InCopies {
   double at = 0.0, width = 0.0;
 
@@ -102,8 +99,7 @@ class CourseSearch {
 
   const Set& found() const { return set_; }
 
-  /// Returns the pool indices of the model's and the set's columns. The result ends with -1 if a
-  /// column occurs twice, because such a set cannot be fitted.
+  /// Pool indices; -1 at the end if a column occurs twice, because such a set cannot be fitted.
   std::vector<Index> columns_of(const Set& set) const {
     std::vector<Index> out = base_;
     for (const std::size_t e : set)
@@ -141,8 +137,7 @@ class CourseSearch {
     return out;
   }
 
-  /// Adds pairs of effects of the same channel, because a fast and an opposite slow response are
-  /// detected only together.
+  /// A fast and an opposite slow response of one channel are detected only together.
   void add_pairs(std::map<Set, double>& grown) const {
     for (std::size_t a = 0; a < entries_.size(); ++a)
       for (std::size_t b = a + 1; b < entries_.size(); ++b) {
@@ -156,8 +151,7 @@ class CourseSearch {
       }
   }
 
-  /// Returns the set with the largest evidence under its most likely noise, reduced by the penalty
-  /// for each effect, among the best sets of each size.
+  /// Compares the best set of each size under its most likely noise, with a penalty per effect.
   Set best() const {
     std::vector<Set> beam{{}};
     std::vector<std::pair<Set, double>> best{{{}, level_of({})}};
@@ -194,8 +188,8 @@ class CourseSearch {
     return best[chosen].first;
   }
 
-  /// Returns the distribution of the gain by the best further term in addition to `set` if no
-  /// further effect exists.
+  /// Distribution of the gain by the best further term in addition to `set`, under the hypothesis
+  /// that no further effect exists.
   SearchInCopies chance_with(const Set& set) const {
     const std::vector<Index> columns = columns_of(set);
     const CourseSides sides = sides_of_copies(columns);
@@ -217,12 +211,10 @@ class CourseSearch {
     return {InCopies(gained), InCopies(fell)};
   }
 
-  /// Returns ln(RMS) of the cross-validation of a set, averaged over displacements that are
-  /// searched together.
+  /// ln(RMS) of the cross-validation, averaged over displacements that are searched together.
   double left_out(const Set& set) const { return left_out(columns_of(set), *sides_, 0); }
 
-  /// Returns the p-value of the search as a whole: compares the gain of columns added one by one to
-  /// the readings with the gain in surrogates.
+  /// Compares the gain of columns added one by one to the readings with the gain in surrogates.
   double p_of_search() const {
     const CourseSides sides = sides_of_copies(base_);
     std::vector<double> gained, fell;
@@ -266,7 +258,6 @@ class CourseSearch {
     return sum / static_cast<double>(together());
   }
 
-  /// Returns the largest gain reached when columns are added one by one.
   Shown shown_one_by_one(const CourseSides& sides, Index from) const {
     const auto greedy = pool_->greedy(base_, sides, from, together());
     std::vector<Index> columns = base_;
@@ -316,8 +307,7 @@ class CourseSearch {
     return {*pool_, made};
   }
 
-  /// Returns a surrogate: the spectrum of its changes and the coherence between displacements are
-  /// those of `rest`, but its phases are random.
+  /// Keeps the spectrum of the changes and the coherence between displacements; phases are random.
   MatrixXd copy_of(const MatrixXd& rest, SplitMix64& random) const {
     const Index n = rest.rows() - 1;
     std::vector<double> angle(static_cast<std::size_t>(n / 2 + 1));
@@ -355,7 +345,6 @@ class CourseSearch {
   Set set_;
 };
 
-/// Derives candidates and the verdict from the best set.
 class CourseExplanation {
  public:
   CourseExplanation(const CourseData& data, const std::vector<Term>& model,
@@ -402,8 +391,7 @@ class CourseExplanation {
   }
 
  private:
-  /// One effect of the best set: the ln evidence lost without it, and the probability of such a
-  /// loss by chance.
+  /// An effect of the best set; loss: ln evidence without the effect; p: p-value of this loss.
   struct Member {
     std::size_t entry;
     double loss, p;
@@ -435,8 +423,7 @@ class CourseExplanation {
     if (member.p < named_p) certain_.emplace_back(member.predicts, c.term.name());
   }
 
-  /// Gain of ln evidence of an entry: as the only addition to the model, and in addition to the
-  /// best set.
+  /// Gain of ln evidence as the only addition to the model, and in addition to the best set.
   struct Gain {
     double alone, within;
   };
@@ -455,9 +442,8 @@ class CourseExplanation {
     out_.candidates.push_back(std::move(c));
   }
 
-  /// Fits the candidate together with the model. If `anew`, the shapes of the model are searched
-  /// again, and those of the candidate if it is a member of the best set or nothing was found;
-  /// otherwise all shapes are kept. If the fit fails, the candidate is marked as not visible.
+  /// If `anew`, the shapes of the model are searched again, and those of the candidate if it is a
+  /// member of the best set or nothing was found. A candidate whose fit fails is not visible.
   void fit(Candidate& c, bool anew) {
     std::vector<Term> terms = anew ? model_ : out_.comparison.fit.terms;
     terms.push_back(c.term);

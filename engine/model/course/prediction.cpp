@@ -31,8 +31,7 @@ void centre(MatrixXd& columns) {
   for (Index k = 0; k < columns.cols(); ++k) columns.col(k).array() -= columns.col(k).mean();
 }
 
-/// Returns the time from which on the RMS of the prediction error in a window (a twentieth of the
-/// readings, at least 10) exceeds 2 u; none if it never does.
+/// Start of the first window (a twentieth, at least 10 readings) with an RMS error above 2 u.
 std::optional<double> fails_from(const std::vector<double>& time, const Prediction& p) {
   const std::size_t n = time.size(), window = std::max<std::size_t>(10, n / 20);
   for (std::size_t from = 0; from + window <= n; from += window) {

@@ -44,8 +44,7 @@ class Terms {
   std::optional<CourseSides> sides_;
 };
 
-/// Returns the channels of an effect: one, two for a difference of channels, none if it follows no
-/// channel.
+/// One channel, two for a difference of channels, none for other effects.
 std::vector<std::string> channels_of(const Term& term, const Observations& o) {
   const std::string& name = term.axis.name;
   if (o.channel(name) != nullptr) return {name};
@@ -97,8 +96,7 @@ class Worth {
     return out;
   }
 
-  /// Removes channels one at a time, each time the one whose removal increases the RMS least, as
-  /// long as the loss is small.
+  /// Removes the channel whose removal increases the RMS least, as long as the loss is small.
   void smallest() {
     out_.smallest = channels_;
     out_.rms_smallest = out_.rms;
@@ -114,8 +112,8 @@ class Worth {
     }
   }
 
-  /// Finds the source (a channel that is not a temperature) whose removal increases the RMS most
-  /// and by more than a tenth, and which has an effect with a time constant.
+  /// Finds a speed or load that acts through a part without a temperature sensor: its effect has a
+  /// time constant, and the RMS without it is larger by more than a tenth.
   void unseen() {
     for (const Sensors::One& one : out_.used) {
       const auto* channel = part_.table.channel(one.channel);

@@ -80,8 +80,7 @@ std::optional<Part> balls_of(const Observations& read, const Axis& axis, const s
       const auto& approach = read.axes.front().approach;
       o.axes[0].position.push_back(angle);
       o.axes[0].approach.push_back(approach.empty() ? std::int8_t{1} : approach[ball.row]);
-      // Use positions on the circle itself, because measured positions would make dependent effects
-      // appear independent.
+      // With measured positions instead of the circle, dependent effects would appear independent.
       for (std::size_t k = 0; k < 3; ++k)
         o.axes[1 + k].position.push_back(circle->centre[k] + circle->radius * out[k]);
       o.sense.push_back(sense);

@@ -8,7 +8,7 @@ namespace nonio::model {
 
 namespace {
 
-/// Returns the rows of one line, sorted by time; rows without a time are omitted.
+/// Sorted by time; rows without a time are omitted.
 std::vector<std::size_t> rows_of(const Observations& o, std::uint32_t line) {
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < o.size(); ++i)
@@ -18,7 +18,7 @@ std::vector<std::size_t> rows_of(const Observations& o, std::uint32_t line) {
   return rows;
 }
 
-/// Returns the column name of a line: the sensors X, X1, ... Z of a nest are written in lower case.
+/// The sensors X, X1, ... Z of a nest are written in lower case.
 std::string column_of(std::string line) {
   const bool nest = !line.empty() && line.size() <= 2 && line[0] >= 'X' && line[0] <= 'Z' &&
                     (line.size() == 1 || line[1] == '1' || line[1] == '2');
@@ -50,8 +50,7 @@ Part part_of(const Measurement& m, const Observations& o, std::uint32_t line,
   return part;
 }
 
-/// Returns the correlation coefficient, without subtraction of means, of the changes of two series
-/// over a hundredth of the test; 0 if one of them has no such changes.
+/// Correlation, without subtraction of means, of changes over a hundredth of the test; otherwise 0.
 double move_together(const std::vector<double>& a, const std::vector<double>& b) {
   const std::size_t step = std::max<std::size_t>(1, a.size() / 100);
   double aa = 0.0, ab = 0.0, bb = 0.0;

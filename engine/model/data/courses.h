@@ -7,8 +7,7 @@
 
 namespace nonio::model {
 
-/// Appends a part for each displacement of a measurement over time that has at least 60 readings
-/// with a time. Appends none if the readings are angles or the table has no times.
+/// One part for each displacement that has at least 60 readings with a time; none for angles.
 void append_courses(const Measurement& measurement, const Observations& read,
                     std::vector<Part>& parts);
 

@@ -8,8 +8,7 @@ namespace nonio::model {
 
 namespace {
 
-/// Multiplies the columns of a linear axis by the component of each reading's direction of sensing
-/// along this axis; the columns of other axes are unchanged.
+/// A linear axis contributes its component along the direction of sensing of each reading.
 void project(const Observations& o, const Axis& axis, MatrixXd& columns) {
   const std::size_t k = coordinate_of(axis.name);
   if (axis.rotary || k > 2) return;
@@ -17,8 +16,7 @@ void project(const Observations& o, const Axis& axis, MatrixXd& columns) {
     columns.row(i) *= o.sense_of(static_cast<std::size_t>(i))[k];
 }
 
-/// Copies the columns to a separate block for each group, with 0 in the rows of other groups. For
-/// differences the first group has no block.
+/// One block per group, with 0 in the rows of other groups; for differences, no first block.
 MatrixXd in_groups(const Observations& o, const Term& term, const MatrixXd& columns) {
   const Index first = term.differences ? 1 : 0, k = columns.cols();
   MatrixXd out =

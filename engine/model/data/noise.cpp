@@ -17,9 +17,8 @@ constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 constexpr double least_dof = 8.0;
 constexpr double most_neighbours = 0.95;
 
-/// Moments of the residuals of a pass of m readings with correlation rho (covariance V), after a
-/// polynomial with k terms in the order is fitted (projection P): of M = P V P the trace, the sum
-/// of the elements next to the diagonal, and the sum of squares.
+/// Trace, sum next to the diagonal, and sum of squares of M = P V P for a pass of m readings with
+/// the correlation matrix V; P removes a polynomial with k terms in the order.
 struct Moments {
   double trace = 0.0, lagged = 0.0, squares = 0.0;
 };
@@ -56,8 +55,8 @@ Moments moments(Index m, Index k, double rho) {
   return {M.trace(), M.diagonal<1>().sum(), M.squaredNorm()};
 }
 
-/// Returns the variance of the sum of products of adjacent residuals for a pass of m independent
-/// readings of unit variance, after a polynomial with k terms is fitted.
+/// Variance of the sum of products of adjacent residuals of m independent readings of unit
+/// variance, after a polynomial with k terms is fitted.
 double variance_of_products(Index m, Index k) {
   MatrixXd b = MatrixXd::Zero(m, m);
   b.diagonal<1>().setConstant(0.5);
@@ -65,8 +64,8 @@ double variance_of_products(Index m, Index k) {
   return 2.0 * without_powers(powers_of_order(m, k), b).squaredNorm();
 }
 
-/// Passes grouped by number of readings and of fitted powers, and summed moments over all passes.
-/// `share_`: number of passes of each group, reduced for the means of their cells.
+/// Passes grouped by numbers of readings and of fitted powers. `share_`: number of passes of each
+/// group, reduced for the means of their cells.
 class AlikePasses {
  public:
   AlikePasses(const Repeats& r, const std::vector<double>& weight) {
@@ -100,14 +99,12 @@ class AlikePasses {
   }
 
  private:
-  // A longer pass is treated as several passes of this length, because the effect of their ends is
-  // negligible.
+  // Longer passes are treated as several passes of this length: their ends have little effect.
   static constexpr Index longest = 60;
   std::map<std::pair<Index, Index>, double> share_;
 };
 
-/// Sum of the products of weighted residuals that are adjacent in a pass, and sum of the squares of
-/// all weighted residuals. Readings of weight 0 contribute to neither.
+/// Sums of the products of adjacent weighted residuals of a pass, and of all their squares.
 struct Products {
   double lagged = 0.0, squares = 0.0;
 };
@@ -125,8 +122,7 @@ Products products_of(const Repeats& r, const Saturated& s, const std::vector<dou
   return out;
 }
 
-/// Expected ratio of the sum of products of adjacent residuals to the sum of squares, as a function
-/// of the correlation, interpolated on a grid.
+/// Ratio of the sums of Products, as a function of the correlation, interpolated on a grid.
 class ExpectedRatio {
  public:
   explicit ExpectedRatio(const AlikePasses& passes) {
@@ -147,10 +143,9 @@ class ExpectedRatio {
   std::vector<double> ratio_;
 };
 
-/// Estimates the correlation of adjacent readings from the ratio of products of adjacent residuals
-/// to squares; with fewer than 8 degrees of freedom the correlation is not known. It is used if it
-/// exceeds `least_seen` standard deviations, and is then reduced towards 0 according to its
-/// uncertainty, by a normal prior with standard deviation `usual`.
+/// The correlation is used if it exceeds `least_seen` standard deviations, and is then reduced
+/// towards 0 by a normal prior with standard deviation `usual`. With fewer than 8 degrees of
+/// freedom, the correlation is not known.
 void find_neighbours(const Repeats& r, const Saturated& s, const std::vector<double>& weight,
                      Noise& noise) {
   // docs/dev/constants.md, M25.
@@ -166,8 +161,7 @@ void find_neighbours(const Repeats& r, const Saturated& s, const std::vector<dou
   const double z = (ratio - none.lagged / none.trace) / sd;
   if (!std::isfinite(z)) return;
   noise.p = 0.5 * std::erfc(z / std::sqrt(2.0));
-  // The correlation is not used then, so a coarse estimate suffices: near 0 the ratio is linear in
-  // the correlation.
+  // Near 0 the ratio is linear in the correlation, which is not used in this case.
   if (z <= least_seen) {
     const Moments little = passes(0.05);
     const double slope = (little.lagged / little.trace - none.lagged / none.trace) / 0.05;
@@ -185,8 +179,7 @@ void find_neighbours(const Repeats& r, const Saturated& s, const std::vector<dou
   noise.u_neighbours = noise.measured / z;
 }
 
-/// Sum of squares and degrees of freedom of the repeats of each target, along the axis. A cell of
-/// one reading contributes to neither, because its residual is always 0.
+/// Scatter of the targets along the axis. A cell of one reading contributes nothing.
 struct TargetScatter {
   std::vector<double> at, squares, dof;
 };
@@ -213,7 +206,6 @@ TargetScatter scatter_of(const Part& part, const Repeats& repeats, const Saturat
   return out;
 }
 
-/// Sets the relative scatter of each reading from the range `noise.stretch`.
 void spread_out(const Part& part, Noise& noise) {
   noise.rough.clear();
   for (const double x : part.table.axes.front().position)
@@ -222,10 +214,9 @@ void spread_out(const Part& part, Noise& noise) {
                               : noise.stretch->outside);
 }
 
-/// Finds the range of targets of an axis whose scatter differs most from that of the others, if it
-/// differs by a factor of at least 1.5 and significantly: F-test of the two variances, corrected
-/// for the number of ranges. At least three targets must be inside and three outside, of at most
-/// 400.
+/// Finds the range of targets whose scatter differs most from that of the others, by a factor of at
+/// least 1.5 and significantly: F-test, corrected for the number of ranges. At least three of at
+/// most 400 targets must be inside and three outside.
 void find_stretch(const Part& part, const Repeats& repeats, const Saturated& s,
                   const std::vector<double>& weight, Noise& noise) {
   constexpr std::size_t fewest = 3, most_targets = 400;
@@ -268,9 +259,8 @@ void find_stretch(const Part& part, const Repeats& repeats, const Saturated& s,
   if (noise.stretch) spread_out(part, noise);
 }
 
-/// Estimates the scatter inside and outside of a known range again, from the residuals `s` of a fit
-/// that is weighted with this range. Changes nothing if all residuals inside or all residuals
-/// outside are 0.
+/// `s`: residuals of a fit that is weighted with the known range. Nothing changes if all residuals
+/// inside or all residuals outside are 0.
 void measure_stretch(const Part& part, const Repeats& repeats, const Saturated& s,
                      const std::vector<double>& weight, Noise& noise) {
   const TargetScatter scatter = scatter_of(part, repeats, s, weight, s.dof);
@@ -297,8 +287,7 @@ double digit_of(const Observations& o) {
   for (std::size_t i = 1; i < value.size(); ++i)
     if (value[i] - value[i - 1] > same) step = std::min(step, value[i] - value[i - 1]);
   if (!std::isfinite(step)) return 0.0;
-  // The smallest step contains the rounding of two values; the whole span determines it more
-  // accurately.
+  // The whole range determines the step more accurately than two rounded values.
   const double steps = std::round((value.back() - value.front()) / step);
   if (!(steps >= 1.0) || steps > 1e6) return 0.0;
   step = (value.back() - value.front()) / steps;
@@ -324,8 +313,7 @@ Noise noise_of(const Part& part, const Repeats& repeats, const std::vector<doubl
   find_stretch(part, repeats, left, weight, noise);
   if (!noise.stretch) return noise;
   std::vector<double> with = with_scatter(weight, noise);
-  // The pass terms transfer scatter of the range to other readings. The weights of the range reduce
-  // this effect, so the estimate is iterated.
+  // Pass terms transfer scatter of the range to other readings. Weights reduce this, so iterate.
   for (int round = 0; round < 3; ++round) {
     left = saturate(repeats, part.table.deviation, with);
     measure_stretch(part, repeats, left, weight, noise);

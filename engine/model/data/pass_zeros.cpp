@@ -12,17 +12,30 @@ double degrees_of_passes(const Repeats& repeats) {
   return static_cast<double>(repeats.passes) - static_cast<double>(repeats.sides);
 }
 
-double share_of_passes(const Repeats& repeats, const MatrixXd& columns) {
+namespace {
+
+double share_of(const std::vector<std::uint32_t>& group, std::size_t groups,
+                const MatrixXd& columns) {
   const MatrixXd centred = columns.rowwise() - columns.colwise().mean();
-  MatrixXd sum = MatrixXd::Zero(static_cast<Index>(repeats.passes), columns.cols());
+  MatrixXd sum = MatrixXd::Zero(static_cast<Index>(groups), columns.cols());
   VectorXd n = VectorXd::Zero(sum.rows());
   for (Index i = 0; i < columns.rows(); ++i) {
-    const auto pass = static_cast<Index>(repeats.pass[static_cast<std::size_t>(i)]);
-    sum.row(pass) += centred.row(i), ++n(pass);
+    const auto at = static_cast<Index>(group[static_cast<std::size_t>(i)]);
+    sum.row(at) += centred.row(i), ++n(at);
   }
   const double all = centred.squaredNorm();
   const double between = (n.cwiseMax(1.0).cwiseInverse().asDiagonal() * sum.cwiseAbs2()).sum();
   return all > 0.0 ? between / all : 0.0;
+}
+
+}  // namespace
+
+double share_of_passes(const Repeats& repeats, const MatrixXd& columns) {
+  return share_of(repeats.pass, repeats.passes, columns);
+}
+
+double share_of_cells(const Repeats& repeats, const MatrixXd& columns) {
+  return share_of(repeats.cell, repeats.cells, columns);
 }
 
 ZerosOfPasses::ZerosOfPasses(const Part& part, const Repeats& r, const std::vector<double>& weight,
@@ -48,16 +61,20 @@ ZerosOfPasses::ZerosOfPasses(const Part& part, const Repeats& r, const std::vect
              static_cast<double>(std::count(read.begin(), read.end(), 1));
 }
 
-double ZerosOfPasses::p_of_differences(double s) const {
-  if (!(s > 0.0) || !(degrees_ >= 1.0)) return 1.0;
+double ZerosOfPasses::squares() const {
   std::vector<double> sum(sides_, 0.0), n(sides_, 0.0);
   for (const Zero& z : zeros_) sum[z.side] += z.readings * z.value, n[z.side] += z.readings;
-  double squares = 0.0, all = 0.0;
-  for (const Zero& z : zeros_) {
+  double squares = 0.0;
+  for (const Zero& z : zeros_)
     squares += z.readings * std::pow(z.value - sum[z.side] / n[z.side], 2);
-    all += z.readings;
-  }
-  return math::f_upper(squares / degrees_ / (s * s), degrees_, std::max(all - degrees_, 1.0));
+  return squares;
+}
+
+double ZerosOfPasses::p_of_differences(double s) const {
+  if (!(s > 0.0) || !(degrees_ >= 1.0)) return 1.0;
+  double all = 0.0;
+  for (const Zero& z : zeros_) all += z.readings;
+  return math::f_upper(squares() / degrees_ / (s * s), degrees_, std::max(all - degrees_, 1.0));
 }
 
 bool ZerosOfPasses::unordered() const {

@@ -18,8 +18,7 @@ namespace nonio::model {
 
 namespace {
 
-/// Returns the groups that result if each group of `before` is divided by the values `by`, numbered
-/// by first appearance; sets `groups` to their number.
+/// Divides each group of `before` by the values `by`; groups are numbered by first appearance.
 std::vector<std::uint32_t> divided(const std::vector<std::uint32_t>& before,
                                    const std::vector<std::uint64_t>& by, std::size_t& groups) {
   struct Hash {
@@ -58,7 +57,7 @@ class Members {
   std::vector<std::uint32_t> rows_;
 };
 
-/// Returns the median; may reorder the values.
+/// May reorder the values.
 double median_of(std::span<double> x) {
   const std::size_t half = x.size() / 2;
   if (x.size() <= 8)
@@ -107,8 +106,7 @@ Repeats::Repeats(const Observations& o) {
 
 namespace {
 
-/// Columns of a pass over `order`: 1, z, z^2 as far as the pass is long enough; orthonormal with
-/// the weights of the rows.
+/// 1, z, z^2 over `order`, as far as the pass is long enough; orthonormal with the row weights.
 struct PassColumns {
   MatrixXd weighted, plain;
 };
@@ -194,9 +192,8 @@ Saturated saturate(const Repeats& r, const std::vector<double>& y,
 
 namespace {
 
-/// Groups of readings that are compared with each other: those of a target; if each cell of the
-/// target has at least four readings, those of a cell, so that a reversal that differs between
-/// targets is not treated as scatter.
+/// Readings of a target, or of a cell if each cell of the target has at least four readings, so
+/// that a reversal that differs between targets is not treated as scatter.
 struct Groups {
   std::vector<std::uint32_t> of;
   std::size_t count;
@@ -214,14 +211,12 @@ struct Groups {
   }
 };
 
-/// Returns the residuals after two medians are subtracted from each reading, three times: that of
-/// its target or cell (if this has at least three readings), and then the running median of the
-/// adjacent readings of its pass. This needs no model, and an outlier hardly affects others.
+/// Subtracts, three times, the median of the target or cell (of at least three readings), then the
+/// running median of adjacent readings of the pass; robust against outliers.
 std::vector<double> polished(const Repeats& r, const std::vector<double>& y) {
   const Groups groups(r);
   const Members targets(groups.of, groups.count), passes(r.pass, r.passes);
-  // If some targets are repeated, only their readings are used for the running median, because the
-  // others still contain the error of their target.
+  // The running median uses repeated targets, if any: other readings contain target errors.
   const auto is_usable = [&](std::uint32_t i) {
     return !groups.any_repeats || targets[groups.of[i]].size() >= 3;
   };
@@ -283,9 +278,8 @@ std::vector<double> apart_from_others(const Repeats& r, const std::vector<std::u
 
 namespace {
 
-/// Returns the residuals of a fit of the effects of the set-up, such as the tilt of a mirror. Huber
-/// weights (1 up to the robust deviation, then its ratio to the residual) reduce the effect of
-/// outliers. Returns the deviations if the model has no such effects or the fit fails.
+/// Residuals of a fit of the effects of the set-up, such as the tilt of a mirror, with Huber
+/// weights. The deviations, if the model has no such effects or the fit fails.
 std::vector<double> without_set_up(const Observations& o, const std::vector<Term>& model) {
   std::vector<Term> set_up;
   for (const Term& term : model)
@@ -303,11 +297,9 @@ std::vector<double> without_set_up(const Observations& o, const std::vector<Term
   return e;
 }
 
-/// Returns, for each reading, the ratio of the scatter near its target, estimated by a median over
-/// adjacent targets, to the scatter s of all readings, because a range with more scatter is not a
-/// series of outliers. A ratio of at most 2 is returned as 1, and so is one that cannot be
-/// determined: several axes, fewer than 64 or more than 20000 readings, or adjacent targets that
-/// are more than two thirds of all.
+/// Ratio of the scatter near the target of a reading (median over adjacent targets) to s, because a
+/// range with more scatter is not a series of outliers. 1 for a ratio up to 2, several axes, fewer
+/// than 64 or more than 20000 readings, or if adjacent targets are more than two thirds.
 std::vector<double> rougher_than(double s, const Observations& o, const std::vector<double>& e) {
   constexpr std::size_t fewest = 16;
   // docs/dev/constants.md, M27.
@@ -345,9 +337,10 @@ std::vector<double> rougher_than(double s, const Observations& o, const std::vec
 
 std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
                                  const std::vector<Term>& model) {
+  const std::size_t n = o.size();
+  // Without repeats and without an order in time, only an explanation can contradict a reading.
+  if (n < 10 || (!o.order_known && !Groups(r).any_repeats)) return {};
   const std::vector<double> y = without_set_up(o, model);
-  const std::size_t n = y.size();
-  if (n < 10) return {};
   const std::vector<double> e = polished(r, y);
   const double display = digit_of(o) / std::sqrt(12.0);
   // The factor 1.2 corrects for the noise that the subtraction of medians removes: with 4 to 10
@@ -381,8 +374,7 @@ std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
     const double others = in_cell[r.cell[i]];
     const bool repeated = known && others > 0.0;
     const double residual = repeated ? left.e[i] : e[i];
-    // The pass terms increase the variance by about 0.2 of that of a reading, the mean of the cell
-    // by 1/n.
+    // Pass terms increase the variance by about 0.2 of that of a reading, the cell mean by 1/n.
     const double sigma = s * rougher[i] * std::sqrt(1.0 + (repeated ? 1.0 / others + 0.2 : 0.3));
     const double t = residual / sigma;
     if (math::t_two_sided(t, dof) * static_cast<double>(n) > 0.01) continue;

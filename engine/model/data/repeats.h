@@ -29,9 +29,7 @@ struct Saturated {
 };
 Saturated saturate(const Repeats&, const std::vector<double>& y, const std::vector<double>& weight);
 
-/// Returns the number of pass terms for a pass of this many readings: offset, from 4 readings a
-/// slope, from 8 a curvature. Passes of 4 readings have a slope, because an unmodeled growth causes
-/// one.
+/// Terms of a pass: offset, from 4 readings a slope (such as unmodeled growth), from 8 a curvature.
 inline Index shared_columns(Index readings) {
   return readings >= 8 ? 3 : readings >= 4 ? 2 : readings >= 1 ? 1 : 0;
 }
@@ -42,10 +40,10 @@ inline Index shared_columns(Index readings) {
 std::vector<double> apart_from_others(const Repeats&, const std::vector<std::uint32_t>& rows,
                                       const std::vector<double>& e);
 
-/// Returns readings that contradict their repeats and adjacent readings: found by medians, then
-/// tested against the scatter of the others (Student, corrected for the number of readings). Of the
-/// model, only the effects of the set-up are subtracted. None if there are fewer than 10 readings,
-/// or if more than a quarter of them seem to contradict others.
+/// Readings that contradict their repeats and adjacent readings: found by medians, then tested
+/// against the scatter of the others (Student, corrected for the number of readings). Only set-up
+/// effects are subtracted. Empty with fewer than 10 readings, with neither repeats nor a known
+/// order, or if more than a quarter of the readings would be suspect.
 std::vector<Suspect> suspects_of(const Observations&, const Repeats&,
                                  const std::vector<Term>& model);
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A body that is heated evenly and cools by its surface approaches its final state from any initial
-// state as 1 - exp(-t/tau): a warm start, and a later origin of time, change the amplitude (and the
-// apparent constant growth), but not tau. Several tests of one axis give the mean of ln tau with
-// weights 1/u^2.
+// A warm start, and a later origin of time, change the amplitude of 1 - exp(-t/tau), but not tau.
+// Several tests of one axis give the mean of ln tau with weights 1/u^2.
 #include "thermal_tests.h"
 
 #include <algorithm>
@@ -18,7 +16,6 @@ namespace nonio::model {
 
 namespace {
 
-/// Time constant from one test; `given` is false if the test determines none.
 struct OfTest {
   std::string measurement;
   double ln_tau = 0.0, u = 0.0;

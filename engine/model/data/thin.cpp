@@ -12,12 +12,10 @@ namespace nonio::model {
 
 namespace {
 
-// Largest number of groups of runs, and smallest limit for those of positions.
-// docs/dev/constants.md, M22.
+// docs/dev/constants.md, M22: most groups of runs, and smallest limit for those of positions.
 constexpr std::size_t most_runs = 20, least_positions = 25;
 
-/// Returns the group of each value, if adjacent distinct values are joined into at most `most`
-/// groups.
+/// Joins adjacent distinct values into at most `most` groups.
 std::vector<std::size_t> grouped(const std::vector<double>& values, std::size_t most) {
   std::vector<double> distinct = values;
   std::sort(distinct.begin(), distinct.end());
@@ -98,8 +96,7 @@ Observations thinned(const Observations& o, const std::vector<double>& weight) {
     mean_into(out.humidity, o.humidity, i, row);
     mean_into(mean_squared_u, squared_u, i, row);
   }
-  // Rows of one group of targets get one common position, otherwise they would not repeat each
-  // other.
+  // Rows of one group of targets get one common position, otherwise they would not be repeats.
   std::map<std::size_t, std::pair<double, double>> place;
   std::vector<std::size_t> group_of(count.size());
   for (const auto& [key, row] : row_of) {

@@ -9,8 +9,7 @@ namespace nonio::model {
 
 namespace {
 
-/// Covariance of the two states of a line: the part correlated between adjacent readings, and the
-/// level.
+/// The states of a line are the part correlated between adjacent readings, and the level.
 struct Covariance {
   double near = 1.0, both = 0.0, level = 0.0;
   bool begun = false;

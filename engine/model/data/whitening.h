@@ -7,31 +7,28 @@
 
 namespace nonio::model {
 
-/// Whitens the rows of a table: multiplies them by their root weights and, if the noise is
-/// correlated, subtracts the prediction from earlier rows of the line, so that the noise becomes
-/// independent with the same standard deviation in each row. Rows of weight 0 become 0.
-/// Method: filter of a first-order autoregression with a level in each line (Durbin and Koopman,
-/// Time Series Analysis by State Space Methods, 4.3).
+/// Multiplies the rows by their root weights and, if the noise is correlated, subtracts the
+/// prediction from earlier rows of the line, so that the noise becomes independent with equal
+/// standard deviation. Rows of weight 0 become 0. Filter of a first-order autoregression with a
+/// level in each line (Durbin and Koopman, Time Series Analysis by State Space Methods, 4.3).
 class Whitening {
  public:
-  /// Returns the noise without its random zero, as repeats show it, for weights and tests. A random
-  /// zero enters only u; otherwise it would no longer be visible as a place of the residuals.
+  /// Noise for weights and tests, without the random zero: that enters only u, because otherwise it
+  /// would no longer be visible as a place of the residuals.
   static Noise of_repeats(Noise noise);
   Whitening(const Observations& o, const std::vector<double>& weight, const Noise& noise);
 
   MatrixXd operator()(const MatrixXd& columns) const;
   /// Removes from whitened columns the component that the unknown zero of each line absorbs.
   void take_out_zeros(MatrixXd& whitened) const;
-  /// Returns the root weights of the rows; for independent noise, whitening only multiplies by
-  /// them.
+  /// For independent noise, whitening only multiplies by these root weights.
   const VectorXd& root() const { return root_; }
   bool independent() const { return step_.empty(); }
-  /// Returns ln of the determinant of the noise correlation; the unknown zeros of the lines have a
-  /// diffuse prior.
+  /// ln of the determinant of the noise correlation; zeros of lines have a diffuse prior.
   double log_det() const { return log_det_; }
 
  private:
-  struct Step {  // filter coefficients of one row
+  struct Step {
     double gain_near = 0.0, gain_level = 0.0, over_root = 0.0;
     // factors for the state of the previous row on the line
     double keep_near = 0.0, keep_level = 0.0;

@@ -13,7 +13,7 @@ namespace {
 
 using Zero = Noise::Zero;
 
-/// Returns the columns of a model as one matrix, each of unit length.
+/// Each column has unit length.
 MatrixXd columns_of_model(const std::vector<MatrixXd>& blocks, Index rows) {
   MatrixXd out(rows, 0);
   for (const MatrixXd& block : blocks) {
@@ -24,7 +24,6 @@ MatrixXd columns_of_model(const std::vector<MatrixXd>& blocks, Index rows) {
   return out;
 }
 
-/// Restricted likelihood of the residuals of a model under a given noise.
 class Likelihood {
  public:
   Likelihood(const Observations& o, const MatrixXd& model, const std::vector<double>& weight)
@@ -55,9 +54,8 @@ class Likelihood {
   const std::vector<double>& weight_;
 };
 
-/// Score tests for a deviation of the noise from its assumed form, computed from the residuals of a
-/// model; much cheaper than the likelihood. Results are in standard deviations; kinds of noise with
-/// a small score are not searched.
+/// Score tests, in standard deviations, for another form of the noise, from the residuals of a
+/// model. They are cheaper than the likelihood; kinds of noise with a small score are omitted.
 class Signs {
  public:
   Signs(const Observations& o, const MatrixXd& model, const std::vector<double>& weight,
@@ -135,7 +133,6 @@ MatrixXd steps_of_walk(const Observations& o) {
   return out;
 }
 
-/// Tries kinds and sizes of a random zero, and keeps the most likely noise.
 class Search {
  public:
   Search(const Likelihood& likelihood, const Noise& noise, double worth)
@@ -147,8 +144,7 @@ class Search {
     for (const double rho : {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9}) {
       Noise with = noise_;
       with.neighbours = rho;
-      // If a random walk is equally likely, it is preferred, because it gives a larger u of effects
-      // in time.
+      // An equally likely random walk is preferred: it gives a larger u of effects in time.
       const double value = likelihood_(with) + less_likely;
       if (value < least_) least_ = value, best_ = with, likely_.clear();
       if (rho > noise_.neighbours && value > before) break;
@@ -174,8 +170,8 @@ class Search {
       likely_ = tried, whole_ = tried.size() == sizes.size();
   }
 
-  /// Returns the most likely noise. The size of its zero is averaged over all likely sizes, because
-  /// few runs leave it uncertain: u then corresponds to what GUM-S1 (6.4.9.4) gives for few values.
+  /// The size of the zero is averaged over all likely sizes, because few runs leave it uncertain: u
+  /// then corresponds to GUM-S1 (6.4.9.4) for few values.
   Noise found() const {
     constexpr double open_beyond = 0.02;
     Noise out = best_;
@@ -207,13 +203,11 @@ class Search {
 
 Noise with_zero(const Observations& o, const std::vector<Term>& terms,
                 const std::vector<double>& weight, const Noise& noise) {
+  // Least decrease of -2 ln likelihood for a random zero or a stronger correlation:
   // docs/dev/constants.md, M28.
-  // smallest decrease of -2 ln likelihood for which a random zero or a stronger correlation is
-  // accepted; it is small, because an uncertainty that is too small is worse than one too large
   constexpr double worth = 1.5;
   constexpr double no_sign = 1.2;  // score below which a gain of `worth` is improbable
-  // docs/dev/constants.md, M31.
-  // largest number of readings; above, the covariance matrix is too large
+  // Above this number of readings, the covariance matrix is too large: docs/dev/constants.md, M31.
   constexpr std::size_t most = 1500;
   if (o.size() > most || o.size() < 10 || noise.pass.empty()) return noise;
   const auto blocks = blocks_of(o, terms, root_weights(o, weight));
@@ -225,7 +219,7 @@ Noise with_zero(const Observations& o, const std::vector<Term>& terms,
   const auto passes = *std::max_element(noise.pass.begin(), noise.pass.end()) + 1;
   const Signs signs(o, model, weight, noise);
   const bool of_neighbours = signs.of_neighbours() > no_sign;
-  const bool walks = signs.of(steps_of_walk(o)) > no_sign;
+  const bool walks = o.order_known && signs.of(steps_of_walk(o)) > no_sign;
   const bool of_run = runs && signs.of(of_groups(o.run)) > no_sign;
   const bool of_pass = passes > 2 && signs.of(of_groups(noise.pass)) > no_sign;
   if (!of_neighbours && !walks && !of_run && !of_pass) return noise;
@@ -242,8 +236,7 @@ Noise with_zero(const Observations& o, const std::vector<Term>& terms,
 
 namespace {
 
-/// Returns n ln(squares/n) + ln|V| of whitened columns, of which the last one contains the
-/// readings.
+/// n ln(squares/n) + ln|V|; the last of the columns contains the readings.
 double deviance(const Observations& o, const std::vector<double>& weight, const Noise& noise,
                 const MatrixXd& columns) {
   const Whitening white(o, weight, noise);

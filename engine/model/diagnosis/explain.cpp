@@ -25,7 +25,6 @@ namespace {
 // p below which a drift or a reversal is reported; docs/dev/constants.md, M36.
 constexpr double stated_below = 0.001;
 
-/// Weighted sums of a column over groups of readings, such as cells or passes.
 struct Sums {
   std::vector<double> sum, n;
   Sums(const std::vector<std::uint32_t>& of, std::size_t count, const std::vector<double>& weight,
@@ -37,15 +36,13 @@ struct Sums {
   double mean(std::size_t k) const { return n[k] > 0.0 ? sum[k] / n[k] : 0.0; }
 };
 
-/// Subtracts from each reading the mean of its cell.
 std::vector<double> within_cells(const Finding& f, std::vector<double> x) {
   const Sums cells(f.repeats.cell, f.repeats.cells, f.weight, x);
   for (std::size_t i = 0; i < x.size(); ++i) x[i] -= cells.mean(f.repeats.cell[i]);
   return x;
 }
 
-/// Fits a straight line to the zeros of passes over their times; returns it if its slope is
-/// significant.
+/// Line through the zeros of passes over their times, if its slope is significant.
 std::optional<Statement> drift(const Finding& f, double dof) {
   const auto read = readings_of(f.part.table, f.part.axes.front());
   if (!read || !(read->duration > 0.0) || !(dof > 2.0)) return std::nullopt;
@@ -66,8 +63,7 @@ std::optional<Statement> drift(const Finding& f, double dof) {
   return out.p < stated_below ? std::optional(out) : std::nullopt;
 }
 
-/// Returns the mean, smallest and largest reversal if there are at least three targets, each read
-/// from both sides, whose reversals have the same sign and are all significant.
+/// Needs three targets or more, read from both sides, with significant reversals of one sign.
 std::optional<Statement> reversal(const Finding& f, double dof) {
   const Repeats& r = f.repeats;
   const std::vector<double>& y = f.part.table.deviation;
@@ -96,16 +92,13 @@ std::optional<Statement> reversal(const Finding& f, double dof) {
   }
   if (n < 3.0 || !(out.low * out.high > 0.0)) return std::nullopt;
   out.value = sum / n;
-  out.u = std::sqrt(variance / n);  // not divided by the number of targets, because the zero of a
-                                    // pass affects all of them
+  out.u = std::sqrt(variance / n);  // the zero of a pass affects all targets
   out.p = std::min(1.0, out.p * n);
   return out.p < stated_below ? std::optional(out) : std::nullopt;
 }
 
-/// Returns statements about an axis that are true for any error that repeats at each target from
-/// each side: a drift of the zero, a reversal at every target. They are tested against the scatter
-/// of passes, because each pass may have a zero of its own. Empty if fewer than 3 passes repeat
-/// others.
+/// Statements are tested against the scatter of passes, because each pass may have a zero of its
+/// own. Empty if fewer than 3 passes repeat others.
 std::vector<Statement> statements_of(const Finding& f) {
   std::vector<Statement> out;
   const double dof = static_cast<double>(f.repeats.passes) - static_cast<double>(f.repeats.sides);
@@ -139,8 +132,7 @@ bool of_place(const Finding& f, const Term& term) {
   return of_place(f.part.table, f.repeats, term);
 }
 
-/// Sets kind, range and mean of a description: over targets if it depends only on place, otherwise
-/// over readings. `says`: prediction for each reading.
+/// Range over targets if the description depends only on place, otherwise over readings.
 void measure(const Finding& f, const std::vector<double>& says, Description& d) {
   std::vector<double> values = says;
   if (of_place(f, d.term)) {
@@ -172,8 +164,7 @@ void measure(const Finding& f, const std::vector<double>& says, Description& d) 
   if (!values.empty()) d.low = *low - zero, d.high = *high - zero;
 }
 
-/// Describes the residuals of the model and the significant effects: adds descriptions one after
-/// the other, the best first, as long as the gain of evidence exceeds the cost of their columns.
+/// The best description is added while its gain of evidence exceeds the cost of its columns.
 std::vector<Description> described(const Finding& finding, const std::vector<Term>& certain) {
   std::vector<Term> terms = finding.of_model.fit.terms;
   terms.insert(terms.end(), certain.begin(), certain.end());
@@ -207,7 +198,6 @@ std::vector<Description> described(const Finding& finding, const std::vector<Ter
   return out;
 }
 
-/// Returns the terms of the significant candidates, with their shapes.
 std::vector<Term> certain_terms(const Explanation& out) {
   std::vector<Term> terms;
   for (const std::string& name : out.certain)
@@ -216,8 +206,7 @@ std::vector<Term> certain_terms(const Explanation& out) {
   return terms;
 }
 
-/// Returns the candidates of effects that are significant in addition to the model and whose
-/// predictions differ between repeated readings of a target from one side.
+/// Significant effects whose predictions differ between repeated readings of a target and side.
 std::vector<Candidate> certain_in(const Part& part, const std::vector<Term>& model,
                                   const std::vector<Term>& catalogue, std::uint64_t seed) {
   std::vector<Candidate> out;
@@ -237,8 +226,7 @@ std::vector<Candidate> certain_in(const Part& part, const std::vector<Term>& mod
   return out;
 }
 
-/// Replaces the candidate of an effect that is significant only together with descriptions, and
-/// adds the effect to `out.certain`.
+/// Adds an effect that is significant only together with descriptions.
 void take_over(Candidate found, const std::vector<std::string>& descriptions, Explanation& out) {
   const std::string name = found.term.name();
   if (std::find(out.certain.begin(), out.certain.end(), name) != out.certain.end()) return;
@@ -252,8 +240,7 @@ void take_over(Candidate found, const std::vector<std::string>& descriptions, Ex
   out.certain.push_back(name);
 }
 
-/// Returns the RMS of the residuals with all significant effects in the model; that of the model if
-/// this fit fails.
+/// RMS of the model if the fit with the significant effects fails.
 double rms_with_certain(const Finding& finding, const Explanation& out) {
   std::vector<Term> terms = finding.of_model.fit.terms;
   for (Term& term : certain_terms(out)) terms.push_back(std::move(term));
@@ -261,18 +248,15 @@ double rms_with_certain(const Finding& finding, const Explanation& out) {
   return std::isfinite(rms) ? rms : finding.of_model.fit.rms;
 }
 
-/// Returns whether the search is repeated with a free value for each target: only on an axis with
-/// at most 60 targets, because more free values would cost more evidence than they provide.
+/// More free values would cost more evidence than they provide.
 bool few_places(const Finding& finding) {
   constexpr std::uint32_t most_targets = 60;
   return finding.part.kind == Part::Kind::axis && finding.repeats.targets <= most_targets;
 }
 
-/// For the verdict `unknown`: searches again with descriptions of place in the model (a value or a
-/// reversal for each target). These describe all residuals that repeat at a place, but not what
-/// changes in time. An effect that is significant in this search is added to `out.certain`, and its
-/// candidate names the descriptions. Then the residuals that all significant effects leave are
-/// described.
+/// For `unknown`: searches again with descriptions of place in the model. These describe all
+/// residuals that repeat at a place, but not what changes in time. Effects that are then
+/// significant are added to `out.certain`, and the remaining residuals are described.
 void describe(const Finding& finding, const std::vector<Term>& catalogue, Explanation& out) {
   out.descriptions = described(finding, certain_terms(out));
   std::vector<Term> model = finding.of_model.fit.terms;
@@ -312,8 +296,7 @@ Expected<Explanation> explain_all(const Part& part, const std::vector<Term>& mod
   return out;
 }
 
-/// Completes an explanation that was searched on means of adjacent readings: fits each candidate to
-/// all readings and sets its RMS, and sets the verdict if too many readings are suspect.
+/// After a search on means of adjacent readings: fits each candidate to all readings.
 void judge_on_all(const Part& part, const std::vector<Term>& model,
                   const std::vector<Term>& catalogue, const Groundwork::Found& ground,
                   Explanation& out) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Predicts how one more run changes uncertainties and evidence: docs/dev/model-search.md, "One more
-// run".
+// docs/dev/model-search.md, "One more run", describes the prediction.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -43,8 +42,7 @@ Longer longer_by(const Further& f, const Fit& fit, std::size_t n) {
   return out;
 }
 
-/// Returns what a fitted term predicts for the longer table; empty if the longer table changes its
-/// columns.
+/// Empty if the longer table changes the columns of the term.
 VectorXd said_of(const Observations& o, const Fit& fit, std::size_t term) {
   VectorXd value(static_cast<Index>(fit.parameters.size()));
   Index linear = 0;
@@ -60,8 +58,7 @@ VectorXd said_of(const Observations& o, const Fit& fit, std::size_t term) {
   return said;
 }
 
-/// Sets the planned readings to the prediction of the fit, so that they change only the design;
-/// false if a prediction is not possible.
+/// Predicted deviations change only the design. Returns false if there is no prediction.
 bool predict(Longer& longer, const Fit& fit, std::size_t n) {
   for (std::size_t i = n; i < longer.table.size(); ++i)
     longer.table.deviation[i] = fit.zero[line_of(longer.table, i)];
@@ -74,8 +71,7 @@ bool predict(Longer& longer, const Fit& fit, std::size_t n) {
   return true;
 }
 
-/// Returns, for each term, whether one of its shapes was an unknown of the fit (it has an
-/// uncertainty).
+/// A shape with an uncertainty was an unknown of the fit.
 std::vector<char> searched_in_fit(const Fit& fit) {
   std::vector<char> out;
   for (const Term& term : fit.terms)
@@ -91,8 +87,7 @@ std::vector<Foresight::Factor> factors_of(const Fit& now, const Longer& longer) 
   const auto then =
       fit_at(longer.table, now.terms, searched_in_fit(now), longer.weight, longer.noise);
   if (!then || then->parameters.size() != now.parameters.size() || now.redundancy == 0) return out;
-  // Predicted readings have no residuals, so s would fall as redundancy grows; this factor keeps
-  // the noise constant.
+  // Predicted readings have no residuals: this factor keeps s constant as redundancy grows.
   const double same_s =
       std::sqrt(static_cast<double>(then->redundancy) / static_cast<double>(now.redundancy));
   // More runs do not improve a stated time constant, nor parameters that depend on it.
@@ -108,8 +103,7 @@ std::vector<Foresight::Factor> factors_of(const Fit& now, const Longer& longer) 
   return out;
 }
 
-/// Returns the sum of squares of these readings that only this term of a fit explains; NaN if the
-/// columns of a term cannot be computed for them.
+/// Sum of squares that only this term explains; NaN if the columns of a term are not computable.
 double taken_by(const Fit& fit, std::size_t term, const Observations& o,
                 const std::vector<double>& weight, const Noise& noise) {
   const Whitening white(o, weight, Whitening::of_repeats(noise));
@@ -154,8 +148,7 @@ std::vector<Foresight::Evidence> evidence_of(const Explanation& e, const Fit& be
   return out;
 }
 
-/// Fits the model together with the effects of the best explanation, with the shapes that were
-/// found.
+/// Uses the shapes that were found.
 Expected<Fit> best_fit(const Part& part, const Explanation& e) {
   const Fit& fit = e.comparison.fit;
   std::vector<Term> terms = fit.terms;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "data/pass_zeros.h"
 #include "nonio/math/distributions.h"
@@ -29,6 +30,7 @@ PassZeros::PassZeros(const Finding& finding)
   if (f_.noise.zero == Noise::Zero::of_pass ||
       (unordered_ && (zero == Noise::Zero::of_pass || zero == Noise::Zero::of_run)))
     left_.emplace(f_.part, f_.repeats, f_.of_best.fit, with_passes());
+  compare_orders();
 }
 
 bool PassZeros::drawn_again() const {
@@ -46,6 +48,88 @@ std::vector<double> PassZeros::noise() const {
     if (const double of = n[f_.repeats.cell[i]]; of > 1.0)
       out[i] = (e[i] - sum[f_.repeats.cell[i]] / of) * std::sqrt(of / (of - 1.0));
   return out;
+}
+
+/// Returns copies of values of readings as columns, each with the passes of each side in another
+/// order. Suspect readings do not move.
+MatrixXd PassZeros::in_other_orders(const std::vector<double>& e) const {
+  constexpr Index copies = 200;  // docs/dev/constants.md, M14
+  constexpr std::size_t none = static_cast<std::size_t>(-1);
+  const Repeats& r = f_.repeats;
+  std::vector<std::size_t> row(r.passes * r.cells, none);
+  for (std::size_t i = 0; i < e.size(); ++i) row[r.pass[i] * r.cells + r.cell[i]] = i;
+  std::mt19937_64 random(f_.seed);
+  MatrixXd out(static_cast<Index>(e.size()), copies);
+  std::vector<std::size_t> from(r.passes);
+  for (Index k = 0; k < copies; ++k) {
+    for (std::size_t p = 0; p < r.passes; ++p) {
+      // Fisher and Yates among the passes of its side up to this one
+      std::size_t same = 0, other = p;
+      from[p] = p;
+      for (std::size_t q = 0; q <= p; ++q)
+        if (r.side[q] == r.side[p] && random() % ++same == 0) other = q;
+      std::swap(from[p], from[other]);
+    }
+    for (std::size_t i = 0; i < e.size(); ++i) {
+      const std::size_t at = row[from[r.pass[i]] * r.cells + r.cell[i]];
+      out(static_cast<Index>(i), k) = e[at != none && f_.weight[at] > 0.0 ? at : i];
+    }
+  }
+  return out;
+}
+
+/// Whether the best explanation describes the zeros of passes, which `others` leaves, better than
+/// so few passes in any order allow (F-test over passes).
+bool PassZeros::explains_zeros(const Workbench::State& others) const {
+  constexpr double by_chance = 1e-4;  // docs/dev/constants.md, M50.
+  const auto zeros = [&](const Workbench::State& state) {
+    const VectorXd e = f_.residual(state);
+    return ZerosOfPasses(f_.part, f_.repeats, f_.weight, {e.begin(), e.end()});
+  };
+  const ZerosOfPasses before = zeros(others), after = zeros(f_.best);
+  const auto k = static_cast<double>(f_.best.parameters - others.parameters);
+  const double dof = after.degrees() - k;
+  if (!(dof >= 1.0) || !(k >= 1.0)) return false;
+  const double fall = std::max(before.squares() - after.squares(), 0.0);
+  return math::f_upper(math::test_ratio(fall / k, after.squares() / dof), k, dof) < by_chance;
+}
+
+/// Compares the passes in their own order with passes in other orders: which effects of the best
+/// explanation the order does not show, and how often other orders would show some effect.
+void PassZeros::compare_orders() {
+  // docs/dev/constants.md, M50.
+  constexpr double fewest = 8.0, as_often = 0.05, of_cells = 0.5;
+  if (f_.part.kind != Part::Kind::axis || degrees_of_passes(f_.repeats) < fewest) return;
+  std::vector<std::string> in_time;
+  Workbench::State others = f_.best;
+  for (const Term& term : f_.of_best.fit.terms) {
+    const std::size_t e = f_.index_of(term.name());
+    if (e < f_.in_model) continue;
+    if (const auto columns = f_.columns_of({term});
+        !columns || share_of_cells(f_.repeats, *columns) > of_cells)
+      continue;
+    in_time.push_back(term.name());
+    others = f_.bench->without(others, e);
+  }
+  if (in_time.empty() ? f_.of_best.fit.noise.independent() : explains_zeros(others)) return;
+  const Workbench& bench = *f_.bench;
+  const std::vector<double> least =
+      least_p(bench, others,
+              drawn(bench, others, bench.white()(in_other_orders(f_.of_model.fit.residual))));
+  const auto share = [&](const auto& which) {
+    return static_cast<double>(std::count_if(least.begin(), least.end(), which)) /
+           static_cast<double>(least.size());
+  };
+  alarms_ =
+      std::min(as_often, share([&](double p) { return f_.chance.corrected(p) < named_below; }));
+  const Workbench::Gains gains = bench.gains(others);
+  double own = 1.0;
+  for (std::size_t e = 0; e < bench.instances().size() && !in_time.empty(); ++e) {
+    if (bench.holds(others, e)) continue;
+    const Workbench::State more = bench.with(others, gains, e);
+    if (more.blocks.size() > others.blocks.size()) own = std::min(own, p_of(bench, more, e));
+  }
+  if (share([&](double p) { return p <= own; }) > as_often) of_any_order_ = std::move(in_time);
 }
 
 Noise PassZeros::with_passes() const {

@@ -30,7 +30,7 @@ void fill_measured(Observations& o) {
 
 namespace {
 
-struct Course {  // A planned measurement of an axis.
+struct Course {
   std::string id;
   std::vector<double> targets;
   std::size_t runs = 1;
@@ -69,8 +69,8 @@ void append(Observations& o, const Course& course, double interval) {
   fill_measured(o);
 }
 
-/// Returns the distance, in standard deviations, between the prediction `said` of one effect and
-/// the nearest one of the model with `other`, whose shapes are searched; 0 if this fit fails.
+/// Distance, in standard deviations, from the prediction of one effect to the nearest prediction
+/// with `other`, whose shapes are searched; 0 if this fit fails.
 double distance(const Observations& o, const std::vector<Term>& model, const VectorXd& said,
                 const Term& other, double s) {
   Observations imagined = o;
@@ -124,8 +124,7 @@ std::vector<Further> further_runs(const Part& part, const Axis& axis) {
 
 namespace {
 
-/// Returns at most three plans: those with enough power by increasing cost, then the others by
-/// decreasing power.
+/// Plans with enough power by increasing cost, then the others by decreasing power.
 std::vector<Plan> cheapest(std::vector<Plan> plans) {
   std::stable_sort(plans.begin(), plans.end(), [](const Plan& a, const Plan& b) {
     const bool a_enough = a.power >= enough_power, b_enough = b.power >= enough_power;

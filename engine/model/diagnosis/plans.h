@@ -7,9 +7,8 @@
 
 namespace nonio::model {
 
-// docs/dev/constants.md, M13.
-constexpr double enough_power = 4.0;  ///< least distance between two separable explanations, in
-                                      ///< standard deviations
+// Standard deviations between two separable explanations: docs/dev/constants.md, M13.
+constexpr double enough_power = 4.0;
 
 /// A table with one additional planned measurement, whose deviations are 0.
 struct Further {
@@ -18,30 +17,25 @@ struct Further {
   std::optional<double> duration{};  ///< as `Plan::duration`
 };
 
-/// Fills the other measured columns of planned readings at the end of the table with their last
-/// known values, because weights and columns need an entry for each reading.
+/// Repeats the last known values, because weights and columns need an entry for each reading.
 void fill_measured(Observations& o);
 
-/// Returns tables that contain the readings of an axis and one planned measurement of this axis,
-/// with one run or three.
+/// The readings of an axis and one planned measurement with one run or three.
 std::vector<Further> further_runs(const Part& part, const Axis& axis);
 
 /// Returns tables with one additional measurement on a machine with several axes, or of a ball.
 std::vector<Further> further_in_space(const Part& part);
 
-/// Returns further measurements that would separate a candidate from its aliases. The planned
-/// readings are added to the existing ones, and the part of the candidate that no alias can explain
-/// is computed, in standard deviations `s` of a reading (m or rad). At most three plans are
-/// returned: those that reach four, by increasing number of readings, then the others by decreasing
-/// power.
+/// Measurements that would separate a candidate from its aliases. Power: the part of the candidate
+/// that no alias explains, in standard deviations `s` of a reading (m or rad). At most three: those
+/// with a power of four by increasing number of readings, then the others by decreasing power.
 std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
                             const Candidate& candidate, const std::vector<Term>& catalogue,
                             double s);
 
-/// Returns further measurements of an axis that would separate two effects that cancel each other,
-/// ordered as by `plans_for`: their joint effect is compared with that of each alone. Empty for
-/// other parts. `value`: their linear parameters, SI; `s`: standard deviation of a reading, m or
-/// rad.
+/// Measurements of an axis that would separate two effects that cancel each other: their joint
+/// effect is compared with that of each alone. Empty for other parts. `value`: their linear
+/// parameters, SI; `s`: standard deviation of a reading, m or rad.
 std::vector<Plan> plans_for_pair(const Part& part, const std::vector<Term>& model,
                                  const std::vector<Term>& pair, const std::vector<double>& value,
                                  double s);

@@ -22,7 +22,6 @@ std::vector<double> within_passes(const Repeats& repeats, const std::vector<doub
   return saturate(alone, residual, weight).e;
 }
 
-/// Number of readings on each side of a split.
 struct Sides {
   std::size_t low = 0, high = 0;
   void add(bool is_low) { ++(is_low ? low : high); }
@@ -30,10 +29,9 @@ struct Sides {
   bool mixed() const { return low > 0 && high > 0; }
 };
 
-/// Whether the repeats of a cell are on different sides of the split more often than independent
-/// states of each reading allow, and the sides do not follow the passes. Synthetic readings of two
-/// runs that were computed from a given standard deviation have this property. `low`: share of
-/// readings below the split.
+/// Whether repeats of a cell are on different sides more often than independent states allow, and
+/// the sides do not follow the passes, as in synthetic readings of two runs with a given standard
+/// deviation. `low`: share of readings below the split.
 bool are_opposite(const std::vector<Sides>& of_cell, const std::vector<Sides>& of_pass,
                   double low) {
   // docs/dev/constants.md, M44.
@@ -92,8 +90,7 @@ bool two_valued(const Repeats& repeats, const std::vector<double>& residual,
 
 namespace {
 
-/// Marks rows of cells that more than one run has read; in other cells, the scatter of a run is not
-/// known.
+/// In cells that only one run has read, the scatter of a run is not known.
 std::vector<char> in_repeated_cells(const Observations& o, const Repeats& repeats) {
   std::vector<std::uint32_t> first(repeats.cells, 0);
   std::vector<char> several(repeats.cells, 0), out(o.size(), 0);
@@ -133,8 +130,7 @@ std::optional<Place> next_to_a_misread_target(const Observations& o, const Repea
   std::optional<Place> best;
   const auto dof = static_cast<double>(m - 2);
   for (std::size_t t = 0; t < m; ++t) {
-    // Scale to the variance of one reading: that of a mean of two is half of it, that of a
-    // difference twice.
+    // Scaled to one reading: a mean of two has half its variance, a difference twice.
     const double between = 2.0 * squares_without(middle, t) / dof;
     const double within = squares_without(difference, t) / 2.0 / dof;
     const double p = std::min(

@@ -21,28 +21,20 @@ namespace nonio::model {
 
 namespace {
 
-// An effect is significant whatever causes the residuals if each structure that remains at its
-// places has at most this share of the mean square of its own contribution.
-// docs/dev/constants.md, M7.
+// Largest structure at the places of a significant effect, as a share of the mean square of the
+// contribution of the effect: docs/dev/constants.md, M7.
 constexpr double certain_share = 0.06;
-// Evidence that an effect needs to be significant whatever causes the residuals. It is far above
-// the level of chance, because the residuals are not independent noise.
-// docs/dev/constants.md, M8.
+// Far above chance, because residuals are not independent noise: docs/dev/constants.md, M8.
 constexpr double certain_evidence = 50.0;
-// Largest share of an effect's evidence that one target, or one pass, may contribute.
-// docs/dev/constants.md, M9.
+// Largest share of the evidence from one target, or from one pass: docs/dev/constants.md, M9.
 constexpr double most_of_one_target = 0.3;
 constexpr double most_of_one_pass = 0.5;
-// Effects with less evidence are not compared with a random zero: otherwise effects of the printed
-// smallest detectable size would be rejected.
-// docs/dev/constants.md, M29.
+// Effects of the printed smallest size would otherwise be rejected: docs/dev/constants.md, M29.
 constexpr double least_against_zero = 30.0;
-// Two effects whose predictions are correlated below minus this value are reported as a pair that
-// cancels.
-// docs/dev/constants.md, M10.
+// Two effects with a correlation below minus this value cancel: docs/dev/constants.md, M10.
 constexpr double cancels_beyond = 0.95;
 
-/// Whether two places share a factor; run equals time, and screw phase and angle equal position.
+/// Whether two places share a factor; run is time, screw phase and angle are position.
 bool same_factor(const Where& a, const Where& b) {
   const auto kin = [](Factor f) {
     if (f == Factor::run) return Factor::time;
@@ -61,13 +53,14 @@ class Judge {
   void run() {
     Verdict& v = out_.verdict;
     count_false_alarms(v);
+    v.false_alarms = std::max(v.false_alarms, passes_.alarms());
     v.suspects_share =
         static_cast<double>(f_.suspects.size()) / static_cast<double>(f_.part.table.size());
     for (const Place& place : f_.of_model.places)
       if (place.p < place_p) out_.fails.push_back(place);
+    for (const std::string& name : passes_.of_any_order()) std::erase(out_.together, name);
     const double least = least_serious(f_.of_best.floor);
-    // If the search treated zeros of passes as noise, effects and places are tested with them in
-    // the model.
+    // If the search treated zeros of passes as noise, the tests of effects and places do so, too.
     const bool searched = f_.noise.zero == Noise::Zero::of_pass;
     std::vector<Place> left = Judge::serious(f_.of_best.places, least);
     // A place that is not significant if zeros of passes scatter does not decide the verdict, but
@@ -85,8 +78,7 @@ class Judge {
       return;
     }
     const bool scatter_found = passes_.scatter() && !searched;
-    // If the zeros of passes scatter and no effect is significant with them, these zeros explain
-    // the effects as well, so there is no evidence of a cause.
+    // If zeros of passes explain the effects as well, there is no evidence of a cause.
     if (scatter_found && !walks &&
         std::none_of(out_.together.begin(), out_.together.end(),
                      [&](const std::string& name) { return passes_.shows(name); }))
@@ -126,10 +118,9 @@ class Judge {
   }
 
  private:
-  /// Returns whether cells differ from the best explanation significantly, and by more than
-  /// `least_serious`, compared with the scatter of their repeats. Offset, slope and curvature that
-  /// the passes of a side share are not included, because they are tested as places. False if the
-  /// floor has fewer than 8 degrees of freedom.
+  /// Whether cells differ from the best explanation significantly and by more than `least_serious`,
+  /// compared with the scatter of their repeats. Terms that the passes of a side share are tested
+  /// as places instead. False if the floor has fewer than 8 degrees of freedom.
   bool lacks_fit() const {
     if (!f_.of_best.floor || !(f_.of_best.floor->dof >= 8.0)) return false;
     const std::vector<double> weight = with_scatter(f_.weight, f_.noise);
@@ -151,8 +142,7 @@ class Judge {
                least_serious(f_.of_best.floor);
   }
 
-  /// Returns the degrees of freedom of the cells: the number of cells with readings, minus the
-  /// number of terms that the passes of each side share.
+  /// Cells with readings, minus the terms that the passes of each side share.
   double degrees_of_cells() const {
     std::vector<Index> in_pass(f_.repeats.passes, 0), shared(f_.repeats.sides, 0);
     std::vector<char> used(f_.repeats.cells, 0);
@@ -166,9 +156,8 @@ class Judge {
                                std::accumulate(shared.begin(), shared.end(), Index{0}));
   }
 
-  /// Returns whether the residuals of the best explanation are significantly smaller than the noise
-  /// floor allows. False if there is no floor, or if it is not above the last digit of the
-  /// readings.
+  /// Whether residuals are significantly smaller than the noise floor; false if the floor is not
+  /// above the last digit of the readings.
   bool below_scatter() const {
     const Fit& fit = f_.of_best.fit;
     if (!f_.of_best.floor || fit.redundancy == 0 || f_.of_best.floor->s <= f_.noise.digit)
@@ -181,8 +170,7 @@ class Judge {
            lacks_fit_p;
   }
 
-  /// If no effect is found, returns the place "position" if the targets differ significantly once
-  /// one possible outlier is omitted.
+  /// Without effects: whether targets differ significantly once a possible outlier is omitted.
   std::optional<Place> of_targets() const {
     if (!out_.together.empty()) return std::nullopt;
     auto place =
@@ -191,10 +179,9 @@ class Judge {
     return place;
   }
 
-  /// Returns the kind of random zero if the model with it, or with it in place of the first effect,
-  /// is a better explanation than the best set of effects; otherwise `steady`. Also `steady` if no
-  /// effect was found, if zeros of passes are already noise, or if the effects have less evidence
-  /// than `least_against_zero`.
+  /// A random zero, if it explains the readings better than the best set of effects, alone or in
+  /// place of the first effect. Otherwise, or without effects, with zeros of passes as noise, or
+  /// with less evidence than `least_against_zero`, `steady`.
   Noise::Zero unsteady_zero() const {
     if (out_.together.empty() || f_.noise.zero != Noise::Zero::steady) return Noise::Zero::steady;
     const Noise::Zero instead = better_zero(f_.of_model.fit.terms, f_.start);
@@ -215,17 +202,17 @@ class Judge {
     return with_terms.walks < own ? Noise::Zero::walks : Noise::Zero::steady;
   }
 
-  /// Returns the margin by which the criterion with zeros of runs may be larger than with the
-  /// effects, if these zeros are still preferred. It is small for a small effect, which possible
-  /// zeros must not replace; a large effect would leave much larger residuals with them.
+  /// Margin by which the criterion with zeros of runs may be larger if they are still preferred. It
+  /// is small for a small effect, which possible zeros must not replace; a large effect would leave
+  /// much larger residuals with them.
   static double as_good_as(double evidence) {
     // docs/dev/constants.md, M30.
     constexpr double share = 0.1;
     return std::clamp(share * evidence, 0.0, alias_evidence);
   }
 
-  /// Returns whether the evidence for an effect of the best set exceeds `certain_evidence` also if
-  /// the zero is random (a random walk, or one zero of each run).
+  /// Whether the effect has evidence even if the zero is random (a random walk, or one zero of each
+  /// run).
   bool walk_with(const std::string& name) const {
     std::vector<Term> terms = f_.of_model.fit.terms;
     const double without = f_.walk_with(terms).least();
@@ -239,14 +226,12 @@ class Judge {
     return without - f_.walk_with(terms).least() - price > certain_evidence;
   }
 
-  /// Returns whether one of the places `serious` shares a factor with this effect, and has a mean
-  /// square of more than `share` times that of the effect's own contribution: the effect may then
-  /// be only the most similar one in the catalogue.
+  /// Whether a place in `serious` shares a factor with the effect and has more than `share` of the
+  /// mean square of the effect, which may then be only the most similar one in the catalog.
   bool in_doubt(const std::string& name, const std::vector<Place>& serious, double share) const {
     for (std::size_t t = 0; t < f_.of_best.fit.terms.size(); ++t) {
       if (f_.of_best.fit.terms[t].name() != name) continue;
-      // The contribution of the effect alone is used, because effects that cancel each other may
-      // both be large.
+      // Effects that cancel each other may both be large, so the contribution alone is used.
       const double rms2 =
           (f_.bench->without(f_.best, f_.index_of(name)).squares - f_.best.squares) /
           f_.bench->readings();
@@ -278,8 +263,8 @@ class Judge {
     return size > 0.0 ? both.col(0).dot(both.col(1)) / size : 0.0;
   }
 
-  /// Whether an effect varies between the readings of a target. An effect that does not vary is
-  /// visible in every run, so it is not a member of a canceling pair.
+  /// An effect that does not vary between the readings of a target is visible in every run, so it
+  /// is not a member of a canceling pair.
   bool in_time(const std::string& name) const {
     const std::size_t e = f_.index_of(name);
     return std::none_of(f_.best.blocks.begin(), f_.best.blocks.end(), [&](std::size_t b) {
@@ -307,9 +292,8 @@ class Judge {
     return nullptr;
   }
 
-  /// Checks whether a growth about the middle and a drift of the zero are together one growth about
-  /// another fixed point. If a bearing can be at that point, the growth is named first, because the
-  /// drift only follows from it.
+  /// A growth about the middle and a drift of the zero are one growth about another fixed point. If
+  /// a bearing can be at this point, the growth is named first, as the cause of the drift.
   void find_one_growth() {
     // docs/dev/constants.md, M21.
     // largest distance of the fixed point from the middle, as a fraction of the measured stretch
@@ -329,8 +313,8 @@ class Judge {
     if (drift < growth) std::iter_swap(drift, growth);
   }
 
-  /// Whether the joint prediction of a pair of canceling effects varies with a factor with which
-  /// this effect varies, and is not negligible compared with this effect.
+  /// Whether the joint prediction of a canceling pair varies with a factor of this effect, and is
+  /// not negligible compared with this effect.
   bool with_cancelling(const std::string& name) const {
     const auto* own = part_of(name);
     if (own == nullptr) return false;
@@ -364,9 +348,8 @@ class Judge {
     out_.plans = plans_for_pair(f_.part, f_.of_model.fit.terms, pair, value, f_.of_best.fit.s);
   }
 
-  /// Lists effects that are significant whatever causes the residuals: their evidence is very
-  /// large, they have no alias and cancel no other effect, no residual of their size remains at
-  /// their places, and neither a single target or pass nor random zeros can explain them.
+  /// Effects with very large evidence, no alias, no canceling effect and no residual of their size
+  /// at their places, which neither one target or pass nor random zeros can explain.
   void list_certain(const std::vector<Place>& serious, bool walks) {
     for (const std::string& name : out_.together) {
       const auto c = std::find_if(out_.candidates.begin(), out_.candidates.end(),
@@ -380,15 +363,13 @@ class Judge {
     }
   }
 
-  /// Returns whether the readings of one target contribute more than `most_of_one_target` of the
-  /// evidence of an effect, which is then a property of that target.
+  /// Whether most evidence is from one target, so that the effect is a property of that target.
   bool of_one_target(const std::string& name) const {
     return share_of_one(name, f_.repeats.target, f_.repeats.targets) > most_of_one_target;
   }
 
-  /// Whether an effect of the library explains no more than a free value or reversal of one target,
-  /// or a free slope of one run. The effect is then a property of that target or run, and not a
-  /// cause. Zeros and reversals of single runs are themselves in the library.
+  /// An effect that explains no more than a free value or reversal of one target, or a free slope
+  /// of one run, is not a cause. The library itself contains zeros and reversals of single runs.
   bool is_single(const std::string& name) const {
     const std::size_t e = f_.index_of(name);
     if (!f_.terms[e].library) return false;
@@ -425,8 +406,7 @@ class Judge {
            f_.best.criterion + alias_evidence;
   }
 
-  /// Whether one pass contributes most of the evidence of an effect, if passes have zeros of their
-  /// own.
+  /// Whether one pass contributes most of an effect's evidence, if passes have own zeros.
   bool of_one_pass(const std::string& name) const {
     return f_.noise.zero == Noise::Zero::of_pass &&
            share_of_one(name, f_.repeats.pass, f_.repeats.passes) > most_of_one_pass;
@@ -443,7 +423,6 @@ class Judge {
     return *std::max_element(share.begin(), share.end()) / explained.dot(without);
   }
 
-  /// Returns the places in which a prediction (one value per reading) varies.
   std::vector<Where> places_of(const std::vector<double>& says) const {
     const VectorXd part = Eigen::Map<const VectorXd>(says.data(), static_cast<Index>(says.size()));
     const VectorXd centred = part.array() - part.mean();
@@ -463,8 +442,8 @@ class Judge {
     return out;
   }
 
-  /// Draws noise floors of simulated campaigns with this noise: chi-square distributed,
-  /// approximated by the cube of a normal variate (Wilson and Hilferty 1931).
+  /// Draws noise floors of campaigns with this noise: chi-square, approximated by the cube of a
+  /// normal variate (Wilson and Hilferty 1931).
   std::vector<std::optional<NoiseFloor>> floors(std::size_t campaigns) const {
     std::vector<std::optional<NoiseFloor>> out(campaigns, f_.of_best.floor);
     if (!f_.of_best.floor) return out;
@@ -480,8 +459,7 @@ class Judge {
     return out;
   }
 
-  /// Returns a sample of the noise of the readings (with root weights): the residuals of repeats,
-  /// scaled to the floor; if there are too few, the residuals of the best explanation.
+  /// Residuals of repeats, scaled to the floor; with too few, those of the best explanation.
   VectorXd noise() const {
     const Saturated left =
         saturate(f_.repeats, f_.of_best.fit.residual, with_scatter(f_.weight, f_.noise));
@@ -496,8 +474,7 @@ class Judge {
     return f_.bench->white()(Eigen::Map<const VectorXd>(e.data(), static_cast<Index>(e.size())));
   }
 
-  /// Determines the rate of false alarms by flipping the signs of whole passes of the residuals, if
-  /// zeros of passes scatter.
+  /// Determines the rate of false alarms, if zeros of passes scatter, by flipping whole passes.
   void count_with_passes(Verdict& v) const {
     constexpr std::size_t draws = 200;  // docs/dev/constants.md, M14
     const std::vector<double> e = passes_.noise();
@@ -537,8 +514,7 @@ class Judge {
     v.false_alarms = alarms / static_cast<double>(named.size());
   }
 
-  /// Puts the place "run" first among the places where the model fails, because zeros of runs cause
-  /// the residuals, even if waves in time describe them with fewer columns.
+  /// Zeros of runs cause the residuals, even if waves in time describe them with fewer columns.
   void tell_runs() {
     const auto is_run = [](const Place& place) { return place.where == Where{Factor::run}; };
     auto& told = out_.fails;
@@ -552,8 +528,7 @@ class Judge {
     std::rotate(told.begin(), at, at + 1);
   }
 
-  /// Returns the residuals of the best explanation, minus zeros of runs or passes if these are
-  /// random.
+  /// Residuals of the best explanation, without random zeros of runs or passes.
   std::vector<double> without_zeros(Noise::Zero zero) const {
     std::vector<double> e = f_.of_best.fit.residual;
     const bool of_pass = f_.noise.zero == Noise::Zero::of_pass;
@@ -577,8 +552,7 @@ class Judge {
            two_valued(f_.repeats, without_zeros(zero), f_.weight, f_.noise.digit);
   }
 
-  /// Moves the verdict's effect to the front of the candidates, also before one with more evidence
-  /// that is in doubt.
+  /// Moves a candidate to the front, even if a doubtful candidate has more evidence.
   void lift(const std::string& name) {
     auto& c = out_.candidates;
     const auto at =

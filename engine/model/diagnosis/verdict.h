@@ -6,18 +6,15 @@
 
 namespace nonio::model {
 
-/// A residual structure with p below this contradicts the verdict `nothing`.
-/// docs/dev/constants.md, M5.
+/// p below which residual structure contradicts the verdict `nothing`: docs/dev/constants.md, M5.
 inline constexpr double serious_p = 0.005;
 
-// docs/dev/constants.md, M4.
-inline constexpr double least_left =
-    0.25;  ///< fraction of the noise; smaller structure does not change the verdict
+// Fraction of the noise below which structure changes no verdict: docs/dev/constants.md, M4.
+inline constexpr double least_left = 0.25;
 // docs/dev/constants.md, M35.
 inline constexpr double lacks_fit_p = 1e-4;
 
-/// The verdict is `unrepeatable` if more than this share of the readings, and more than
-/// `few_suspects` readings, are suspect.
+/// The verdict is `unrepeatable` above both: share and number of suspect readings.
 inline constexpr double most_suspects = 0.06;
 inline constexpr std::size_t few_suspects = 2;
 inline bool too_many(std::size_t suspects, std::size_t readings) {
@@ -25,9 +22,8 @@ inline bool too_many(std::size_t suspects, std::size_t readings) {
          static_cast<double>(suspects) > most_suspects * static_cast<double>(readings);
 }
 
-/// Sets the verdict with its rate of false alarms, the significant and the canceling effects, the
-/// places where the model fails, and the plans that separate the verdict's effect from its aliases.
-/// Moves the verdict's effect to the front of `out.candidates`.
+/// Sets the verdict, its rate of false alarms, significant and canceling effects, places and plans.
+/// Moves the effect of the verdict to the front of `out.candidates`.
 void judge(const Finding& finding, Explanation& out);
 
 }  // namespace nonio::model

@@ -70,8 +70,7 @@ std::vector<double> cross_validated(const Observations& o, const std::vector<Ter
     right += right_share;
   }
   // Least ratio of the smallest to the largest pivot, for columns of unit length: if the other runs
-  // hardly determine a direction (a curve over the few targets of partial runs), their prediction
-  // is noise, amplified hundreds of times.
+  // hardly determine a direction, their prediction is noise, amplified hundreds of times.
   constexpr double predicts = 1e-5;
   std::vector<double> out(o.size(), std::numeric_limits<double>::quiet_NaN());
   for (const auto& [run, rows] : runs) {
@@ -101,8 +100,8 @@ std::optional<double> rms_of(const std::vector<double>& residual,
 
 namespace {
 
-/// Returns the test of lack of fit; `squares`: sum of squares of the whitened residuals, `repeats`:
-/// degrees of freedom of the repeats. None if there is no floor or no degree of freedom.
+/// `squares`: sum over the whitened residuals; `repeats`: degrees of freedom of the repeats.
+/// Returns std::nullopt without a floor or a degree of freedom.
 std::optional<LackOfFit> lack_of_fit(const Fit& fit, const std::optional<NoiseFloor>& floor,
                                      double repeats, double squares) {
   if (!floor) return std::nullopt;
@@ -157,10 +156,9 @@ std::vector<Place> PlacesLeft::operator()(const std::vector<double>& residual,
 
 namespace {
 
-/// Returns the places of the residuals of a fit. If adjacent readings are correlated and some place
-/// is significant, p is the largest one for three correlations: the estimate, none, and the
-/// estimate plus twice its standard uncertainty, because few readings determine the correlation
-/// poorly.
+/// If adjacent readings are correlated and some place is significant, p is the largest one for
+/// three correlations: the estimate, none, and the estimate plus twice its standard uncertainty,
+/// because few readings determine the correlation poorly.
 std::vector<Place> places_left(const Part& part, const Repeats& repeats, const Fit& fit,
                                const Saturated& saturated, const std::vector<double>& weight) {
   const auto tested = [&](const Noise& noise) {

@@ -11,8 +11,7 @@ namespace nonio::model {
 
 std::vector<double> weights_without(std::size_t readings, const std::vector<Suspect>& suspects);
 
-/// Properties of the readings of one table that do not depend on the model: which readings repeat
-/// each other, which are suspect and have weight 0, and the correlation of their noise.
+/// Does not depend on the model. Suspect readings have weight 0.
 struct Ground {
   Repeats repeats;
   std::vector<Suspect> suspects{};
@@ -42,24 +41,19 @@ class GroundworkOf {
   const Groundwork::Found* found_;
 };
 
-/// Returns the comparison for an existing fit and these suspect readings.
 Comparison comparison_of(const Part& part, const Repeats& repeats, Fit fit,
                          std::vector<Suspect> suspects);
 
-/// Returns, for each term, whether its shapes are searched.
 std::vector<char> searched_in(const std::vector<Term>& terms);
 
-/// Returns the fit. If its residuals show a random zero, or another correlation of adjacent
-/// readings than its noise, the fit is first repeated with the noise that they show.
+/// If the residuals show a random zero or another correlation, the fit is repeated with this noise.
 Expected<Fit> with_its_zero(const Observations& o, Fit fitted, const std::vector<char>& searched);
 
-/// Fits the model with the weights and noise of `ground` and compares it with the readings. For a
-/// long table, shapes are searched on its means `thin`, and places are not tested.
+/// For a long table, shapes are searched on its means `thin`, and places are not tested.
 Expected<Comparison> compare_on(const Part& part, const std::vector<Term>& model,
                                 const Ground& ground, const Observations* thin = nullptr);
 
-/// Tests of all places with a given noise, including its random zero, for residuals of a fit or of
-/// simulated noise.
+/// The noise includes a random zero; the residuals are those of a fit or of simulated noise.
 class PlacesLeft {
  public:
   PlacesLeft(const Part&, const Repeats&, const Fit&, const Noise&);
@@ -72,18 +66,15 @@ class PlacesLeft {
   PlaceTests tests_;
 };
 
-/// Returns at most three factors, or products of two factors, with which the residuals of the fit
-/// of `comparison` vary (`seats_of`), without those with less than 2 % of the residual sum of
-/// squares.
+/// At most three factors, or products of two, with which the residuals vary (`seats_of`), each with
+/// at least 2 % of the residual sum of squares.
 std::vector<Place> seats_in(const Part& part, const Repeats& repeats, const Comparison& comparison);
 
-/// Returns the residual of each reading when its run is predicted from the others with the given
-/// shapes (cross-validation), m or rad. NaN for readings of a run that the others do not determine,
-/// or that is the only run of its line; empty if no line has two runs.
+/// Residuals, m or rad, if each run is predicted from the others with the given shapes. NaN for a
+/// run that the others do not determine, or that is alone on its line; empty if all are alone.
 std::vector<double> cross_validated(const Observations& o, const std::vector<Term>& terms,
                                     const std::vector<double>& weight);
-/// Returns the root of the weighted mean square of the finite residuals; none if no residual of
-/// weight above 0 is finite.
+/// Returns the RMS of the finite residuals; std::nullopt if all of them have the weight 0.
 std::optional<double> rms_of(const std::vector<double>& residual,
                              const std::vector<double>& weight);
 

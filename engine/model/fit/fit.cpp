@@ -27,7 +27,7 @@ struct Design {
   MatrixXd a;                      // whitened rows; zeros of lines first, then terms
   std::vector<std::string> names;  // name of the line or term of each column
   std::vector<Index> first;        // first column of each term, and the end
-  std::vector<MatrixXd> blocks;    // columns of each term
+  std::vector<MatrixXd> blocks;
   // number of columns of a curve that the readings do not separate from others, per term
   std::vector<Index> lost;
 };
@@ -56,8 +56,7 @@ Expected<Design> design_of(const Observations& o, const std::vector<Term>& terms
   return d;
 }
 
-/// Returns the names of the columns that a rank-deficient design does not separate: those with at
-/// least 5 % of the largest component in a null direction.
+/// Columns with at least 5 % of the largest component in a null direction.
 std::string inseparable(const MatrixXd& scaled, const std::vector<std::string>& names) {
   const Eigen::JacobiSVD<MatrixXd> svd(math::transposed_product(scaled, scaled),
                                        Eigen::ComputeThinV);
@@ -77,8 +76,7 @@ struct Solution {
   double squares = 0.0;  // weighted sum of squared residuals
 };
 
-/// Solves the least-squares problem; `weighted`: readings, whitened like the design. The error
-/// names the columns that are not separable.
+/// `weighted`: readings, whitened like the design. The error names columns that are not separable.
 Expected<Solution> solve(const Design& d, const VectorXd& weighted) {
   const Index unknowns = d.a.cols();
   VectorXd scale = d.a.colwise().norm().transpose();
@@ -111,8 +109,7 @@ double squares_with(const Observations& o, const std::vector<Term>& terms, const
   return rotated.tail(rotated.size() - d->a.cols()).squaredNorm();
 }
 
-/// Sum of squares as a function of the shapes of one term; the columns of the other terms are
-/// eliminated once.
+/// The columns of the other terms are eliminated once.
 class SquaresOf {
  public:
   SquaresOf(const Observations& o, const std::vector<Term>& terms, std::size_t t,
@@ -128,7 +125,7 @@ class SquaresOf {
     math::take_out(others_, left_);
   }
 
-  /// Returns the sum of squares; infinite if the columns of the term cannot be computed.
+  /// Infinite if the columns of the term cannot be computed.
   double operator()(const Term& term) const {
     auto block = columns_of(o_, term, term.shape);
     if (!block) return std::numeric_limits<double>::infinity();
@@ -146,8 +143,7 @@ class SquaresOf {
   MatrixXd others_;
 };
 
-/// Optimizes a shape between the grid values adjacent to its present value; a shape that has its
-/// usual value is unchanged.
+/// Optimizes between adjacent grid values; a shape that has its usual value is unchanged.
 void refine(const Observations& o, std::vector<Term>& terms, std::size_t t, std::size_t k,
             const Whitening& white, const VectorXd& y) {
   const std::vector<double> grid = terms[t].effect->shapes[k].grid(o, terms[t].axis);
@@ -171,7 +167,6 @@ void refine(const Observations& o, std::vector<Term>& terms, std::size_t t, std:
   value = at(middle) <= squares ? middle : start;
 }
 
-/// Sets the shapes that were not given to the best values of their grids.
 Expected<void> start_shapes(const Observations& o, std::vector<Term>& terms,
                             const std::vector<char>& searched, const std::vector<double>& weight,
                             const Noise& noise) {
@@ -203,15 +198,14 @@ void refine_shapes(const Observations& o, std::vector<Term>& terms,
   }
 }
 
-/// Whether shape k is an unknown of the fit. False if the shape takes only discrete values, if it
-/// has its usual value, or if it has a usual value and its grid contains only one value.
+/// False for discrete values, the usual value, and a shape with one grid value and a usual one.
 bool estimated(const Observations& o, const Term& term, std::size_t k) {
   const Effect::Shape& shape = term.effect->shapes[k];
   if (!shape.continuous || is_usual(term, term.shape, k)) return false;
   return !usual_of(term, k) || shape.grid(o, term.axis).size() > 1;
 }
 
-/// Returns the derivative of a term's prediction with respect to shape k, by central differences.
+/// Derivative by shape k, by central differences.
 Expected<VectorXd> shape_column(const Observations& o, const Term& term, std::size_t k,
                                 const VectorXd& linear) {
   const Effect::Shape& shape = term.effect->shapes[k];
@@ -232,9 +226,8 @@ Expected<VectorXd> shape_column(const Observations& o, const Term& term, std::si
   return VectorXd((*above - *below) * linear / (2.0 * step));
 }
 
-/// Optimizes each shape whose value another measurement states between the adjacent grid values,
-/// and keeps the found value if its gain of evidence exceeds the cost of a searched shape
-/// (workbench.h, price).
+/// A value between adjacent grid values replaces a stated value if its gain of evidence exceeds the
+/// cost of a searched shape (workbench.h, price).
 void free_stated(const Observations& o, std::vector<Term>& terms, const std::vector<char>& searched,
                  const std::vector<double>& weight, const Noise& noise) {
   const Whitening white(o, weight, Whitening::of_repeats(noise));
@@ -255,8 +248,7 @@ void free_stated(const Observations& o, std::vector<Term>& terms, const std::vec
   }
 }
 
-/// Improves shapes that were found on means of readings by at most two Gauss-Newton steps on all
-/// readings; a step is kept only if it reduces the sum of squares.
+/// At most two Gauss-Newton steps on all readings; each must reduce the sum of squares.
 void step_shapes(const Observations& o, std::vector<Term>& terms, const std::vector<char>& searched,
                  const Whitening& white, const VectorXd& y) {
   const VectorXd weighted = white(y);
@@ -325,8 +317,7 @@ bool more_than_weights(const Noise& noise) {
   return noise.zero != Noise::Zero::steady || noise.neighbours != noise.in_repeats;
 }
 
-/// Returns the cofactor matrix A V A^T of a solution whose weights are not the inverse of the noise
-/// covariance V; A is the linear map from the readings to the unknowns.
+/// A V A^T, if the weights are not the inverse of the covariance V; A maps readings to unknowns.
 MatrixXd spread(const MatrixXd& design, const MatrixXd& cofactor, const Whitening& white,
                 const MatrixXd& covariance) {
   const MatrixXd both = white(white(covariance).transpose());
@@ -334,9 +325,8 @@ MatrixXd spread(const MatrixXd& design, const MatrixXd& cofactor, const Whitenin
   return math::product(math::transposed_product(map, both), map);
 }
 
-/// Returns the standard deviation of a reading that uncertainties are computed from, m or rad; 0
-/// without redundancy. If the noise has contributions that the weights do not contain, it is that
-/// of residuals whitened with these contributions.
+/// Standard deviation of a reading for uncertainties, m or rad; 0 without redundancy. Residuals are
+/// whitened with the contributions to the noise that the weights do not contain.
 double s_for_uncertainty(const Fit& fit, const Observations& o, const Solution& solution) {
   if (fit.redundancy == 0) return 0.0;
   const auto redundancy = static_cast<double>(fit.redundancy);
@@ -350,9 +340,8 @@ double s_for_uncertainty(const Fit& fit, const Observations& o, const Solution& 
   return left.norm() / std::sqrt(redundancy);
 }
 
-/// Adds the effect of interpolated temperatures on the parameters, in units of s^2 of the fit; if
-/// their error is not known, no parameter gets an uncertainty. `plain`: cofactor matrix of the
-/// solution.
+/// Adds the effect of interpolated temperatures, in units of s^2 of the fit; if their error is not
+/// known, no parameter gets an uncertainty. `plain`: cofactor matrix of the solution.
 void add_interpolation(MatrixXd& cofactor, const MatrixXd& plain, const Observations& o,
                        const std::vector<Term>& terms, const Design& design, const Solution& s,
                        const Whitening& white, double s_of_fit) {
@@ -370,8 +359,7 @@ void add_interpolation(MatrixXd& cofactor, const MatrixXd& plain, const Observat
   cofactor += math::product_transposed(of_parameters, of_parameters) / (s_of_fit * s_of_fit);
 }
 
-/// Returns the change of the unknowns for one standard uncertainty of a shape that another
-/// measurement states.
+/// Change of the unknowns for one standard uncertainty of a stated shape.
 VectorXd by_stated(const Term& term, const VectorXd& linear, const Observations& o,
                    const MatrixXd& plain, const MatrixXd& a, const Whitening& white) {
   const auto column = shape_column(o, term, term.stated->shape, linear);
@@ -380,16 +368,14 @@ VectorXd by_stated(const Term& term, const VectorXd& linear, const Observations&
   return math::product(plain, math::transposed_product(a, white(wrong)));
 }
 
-/// A stated shape: its index among the parameters, its u, and the change of the unknowns for this
-/// u.
+/// Index among the parameters, u, and change of the unknowns for this u.
 struct StatedShape {
   std::size_t parameter;
   double u;
   VectorXd of_unknowns;
 };
 
-/// Sets the uncertainties of stated shapes to their stated values, and their correlations with the
-/// other parameters, which have the sign opposite to the change of the unknowns.
+/// Correlations with the other parameters have the sign opposite to the change of the unknowns.
 void put_stated(Fit& out, const std::vector<StatedShape>& stated, const std::vector<Index>& place) {
   for (const StatedShape& one : stated) {
     out.parameters[one.parameter].u = one.u;
@@ -402,8 +388,7 @@ void put_stated(Fit& out, const std::vector<StatedShape>& stated, const std::vec
   }
 }
 
-/// Computes the covariance of the linear parameters and of the searched shapes from the linearized
-/// problem: columns of the design together with the derivatives by the shapes.
+/// Linearized problem: the design together with the derivatives by the searched shapes.
 void fill_covariance(Fit& out, const Observations& o, Design design, const Solution& s,
                      const std::vector<char>& searched, const Whitening& white) {
   std::vector<Index> place(out.parameters.size(), -1);         // row in the cofactor matrix
@@ -470,8 +455,7 @@ void fill_covariance(Fit& out, const Observations& o, Design design, const Solut
   for (std::size_t i = 0; i < p; ++i) {
     out.correlation[i][i] = 1.0;
     if (place[i] < 0) continue;
-    // If the readings do not determine the size of the random zero, u of parameters that depend on
-    // it is not determined either.
+    // Without the size of the random zero, u of parameters that depend on it is not determined.
     out.parameters[i].u = open[static_cast<std::size_t>(place[i])] != 0
                               ? std::numeric_limits<double>::quiet_NaN()
                               : s_of_u * std::sqrt(cofactor(place[i], place[i]));

@@ -11,8 +11,7 @@ namespace nonio::model {
 
 namespace {
 
-// Largest number of columns. If there are more gaps, several share a column, with alternating
-// signs.
+// With more gaps, several share a column, with alternating signs.
 constexpr std::size_t most_columns = 50;
 
 /// Rows of one line, ordered by time, with and without a temperature.
@@ -20,8 +19,7 @@ struct TemperatureCourse {
   std::vector<std::uint32_t> known, blank;
 };
 
-/// Consecutive blank rows between two known temperatures, before the first or after the last one,
-/// and their temperature errors, K, for one standard uncertainty of the interpolation.
+/// Consecutive blank rows, and their temperature errors, K, for one standard uncertainty.
 struct Gap {
   std::vector<std::uint32_t> row;
   std::vector<double> off;
@@ -42,9 +40,8 @@ std::vector<TemperatureCourse> temperature_courses(const Observations& o, const 
   return out;
 }
 
-/// Estimates the error of interpolation from known temperatures: their distance from a straight
-/// line between two others (`inside`), or from a constant (`beyond`), that are at least `span`
-/// apart.
+/// Distance of known temperatures from a straight line between two others (`inside`), or from a
+/// constant (`beyond`), that are at least `span` apart.
 class Wrong {
  public:
   Wrong(const TemperatureCourse& course, const AxisReadings& r) : known_(course.known), r_(r) {}
@@ -63,8 +60,7 @@ class Wrong {
     return count < fewest ? nan : std::sqrt(sum / count);
   }
 
-  /// Returns the error at a time `span` (s) after the last known temperature, or before the first,
-  /// K; NaN if it is unknown.
+  /// At a time `span`, s, after the last known temperature, or before the first; K; NaN if unknown.
   double beyond(double span) const {
     double sum = 0.0, count = 0.0;
     for_stretches(span, 1, [&](std::size_t a, std::size_t b, double scale) {
@@ -83,9 +79,8 @@ class Wrong {
     return (t(k) - t(a)) / (t(b) - t(a));
   }
 
-  /// Calls `use` for each known temperature and the first one that is at least `span` and
-  /// `fewest_on` temperatures later. The error of a longer stretch is scaled down in proportion,
-  /// which assumes no jumps.
+  /// The second index is the first one that is at least `span` and `fewest_on` temperatures later.
+  /// The error of a longer stretch is scaled down in proportion, which assumes no jumps.
   template <typename Use>
   void for_stretches(double span, std::size_t fewest_on, const Use& use) const {
     std::size_t b = 0;
@@ -100,8 +95,7 @@ class Wrong {
   const AxisReadings& r_;
 };
 
-/// Appends the gaps of a line; false if too few temperatures are known to estimate the
-/// interpolation error.
+/// Returns false if too few temperatures are known to estimate the interpolation error.
 bool add_gaps(const TemperatureCourse& course, const AxisReadings& r, std::vector<Gap>& gaps) {
   const Wrong wrong(course, r);
   const auto& known = course.known;
@@ -144,7 +138,8 @@ struct Said {
   }
 };
 
-/// Returns the terms of this axis whose prediction depends on the material temperature.
+/// Returns the terms of this axis whose prediction depends on the interpolated material
+/// temperatures.
 Expected<Said> warmed(const Observations& filled, const AxisReadings& r,
                       const std::vector<Term>& terms, const std::vector<VectorXd>& linear,
                       const std::string& axis) {
@@ -164,8 +159,7 @@ Expected<Said> warmed(const Observations& filled, const AxisReadings& r,
   return out;
 }
 
-/// Returns the change of the prediction, m or rad, for one standard uncertainty of the temperatures
-/// of a gap. Each gap has a column; if there are more than `most_columns`, several share one.
+/// m or rad, for one standard uncertainty of a gap. More than `most_columns` gaps share columns.
 Expected<MatrixXd> columns_of_gaps(const Observations& filled, const Said& said,
                                    const std::vector<Gap>& gaps) {
   NONIO_TRY(const auto as_fitted, said.of(filled));

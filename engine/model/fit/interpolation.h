@@ -5,12 +5,11 @@
 
 namespace nonio::model {
 
-/// Returns the possible error of the terms' predictions caused by interpolated temperatures: n x k,
-/// m or rad, one column per independent error of one standard uncertainty; with more than 50 gaps
-/// on an axis, several share a column. The error of linear interpolation is estimated where
-/// temperatures are known, over stretches as long as the gap. `linear`: linear parameters of each
-/// term. Returns no columns if no temperature is interpolated or no term depends on temperature; an
-/// error if too few temperatures are known.
+/// Possible errors of the predictions by interpolated temperatures: n x k, m or rad, one column per
+/// independent error of one standard uncertainty (at most 50 on an axis). The error is estimated
+/// where temperatures are known, over stretches as long as the gap. `linear`: linear parameters of
+/// each term. No columns without interpolated temperatures or terms that depend on temperature.
+/// Error: too few known temperatures.
 Expected<MatrixXd> wrong_by_interpolation(const Observations& o, const std::vector<Term>& terms,
                                           const std::vector<VectorXd>& linear);
 

@@ -12,9 +12,8 @@
 
 namespace nonio::model {
 
-/// Columns that vary only with one factor, or with the product of two. `repeated`: they are
-/// determined by differences between repeats of a cell (time, run, temperature), otherwise by the
-/// cells themselves (position, direction, phase).
+/// Columns that vary only with one factor, or with the product of two. `repeated`: determined by
+/// differences between repeats of a cell (time, run, temperature), otherwise by the cells.
 struct FactorColumns {
   Where of;
   MatrixXd columns;
@@ -69,8 +68,7 @@ MatrixXd dummies(const std::vector<std::size_t>& level, std::size_t levels) {
   return out;
 }
 
-/// Returns indicator columns of the distinct values; if there are more than `most_bins`, adjacent
-/// values share a bin.
+/// If there are more than `most_bins` distinct values, adjacent values share a bin.
 FactorColumns binned(Factor of, const std::vector<double>& value, Quantity quantity) {
   const std::set<double> distinct(value.begin(), value.end());
   const std::size_t in_bin =
@@ -105,8 +103,7 @@ MatrixXd times(const MatrixXd& columns, const VectorXd& by) { return by.asDiagon
 
 }  // namespace
 
-/// The factors by which readings are grouped: those of the axis that moves or, in space, of the
-/// position along each line; and products of two factors.
+/// Factors of the axis that moves or, in space, of the position along each line; products of two.
 class Factors {
  public:
   Factors(const Part& part, const Repeats& repeats) {
@@ -129,8 +126,7 @@ class Factors {
   }
 
   const std::vector<FactorColumns>& all() const { return all_; }
-  /// Returns the columns of a pair together with those of its first factor and, unless the pair is
-  /// tested only between repeats, those of its second factor.
+  /// Adds the columns of the first factor of a pair and, unless `repeated`, of the second factor.
   MatrixXd whole(const FactorColumns& f) const {
     if (!is_pair(f)) return f.columns;
     // In space positions belong to lines, so there is no factor of all positions.
@@ -211,8 +207,7 @@ class Factors {
     add(std::move(f));
   }
 
-  /// Adds the positions of each line as a factor of its own, because equal positions on two
-  /// diagonals are different places in the machine.
+  /// Equal positions on two diagonals are different places in the machine.
   void add_lines(const Part& part, const VectorXd& d) {
     const Quantity quantity = position_of(part.kind == Part::Kind::balls);
     for (std::uint32_t line = 0; line < lines_of(part.table); ++line) {
@@ -334,20 +329,17 @@ class Cells {
   Eigen::LLT<MatrixXd> products_{};
 };
 
-/// Whether the prediction of a factor differs between repeats of a cell. A structure that recurs in
-/// every run belongs to the cells, even if a wave in time describes it with fewer columns.
+/// A structure that recurs in every run belongs to the cells, not to a wave in time.
 bool separates_repeats(const Cells& cells, const MatrixXd& basis, const VectorXd& residual) {
-  // docs/dev/constants.md, M19.
-  constexpr double least = 0.1;  // least share of the sum of squares; that of a linear trend over
-                                 // two runs is a fifth
+  // Least share; a linear trend over two runs has a fifth: docs/dev/constants.md, M19.
+  constexpr double least = 0.1;
   MatrixXd said = math::times(basis, math::transposed_times(basis, residual));
   const double all = said.squaredNorm();
   cells.take_out(said);
   return said.squaredNorm() > least * all;
 }
 
-/// Returns orthonormal columns of every factor: without the zeros of lines, without the columns of
-/// the model, and for pairs without their single factors.
+/// Orthonormal, without zeros of lines and columns of the model; pairs without single factors.
 std::vector<MatrixXd> bases_of(const Factors& factors, const Repeats& repeats,
                                const Whitening& white, const MatrixXd& model) {
   const Cells cells(repeats, white);
@@ -362,8 +354,7 @@ std::vector<MatrixXd> bases_of(const Factors& factors, const Repeats& repeats,
     if (f.of.second)
       for (const auto& of : {std::pair{f.of.first, std::string()}, std::pair{*f.of.second, f.line}})
         if (const MatrixXd& one = single[of]; one.cols() > 0) math::take_out(one, columns);
-    // If the model already predicts a column, only rounding errors remain, which are not a
-    // direction.
+    // Of a column that the model predicts, only rounding errors remain, which are no direction.
     for (Index k = 0; k < columns.cols(); ++k)
       if (!(columns.col(k).norm() > 1e-3 * before(k))) columns.col(k).setZero();
     MatrixXd basis = orthonormal(std::move(columns));
@@ -373,14 +364,13 @@ std::vector<MatrixXd> bases_of(const Factors& factors, const Repeats& repeats,
   return out;
 }
 
-/// Returns the whitened columns of a factor with at least three levels; no columns for others.
+/// No columns for a factor with fewer than three levels.
 MatrixXd levels_of(const FactorColumns& f, const Whitening& white) {
   return f.levels.size() < 3 ? MatrixXd(f.columns.rows(), 0) : white(f.columns);
 }
 
-/// Sets `place.at` to the level (a target, a run) that contributes at least half of the factor's
-/// sum of squares, if there is one, and lowers `place.p` if one level is more significant than the
-/// factor. `s2`: residual variance with `dof` degrees of freedom.
+/// A level (a target, a run) with at least half of the sum of squares becomes `place.at`; p is
+/// lowered if one level is more significant than the factor. `s2`: residual variance with `dof`.
 void find_level(const FactorColumns& f, const MatrixXd& columns, const VectorXd& residual,
                 double s2, double dof, Place& place) {
   if (columns.cols() == 0) return;

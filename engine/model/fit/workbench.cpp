@@ -8,17 +8,14 @@
 namespace nonio::model {
 
 namespace {
-// Smallest squared length that must remain of a column of unit length after projection on the
-// others is subtracted.
+// Least squared length of a column of unit length that remains after projection on the others.
 constexpr double independent = 1e-7;
-// In space, columns are nearly parallel (a step diagonal's mirror and its three axes). This does
-// not apply to curves, for which a smaller value would admit rounding noise.
+// In space, columns are nearly parallel (a step diagonal's mirror and its three axes). For curves,
+// this value would admit rounding noise.
 constexpr double independent_in_space = 1e-11;
 // A weaker combination of a curve in space would imply an impossibly large guideway error.
 constexpr double shown_of_curve = weakest_of_curve * weakest_of_curve;
-// Usual size of each component of a curve in space, m or rad: 30 um of straightness, 30 urad of
-// angle.
-// docs/dev/constants.md, M43.
+// Usual size, m or rad, of each component of a curve in space: docs/dev/constants.md, M43.
 constexpr double usual_curve = 30e-6;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 bool varies_with_target_only(const MatrixXd& columns, const std::vector<std::uint32_t>& target) {
@@ -36,7 +33,6 @@ bool varies_with_target_only(const MatrixXd& columns, const std::vector<std::uin
 
 }  // namespace
 
-/// Counts the values among which the shapes of an effect are chosen.
 void Workbench::count_shapes(Instance& instance) const {
   const auto& shapes = instance.term.effect->shapes;
   instance.tried.assign(std::size_t{1} << shapes.size(), 0);
@@ -51,7 +47,7 @@ void Workbench::count_shapes(Instance& instance) const {
   }
 }
 
-/// Returns a bit mask: bit k is set if shape k has its usual value.
+/// Bit k is set if shape k has its usual value.
 std::size_t Workbench::usual_ones(const Term& term, const std::vector<double>& shape) {
   std::size_t out = 0;
   for (std::size_t k = 0; k < shape.size(); ++k)
@@ -59,8 +55,7 @@ std::size_t Workbench::usual_ones(const Term& term, const std::vector<double>& s
   return out;
 }
 
-/// Sets the cost of the choice of a block's shapes. A block with usual values was chosen only among
-/// blocks with these values; others need more evidence.
+/// Usual values were chosen only among blocks with these values; others need more evidence.
 void Workbench::fill_search(Block& block) const {
   const Instance& instance = instances_[block.effect];
   const auto tried = static_cast<double>(instance.tried[usual_ones(instance.term, block.shape)]);
@@ -73,10 +68,9 @@ void Workbench::fill_search(Block& block) const {
     block.searched += instance.free[k] != 0 && !is_usual(instance.term, block.shape, k);
 }
 
-/// Returns whether a set with this block would have nearly one free value per target, or the block
-/// is a curve outside of the model with about half as many columns as there are targets. False if
-/// the block varies within a target. `of_position`: number of other unknowns of position in the
-/// set.
+/// Whether a set with this block would have nearly one free value per target, or the block is a
+/// curve outside of the model with about half as many columns as targets. `of_position`: number of
+/// other unknowns of position in the set.
 bool Workbench::follows_targets(const Block& block, Index of_position) const {
   if (!block.of_position) return false;
   const bool stated = block.effect < stated_;
@@ -247,10 +241,9 @@ Workbench::State Workbench::state(std::vector<std::size_t> blocks) const {
 
 namespace {
 
-/// Returns t^T s^-1 t, by which one more block of columns reduces the residual sum of squares. The
-/// part of the block that the state explains has been removed from `s`, the scalar products of its
-/// columns, and from `t`, their products with the deviations. NaN if `s` is not safely positive
-/// definite.
+/// t^T s^-1 t: decrease of the residual sum of squares by one more block. `s`: scalar products of
+/// its columns, `t`: their products with the deviations, both without the part that the state
+/// explains. NaN if `s` is not safely positive definite.
 double fall_of(const MatrixXd& s, const VectorXd& t, double least) {
   const Eigen::LLT<MatrixXd> llt(s);
   if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > std::sqrt(least)))
@@ -258,8 +251,7 @@ double fall_of(const MatrixXd& s, const VectorXd& t, double least) {
   return math::whitened(llt, t).squaredNorm();
 }
 
-/// Returns t^T s^-1 t over the independent directions of the block only, and sets `rank` to their
-/// number; NaN if there is none.
+/// t^T s^-1 t over the independent directions only; `rank`: their number. NaN without any.
 double fall_of_some(const MatrixXd& s, const VectorXd& t, double least, Index& rank) {
   const auto [values, vectors] = math::spectrum(s);
   const VectorXd along = math::transposed_times(vectors, t);
@@ -367,8 +359,7 @@ double Workbench::least_of(const Block& block) const {
   return instances_[block.effect].term.effect->description ? independent : shown_of_curve;
 }
 
-/// Returns the smallest diagonal element of the Cholesky factor with which every column is regarded
-/// as fully independent.
+/// Least diagonal element of the Cholesky factor for fully independent columns.
 double Workbench::wholly_independent() const {
   return several_axes_ && reducible_ ? 3.0 * weakest_of_curve : std::sqrt(independent);
 }
@@ -399,10 +390,9 @@ Workbench::Directions Workbench::directions(const std::vector<std::size_t>& bloc
   return out;
 }
 
-/// Returns the decrease of the residual sum of squares if a block is added to a state; NaN if its
-/// columns are dependent, unless dependent combinations of them may be removed. The rows from `row`
-/// of `p.products` are the scalar products of its columns with orthonormal directions that span the
-/// columns of the state. Sets `rank` to the number of independent columns that it adds.
+/// Decrease of the residual sum of squares; NaN if the columns are dependent and not reducible.
+/// From `row`, `p.products` are the scalar products of the columns with orthonormal directions of
+/// the state. `rank`: number of independent columns that are added.
 double Workbench::fall_of_block(const Projection& p, Index row, const Block& block,
                                 Index& rank) const {
   rank = block.count;
@@ -475,8 +465,7 @@ Workbench::State Workbench::with(const State& state, const Gains& gains, std::si
   return more;
 }
 
-/// Does the same as `with` for a curve, which adds only as many parameters as it has directions
-/// that are independent of the state.
+/// A curve adds only as many parameters as it has directions that are independent of the state.
 Workbench::State Workbench::with_curve(const State& state, const Gains& gains,
                                        std::size_t effect) const {
   State best = state;

@@ -11,9 +11,9 @@
 
 namespace nonio::model {
 
-/// All effects of a search with every value of their shapes, as columns of unit length without the
-/// zeros of the lines. Scalar products are cached, so that the evidence of a set of effects is
-/// computed without accessing the readings again. Not thread-safe.
+/// Effects of a search with every value of their shapes, as columns of unit length without the
+/// zeros of the lines. Cached scalar products give the evidence of a set of effects without another
+/// access to the readings. Not thread-safe.
 class Workbench {
  public:
   /// Columns `first` to `first + count - 1`: those of an effect with one combination of its shapes.
@@ -23,8 +23,7 @@ class Workbench {
     Index first, count;
     bool of_position;  ///< constant over all readings of a target
     MatrixXd own{};    ///< scalar products of its columns, plus the prior of a curve
-    /// For each column of a curve in space 1/(usual size)^2, in the units of its parameter; empty
-    /// for other effects.
+    /// For curves in space: 1/(usual size)^2 of each column, in the units of its parameter.
     VectorXd prior{};
     Index searched = 0;  ///< number of its shapes that were searched
     /// 2 ln of the number of independent values from which its shapes were chosen
@@ -32,13 +31,10 @@ class Workbench {
   };
   struct Instance {
     Term term;
-    /// indices of the blocks of this effect; empty: the effect is not identifiable from the
-    /// readings
-    std::vector<std::size_t> blocks;
+    std::vector<std::size_t> blocks;  ///< empty: the effect is not identifiable
     std::string error;
     bool reducible = false;  ///< whether combinations of its columns may be removed (`may_lose`)
-    /// Indexed by a bit mask of shapes: number of shape combinations in which all shapes of the
-    /// mask have their usual value.
+    /// By bit mask of shapes: number of combinations in which these shapes have their usual values.
     std::vector<std::size_t> tried{};
     std::vector<char> free{};  ///< for each shape: whether it has more than one value
   };
@@ -48,19 +44,17 @@ class Workbench {
     double squares = 0.0;  ///< weighted residual sum of squares
     Index parameters = 0;  ///< number of linear parameters and searched shapes, without zeros
     double price = 0.0;    ///< cost of parameters, shapes and names
-    /// n ln(squares/n) + price, with a larger price for few readings; smaller is better; infinite
-    /// if some columns are dependent
+    /// n ln(squares/n) + price; smaller is better; infinite if some columns are dependent
     double criterion = 0.0;
   };
 
   /// Columns by term and shape as the effect returned them, reused for other weights.
   using Made = std::map<std::pair<std::size_t, std::vector<double>>, Expected<MatrixXd>>;
 
-  /// `target`: index of the target of each reading; a block is not added to a state if the columns
-  /// that depend only on the target would then have nearly one free value per target (empty: no
-  /// limit). The first `stated` terms belong to the model, and their curves may follow the targets
-  /// more closely. `scatter`: standard deviation of a reading; if it is not 0, curves in space have
-  /// a prior of their usual size (ridge).
+  /// `target`: index of the target of each reading; a set may not have nearly one free value per
+  /// target (empty: no limit). The first `stated` terms belong to the model, and their curves may
+  /// follow the targets more closely. `scatter`: standard deviation of a reading; if it is not 0,
+  /// curves in space have a prior of their usual size (ridge).
   Workbench(const Observations& o, const std::vector<Term>& terms,
             const std::vector<double>& weight, const std::vector<std::uint32_t>& target = {},
             std::size_t stated = 0, Made* made = nullptr, const Noise& noise = {},
@@ -90,36 +84,29 @@ class Workbench {
   Gains gains(const State& state) const;
   /// Returns the gains of the blocks of one effect only; NaN for others.
   Gains gains(const State& state, std::size_t effect) const;
-  /// Returns the state with the best block of this effect added; the unchanged blocks if none can
-  /// be added.
+  /// Adds the best block of this effect; the state is unchanged if no block can be added.
   State with(const State& state, const Gains& gains, std::size_t effect) const;
-  /// Does the same as `with`, but on a single axis also tries fewer knots for each curve in
-  /// `state`, because the curve may have the number of position columns up to which a set is not
-  /// rejected.
+  /// Like `with`, but on a single axis also with fewer knots for each curve in `state`, because a
+  /// curve may have all the position columns that a set may have.
   State joined(const State& state, const Gains& gains, std::size_t effect) const;
-  /// Searches each effect's shapes again with the others fixed, until nothing improves, at most
-  /// four times. Returns the improved state.
+  /// Searches the shapes of each effect again with the others fixed, at most four times.
   State settled(State state) const;
   bool holds(const State& state, std::size_t effect) const;
   std::size_t effect_of(std::size_t block) const { return blocks_[block].effect; }
   State without(const State& state, std::size_t effect) const;
 
-  /// Returns the best shapes of all effects together, searched one after the other until nothing
-  /// improves, at most four times. An error if the readings do not show an effect, or do not
-  /// separate the effects.
+  /// Best shapes of all effects, searched one after the other, at most four times. Error: the
+  /// readings do not show an effect, or do not separate the effects.
   Expected<std::vector<std::vector<double>>> best_shapes() const;
 
   /// Returns an n x q orthonormal basis of a state's columns (without the zeros).
   MatrixXd basis(const State& state) const;
 
-  /// Returns the indices in `columns()` of a state's blocks.
   std::vector<Index> columns_of_state(const State& state) const;
-  /// `gram` returns the scalar products of the columns of these blocks with each other, `products`
-  /// those of all columns with the columns of these blocks.
+  /// Scalar products of the columns of these blocks with each other, and of all columns with these.
   MatrixXd gram(const std::vector<std::size_t>& blocks) const;
   MatrixXd products(const std::vector<std::size_t>& blocks) const;
-  /// Returns the scalar products of the columns of the blocks `of`, concatenated, with those of the
-  /// blocks `with`.
+  /// Scalar products of the columns of the blocks `of` with those of the blocks `with`.
   MatrixXd products(const std::vector<std::size_t>& of, const std::vector<std::size_t>& with) const;
 
   /// Returns the cost of an effect with these shapes and this number of linear columns.
@@ -130,16 +117,14 @@ class Workbench {
  private:
   bool follows_targets(const Block& block, Index of_position) const;
   void add(const Observations& o, std::size_t effect, std::vector<MatrixXd>& parts, Made& made);
-  /// Returns columns of unit length without the zeros of lines; empty if the effect is not
-  /// identifiable.
+  /// Columns of unit length without the zeros of lines; empty if the effect is not identifiable.
   MatrixXd columns_for(const Observations& o, Instance& instance, const std::vector<double>& shape,
                        bool& of_position, VectorXd& prior, Made& made) const;
   struct Projection {
     MatrixXd products;  // scalar products of columns with the orthonormal directions of the state
     VectorXd z;         // scalar products of the readings with these directions
   };
-  /// Orthonormal directions of a state with a curve that is not completely independent of earlier
-  /// blocks.
+  /// For a state with a curve that is not completely independent of earlier blocks.
   struct Directions {
     MatrixXd of_columns;      // X_state * of_columns is orthonormal
     std::vector<Index> rank;  // number of independent columns of each block
@@ -152,8 +137,7 @@ class Workbench {
   double least_of(const Block& block) const;
   double wholly_independent() const;
   State with_curve(const State& state, const Gains& gains, std::size_t effect) const;
-  /// Converts `products` of columns with the state's columns to products with its orthonormal
-  /// directions.
+  /// Converts products with the columns of the state to products with its orthonormal directions.
   Projection projection(const State& state, MatrixXd products) const;
   void put_gain(const Projection& projection, Index row, std::size_t block, Gains& out) const;
   double fall_of_block(const Projection& projection, Index row, const Block& block,

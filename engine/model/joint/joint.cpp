@@ -18,14 +18,11 @@ namespace nonio::model {
 namespace {
 
 constexpr std::size_t most_effects = 8;
-// docs/dev/constants.md, M46.
-constexpr double least_joint_rms = 0.1;  ///< smallest RMS of a named effect, as a fraction of the
-                                         ///< noise
-// Campaigns differ if p is below the first value, unless more than the second share of flipped
-// copies differs as much; docs/dev/constants.md, M47.
+// Smallest RMS of a named effect, as a fraction of the noise: docs/dev/constants.md, M46.
+constexpr double least_joint_rms = 0.1;
+// p of differences, and share of flipped copies that differ as much: docs/dev/constants.md, M47.
 constexpr double differs_below = 0.001, as_much_as_noise = 0.01;
-constexpr Index shuffles = 200;  // number of flipped copies: half by stretches, half by whole
-                                 // passes
+constexpr Index shuffles = 200;  // half by stretches, half by whole passes
 // With many campaigns, the date of a change is searched in steps, then between them.
 constexpr std::size_t most_dates = 32;
 
@@ -61,8 +58,7 @@ class JointSearch {
     double evidence = -std::numeric_limits<double>::infinity();
   };
 
-  /// Returns the best block, with the best `Holds`, of each effect that is not in `choices`; only
-  /// of effect `only` if it is given.
+  /// The best block, with the best `Holds`, of each effect that is not in `choices`.
   std::map<std::string, Scored> scored(const Choices& choices, const std::string& only = "") const {
     const auto gains = system_.gains(choices, y_);
     std::map<std::string, Scored> best;
@@ -83,7 +79,7 @@ class JointSearch {
     return best;
   }
 
-  /// Returns the best effect; among nearly equal ones that with the fewest unknowns.
+  /// Among nearly equal effects, returns that with the fewest unknowns.
   Scored simplest(const std::map<std::string, Scored>& all) const {
     Scored best;
     for (const auto& [effect, one] : all)
@@ -136,8 +132,7 @@ class JointSearch {
     return s.sound ? s.criterion() : std::numeric_limits<double>::infinity();
   }
 
-  /// Searches the shape of each effect, and whether its value is shared, again with the other
-  /// effects fixed, until nothing changes, at most four times.
+  /// Searches shapes and `holds` of each effect again with the others fixed, at most four times.
   void settle() {
     for (int round = 0; round < 4; ++round) {
       bool any = false;
@@ -146,8 +141,7 @@ class JointSearch {
     }
   }
 
-  /// Finds the best shape of one effect, and whether and since when its value differs between
-  /// campaigns. Returns whether something changed.
+  /// Returns whether the shape, `holds` or the date of the effect changed.
   bool settle(std::size_t i) {
     const Choice before = choices_[i];
     const std::string effect = r_.blocks[before.block].effect;
@@ -165,8 +159,8 @@ class JointSearch {
     return now.block != before.block || now.holds != before.holds || now.after != before.after;
   }
 
-  /// Replaces the separate values of the campaigns by one change between two campaigns, if this
-  /// reduces the criterion and no other difference between campaigns remains significant.
+  /// One change between two campaigns replaces separate values, if it reduces the criterion and
+  /// leaves no other significant difference.
   void look_for_date(std::size_t i) {
     const std::size_t n = r_.members.size();
     const Choice own = choices_[i];
@@ -189,8 +183,7 @@ class JointSearch {
     if (p_same(i) < differs_below) choices_[i] = own;
   }
 
-  /// Returns the p-value of the differences of an effect between campaigns, beyond those that its
-  /// choice allows.
+  /// p of the differences between campaigns beyond those that the choice allows.
   double p_same(std::size_t i) const {
     Choices own = choices_;
     own[i].holds = Holds::own;
@@ -200,8 +193,7 @@ class JointSearch {
     return math::f_upper((a.squares - b.squares) / q, q, dof_);
   }
 
-  /// Returns the p-value of the F-test of one effect against the noise of the repeats. It is
-  /// corrected for the number of possible dates of a change, but not for the search.
+  /// F-test against the noise of the repeats, corrected for the dates of a change only.
   double p_of(const Choices& choices, std::size_t i) const {
     const auto all = system_.solve(choices), rest = system_.solve(without(choices, i));
     const JointBlock& block = r_.blocks[choices[i].block];
@@ -216,9 +208,9 @@ class JointSearch {
     return std::sqrt(std::max(fall, 0.0) * noise2_ / system_.readings());
   }
 
-  /// Returns copies of the residuals of each member, one per column, with signs flipped at random:
-  /// of short stretches in even columns, of whole passes in odd ones. They are scaled to the
-  /// expected size of the noise, because the fit makes residuals smaller.
+  /// Copies of the residuals, one per column, with random signs: of short stretches in even
+  /// columns, of whole passes in odd ones. They have the expected size of the noise, because the
+  /// fit makes residuals smaller.
   std::vector<MatrixXd> flipped() const {
     const auto left = system_.residuals(choices_, system_.solve(choices_));
     std::mt19937_64 random(seed_);
@@ -244,9 +236,8 @@ class JointSearch {
     return out;
   }
 
-  /// Returns the number of independent tests that the search is equivalent to: the largest of the
-  /// numbers that give the observed median and 5 % quantile of the smallest p of a copy, with
-  /// flipped stretches and with flipped passes.
+  /// The largest number of independent tests that gives the observed median or 5 % quantile of the
+  /// smallest p of a copy, with flipped stretches or with flipped passes.
   double trials_of(const JointSystem::Gains& gains) const {
     std::vector<double> least[2];
     for (Index k = 0; k < shuffles; ++k) {
@@ -290,8 +281,7 @@ class JointSearch {
     }
   }
 
-  /// Assigns one shared value to each effect whose differences between campaigns are reached in
-  /// more than 1 % of the copies with flipped signs.
+  /// An effect gets one shared value if more than 1 % of the flipped copies reach its differences.
   void settle_differences() {
     for (std::size_t i = 0; i < choices_.size(); ++i) {
       if (choices_[i].holds == Holds::shared) continue;
@@ -319,7 +309,6 @@ class JointSearch {
         [](const JointEffect& a, const JointEffect& b) { return a.evidence > b.evidence; });
   }
 
-  /// Returns the RMS of normalized residuals, converted to m or rad.
   double rms_of(const std::vector<VectorXd>& left) const {
     double squares = 0.0;
     for (std::size_t m = 0; m < left.size(); ++m)
@@ -393,8 +382,7 @@ class JointSearch {
     out.trials = chance_.trials;
   }
 
-  /// Returns, for each column of `y`, the sum of n times the squared mean over the cells of all
-  /// campaigns that have n >= 2 readings of weight above 0.
+  /// By column of `y`: sum of n times the squared mean over cells with n >= 2 weighted readings.
   VectorXd of_cells(const std::vector<MatrixXd>& y) const {
     VectorXd out = VectorXd::Zero(y.front().cols());
     for (std::size_t m = 0; m < y.size(); ++m) {
@@ -412,8 +400,7 @@ class JointSearch {
     return out;
   }
 
-  /// Sets the verdict: tests whether the cell means differ from the model by more than the scatter
-  /// of passes.
+  /// Tests whether the cell means differ from the model by more than the scatter of passes.
   void judge(JointExplanation& out) const {
     std::vector<MatrixXd> left;
     for (const VectorXd& e : system_.residuals(choices_, system_.solve(choices_)))
@@ -421,8 +408,7 @@ class JointSearch {
     const double found = of_cells(left)(0);
     const VectorXd chance = of_cells(flipped());
     double mean = 0.0, squares = 0.0, n = 0.0;
-    // Only the columns of `flipped` with an odd index are used: in these, the signs of whole passes
-    // are flipped.
+    // Odd columns of `flipped` have flipped signs of whole passes.
     for (Index k = 1; k < shuffles; k += 2) mean += chance(k), ++n;
     mean /= n;
     for (Index k = 1; k < shuffles; k += 2) squares += std::pow(chance(k) - mean, 2);
@@ -437,16 +423,15 @@ class JointSearch {
       out.verdict = Verdict::Kind::unknown;
   }
 
-  /// Returns the term of an effect in the catalogue of a campaign; null if the catalogue does not
-  /// contain the effect.
+  /// Null if the catalog of the campaign does not contain the effect.
   static const Term* term_of(const Member& member, const std::string& effect) {
     for (const Term& term : member.catalogue)
       if (term.name() == effect) return &term;
     return nullptr;
   }
 
-  /// Returns a named effect as a candidate of campaign m, with the values for this campaign; none
-  /// if the campaign does not determine the effect.
+  /// The values are those of campaign m; std::nullopt if the campaign does not determine the
+  /// effect.
   std::optional<Candidate> candidate_of(const JointEffect& effect, std::size_t m) const {
     const Term* const term = term_of(of_[m], effect.effect);
     const std::size_t g = effect.holds == Holds::shared    ? 0

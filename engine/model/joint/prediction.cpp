@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Applies the model of one or several axes to readings that it was not fitted to.
 #include "nonio/model/prediction.h"
 
 #include <algorithm>
@@ -14,8 +13,8 @@ namespace {
 
 const char* const mark = "unseen ";
 
-/// Returns one table with the readings of both tables, so that the knots of curves and the origins
-/// of levers are the same for both. Lines and bodies of `unseen` get new names.
+/// In one table, the knots of curves and the origins of levers are the same for both. Lines and
+/// bodies of `unseen` get new names.
 Expected<Observations> joined(const Observations& seen, const Observations& unseen) {
   Observations out = seen;
   if (seen.angular != unseen.angular) return fail("one is in um, the other in arcsec");
@@ -99,7 +98,6 @@ Expected<Prediction> predict_places(const Part& seen, const std::vector<Term>& m
   const auto n = static_cast<Index>(seen.table.size()), m = static_cast<Index>(unseen.table.size());
   const VectorXd y = Eigen::Map<const VectorXd>(both.deviation.data(), n + m);
 
-  // Fit the readings `seen`.
   VectorXd root(n);
   for (Index i = 0; i < n; ++i)
     root(i) = std::sqrt(

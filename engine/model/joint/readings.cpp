@@ -13,13 +13,11 @@ namespace nonio::model {
 
 namespace {
 
-/// Smallest share of a column that must remain after the zeros and the member's own model are
-/// removed.
+/// Smallest share of a column that remains without the zeros and the own model of the member.
 constexpr double shown = 1e-4;
 
-/// The range that all members together have measured. `with_ends` appends its ends as two
-/// additional readings, so that the knots of a curve and the grid of a period are the same in each
-/// member.
+/// Range of all members. `with_ends` appends its ends as two readings, so that the knots of a curve
+/// and the grid of a period are the same in each member.
 struct Stretch {
   double low = 0.0, high = 0.0;
 };
@@ -45,8 +43,7 @@ bool joins(const Term& t) {
   return !t.grouping && !t.effect->description && !t.effect->is_nuisance && !t.library;
 }
 
-/// Whether the columns are equal for all readings of a target from one side, so that they do not
-/// depend on time.
+/// Whether the columns are constant within each cell, so that they do not depend on time.
 bool is_of_place(const MatrixXd& columns, const std::vector<std::uint32_t>& cell) {
   std::map<std::uint32_t, Index> first;
   for (Index i = 0; i < columns.rows(); ++i) {
@@ -56,8 +53,7 @@ bool is_of_place(const MatrixXd& columns, const std::vector<std::uint32_t>& cell
   return true;
 }
 
-/// Whether a shape of the term is known from this member's readings or manifest and differs from
-/// the value in `shape`, for example because the member has a screw of another pitch.
+/// Whether a shape is known for this member and differs, as for a screw of another pitch.
 bool is_of_another(const Observations& o, const Term& term, const std::vector<double>& shape) {
   for (std::size_t k = 0; k < shape.size(); ++k) {
     const std::vector<double> grid = term.effect->shapes[k].grid(o, term.axis);
@@ -98,8 +94,7 @@ class Reader {
         stretch_.low = std::min(stretch_.low, x), stretch_.high = std::max(stretch_.high, x);
   }
 
-  /// Lists the blocks of all effects that no member has in its model, with the shapes of the member
-  /// with the most readings.
+  /// Effects that no member has in its model, with the shapes of the member with the most readings.
   void list_blocks() {
     std::map<std::string, std::pair<const Term*, const Member*>> all;
     std::vector<std::string> order;
@@ -160,9 +155,8 @@ class Reader {
   }
 
   /// Sums, over successive passes of one side with at least three repeated readings each, half the
-  /// squared difference of their means in units of s^2, minus the share of the noise of single
-  /// readings, so that the expectation of each summand is the variance of an offset. The mean of
-  /// its cell is first subtracted from each reading. A slow drift contributes little.
+  /// squared difference of their means in units of s^2, minus the noise of single readings. The
+  /// expectation of each summand is the variance of an offset. A slow drift contributes little.
   void sum_offsets(const Ground& ground, const std::vector<double>& y, double s) {
     const Repeats& r = ground.repeats;
     std::vector<double> cell(r.cells, 0.0), in_cell(r.cells, 0.0), mean(r.passes, 0.0),
@@ -185,14 +179,13 @@ class Reader {
     }
   }
 
-  /// Returns the variance of the offsets of passes relative to that of a reading; it is the same
-  /// for all campaigns.
+  /// Relative to the variance of a reading; the same for all campaigns.
   double offsets_of_passes() const {
     return differences_ > 0.0 ? std::max(offsets_ / differences_, 0.0) : 0.0;
   }
 
-  /// Subtracts from the rows of each pass the fraction of their mean that makes them independent:
-  /// generalized least squares with a random offset of each pass.
+  /// Generalized least squares with a random offset of each pass: subtracts the fraction of the
+  /// mean of a pass that makes its rows independent.
   static void take_out_offsets(const MemberReadings& m, double variance, MatrixXd& columns) {
     if (!(variance > 0.0)) return;
     std::map<std::uint32_t, std::vector<Index>> passes;

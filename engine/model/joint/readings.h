@@ -8,39 +8,34 @@
 
 namespace nonio::model {
 
-/// Columns of one effect with one combination of its shapes, the same in every member that can show
-/// it.
+/// One effect with one combination of its shapes, for every member that can show the effect.
 struct JointBlock {
   std::string effect;
-  const Effect* is = nullptr;  ///< the effect, as declared for the member with the most readings
-                               ///< that has it
+  const Effect* is = nullptr;  ///< as declared for the member with the most readings
   Axis axis{};
   std::vector<double> shape{};
-  Index count = 0;     ///< number of columns
+  Index count = 0;
   Index searched = 0;  ///< number of searched shapes
   /// 2 ln of the number of independent values of its shapes, plus its prior cost
   double cost = 0.0;
 };
 
-/// The readings of one member and the columns of all blocks: whitened, divided by the standard
-/// deviation of a reading, without the zeros of the lines and without the member's own model.
+/// x and y are whitened, in units of the standard deviation of a reading, without the zeros of the
+/// lines and without the own model of the member.
 struct MemberReadings {
   MatrixXd x;
   VectorXd y;
-  /// first column of each block; -1: the block is not identifiable from these readings, or is
-  /// identifiable from those of fewer than two members
+  /// first column of each block; -1: not identifiable here, or in fewer than two members
   std::vector<Index> first;
   std::vector<MatrixXd> own;        ///< scalar products of each block's columns
-  std::vector<std::uint32_t> pass;  ///< index of the pass (run in one direction on a line) of each
-                                    ///< reading
+  std::vector<std::uint32_t> pass;  ///< pass of each reading (run in one direction on a line)
   std::vector<std::uint32_t> cell;  ///< cell of each reading: a target approached from one side
-  VectorXd scale;                   ///< factor that converts y to m or rad; 0 for a reading that is
-                                    ///< not used
+  VectorXd scale;                   ///< factor from y to m or rad; 0 for unused readings
   std::size_t cells = 0;
   double readings = 0.0;
   Index unknowns = 0;  ///< number of zeros and of parameters of the own model
   double s = 0.0;      ///< standard deviation of a reading, m or rad
-  double dof = 0.0;    ///< degrees of freedom of s
+  double dof = 0.0;
   std::optional<NoiseFloor> floor{};
 };
 

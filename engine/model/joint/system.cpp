@@ -13,8 +13,7 @@ constexpr double no_gain = std::numeric_limits<double>::quiet_NaN();
 /// Smallest share of a column that must be independent of the others.
 constexpr double least_independent = 1e-6;
 
-/// Whether the scalar products `left` of columns after an elimination are safely positive definite,
-/// relative to the squared lengths `before` the elimination.
+/// `left`: scalar products after an elimination; `before`: squared lengths before the elimination.
 bool is_independent(const MatrixXd& left, const VectorXd& before) {
   if (left.rows() == 0) return true;
   const VectorXd unit = before.cwiseMax(1e-300).cwiseSqrt().cwiseInverse();

@@ -12,8 +12,7 @@ struct Choice {
   std::size_t after = 0;  ///< for `changed`: the first member with the second value
 };
 
-/// Normal equations of all members: columns shared between members, and columns of single members,
-/// which are eliminated member by member.
+/// Normal equations of all members; columns of single members are eliminated member by member.
 class JointSystem {
  public:
   explicit JointSystem(const JointReadings& readings) : r_(readings) {}
@@ -31,8 +30,8 @@ class JointSystem {
   };
   Solution solve(const std::vector<Choice>& choices) const;
 
-  /// Returns the values of one choice for a group of members (shared: 0; changed: 0, 1; own: the
-  /// member), and their covariance; empty if it is not identifiable.
+  /// `group`: 0 for shared, 0 or 1 for changed, the member for own. Values and their covariance are
+  /// empty if the choice is not identifiable.
   std::pair<VectorXd, MatrixXd> values(const std::vector<Choice>& choices, const Solution& s,
                                        std::size_t choice, std::size_t group) const;
 
@@ -44,8 +43,7 @@ class JointSystem {
   struct Gains {
     MatrixXd shared, own;
     std::vector<Index> own_parameters;
-    std::vector<double> own_price;  ///< cost of the parameters of each block with a separate value
-                                    ///< in each member
+    std::vector<double> own_price;  ///< cost of separate values in each member
   };
   Gains gains(const std::vector<Choice>& choices, const std::vector<MatrixXd>& y) const;
 
@@ -55,8 +53,7 @@ class JointSystem {
   const JointReadings& all() const { return r_; }
 
  private:
-  struct Place {  // where the columns of one choice are in a solution (`at`), and in a member's x
-                  // (`column`)
+  struct Place {  // index in a solution (`at`), and in x of a member (`column`)
     bool shared;
     Index at, column, count;
   };

@@ -16,15 +16,14 @@ namespace {
 
 using State = Workbench::State;
 
-/// In space, an effect whose loss of evidence exceeds this is not tried with other shapes of the
-/// remaining effects. docs/dev/constants.md, M41.
+/// In space, an effect that replaces a member of the best model with this loss of evidence is no
+/// alias; other shapes of the remaining effects are then not tried: docs/dev/constants.md, M41.
 constexpr double hopeless = 100.0;
 
 double normal_below(double x) { return 0.5 * std::erfc(-x * std::numbers::sqrt2 / 2.0); }
 
-/// Computes the smallest detectable size of an effect. In units of the variance of a reading, an
-/// effect reduces the sum of squares by about (sqrt(a^2 + k - 1) + z)^2: a^2 is its detectable sum
-/// of squares, k its number of unknowns, z standard normal.
+/// In units of the variance of a reading, an effect reduces the sum of squares by about (sqrt(a^2 +
+/// k - 1) + z)^2: a^2 detectable sum of squares, k number of unknowns, z standard normal.
 class Sizes {
  public:
   Sizes(const Finding& f, std::size_t effect, bool member)
@@ -40,15 +39,13 @@ class Sizes {
       shown_.push_back({std::max((1.0 - hidden) * seen, 1e-12), wanted(block, dof),
                         static_cast<double>(Workbench::unknowns_of(block))});
     }
-    // The tenth of the shapes that these readings show least is omitted, such as a step before the
-    // last reading.
+    // The tenth of the shapes that these readings show least is omitted.
     std::sort(shown_.begin(), shown_.end(),
               [](const Shown& a, const Shown& b) { return a.visible > b.visible; });
     shown_.resize(shown_.size() - shown_.size() / 10);
   }
 
-  /// Returns the RMS, m or rad, with which an effect is detected with a probability of 0.9 on
-  /// average over the shapes of its grid.
+  /// RMS, m or rad, that is detected with a probability of 0.9, on average over the grid.
   double smallest() const {
     if (shown_.empty()) return 0.0;
     double low = 0.0, high = 1e4;  // size over all readings, in standard deviations of a reading
@@ -62,8 +59,7 @@ class Sizes {
     return high * s_ / std::sqrt(f_.bench->readings());
   }
 
-  /// Returns the mean ratio of the found to the true size of an effect: near the detection limit,
-  /// an effect is found only if noise enlarges it.
+  /// Near the detection limit, an effect is found only if noise enlarges it.
   double bias(const Workbench::Block& block) const {
     const double fall = f_.bench->without(f_.best, effect_).squares - f_.best.squares;
     const double a = std::sqrt(std::max(fall, 0.0)) / s_;
@@ -81,8 +77,7 @@ class Sizes {
   struct NextToZeros {
     double seen, dof;
   };
-  /// Returns the fraction of the sum of squares of a block that remains if zeros of passes are
-  /// noise, and the degrees of freedom.
+  /// If zeros of passes are noise: remaining share of the sum of squares, and degrees of freedom.
   NextToZeros next_to_zeros(const Workbench::Block& block) const {
     if (f_.noise.zero == Noise::Zero::steady) return {1.0, dof_};
     Term term = f_.terms[effect_];
@@ -100,9 +95,8 @@ class Sizes {
                 : std::max(degrees_of_passes(f_.repeats), 1.0)};
   }
 
-  /// Returns the square root of the smallest decrease of squares with which an effect is named, in
-  /// units of the variance of a reading: the largest of the limits of evidence, significance and
-  /// size.
+  /// Square root of the smallest decrease of squares, in units of the variance of a reading, that
+  /// satisfies the limits of evidence, significance and size.
   double wanted(const Workbench::Block& block, double dof) const {
     const double n = f_.bench->readings();
     const auto k = static_cast<double>(Workbench::unknowns_of(block));
@@ -169,9 +163,8 @@ class CandidateOf {
   }
 
  private:
-  /// Returns the effects that can replace a member of the best explanation with hardly any loss of
-  /// evidence; for a curve also causes with nearly its form (`is_form_of`); and effects that would
-  /// be found with another suspect reading (`Finding::otherwise`).
+  /// Effects that can replace a member with hardly any loss of evidence; for a curve also causes
+  /// with nearly its form (`is_form_of`); and effects of `Finding::otherwise`.
   std::vector<std::string> aliases_of(std::size_t member) const {
     std::vector<std::string> names;
     const State rest = f_.bench->without(f_.best, member);
@@ -192,9 +185,8 @@ class CandidateOf {
     return names;
   }
 
-  /// Whether a cause of the library with fewer parameters explains nearly as much as the best
-  /// explanation: a curve can follow any shape, while the shape of a cause is only approximately
-  /// known.
+  /// Whether a cause with fewer parameters explains nearly as much: a curve can follow any shape,
+  /// while the shape of a cause is only approximately known.
   bool is_form_of(std::size_t cause) const {
     if (!f_.terms[cause].library) return false;
     const State alone = f_.bench->joined(f_.start, f_.bench->gains(f_.start, cause), cause);
@@ -203,10 +195,9 @@ class CandidateOf {
                unexplained_share * (f_.start.squares - f_.best.squares);
   }
 
-  /// Whether a changed set loses hardly any evidence, or hardly any likelihood apart from the cost
-  /// of additional columns: the cost of the search must not decide which effect is true. In space,
-  /// where one curve can contain another effect completely, the cost of parameters is ignored as
-  /// well.
+  /// Whether the change loses hardly any evidence, or hardly any likelihood apart from the cost of
+  /// additional columns, because the cost of the search must not decide. In space, where one curve
+  /// can contain another effect completely, the cost of parameters is ignored as well.
   bool as_good(const State& changed) const {
     if (changed.criterion < f_.best.criterion + alias_evidence) return true;
     const double n = f_.bench->readings();
@@ -223,8 +214,7 @@ class CandidateOf {
     return sum;
   }
 
-  /// Computes the evidence for an effect outside the best explanation: added to it, or in place of
-  /// a member.
+  /// Evidence if the effect is added to the best explanation, or replaces a member.
   void score_outsider(std::size_t e, Candidate& c) const {
     const State more = f_.bench->joined(f_.best, f_.bench->gains(f_.best, e), e);
     if (more.blocks.size() > f_.best.blocks.size()) {
@@ -245,9 +235,8 @@ class CandidateOf {
     }
   }
 
-  /// Fits the candidate with the model as `nonio model add` does, so that the RMS printed
-  /// beforehand is the one obtained: all shapes are searched again, and readings have the weights
-  /// of a comparison.
+  /// The RMS must be that of `nonio model add`: all shapes are searched again, and readings have
+  /// the weights of a comparison.
   void fit_candidate(Candidate& c) const {
     const std::vector<Term> model(f_.terms.begin(),
                                   f_.terms.begin() + static_cast<std::ptrdiff_t>(f_.in_model));

@@ -7,10 +7,8 @@
 
 namespace nonio::model {
 
-/// Returns every effect outside the model, with its evidence, its aliases and the smallest size
-/// that would be detected; most evidence first. Effects of a library are omitted unless they are in
-/// the best explanation or could replace a member of it. `ground`: weights and noise with which the
-/// candidates are fitted.
+/// Every effect outside the model, most evidence first. Effects of a library are omitted unless
+/// they are or could replace a member of the best explanation. `ground`: weights and noise.
 std::vector<Candidate> candidates_of(const Finding& finding, const Ground& ground);
 
 }  // namespace nonio::model

@@ -61,8 +61,7 @@ class Finder {
     NONIO_TRY(auto start, best_start());
     f_.start = std::move(start);
     f_.best = best_explanation(*f_.bench, f_.start);
-    // Refine shapes between grid values, because the error of a grid value would be attributed to
-    // another effect.
+    // Refine shapes: another effect would otherwise fit the error of a grid value.
     constexpr double worth_another_round = 1.0;
     for (int round = 0; round < 3; ++round) {
       const bool finer = add_refined(f_.start), alone = round == 0 && add_refined_alone();
@@ -82,11 +81,9 @@ class Finder {
     return repeated.dof >= fewest ? std::sqrt(repeated.squares / repeated.dof) : 0.0;
   }
 
-  /// Returns whether the model with a random zero (a random walk, or one of each run) explains the
-  /// readings better than all found effects with a correlation of adjacent readings. Within a pass
-  /// a random walk resembles such a correlation; in this case the readings are treated as
-  /// independent, so that the random walk remains visible. False if the repeats show no
-  /// correlation.
+  /// Whether the model with a random zero (a random walk, or one of each run) is better than all
+  /// found effects with a correlation of adjacent readings, which a random walk resembles within a
+  /// pass. The readings are then treated as independent, so that the random walk remains visible.
   bool walks_rather() {
     if (!(f_.noise.in_repeats > 0.0)) return false;
     Noise alone = f_.noise;
@@ -102,10 +99,9 @@ class Finder {
     return walk < alike;
   }
 
-  /// Whether zeros of passes scatter at random: with such zeros, the model or the best explanation
-  /// is better than everything found without them, and about as good as with a random walk or zeros
-  /// of runs. Then the zeros are treated as noise, with the size that the best explanation leaves,
-  /// and the search is repeated until this size is stable.
+  /// Whether zeros of passes scatter at random: with them, the model or the best explanation is
+  /// better than everything found without, and about as good as with a random walk or zeros of
+  /// runs. They are then noise, and the search is repeated until their size is stable.
   bool passes_scatter() {
     constexpr double same_size = 1.2;  // docs/dev/constants.md, M48
     if (of_pass_ == 0.0 && !(zeros_left(f_.start).unordered() &&
@@ -132,9 +128,9 @@ class Finder {
     return {f_.part, f_.repeats, f_.weight, fitted ? fitted->residual : f_.part.table.deviation};
   }
 
-  /// Refines each effect of the best explanation alone with the model, because other effects must
-  /// not fit the error of its coarse grid. It does the same for the causes of the library that
-  /// explain most, because their grids are the coarsest. Returns whether a shape was added.
+  /// Refines each effect of the best explanation, and the causes of the library that explain most,
+  /// alone with the model, because other effects must not fit the error of a coarse grid. Returns
+  /// whether a shape was added.
   bool add_refined_alone() {
     constexpr std::size_t causes = 4;  // docs/dev/constants.md, M37
     const Workbench::Gains gains = f_.bench->gains(f_.start);
@@ -161,9 +157,9 @@ class Finder {
     return any;
   }
 
-  /// Returns the best state of the model's terms. Their shapes depend on each other, so they are
-  /// searched in the order of the model, and with the term first that explains most. If both fail,
-  /// curves are added last, because they can also fit what other terms explain.
+  /// Shapes of the terms depend on each other, so they are searched in the order of the model, and
+  /// with the term first that explains most. If both fail, curves are added last, because they can
+  /// fit what other terms explain.
   Expected<State> best_start() const {
     std::vector<std::size_t> written(f_.in_model);
     std::iota(written.begin(), written.end(), std::size_t{0});
@@ -177,8 +173,7 @@ class Finder {
     return start;
   }
 
-  /// Searches the shapes of the model's terms. The terms are added in the order of `open`, or those
-  /// that explain most first.
+  /// Adds the terms in the order of `open`, or those that explain most first.
   Expected<State> started(std::vector<std::size_t> open, bool largest_first) const {
     State start = f_.bench->state({});
     while (!open.empty()) {
@@ -209,8 +204,7 @@ class Finder {
     return state;
   }
 
-  /// Adds the optimal shapes of a state, which are between grid values, to the grids. Returns
-  /// whether a shape was added.
+  /// Adds optimal shapes between grid values to the grids. Returns whether a shape was added.
   bool add_refined(const State& state) {
     bool any = add_fitted(state, terms_of_state(state));
     any = add_moved(state) || any;
@@ -234,8 +228,7 @@ class Finder {
     return add_moved(rest) || any;
   }
 
-  /// Moves shapes away from their usual values, which otherwise do not change, to check whether
-  /// another value is better.
+  /// Shapes with usual values do not change otherwise, although another value may be better.
   bool add_moved(const State& state) {
     std::vector<Term> moved = terms_of_state(state);
     bool usual = false;
@@ -262,9 +255,8 @@ class Finder {
     return any;
   }
 
-  /// Finds suspect readings if there are few readings and no repeats, where one outlier affects
-  /// every effect: each reading is omitted in turn and predicted by the best explanation of the
-  /// others.
+  /// With few readings and no repeats, one outlier affects every effect. Each reading is omitted in
+  /// turn and predicted by the best explanation of the others.
   std::vector<Suspect> suspect_without_repeats() {
     // docs/dev/constants.md, M18.
     constexpr std::size_t fewest = 8, most = 40;
@@ -299,8 +291,8 @@ class Finder {
     return least < all ? std::vector<Suspect>{worst} : std::vector<Suspect>{};
   }
 
-  /// Compares a reading of weight 0 with the prediction from the others; none if its distance is
-  /// not significant.
+  /// Compares a reading of weight 0 with its prediction; std::nullopt if the distance is not
+  /// significant.
   std::optional<Suspect> predicted(std::size_t row) const {
     // docs/dev/constants.md, M12.
     constexpr double rarely = 0.01;
@@ -320,9 +312,8 @@ class Finder {
     return Suspect{row, e, e / sigma, least * sigma};
   }
 
-  /// Determines the suspect readings again, from the residuals of the best explanation; returns
-  /// whether they changed. If more than an eighth of the readings would be suspect, nothing is
-  /// changed.
+  /// Uses the residuals of the best explanation. Returns whether the suspects changed; nothing is
+  /// changed if more than an eighth of the readings would be suspect.
   bool suspect_again() {
     const std::size_t n = f_.part.table.size();
     const auto fitted = fit_near(f_.part.table, terms_of_state(f_.best), flags(false), f_.weight);

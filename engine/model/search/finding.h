@@ -15,45 +15,38 @@ namespace nonio::model {
 
 /// 2 ln 20: explanations are equally good unless the odds are more than 20 to 1
 inline constexpr double alias_evidence = 6.0;
-// docs/dev/constants.md, M3.
-inline constexpr double least_rms = 0.2;  ///< smallest RMS of a named effect, as a fraction of the
-                                          ///< noise
+// Smallest RMS of a named effect, as a fraction of the noise: docs/dev/constants.md, M3.
+inline constexpr double least_rms = 0.2;
 
-// Largest residual at the places of a candidate, as a share of the candidate's own contribution;
-// above, the candidate is in doubt.
-// docs/dev/constants.md, M6.
+// Residual at the places of a candidate, as a share of its contribution: docs/dev/constants.md, M6.
 inline constexpr double unexplained_share = 0.04;
 
-/// Result of the search over all sets of effects in one part, from which candidates and the verdict
-/// are derived.
+/// Result of the search over all sets of effects in one part.
 struct Finding {
   const Part& part;
   Repeats repeats;
-  std::vector<Term> terms{};  ///< terms of the model, then the other terms of the catalogue
+  std::vector<Term> terms{};  ///< terms of the model, then the other terms of the catalog
   std::size_t in_model = 0;   ///< number of terms of the model
   std::uint64_t seed = 0;
-  /// descriptions of the catalogue that the model does not contain
+  /// descriptions of the catalog that the model does not contain
   std::vector<Term> descriptions{};
   std::vector<Suspect> suspects{};
   std::vector<double> weight{};  ///< weight of each reading: 0 for suspects
   /// noise of the search: estimated from the repeats, with random zeros of passes if these scatter
   Noise noise{};
   std::optional<Workbench> bench{};
-  /// With few readings and no repeats: effects of explanations that are nearly as good if another
-  /// reading, or none, is suspect.
+  /// With few readings and no repeats: effects of nearly equal explanations with other suspects.
   std::vector<std::string> otherwise{};
   Workbench::State start{}, best{};  ///< the model alone; the best explanation
-  Chance chance{};                   ///< significance of effects in this search
-  Comparison of_model{}, of_best{};  ///< comparisons of the model and of the best explanation
+  Chance chance{};
+  Comparison of_model{}, of_best{};
 
   std::size_t index_of(const std::string& name) const;
   double dof(const Workbench::State& state) const;
-  /// Returns p of an effect of the best explanation, not corrected for the search. If zeros of
-  /// passes are noise, an effect that is nearly constant within a pass has only as much evidence as
-  /// the number of passes allows.
+  /// Not corrected for the search. If zeros of passes are noise, an effect that is nearly constant
+  /// within a pass has only as much evidence as the number of passes allows.
   double p_of(std::size_t effect) const;
-  /// Returns the standard deviation of a reading from the residuals of the best explanation, m or
-  /// rad.
+  /// Standard deviation of a reading from the residuals of the best explanation, m or rad.
   double left() const;
   Expected<MatrixXd> columns_of(const std::vector<Term>& some) const;
   /// Returns the criterion of these terms together with a random zero, by kind of zero.

@@ -26,8 +26,7 @@ std::set<std::size_t> effects_of(const Workbench& bench, const State& s) {
   return out;
 }
 
-/// Returns at most `side_by_side` states that have one effect more than those of `level`: those
-/// with the smallest criterion, one for each set of effects, with their shapes searched again.
+/// The best `side_by_side` states with one more effect, one for each set of effects.
 std::vector<State> grown(const Workbench& bench, const std::vector<State>& level) {
   std::vector<State> next;
   std::set<std::set<std::size_t>> seen;
@@ -51,8 +50,7 @@ std::vector<State> grown(const Workbench& bench, const std::vector<State>& level
   return next;
 }
 
-/// Removes one effect, or exchanges it for another, if this improves the criterion; false if
-/// nothing improves.
+/// Removes or exchanges one effect; returns false if the criterion does not improve.
 bool improve(const Workbench& bench, const State& start, State& best) {
   const auto fixed = effects_of(bench, start);
   for (const std::size_t e : effects_of(bench, best)) {
@@ -76,6 +74,27 @@ bool improve(const Workbench& bench, const State& start, State& best) {
   return false;
 }
 
+/// Adds the effect that improves the criterion most once the curves of the set are chosen again with
+/// it; false if none does. In a volume two curves can share what neither shows alone, so that an
+/// effect pays only with another size of a curve in the set.
+bool extend(const Workbench& bench, State& best) {
+  constexpr double worth_choosing_again = 30.0;  // docs/dev/constants.md, M49.
+  const Workbench::Gains gains = bench.gains(best);
+  State extended = best;
+  for (std::size_t e = 0; e < bench.instances().size(); ++e) {
+    if (bench.holds(best, e)) continue;
+    State more = bench.with(best, gains, e);
+    if (more.blocks.size() == best.blocks.size() ||
+        !(more.criterion < best.criterion + worth_choosing_again))
+      continue;
+    more = bench.settled(std::move(more));
+    if (more.criterion < extended.criterion - 1e-9) extended = std::move(more);
+  }
+  if (extended.blocks.size() == best.blocks.size()) return false;
+  best = std::move(extended);
+  return true;
+}
+
 }  // namespace
 
 State best_explanation(const Workbench& bench, const State& start) {
@@ -95,7 +114,11 @@ State best_explanation(const Workbench& bench, const State& start) {
       ++without_gain;
     }
   }
-  for (int step = 0; step < 20 && improve(bench, start, best); ++step) {
+  const auto room = [&] {
+    return bench.in_space() && best.blocks.size() < start.blocks.size() + most_in_space;
+  };
+  for (int step = 0; step < 20 && (improve(bench, start, best) || (room() && extend(bench, best)));
+       ++step) {
   }
   return best;
 }
@@ -156,8 +179,7 @@ SignFlips shuffled(const Workbench& bench, const State& complete, const VectorXd
 
 namespace {
 
-/// Result of adding one effect to a complete model in every copy, with the shape that the search
-/// chooses.
+/// One effect added to a complete model in every copy, with the best shape.
 struct Added {
   VectorXd fall, parameters;
   std::vector<char> better;  ///< whether the criterion decreases
@@ -224,10 +246,22 @@ class ChanceOf {
 
 }  // namespace
 
-Chance measure_chance(const Workbench& bench, const State& complete, const SignFlips& shuffles) {
+SignFlips drawn(const Workbench& bench, const State& complete, MatrixXd noise) {
+  SignFlips out;
+  bench.white().take_out_zeros(noise);
+  const MatrixXd basis = bench.basis(complete);
+  noise -= basis * math::transposed_product(basis, noise);
+  out.squares = noise.colwise().squaredNorm().transpose();
+  out.in_complete = math::transposed_product(basis, bench.columns());
+  out.products = math::transposed_product(noise, bench.columns());
+  out.noise = std::move(noise);
+  return out;
+}
+
+std::vector<double> least_p(const Workbench& bench, const State& complete,
+                            const SignFlips& shuffles) {
   const ChanceOf of(bench, complete, shuffles);
-  // Keep only the largest decrease for each number of parameters, because the F-test is by far the
-  // most expensive step.
+  // The F-test is by far the most expensive step, so only the largest decreases are tested.
   std::vector<std::map<double, double>> largest(static_cast<std::size_t>(shuffles.squares.size()));
   for (std::size_t e = 0; e < bench.instances().size(); ++e) {
     if (bench.holds(complete, e)) continue;
@@ -237,15 +271,19 @@ Chance measure_chance(const Workbench& bench, const State& complete, const SignF
       fall = std::max(fall, added.fall(i));
     }
   }
+  std::vector<double> least(largest.size(), 1.0);
+  for (std::size_t i = 0; i < largest.size(); ++i)
+    for (const auto& [parameters, fall] : largest[i])
+      least[i] = std::min(least[i], of.p(static_cast<Index>(i), fall, parameters));
+  return least;
+}
+
+Chance measure_chance(const Workbench& bench, const State& complete, const SignFlips& shuffles) {
   // For the smallest of m independent p, -ln(1 - p) is exponentially distributed with rate m.
   double sum = 0.0;
-  for (std::size_t i = 0; i < largest.size(); ++i) {
-    double least = 1.0;
-    for (const auto& [parameters, fall] : largest[i])
-      least = std::min(least, of.p(static_cast<Index>(i), fall, parameters));
-    sum -= std::log1p(-std::min(least, 1.0 - 1e-12));
-  }
-  return {std::max(static_cast<double>(largest.size()) / std::max(sum, 1e-12), 1.0)};
+  const std::vector<double> least = least_p(bench, complete, shuffles);
+  for (const double p : least) sum -= std::log1p(-std::min(p, 1.0 - 1e-12));
+  return {std::max(static_cast<double>(least.size()) / std::max(sum, 1e-12), 1.0)};
 }
 
 std::vector<char> named_in(const Workbench& bench, const State& complete, const SignFlips& shuffles,

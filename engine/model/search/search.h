@@ -7,10 +7,9 @@
 
 namespace nonio::model {
 
-/// Returns the best set of effects that contains those of `start`: several sets are grown in
-/// parallel, each step by the effect, with its shape, that reduces the criterion most; then effects
-/// are removed and exchanged until nothing improves, at most 20 times. A plain forward selection
-/// would keep an early compromise.
+/// Several sets are grown in parallel from `start`, each step by the effect that reduces the
+/// criterion most; then effects are removed and exchanged, at most 20 times. A plain forward
+/// selection would keep an early compromise.
 Workbench::State best_explanation(const Workbench& bench, const Workbench::State& start);
 
 /// Corrects p-values for a search in which noise alone can produce effects anywhere.
@@ -21,9 +20,8 @@ struct Chance {
   double corrected(double p) const;
 };
 
-/// Simulated noise: copies of `residual` in which the signs of short stretches of passes are
-/// flipped at random, so that the correlation within a stretch is preserved, without the components
-/// in the zeros and in a state's columns.
+/// Copies of `residual` with randomly flipped signs of stretches of passes, which preserve the
+/// correlation within a stretch, without the components in the zeros and in the columns of a state.
 struct SignFlips {
   MatrixXd noise;     ///< residuals with flipped signs, one column per copy
   MatrixXd products;  ///< one row per copy: products with all columns of the bench
@@ -31,13 +29,20 @@ struct SignFlips {
   MatrixXd in_complete;
   VectorXd squares;  ///< sum of squares of each copy
 };
-// docs/dev/constants.md, M15.
-/// number of readings whose sign is flipped together
+// Readings whose sign is flipped together: docs/dev/constants.md, M15.
 inline constexpr std::size_t stretch_of_signs = 5;
 inline constexpr std::size_t whole_pass = static_cast<std::size_t>(-1);
 SignFlips shuffled(const Workbench& bench, const Workbench::State& complete,
                    const VectorXd& residual, const std::vector<std::uint32_t>& pass,
                    std::uint64_t seed, std::size_t stretch = stretch_of_signs);
+
+/// Returns what `shuffled` does for noise that is already drawn: one column per copy, with the
+/// weights of the bench.
+SignFlips drawn(const Workbench& bench, const Workbench::State& complete, MatrixXd noise);
+
+/// Returns for each copy the smallest p of one more effect.
+std::vector<double> least_p(const Workbench& bench, const Workbench::State& complete,
+                            const SignFlips& shuffles);
 
 Chance measure_chance(const Workbench& bench, const Workbench::State& complete,
                       const SignFlips& shuffles);
@@ -49,8 +54,8 @@ std::vector<char> named_in(const Workbench& bench, const Workbench::State& compl
 /// Returns p of the F-test of one effect of a state; not corrected for the search.
 double p_of(const Workbench& bench, const Workbench::State& state, std::size_t effect);
 
-/// An effect is named, that is, reported as significant, if the probability of such evidence by
-/// noise anywhere in this search is below this value; docs/dev/constants.md, M2.
+/// An effect is named if the probability of such evidence by noise, anywhere in the search, is
+/// below this value: docs/dev/constants.md, M2.
 inline constexpr double named_below = 0.005;
 
 }  // namespace nonio::model

@@ -12,9 +12,8 @@ std::string text_at(const File& file, const Value* dictionary, const char* key) 
   return value == nullptr ? "" : value->text;
 }
 
-/// Checks that an attachment has the form that `reserve` writes: its two names are equal, and so
-/// are its two references to the content. Otherwise two readers could show different names or
-/// files.
+/// The two names of an attachment must be equal, and so must its two references to the content;
+/// otherwise two readers could show different names or files.
 Expected<void> check_form(const File& file, const Value* specification, const std::string& key,
                           const std::string& name) {
   const Value* files = file.find(specification, "EF");
@@ -50,8 +49,7 @@ Expected<Attachment> attachment_of(const File& file, const std::string& key, con
                     utf8(text_at(file, specification, "Desc")).value_or("")};
 }
 
-/// Returns the number of all files embedded in the PDF. If it differs from the number of listed
-/// files, some are hidden.
+/// If this differs from the number of listed files, some files are hidden.
 std::size_t embedded_in(const File& file) {
   std::size_t n = 0;
   for (const Object& object : file.objects) {

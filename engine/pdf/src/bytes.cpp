@@ -33,8 +33,7 @@ void append_int(std::string& out, long long value) {
   out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
 }
 
-/// Writes the digits from the last to the first without a library function, because a document
-/// contains tens of thousands of numbers.
+/// Does not use a library function, because a document contains tens of thousands of numbers.
 void append_real(std::string& out, double value, char after) {
   if (!(std::fabs(value) < 30000.0))
     value = std::copysign(30000.0, std::isnan(value) ? 0.0 : value);

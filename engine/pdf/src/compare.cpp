@@ -7,8 +7,8 @@ namespace nonio::pdf {
 
 namespace {
 
-/// Compares two files made by `reserve` object by object. Streams are compared uncompressed,
-/// because another version of the library may have compressed them.
+/// Streams are compared uncompressed, because another version of the library may have compressed
+/// them.
 class Comparison {
  public:
   Comparison(const File& a, const File& b, const Value* signature)
@@ -60,8 +60,6 @@ class Comparison {
                       [&](const Value& x, const Value& y) { return same(x, y); });
   }
 
-  /// Returns whether both are dictionaries with the same keys in the same order, and with the same
-  /// values except for the keys in `but`.
   bool same_dictionary(const Value& a, const Value& b,
                        std::initializer_list<std::string_view> but) const {
     if (!a.is(Value::Kind::dictionary) || !b.is(Value::Kind::dictionary) || a.keys != b.keys)

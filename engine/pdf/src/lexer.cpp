@@ -105,8 +105,8 @@ Expected<void> Lexer::read_container(Value& value, int depth) {
   }
 }
 
-/// Checks that no key of a dictionary occurs twice. The keys are sorted, because a comparison of
-/// all pairs would take too long for a file with many keys.
+/// Checks for duplicate keys. They are sorted, because comparing all pairs would take too long for
+/// a file with many keys.
 Expected<void> Lexer::check_keys(const Value& value) const {
   std::vector<std::string_view> keys(value.keys.begin(), value.keys.end());
   std::sort(keys.begin(), keys.end());

@@ -52,8 +52,6 @@ std::size_t File::first_page() const {
 
 namespace {
 
-/// Reads the parts of a file: the head, the position of the table at the end, the table, and then
-/// the objects.
 class FileReader {
  public:
   explicit FileReader(std::string_view bytes) { file_.bytes = bytes; }
@@ -76,7 +74,7 @@ class FileReader {
     if (!b.starts_with("%PDF-1.") || b.size() < 64 || b[7] < '3' || b[7] > '7' || b[8] != '\n')
       return fail("is not a PDF of version 1.3 to 1.7");
     std::size_t at = 9;
-    if (b[at] == '%') {  // a comment of four bytes above 127 marks a binary file
+    if (b[at] == '%') {  // A comment of four bytes above 127 marks a binary file.
       if (b[at + 5] != '\n') return refuse(at, "expected a comment of four bytes");
       for (std::size_t i = at + 1; i < at + 5; ++i)
         if (static_cast<unsigned char>(b[i]) < 0x80) return refuse(i, "expected a byte above 127");
@@ -203,7 +201,7 @@ class FileReader {
 
   File file_;
   std::size_t tail_ = 0;
-  std::size_t budget_ = 1000000;  ///< values that may still be read in all objects
+  std::size_t budget_ = 1000000;
   std::vector<std::size_t> offsets_;
 };
 
@@ -213,7 +211,7 @@ Expected<File> parse(std::string_view bytes) { return FileReader(bytes).read(); 
 
 namespace {
 
-/// Result of a decompression: success, invalid data, or more bytes than the space for the result.
+/// `longer` means that the content has more bytes than the space for the result.
 enum class Unpacked { well, badly, longer };
 
 Unpacked unpack(std::string_view packed, std::string& into) {
@@ -229,8 +227,6 @@ Unpacked unpack(std::string_view packed, std::string& into) {
   return Unpacked::well;
 }
 
-/// Returns whether a stream is compressed. Error: there is no stream, or it is compressed by
-/// another method than FlateDecode.
 Expected<bool> is_packed(const File& file, const Object& object) {
   if (!object.has_stream) return fail("expected a stream");
   const Value* filter = file.find(&object.value, "Filter");

@@ -13,7 +13,7 @@ namespace nonio::pdf {
 
 namespace {
 
-/// Returns a text as a PDF name: "text/csv" becomes /text#2Fcsv.
+/// "text/csv" becomes /text#2Fcsv.
 std::string name_of(std::string_view text) {
   std::string out = "/";
   for (const char c : text) {
@@ -31,9 +31,6 @@ std::string formatted(const char* format, Numbers... numbers) {
   return {text.data(), static_cast<std::size_t>(n)};
 }
 
-/// Writes the file again with space for a signature. Its objects are unchanged, except for further
-/// entries in the page and in the catalog; the objects of the attachments and of the signature
-/// follow.
 class Reservation {
  public:
   Reservation(const File& file, Time time, std::size_t room)
@@ -57,7 +54,7 @@ class Reservation {
                    (frame.empty() ? "[0 0 0 0]" : frame) + "\n" +
                    (frame.empty() ? "" : "/AP << /N " + reference(look) + " >>\n") + "/P " +
                    reference(page) + "\n/V " + reference(signature) + "\n>>");
-    if (!frame.empty())  // the appearance is empty, because the page itself draws the frame
+    if (!frame.empty())  // The appearance is empty, because the page itself draws the frame.
       put(look, "<<\n/Type /XObject\n/Subtype /Form\n/BBox " + frame +
                     "\n/Length 0\n>>\nstream\n\nendstream");
     put_table();
@@ -66,8 +63,6 @@ class Reservation {
   }
 
  private:
-  /// Returns the frame that a page declares for the signature, "[left low right high]"; empty if it
-  /// declares none, or if the numbers are not integers.
   std::string frame_of(std::size_t page) const {
     const Value* frame = file_.objects[page].value.find(signature_key);
     if (frame == nullptr || !frame->is(Value::Kind::array) || frame->items.size() != 4) return {};
@@ -79,8 +74,6 @@ class Reservation {
     return text + "]";
   }
 
-  /// Returns the object number of the first page that declares a frame for the signature; if no
-  /// page declares one, of the first page.
   std::size_t page_of_signature() const {
     for (const std::size_t number : file_.order) {
       const Value* type = file_.objects[number].value.find("Type");
@@ -105,8 +98,7 @@ class Reservation {
     return {};
   }
 
-  /// Returns the indices of the attachments sorted by name, because PDF requires sorted keys in a
-  /// name tree.
+  /// PDF requires sorted keys in a name tree.
   static std::vector<std::size_t> in_order_of_names(const std::vector<Attachment>& attachments) {
     std::vector<std::size_t> order(attachments.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -209,7 +201,7 @@ class Reservation {
   const File& file_;
   const Time time_;
   const std::size_t room_;
-  std::vector<std::size_t> offsets_;  ///< position in the new file by object number
+  std::vector<std::size_t> offsets_;
   std::vector<std::pair<std::size_t, std::string>> attached_;
   std::string files_;
   std::set<std::string> names_;

@@ -39,8 +39,8 @@ bool is_lower_hexadecimal(std::string_view text) {
 }  // namespace
 
 Expected<PdfSignature> signature_at_end(std::string_view bytes) {
-  // Largest distance of the signature from the end of the file, bytes: it is followed by its field
-  // and the table of at most 100,000 objects.
+  // Largest distance of the signature from the end of the file, bytes: its field and the table of
+  // at most 100,000 objects follow.
   constexpr std::size_t farthest = 3'000'000;
   constexpr std::string_view range = "\n/ByteRange [0 ", then = "]\n/Contents ";
   constexpr std::size_t digits = 10, time_size = 19;
@@ -102,7 +102,7 @@ Expected<PdfSignature> signature_of(const File& file, const Value& dictionary) {
   signature.after = file.bytes.substr(contents->end);
   signature.gap = contents->begin;
   signature.contents = file.bytes.substr(contents->begin + 1, contents->end - contents->begin - 2);
-  // Digits in upper case are rejected, because they state the same signature in different bytes.
+  // Upper-case digits are rejected, because they state the same signature in different bytes.
   if (!is_lower_hexadecimal(signature.contents))
     return fail("/Contents: expected digits and small letters a to f");
   const Value* time = dictionary.find("M");

@@ -25,8 +25,8 @@ std::optional<std::size_t> number_in(std::string_view text) {
   return number;
 }
 
-/// Returns the position of the previous cross-reference table, as stated (/Prev) by the table of
-/// the part that ends at `end`; none if the table states no such position.
+/// Position (/Prev) of the previous cross-reference table, as stated by the table of the part that
+/// ends at `end`; std::nullopt if it states no such position.
 std::optional<std::size_t> table_before(std::string_view bytes, std::size_t end) {
   constexpr std::size_t longest = 30000;  // bytes of the table and trailer of an update
   constexpr std::string_view word = "\nstartxref\n", previous = "\n/Prev ";
@@ -100,8 +100,6 @@ std::string list_of(const char* key, const std::vector<std::size_t>& numbers) {
   return out + "]\n";
 }
 
-/// Returns an object of the signed file with texts inserted; `more`: position in the file and text,
-/// ascending.
 std::string with(const File& file, const Object& object,
                  const std::vector<std::pair<std::size_t, std::string>>& more) {
   std::string out;
@@ -120,8 +118,6 @@ std::string entry(std::size_t place) {
   return text.data();
 }
 
-/// Returns the references to the fields of the time stamps, for the lists in the form and in the
-/// page.
 std::string fields_text(const std::vector<std::size_t>& fields) {
   std::string out;
   for (const std::size_t n : fields) out += " " + reference(n);
@@ -171,8 +167,6 @@ std::string Updater::table(const std::vector<std::pair<std::size_t, std::size_t>
          "\n%%EOF\n";
 }
 
-/// Collects the objects of one update and their positions in the file to which the update is
-/// appended.
 class Updater::Objects {
  public:
   explicit Objects(Updater& to) : to_(to) {}
@@ -205,8 +199,6 @@ class Updater::Objects {
         reference(to_.page_) + "\n/V " + reference(signature) + "\n>>");
     put(to_.page_, to_.object_of_page());
   }
-  /// Appends the cross-reference table, sets the /ByteRange of the time stamp, and stores the bytes
-  /// in `out`.
   void finish(Update& out) {
     std::sort(places_.begin(), places_.end());
     const std::size_t at = to_.end_ + bytes_.size();
@@ -226,7 +218,7 @@ class Updater::Objects {
 
  private:
   Updater& to_;
-  std::vector<std::pair<std::size_t, std::size_t>> places_;  ///< object number and position
+  std::vector<std::pair<std::size_t, std::size_t>> places_;
   std::string bytes_;
   std::size_t range_ = 0, gap_ = 0;
 };
@@ -253,7 +245,6 @@ Expected<Update> Updater::write(const Store& more, bool has_stamp) {
 
 namespace {
 
-/// Returns how many references under this key refer to objects with a number of at least `first`.
 std::size_t new_ones(const Value& store, const char* key, std::size_t first) {
   const Value* list = store.find(key);
   if (list == nullptr || !list->is(Value::Kind::array)) return 0;
@@ -265,8 +256,8 @@ std::size_t new_ones(const Value& store, const char* key, std::size_t first) {
 
 }  // namespace
 
-/// Reads the new streams of an update, and then the object that lists them; `at` is moved after
-/// this object. The result is empty if the update has no streams.
+/// Reads the new streams of an update and the object that lists them; sets `at` to the end of this
+/// object. The result is empty if the update has no streams.
 Expected<Store> Updater::read_store(std::string_view bytes, std::size_t& at) const {
   std::vector<std::string> streams;
   std::size_t number = size_;

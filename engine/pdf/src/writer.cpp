@@ -22,16 +22,14 @@
 #include "nonio/pdf/text.h"
 #include "nonio/sdk/text.h"
 
-// This is the only file that uses libharu. The text functions of libharu 2.3.0 are not used,
-// because they parse and compress the fonts again for each document, omit glyphs without an error
-// and write a CIDToGIDMap of 128 kB. Instead, the fonts are built from objects of libharu with
-// streams that were compressed once.
+// Only this file uses libharu. The text functions of libharu 2.3.0 are not used, because they parse
+// and compress the fonts again for each document, omit glyphs without an error and write a
+// CIDToGIDMap of 128 kB. Instead, the fonts are built from libharu objects with streams that were
+// compressed once.
 
 namespace nonio::pdf {
 namespace {
 
-/// Returns an XML element with the text, which is inside an RDF list of the type `list` if one is
-/// given; empty if there is no text.
 std::string element(std::string_view name, std::string_view text, std::string_view list = {}) {
   if (text.empty()) return {};
   const std::string tag(name), kind(list);
@@ -43,9 +41,8 @@ std::string element(std::string_view name, std::string_view text, std::string_vi
          "</" + tag + ">\n";
 }
 
-/// Returns the document's properties as XMP (ISO 16684-1), equal to those of its Info dictionary.
-/// The pdfaid schema is omitted, because it would claim a conformance that no validator has
-/// confirmed.
+/// Returns the document properties as XMP (ISO 16684-1), equal to those of the Info dictionary. The
+/// pdfaid schema is omitted, because it would claim a conformance that no validator has confirmed.
 std::string xmp_packet(const NewFile& file, std::string_view producer) {
   const std::string date = file.date.empty() ? "" : file.date + "T00:00:00Z";
   return "<?xpacket begin=\"\xEF\xBB\xBF\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>\n"
@@ -61,8 +58,7 @@ std::string xmp_packet(const NewFile& file, std::string_view producer) {
          "  </rdf:Description>\n </rdf:RDF>\n</x:xmpmeta>\n<?xpacket end=\"r\"?>\n";
 }
 
-/// The first error of a document. Only this one is stored, because libharu repeats it in every
-/// later call.
+/// Only the first error is stored, because libharu repeats it in every later call.
 struct Failure {
   HPDF_STATUS code = HPDF_OK, detail = HPDF_OK;
 };
@@ -72,8 +68,8 @@ void record(HPDF_STATUS code, HPDF_STATUS detail, void* user) {
   if (failure->code == HPDF_OK) *failure = {code, detail};
 }
 
-/// Whether an allocation of memory has failed since the document was begun. In this case libharu
-/// may report another error that results from it, or none.
+/// Whether an allocation has failed since the document was begun. libharu may then report a
+/// consequential error, or none.
 bool memory_was_refused = false;
 
 void* allocate(HPDF_UINT size) {
@@ -82,8 +78,7 @@ void* allocate(HPDF_UINT size) {
   return memory;
 }
 
-/// The bytes from which a stream of the document is written. libharu's own memory streams are not
-/// used, because they copy byte by byte.
+/// Content of a stream. The memory streams of libharu are not used, because they copy byte by byte.
 struct Source {
   std::string_view bytes;
   std::size_t at = 0;
@@ -91,8 +86,8 @@ struct Source {
 
 struct HaruDocument {
   Failure failure;
-  std::deque<Source> sources;  ///< sources of the streams; their bytes must outlive `doc`
-  std::string bytes;           ///< the saved PDF
+  std::deque<Source> sources;  ///< their bytes must outlive `doc`
+  std::string bytes;
   HPDF_Doc doc = nullptr;
   HaruDocument() {
     memory_was_refused = false;
@@ -128,8 +123,7 @@ HPDF_STATUS append(HPDF_Stream stream, const HPDF_BYTE* bytes, HPDF_UINT size) {
   return HPDF_OK;
 }
 
-/// Writes the /Filter of a stream after the other entries of its dictionary, because libharu
-/// removes a /Filter that it did not apply itself.
+/// Writes the /Filter entry itself, because libharu removes a /Filter that it did not apply.
 HPDF_STATUS write_filter(HPDF_Dict, HPDF_Stream stream) {
   return HPDF_Stream_WriteStr(stream, "/Filter /FlateDecode\012");
 }
@@ -144,13 +138,12 @@ HPDF_STATUS write_widths(HPDF_Dict dict, HPDF_Stream stream) {
   return status == HPDF_OK ? HPDF_Stream_WriteStr(stream, "\012") : status;
 }
 
-/// Sets the content of a stream. `bytes` must outlive the document; `compressed` states whether
-/// they are compressed by Deflate.
+/// `bytes` must outlive the document; they are deflated if `compressed` is true.
 void fill(HaruDocument& pdf, HPDF_Dict dict, const std::string& bytes, bool compressed = true) {
   Source& source = pdf.sources.emplace_back(Source{bytes});
   HPDF_Stream stream = HPDF_CallbackReader_New(pdf.doc->mmgr, read_source, seek_source, nullptr,
                                                size_of_source, &source);
-  if (stream == nullptr) return;  // the error was recorded
+  if (stream == nullptr) return;
   HPDF_Stream_Free(dict->stream);
   dict->stream = stream;
   dict->filter = HPDF_STREAM_FILTER_NONE;
@@ -178,7 +171,7 @@ HPDF_Dict add_descriptor(HaruDocument& pdf, const Font& font) {
   if (file == nullptr || descriptor == nullptr) return nullptr;
   HPDF_Dict_AddNumber(file, "Length1", static_cast<HPDF_INT32>(embedded.size));
   HPDF_Dict_AddName(descriptor, "FontName", embedded.name.c_str());
-  // flag of a symbolic font, because glyphs are chosen by number
+  // Flag of a symbolic font, because glyphs are selected by number.
   HPDF_Dict_AddNumber(descriptor, "Flags", 4);
   HPDF_Array box = HPDF_Array_New(doc->mmgr);
   HPDF_Dict_Add(descriptor, "FontBBox", box);
@@ -192,8 +185,7 @@ HPDF_Dict add_descriptor(HaruDocument& pdf, const Font& font) {
   return descriptor;
 }
 
-/// Adds a font and returns its dictionary; null if this fails. `font.embedded` must outlive the
-/// document.
+/// Returns null on failure. `font.embedded` must outlive the document.
 HPDF_Dict add_font(HaruDocument& pdf, const Font& font) {
   HPDF_Doc doc = pdf.doc;
   const EmbeddedFont& embedded = *font.embedded;
@@ -237,8 +229,6 @@ HPDF_Dict add_samples(HaruDocument& pdf, const Picture& picture, const std::stri
   return samples;
 }
 
-/// Adds a picture and returns its dictionary; null if this fails. `picture` must outlive the
-/// document.
 HPDF_Dict add_picture(HaruDocument& pdf, const Picture& picture) {
   HPDF_Dict colours = add_samples(pdf, picture, picture.colours, picture.grey);
   if (colours == nullptr) return nullptr;
@@ -248,8 +238,6 @@ HPDF_Dict add_picture(HaruDocument& pdf, const Picture& picture) {
   return colours;
 }
 
-/// Adds the dictionary of fonts, pictures and graphics state, which all pages share; returns null
-/// if this fails.
 HPDF_Dict add_resources(HaruDocument& pdf, const NewFile& file) {
   HPDF_Doc doc = pdf.doc;
   HPDF_Dict resources = new_object(doc, nullptr);
@@ -284,8 +272,8 @@ void add_property(HPDF_Doc doc, const char* key, std::string_view text) {
                                 static_cast<HPDF_UINT>(bytes.size())));
 }
 
-/// Shortens a property to at most 2000 bytes of whole UTF-8 characters. A property is only a label,
-/// and the document contains the whole text.
+/// Shortens a property to at most 2000 bytes of whole UTF-8 characters; the document itself
+/// contains the whole text.
 std::string label(std::string text) {
   constexpr std::size_t most = 2000;
   if (text.size() <= most) return text;
@@ -295,7 +283,6 @@ std::string label(std::string text) {
   return text;
 }
 
-/// Converts a date in the form 2026-03-02; none if the text is not a valid date.
 std::optional<HPDF_Date> date_of(const std::string& text) {
   HPDF_Date date{};
   date.ind = 'Z';
@@ -323,14 +310,10 @@ void add_properties(HPDF_Doc doc, const NewFile& file) {
     HPDF_Dict_Add(doc->catalog, "Lang", HPDF_String_New(doc->mmgr, file.language.c_str(), nullptr));
 }
 
-/// Additional data of a PDF that is to be archived: compressed ICC profile, XMP packet, and
-/// identifier of the file.
 struct Kept {
   std::string profile, xmp, identifier;
 };
 
-/// Computes the additional data of a PDF that is to be archived. The identifier is computed from
-/// the XMP packet and `contents`, the compressed pages.
 Kept kept_of(HPDF_Doc doc, const NewFile& file, const std::vector<std::string>& contents,
              const Deflater& fast) {
   const char* producer = HPDF_GetInfoAttr(doc, HPDF_INFO_PRODUCER);
@@ -346,7 +329,7 @@ void add_kept(HaruDocument& pdf, const Kept& kept) {
   HPDF_Dict profile = new_stream(pdf, kept.profile), metadata = new_stream(pdf, kept.xmp, false);
   HPDF_Dict intent = new_object(doc, "OutputIntent");
   if (profile == nullptr || metadata == nullptr || intent == nullptr) return;
-  HPDF_Dict_AddNumber(profile, "N", 3);  // number of color components
+  HPDF_Dict_AddNumber(profile, "N", 3);
   HPDF_Dict_AddName(metadata, "Type", "Metadata");
   HPDF_Dict_AddName(metadata, "Subtype", "XML");
   HPDF_Dict_Add(doc->catalog, "Metadata", metadata);
@@ -393,9 +376,9 @@ Expected<std::string> write(NewFile file) {
     *text = label(std::move(*text));
   if (!date_of(file.date)) file.date.clear();
   std::vector<std::string> contents;
-  const Deflater fast(1);  // level 6 takes three times as long, and saves only a few percent
+  const Deflater fast(1);  // level 6 takes three times as long and saves only a few percent
   for (const std::string& content : file.pages) contents.push_back(fast(content));
-  Kept kept;  // declared before `pdf`, because it must outlive the document
+  Kept kept;  // must outlive `pdf`
   HaruDocument pdf;
   if (pdf.doc == nullptr) return fail("the PDF could not be begun: out of memory");
   pdf.doc->pdf_version = HPDF_VER_17;

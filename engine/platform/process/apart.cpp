@@ -32,14 +32,12 @@ std::vector<std::filesystem::path>& hidden() {
 
 constexpr unsigned load_seconds = 10;
 
-/// Returns the folder of the program's own plugins; empty if it is not known.
 std::filesystem::path& own_folder() {
   static std::filesystem::path folder;
   return folder;
 }
 
-/// Returns the message in shared memory that the child sets while it loads an untried plugin; not
-/// valid if there is no memory.
+/// Shared memory in which the child states that it is loading an untried plugin.
 SharedStatus& loading_untried() {
   static SharedStatus words;
   return words;
@@ -51,12 +49,11 @@ int end_of(pid_t child, const std::vector<pid_t>& children_before) {
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR)
     ;
-  end_children(children_before);  // ends processes that plugins have left running
+  end_children(children_before);
   return status;
 }
 
-/// Ends this process as its child ended: with the same exit status, with 130 after SIGINT, or with
-/// 2 and a message after another signal.
+/// Exits with 130 after SIGINT, and with 2 and a message after another signal.
 [[noreturn]] void end_as(int status) {
   if (WIFEXITED(status)) ::_exit(WEXITSTATUS(status));
   if (WTERMSIG(status) == SIGINT) ::_exit(130);
@@ -111,7 +108,7 @@ void step_aside() {
   const bool can_tell = loading_untried().valid();
   pid_t child = ::fork();
   while (child > 0) {
-    ::signal(SIGINT, SIG_IGN);  // the child receives the signal too and reports its end
+    ::signal(SIGINT, SIG_IGN);  // the child receives SIGINT too
     const int status = end_of(child, children_before);
     if (try_all || !can_tell || loading_untried().get().empty()) end_as(status);
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT) end_as(status);

@@ -6,26 +6,24 @@
 
 namespace nonio::process {
 
-/// Continues in a confined child process if `keep_plugins_apart` was called; further calls do
-/// nothing. The parent waits for the child and ends with its status.
+/// Continues in a confined child process if `keep_plugins_apart` was called; the parent waits for
+/// the child and ends with its status. Further calls do nothing.
 void step_aside();
 
-/// Writes all buffered standard output, because a child would inherit the buffers and write them a
-/// second time.
+/// Flushes standard output before a fork, because the child would write inherited buffers a second
+/// time.
 void flush_output();
 
 /// Whether this process is the child of `step_aside`, or a descendant of that child.
 bool is_apart();
 
-/// Returns whether a plugin must first be loaded in a trial process. This is the case unless it is
-/// in the program's own folder, whose plugins were tested with the program. It is also the case if
-/// this process cannot be restarted, or if a process has ended before while it loaded an untried
-/// plugin.
+/// Returns whether a plugin must first be loaded in a trial process. Plugins in the program's own
+/// folder are exempt, because they were tested with the program, unless this process cannot be
+/// restarted or a previous one ended while it loaded an untried plugin.
 bool must_be_tried(const std::filesystem::path& plugin);
 
-/// States that this process loads plugins that were not tried, during the lifetime of the object.
-/// If one of them ends this process or hangs, the parent starts another process, which tries all
-/// plugins first.
+/// While an instance exists, this process loads untried plugins. If one of them crashes or hangs,
+/// the parent starts another process, which first tries all plugins.
 class LoadingUntried {
  public:
   LoadingUntried();
@@ -34,12 +32,11 @@ class LoadingUntried {
   ~LoadingUntried();
 };
 
-/// Sets the files that plugins cannot read if they run in a confined child. Call it before plugins
-/// are loaded.
+/// Sets the files that plugins cannot read in a confined child. Call it before plugins are loaded.
 void hide_from_plugins(std::vector<std::filesystem::path> secrets);
 
-/// Redirects standard output to standard error during its lifetime, if this process is the confined
-/// child for plugins.
+/// In the confined child, standard output goes to standard error during the lifetime of an
+/// instance.
 class Muted {
  public:
   Muted();
@@ -48,7 +45,7 @@ class Muted {
   ~Muted();
 
  private:
-  int output_ = -1;  ///< copy of standard output; -1: nothing to restore
+  int output_ = -1;
 };
 
 }  // namespace nonio::process

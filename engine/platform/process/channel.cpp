@@ -35,7 +35,6 @@ bool read_all(int fd, char* to, std::size_t size) {
   return true;
 }
 
-/// A message of one byte, with space for descriptors and credentials.
 struct Packet {
   char byte = 0;
   iovec part{&byte, 1};

@@ -14,7 +14,7 @@
 
 namespace nonio::process {
 
-/// Owns a file descriptor and closes it at the end of its lifetime; -1: none.
+/// Owns a file descriptor; -1 means that there is none.
 class Handle {
  public:
   Handle() = default;
@@ -33,22 +33,22 @@ class Handle {
   int fd_ = -1;
 };
 
-/// Returns both ends of a channel between two processes, of type SOCK_STREAM or SOCK_SEQPACKET.
-/// They are closed when another program is started. An error names the partner `to_whom`.
+/// Creates a socket pair of type SOCK_STREAM or SOCK_SEQPACKET with FD_CLOEXEC. `to_whom` names the
+/// partner in an error message.
 Expected<std::array<Handle, 2>> channel_pair(int type, const std::string& to_whom);
 
-/// Write and read a text on a stream, preceded by its length. They return false if the other
-/// process has ended; `read_text` also if the text is longer than 1 GiB.
+/// `write_text` and `read_text` transfer a text preceded by its length. They return false if the
+/// other process has ended; `read_text` also if the text is longer than 1 GiB.
 bool write_text(int stream, std::string_view bytes);
 bool read_text(int stream, std::string& bytes);
 
-/// Sends a byte and up to four descriptors over any channel. Returns false if there are more
-/// descriptors, or if the other process has ended.
+/// Sends a byte and up to four descriptors. Returns false if there are more descriptors, or if the
+/// other process has ended.
 bool send_descriptors(int channel, char word, const std::vector<int>& descriptors);
 
 struct Received {
   char word = 0;
-  /// Received descriptors; they are closed when another program is started.
+  /// Received descriptors, with FD_CLOEXEC.
   std::vector<Handle> descriptors;
   pid_t sender = -1;  ///< process id from the kernel; -1 unless SO_PASSCRED is set
 };

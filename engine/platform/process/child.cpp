@@ -46,7 +46,6 @@ void keep_silent() {
   if (nothing > STDERR_FILENO) ::close(nothing);
 }
 
-/// Forks; if the system cannot create a process, tries again for two seconds.
 pid_t fork_patiently() {
   constexpr int most = 20;
   for (int i = 0;; ++i) {

@@ -12,41 +12,39 @@
 
 namespace nonio::process {
 
-/// How a child process ended.
 struct ChildEnd {
-  bool well = false;  ///< whether the process exited with status 0
-  std::string words;  ///< reason if the process ended otherwise, for example "signal 11
-                      ///< (Segmentation fault)"; empty if `well`
+  bool well = false;
+  std::string words;  ///< reason, such as "signal 11 (Segmentation fault)"; empty if `well`
   bool overdue = false;
 };
 
-/// Converts the status that waitpid returned.
+/// `wait_status` is the status from waitpid.
 ChildEnd child_end(int wait_status);
 
 /// Owns a child process with a process group of its own, and kills both at the end of its lifetime.
 class Child {
  public:
   struct Settings {
-    double memory_MB = 0.0;  ///< limit of the private memory, set after the start; 0: no limit
+    double memory_MB = 0.0;  ///< limit of the private memory, MB (10^6 bytes); no limit if 0
     /// Whether standard input, output and error of the child are /dev/null. Otherwise, a child that
-    /// outlives the parent keeps the parent's output open, and a reader of this output waits for
-    /// the child.
+    /// outlives the parent keeps the parent's output open, so that a reader of this output waits
+    /// for the child.
     bool silent = false;
   };
-  /// A program to start in the child, and the descriptors of its standard streams; -1: /dev/null.
+  /// A program and the descriptors of its standard streams; -1 means /dev/null.
   struct Program {
-    std::vector<std::string> command;      ///< path of the program, followed by its arguments
-    std::vector<std::string> environment;  ///< variables in the form "NAME=value"
+    std::vector<std::string> command;      ///< program path, followed by the arguments
+    std::vector<std::string> environment;  ///< entries of the form "NAME=value"
     int input = -1, output = -1, errors = -1;
   };
 
   Child() = default;
   /// Takes ownership of a child that another process has created for this one.
   explicit Child(pid_t pid);
-  /// Runs `work` in a child process, which then ends with status 0 (3 if `work` throws). The child
-  /// writes no core file, ends with its parent, and prints to standard error, so that results
-  /// contain no other text. An error if the system cannot create a process within two seconds; its
-  /// message contains the `purpose`, for example "a process that signs".
+  /// Runs `work` in a child process, which then exits with status 0 (3 if `work` throws). The child
+  /// writes no core file, ends with its parent, and prints to standard error. An error if the
+  /// system cannot create a process within two seconds; `purpose` is part of its message, for
+  /// example "a process that signs".
   static Expected<Child> start(const std::string& purpose, const Settings& settings,
                                const std::function<void()>& work);
   static Expected<Child> start(const Program& program);
@@ -58,15 +56,13 @@ class Child {
   ~Child() { end(); }
 
   explicit operator bool() const { return pid_ > 0; }
-  pid_t pid() const { return pid_; }  ///< process id of the child; -1: no process
+  pid_t pid() const { return pid_; }  ///< process id of the child; -1 without a child
   bool has_ended() const;
-  /// Kills the child with its process group and returns how it ended. A process that waits for a
-  /// disk in the kernel is left behind after two seconds, because it ends only when the disk
-  /// answers. Without a child, the result is `well`.
+  /// Kills the process group of the child and returns how the child ended. A process that waits for
+  /// a disk in the kernel is left behind after two seconds. Without a child, the result is `well`.
   ChildEnd end();
-  /// Waits up to `seconds` for the end of the child, then kills it and sets `overdue`.
+  /// Waits up to `seconds` for the child, then kills it and sets `overdue`.
   ChildEnd wait(double seconds);
-  /// Gives up ownership: the child continues until this process ends.
   void release() { pid_ = -1; }
 
  private:
@@ -79,20 +75,20 @@ std::vector<pid_t> own_children();
 void end_children(const std::vector<pid_t>& kept);
 
 /// Prepares a child that `Child::start` did not create: own process group, default signals, no core
-/// file, output to standard error. Call it first in that child.
+/// file, output to standard error. To be called first in that child.
 void init_child();
-/// Limits the private memory of this process; a megabyte is 10^6 bytes. No effect under a
-/// sanitizer, whose shadow memory is larger than any limit.
+/// Limits the private memory of this process (1 MB = 10^6 bytes). Has no effect under a sanitizer,
+/// whose shadow memory exceeds any limit.
 void limit_memory(double megabytes);
 
 /// Sets malloc to keep freed memory, because a worker needs it again for the next campaign.
 void keep_freed_memory();
-/// Returns all variables of the environment as "NAME=value".
+/// Returns the environment variables as "NAME=value".
 std::vector<std::string> present_environment();
-/// Returns the bytes that malloc holds from the system.
+/// Returns the number of bytes that malloc has obtained from the system.
 std::size_t memory_held();
-/// Whether `memory_held` has grown by more than 64 MiB since `at_start`. This is more than a
-/// campaign needs and far less than would disturb the next one.
+/// Whether `memory_held` has grown by more than 64 MiB since `at_start`: more than one campaign
+/// needs, and too little to affect the next one.
 bool has_grown(std::size_t at_start);
 
 }  // namespace nonio::process

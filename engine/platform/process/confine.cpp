@@ -33,7 +33,6 @@ struct Ruleset {
   std::uint64_t files = 0, net = 0, scoped = 0;
 };
 
-/// Rights of newer kernels that the headers of Debian 12 do not define.
 constexpr std::uint64_t truncate_right = 1ULL << 14, device_right = 1ULL << 15;
 constexpr std::uint64_t bind_and_connect = 3, abstract_sockets_and_signals = 3;
 
@@ -61,7 +60,7 @@ void allow_reading(int ruleset, const fs::path& path,
                                           LANDLOCK_ACCESS_FS_READ_DIR) {
   landlock_path_beneath_attr rule{};
   rule.parent_fd = ::open(path.c_str(), O_PATH | O_CLOEXEC);
-  if (rule.parent_fd < 0) return;  // a path that does not exist needs no rule
+  if (rule.parent_fd < 0) return;
   std::error_code error;
   rule.allowed_access = rights;
   if (!fs::is_directory(path, error)) rule.allowed_access &= LANDLOCK_ACCESS_FS_READ_FILE;
@@ -78,7 +77,7 @@ std::string apply(int ruleset) {
 
 std::string restrict_files(const std::vector<fs::path>& readable) {
   const int abi = landlock_abi();
-  if (abi < 1) return {};  // `lacking_confinement` reports this
+  if (abi < 1) return {};
   const Ruleset all = everything(abi);
   const auto fd = static_cast<int>(::syscall(SYS_landlock_create_ruleset, &all, sizeof all, 0));
   if (fd < 0) return why_not("Landlock");
@@ -86,15 +85,14 @@ std::string restrict_files(const std::vector<fs::path>& readable) {
   return apply(fd);
 }
 
-/// Allows reading everything below a folder except the secrets. Landlock can only list what is
-/// allowed, so the folders `above` a secret are allowed entry by entry.
+/// Landlock can only list what is allowed, so the folders `above` a secret are allowed entry by
+/// entry.
 void allow_all_but(int ruleset, const fs::path& folder, const std::set<fs::path>& above,
                    const std::set<fs::path>& secrets) {
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const fs::path& path = it->path();
     std::error_code ignored;
-    // The target of a link is allowed by the rule for its own path.
     if (it->is_symlink(ignored) || secrets.contains(path)) continue;
     if (above.contains(path))
       allow_all_but(ruleset, path, above, secrets);
@@ -102,8 +100,6 @@ void allow_all_but(int ruleset, const fs::path& folder, const std::set<fs::path>
       allow_reading(ruleset, path, LANDLOCK_ACCESS_FS_READ_FILE);
   }
 }
-
-// Restrictions of system calls by seccomp (filters.h).
 
 bool computing_confined = false;
 
@@ -172,7 +168,7 @@ std::string hide_files(const std::vector<fs::path>& files) {
   for (const fs::path& file : files) {
     std::error_code error;
     const fs::path path = fs::canonical(file, error);
-    if (error) continue;  // the file does not exist, so it need not be hidden
+    if (error) continue;
     secrets.insert(path);
     for (fs::path p = path.parent_path(); above.insert(p).second;) p = p.parent_path();
   }

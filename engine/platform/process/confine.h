@@ -7,44 +7,43 @@
 
 namespace nonio::process {
 
-/// Restricts what a process with plugin code can do. All functions only remove rights, permanently,
-/// and the restrictions apply to all processes that this process creates.
+/// Restrictions for processes with plugin code. All functions remove rights permanently, also for
+/// processes that this process creates later.
 
-/// Returns what this kernel cannot restrict, as sentences for the summary; empty if nothing.
+/// Returns sentences about the restrictions that this kernel does not support.
 std::vector<std::string> lacking_confinement();
 
 /// Call before plugins are loaded. Removes all capabilities; allows reading only below `readable`;
-/// forbids writing files, starting programs, and contacting or signalling processes. Returns why
-/// the kernel refused; empty without an error. A kernel without Landlock or seccomp is not an
-/// error.
+/// forbids writing files, starting programs, and contacting or signaling processes. Returns an
+/// error message or an empty text. A kernel without Landlock or seccomp is not an error.
 std::string confine_loading(const std::vector<std::filesystem::path>& readable);
 
-/// Call after plugins were loaded: forbids opening any file. Returns why the kernel refused, or an
-/// empty text.
+/// Call after plugins were loaded: forbids opening any file. Returns an error message or an empty
+/// text.
 std::string confine_files();
 
 /// Call in a process that evaluates: also forbids new processes and threads, and all other system
-/// calls that computing does not need. Returns why the kernel refused, or an empty text.
+/// calls that a computation does not need. Returns an error message or an empty text.
 std::string confine_computing();
 
-/// Call for one command, which reads and writes files and creates processes: forbids new
-/// privileges, starting programs and connecting to processes. Returns why the kernel refused, or an
-/// empty text.
+/// Call in a process that runs one command, which may read and write files and create processes:
+/// forbids new privileges, starting programs and connecting to processes. Returns an error message
+/// or an empty text.
 std::string confine_visit();
 
 /// Call before a plugin function that should need only its arguments: forbids files, sockets,
 /// processes, signals, and changing the folder or the umask. `told` is called with the name of a
-/// forbidden system call, and must not return. Returns why the kernel refused, or an empty text.
+/// forbidden system call, and must not return. Returns an error message or an empty text.
 std::string confine_pure(void (*told)(const char* call));
 
 /// Makes these files unreadable, and also everything that is created later in the folders above
-/// them; has no effect without Landlock. Returns why the kernel refused, or an empty text.
+/// them; has no effect without Landlock. Returns an error message or an empty text.
 std::string hide_files(const std::vector<std::filesystem::path>& secrets);
 
-/// Whether `confine_computing` is in effect, after which working folder and umask cannot change.
+/// Whether `confine_computing` is in effect, which prevents changes of working folder and umask.
 bool is_computing_confined();
 
-/// Closes all descriptors except 0, 1, 2 and `kept` (in ascending order).
+/// Closes all descriptors except 0, 1, 2 and `kept`, which must be in ascending order.
 void close_others(const std::vector<int>& kept);
 
 /// Overwrites all environment variables except those for locale, time zone, terminal, folders,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traps the system calls that a plugin function must not make, so that `nonio plugin check` can
-// name the one that was tried.
+// Traps forbidden system calls of plugin functions, so that `nonio plugin check` can report their
+// names.
 #include <linux/filter.h>
 #include <linux/seccomp.h>
 #include <sys/prctl.h>
@@ -114,7 +114,7 @@ std::vector<sock_filter> trap_impure() {
 
 }  // namespace
 
-/// Protects against mistakes, not against malice: other system calls remain possible.
+/// Protects against mistakes, not against malicious code: other system calls remain possible.
 std::string confine_pure(void (*told)(const char* call)) {
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
     return std::string("no_new_privs: ") + std::strerror(errno);

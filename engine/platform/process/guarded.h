@@ -11,8 +11,8 @@
 
 namespace nonio::process {
 
-/// Returns the result of `call`, or an error if `call` changed the process state on which later
-/// work depends (`restore_process_state`).
+/// Returns the result of `call`, or an error if `call` changed the process state
+/// (`restore_process_state`).
 template <class Call>
 auto leaving_all_as_it_is(const std::string& who, const Call& call) -> decltype(call()) {
   auto result = [&]() -> decltype(call()) {
@@ -24,8 +24,8 @@ auto leaving_all_as_it_is(const std::string& who, const Call& call) -> decltype(
   return result;
 }
 
-/// Returns the result of `call`. Any exception of a plugin becomes an error, and every error
-/// message begins with the plugin's name `who`; Nonio's own code does not throw on purpose.
+/// Returns the result of `call`. An exception becomes an error, and every error message begins with
+/// the plugin's name `who`.
 template <class Call>
 auto guarded(const std::string& who, const Call& call) -> decltype(call()) {
   return leaving_all_as_it_is(who, [&]() -> decltype(call()) {
@@ -43,8 +43,6 @@ auto guarded(const std::string& who, const Call& call) -> decltype(call()) {
   });
 }
 
-/// Calls a function of a plugin that returns a bool; any exception becomes an error, as in
-/// `guarded`.
 template <class Ask>
 Expected<bool> guarded_answer(const std::string& who, const Ask& ask) {
   return guarded(who, [&]() -> Expected<bool> { return ask(); });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Generates the filters of filters.h as C++ source when Nonio is built. If libseccomp fails, the
-// build fails; in a run, a refused allocation makes libseccomp loop, free memory twice or silently
-// leave out rules (2.5.4, 397 allocations: 56, 25 and 134 of them).
+// Generates the filters of filters.h as C++ source at build time. At run time, a failed allocation
+// makes libseccomp loop, free memory twice or silently omit rules (version 2.5.4; 397 failed
+// allocations: 56, 25 and 134 cases).
 #include <fcntl.h>
 #include <sched.h>
 #include <seccomp.h>
@@ -19,7 +19,7 @@ namespace {
 
 using nonio::process::own_process, nonio::process::parent_process;
 
-/// System calls that no process with plugins needs: a process that makes one is killed.
+/// System calls that no process with plugins needs; a process that makes one is killed.
 const char* const hostile[] = {"execve",
                                "execveat",
                                "socket",
@@ -86,8 +86,8 @@ const char* const hostile[] = {"execve",
                                "syslog",
                                "acct"};
 
-/// System calls that a command needs, because it creates processes and files. They are forbidden in
-/// the processes that load plugins or evaluate.
+/// System calls that a command needs to create processes and files; forbidden in the processes that
+/// load plugins or evaluate.
 const char* const of_verbs[] = {"fork",
                                 "vfork",
                                 "socketpair",
@@ -120,7 +120,7 @@ const char* const of_verbs[] = {"fork",
                                 "sched_setattr",
                                 "ioprio_set"};
 
-/// System calls that a computation needs, including the inspection of files that it cannot open.
+/// System calls of a computation, including those that query files without opening them.
 const char* const computing[] = {"read",
                                  "readv",
                                  "pread64",
@@ -208,7 +208,6 @@ class Filter {
   Filter& operator=(const Filter&) = delete;
   ~Filter() { ::seccomp_release(filter_); }
 
-  /// Adds a rule for `call` that applies if its arguments meet all conditions `wanted`.
   template <class... Compare>
   void add(std::uint32_t action, const char* call, Compare... wanted) {
     const int number = ::seccomp_syscall_resolve_name(call);
@@ -246,7 +245,7 @@ scmp_arg_cmp is_not(unsigned argument, scmp_datum_t value) {
   return {argument, SCMP_CMP_NE, value, 0};
 }
 
-/// Compares the lower 32 bits of an argument, because the kernel ignores the upper half of an int.
+/// Compares the lower 32 bits, because the kernel ignores the upper half of an int argument.
 scmp_arg_cmp is_int(unsigned argument, std::uint32_t value) {
   return masked(argument, 0xFFFFFFFF, value);
 }
@@ -262,27 +261,26 @@ void forbid_hostile(Filter& filter) {
     filter.add(SCMP_ACT_KILL_PROCESS, "ioctl", is_int(1, command));
 }
 
-/// Prints the filter of the process that loads plugins and creates the others. It forbids the calls
-/// in `hostile` and `of_verbs`, threads, limits of other processes, and memory to which no limit
-/// applies. The process may create another one only as its sibling, as `PluginHost` does.
+/// Filter of the process that loads plugins and creates the others. It may create a process only as
+/// its sibling (CLONE_PARENT), as `PluginHost` does.
 void print_loading() {
   Filter filter(SCMP_ACT_ALLOW);
   forbid_hostile(filter);
   for (const char* call : of_verbs) filter.add(SCMP_ACT_KILL_PROCESS, call);
-  filter.add(SCMP_ACT_ERRNO(ENOSYS), "clone3");  // a filter cannot inspect the arguments of clone3
+  filter.add(SCMP_ACT_ERRNO(ENOSYS), "clone3");
   filter.add(SCMP_ACT_KILL_PROCESS, "clone", masked(0, CLONE_THREAD | CLONE_PARENT, 0));
   filter.add(SCMP_ACT_ERRNO(EAGAIN), "clone", masked(0, CLONE_THREAD, CLONE_THREAD));
   filter.add(SCMP_ACT_ERRNO(EPERM), "prlimit64", is_not(0, 0));
-  // memory to which no limit applies: shared without a file, or growing like a stack
-  constexpr unsigned flags = 3;  // index of the argument `flags` of mmap, from 0
+  // Memory to which no limit applies: shared without a file, or growing like a stack.
+  constexpr unsigned flags = 3;
   constexpr scmp_datum_t shared = MAP_SHARED | MAP_ANONYMOUS;
   filter.add(SCMP_ACT_KILL_PROCESS, "mmap", masked(flags, shared, shared));
   filter.add(SCMP_ACT_KILL_PROCESS, "mmap", masked(flags, MAP_GROWSDOWN, MAP_GROWSDOWN));
   filter.print("loading");
 }
 
-/// Prints the filter of a command, which may signal its own children, but not its parent, process 1
-/// or all processes.
+/// Filter of a command, which may signal its own children, but not its parent, process 1 or all
+/// processes.
 void print_visit() {
   Filter filter(SCMP_ACT_ALLOW);
   forbid_hostile(filter);
@@ -293,15 +291,15 @@ void print_visit() {
   filter.print("visit");
 }
 
-/// Prints the filter of a process that computes. It permits only the calls that are listed; calls
-/// that `print_loading` forbids stay forbidden.
+/// Filter of a process that evaluates, installed in addition to `print_loading`. It permits only
+/// the listed calls.
 void print_computing() {
   Filter filter(SCMP_ACT_ERRNO(EPERM));
   for (const char* call : computing) filter.add(SCMP_ACT_ALLOW, call);
   constexpr unsigned flags = 3;
   filter.add(SCMP_ACT_ALLOW, "mmap", masked(flags, MAP_GROWSDOWN, 0));
   filter.add(SCMP_ACT_ALLOW, "prlimit64", is(0, 0), is(2, 0));
-  // abort() and raise() need tgkill; it is not allowed for other processes.
+  // abort() and raise() need tgkill.
   filter.add(SCMP_ACT_ALLOW, "tgkill", is(0, own_process));
   filter.add(SCMP_ACT_KILL_PROCESS, "tgkill", is_not(0, own_process));
   filter.add(SCMP_ACT_ERRNO(EAGAIN), "clone");

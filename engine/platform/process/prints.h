@@ -8,17 +8,16 @@
 
 namespace nonio::batch {
 
-/// Collects what plugins print in this process until it is known which plugin printed it. At most
+/// Buffers the output of plugins in this process until the plugin that printed it is known. At most
 /// 64 KiB are kept between two calls of `pass_on`.
 class Prints {
  public:
-  /// Replaces standard output and error of the process. `pass_on` writes to the descriptor `to`.
+  /// Redirects standard output and standard error; `pass_on` writes to the descriptor `to`.
   explicit Prints(int to);
   bool valid() const { return static_cast<bool>(reading_); }
-  /// Returns the descriptor of the collected text, which another process can read after this one
-  /// has died.
+  /// Descriptor of the buffered text, which another process can read after this one has ended.
   int reading() const { return reading_.get(); }
-  /// Passes on what was printed since the last call, preceded by the name `who`.
+  /// Writes what was printed since the last call, preceded by the plugin's name `who`.
   void pass_on(const std::string& who);
 
  private:
@@ -26,10 +25,10 @@ class Prints {
   process::Handle reading_{};
 };
 
-/// Reads everything that a non-blocking pipe contains.
+/// The pipe must be non-blocking.
 std::string take_all(int pipe);
 
-/// Returns "WHO prints: TEXT" with a line feed at the end; "a plugin" if `who` is empty.
+/// Returns "WHO prints: TEXT" with a line feed at the end; an empty `who` becomes "a plugin".
 std::string printed_by(const std::string& who, std::string_view text);
 
 }  // namespace nonio::batch

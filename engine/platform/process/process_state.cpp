@@ -21,8 +21,8 @@ namespace nonio::process {
 
 namespace {
 
-/// Returns the rounding mode, combined with the control bits of MXCSR (denormal numbers, exception
-/// masks) but without its exception flags.
+/// Combines the rounding mode with the control bits of MXCSR (denormal numbers, exception masks),
+/// without its exception flags.
 unsigned processor_mode() {
   auto mode = static_cast<unsigned>(std::fegetround());
 #if defined(__SSE__)
@@ -98,7 +98,6 @@ std::string restore_process_state() {
     say(words, "the signal mask");
     pthread_sigmask(SIG_SETMASK, &kept->signals, nullptr);
   }
-  // A confined process cannot change working folder and umask.
   if (is_computing_confined()) return words;
   if (mode_mask() != kept->mask) {
     say(words, "the umask");

@@ -10,8 +10,8 @@ namespace nonio::process {
 
 /// Stores the present state as the required one. Call it before plugins are loaded.
 void keep_process_state();
-/// Restores the stored state. Returns in words what had changed; empty if nothing, or if
-/// `keep_process_state` was not called.
+/// Restores the stored state and returns the names of what had changed. Without
+/// `keep_process_state` it does nothing and returns an empty text.
 std::string restore_process_state();
 
 }  // namespace nonio::process

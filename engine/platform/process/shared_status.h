@@ -6,12 +6,11 @@
 
 namespace nonio::process {
 
-/// Text in shared memory that states what a worker is doing; the parent can read it after the
-/// worker died.
+/// Text in shared memory that describes the present work of a child process. The parent can read it
+/// after the child has ended.
 class SharedStatus {
  public:
   SharedStatus();
-  /// Opens the text of another process by its descriptor.
   explicit SharedStatus(int descriptor);
   SharedStatus(const SharedStatus&) = delete;
   SharedStatus(SharedStatus&& other) noexcept;

@@ -6,7 +6,7 @@
 namespace nonio::process {
 namespace {
 
-std::atomic<bool> stop_requested = false;  // set by a signal handler
+std::atomic<bool> stop_requested = false;
 static_assert(std::atomic<bool>::is_always_lock_free);
 
 }  // namespace

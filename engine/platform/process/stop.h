@@ -3,7 +3,7 @@
 
 namespace nonio::process {
 
-/// Requests that a run, or a command that waits, ends soon. Safe in a signal handler.
+/// Requests the early end of a run or of a waiting command. Safe in a signal handler.
 void request_stop();
 bool is_stop_requested();
 

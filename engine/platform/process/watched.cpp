@@ -30,8 +30,6 @@ Length length_at(std::string_view bytes, std::size_t at) {
   return n;
 }
 
-/// Buffer of the child for messages to the parent: sends them when it contains 32 KiB and at the
-/// end.
 class Outbox {
  public:
   explicit Outbox(int channel) : channel_(channel) {}
@@ -43,7 +41,7 @@ class Outbox {
   void send() {
     for (std::string_view rest = buffer_; !rest.empty();) {
       const ssize_t n = ::write(channel_, rest.data(), rest.size());
-      if (n < 0 && errno != EINTR) ::_exit(1);  // the parent no longer reads
+      if (n < 0 && errno != EINTR) ::_exit(1);
       if (n > 0) rest.remove_prefix(static_cast<std::size_t>(n));
     }
     buffer_.clear();

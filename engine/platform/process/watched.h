@@ -20,46 +20,41 @@
 namespace nonio::process {
 
 /// Signs of life of a child in shared memory. The parent can read them while the child hangs and
-/// after its death.
+/// after it has ended.
 struct SignsOfLife {
   std::atomic<std::uint64_t> beats;
-  std::atomic<std::uint64_t> index;  ///< number of the task that the child works on
-  std::atomic<bool> reads;           ///< whether the child may be waiting for a disk; otherwise it
-                                     ///< computes
-  std::array<char, 8192> place;      ///< path that the child is reading
+  std::atomic<std::uint64_t> index;  ///< index of the present task
+  std::atomic<bool> reads;           ///< true while the child may wait for a disk
+  std::array<char, 8192> place;      ///< path of the file that is being read
 
   void beat() { ++beats; }
-  /// Notes the path before a step that may wait for a disk.
+  /// Stores the path before a step that may wait for a disk.
   void reading(std::string_view path);
   std::string reads_from() const { return {place.data(), ::strnlen(place.data(), place.size())}; }
 };
 
-/// A child process for work that may hang (a disk, a share) or crash (a parser). `take` returns its
-/// messages undivided; `is_silent` reports that it shows no sign of life. Movable, not copyable;
-/// the child is killed at the end of its lifetime.
+/// A child process for work that may hang (a disk, a share) or crash (a parser). The child is
+/// killed at the end of the lifetime.
 class Watched {
  public:
   /// Queues a message for the parent. It is sent when 32 KiB are queued and when the task returns.
   using Send = std::function<void(std::string_view)>;
   using Task = std::function<void(SignsOfLife&, const Send&)>;
 
-  /// Starts the task in a child process whose private memory is limited to `memory_MB`; 0 means no
-  /// limit.
+  /// `memory_MB` limits the private memory of the child (1 MB = 10^6 bytes), unless it is 0.
   static Expected<Watched> start(const Task& task, double memory_MB = 0.0);
   int channel() const { return channel_.get(); }
   const SignsOfLife& signs() const { return *signs_; }
-  /// Returns the messages that have arrived completely since the last call.
+  /// Returns the complete messages that have arrived since the last call.
   std::vector<std::string> take();
-  /// Whether the process has closed its channel, so that nothing more can arrive.
+  /// Whether the child has closed its channel, so that no further message can arrive.
   bool ended() const { return ended_; }
   /// Whether there was no sign of life for more than `seconds`.
   bool is_silent(double seconds);
-  /// Ends the process and returns how it ended, like `Child::end`.
   ChildEnd end() { return child_.end(); }
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// Deleter that unmaps the memory shared by parent and child.
   struct Shared {
     void operator()(SignsOfLife* signs) const;
   };
@@ -73,10 +68,10 @@ class Watched {
   Clock::time_point last_beat_ = Clock::now();
 };
 
-/// Returns the message about a disk or share that did not respond within `seconds`.
+/// Returns the error message for a disk or share that did not respond within `seconds`.
 std::string no_answer(double seconds);
 
-/// Returns when a message of a child can be read, at the latest after 0.1 s.
+/// Returns when a message can be read, at the latest after 0.1 s.
 void wait_for_any(const std::vector<Watched>& children);
 
 }  // namespace nonio::process

@@ -29,8 +29,7 @@ namespace {
 
 Error of_system(const fs::path& path) { return Error{std::strerror(errno), path.string()}; }
 
-/// Whether a file is an SQLite database that is written in place. Packs are not regarded as
-/// databases: they never change, and their name contains their digest.
+/// Packs are not regarded as databases: they never change, and their name contains their digest.
 bool is_database(const fs::path& path) {
   constexpr std::string_view magic("SQLite format 3\0", 16);
   std::string head(magic.size(), '\0');
@@ -38,8 +37,6 @@ bool is_database(const fs::path& path) {
          std::ifstream(path, std::ios::binary).read(head.data(), 16) && head == magic;
 }
 
-/// Whether a file is left out because it belongs to a running process: temporary files, locks,
-/// journals of `databases`.
 bool is_passing(const fs::path& path, const std::set<fs::path>& databases) {
   const std::string name = path.filename().string();
   if (is_temporary_name(name) || name == backup_digests) return true;
@@ -51,7 +48,6 @@ bool is_passing(const fs::path& path, const std::set<fs::path>& databases) {
   return false;
 }
 
-/// Inode, size, modification time (s, ns) and mode of a file; compared to detect a change.
 using FileState = std::array<std::int64_t, 5>;
 
 class Backup {
@@ -107,7 +103,6 @@ class Backup {
     return path.lexically_relative(folder_).generic_string();
   }
 
-  /// Adds the file `path` to the archive with the bytes of the file `from`.
   Expected<void> add(const fs::path& path, const fs::path& from) {
     struct stat of {};
     if (::lstat(path.c_str(), &of) != 0) return fail(of_system(path));
@@ -121,7 +116,6 @@ class Backup {
       std::error_code error;
       entry.kind = TarEntry::Kind::link;
       entry.target = fs::read_symlink(path, error).string();
-      // the content of the link is outside the folder
       if (const auto to = fs::weakly_canonical(path, error).lexically_relative(folder_);
           !error && (to.empty() || *to.begin() == ".."))
         summary_.left_out.push_back(entry.name);
@@ -164,7 +158,6 @@ class Backup {
 
   using States = std::map<fs::path, FileState>;
 
-  /// Adds the state of a file or link to `states` unless it is missing.
   static void note_state(const fs::path& path, States& states) {
     struct stat of {};
     if (::lstat(path.c_str(), &of) == 0 && !S_ISDIR(of.st_mode))
@@ -186,10 +179,9 @@ class Backup {
     return states;
   }
 
-  /// Adds the files of a folder, without subfolders, as they were at one moment.
   Expected<void> add_folder(const fs::path& folder) {
     struct stat of {};
-    if (::lstat(folder.c_str(), &of) != 0) return {};  // the folder was removed after it was listed
+    if (::lstat(folder.c_str(), &of) != 0) return {};
     if (folder != folder_)
       if (auto done = tar_.add({.name = name_of(folder),
                                 .kind = TarEntry::Kind::folder,
@@ -200,8 +192,6 @@ class Backup {
     return add_until_same([&] { return states_in(folder); }, folder);
   }
 
-  /// Adds the files of `states` and repeats this until none of them has changed meanwhile, at most
-  /// 50 times.
   Expected<void> add_until_same(const std::function<Expected<States>()>& states,
                                 const fs::path& of) {
     constexpr int most = 50;
@@ -228,7 +218,7 @@ class Backup {
   TarWriter& tar_;
   std::vector<fs::path> folders_{};
   std::set<fs::path> identities_{}, databases_{};
-  std::string digests_{};  ///< text of the list of digests
+  std::string digests_{};
   BackupSummary summary_{};
 };
 
@@ -239,8 +229,6 @@ bool is_safe(const std::string& name) {
                       [](const fs::path& part) { return part == ".." || part == "."; });
 }
 
-/// Reads a whole archive and compares each file with its digest. The files are written to the new
-/// folder `into`; if it is empty, the archive is only checked.
 class Restore {
  public:
   Restore(const fs::path& file, fs::path into) : file_(file), into_(std::move(into)) {}
@@ -314,7 +302,8 @@ class Restore {
     return well ? Expected<void>() : fail(error);
   }
 
-  /// Refuses an archive with a name below a link, which would be written to the target of the link.
+  /// Rejects an archive with a name below a link, because that file would be written to the target
+  /// of the link.
   Expected<void> below_no_link() const {
     for (const std::string& name : names_)
       for (fs::path above = fs::path(name).parent_path(); !links_.empty() && !above.empty();
@@ -342,8 +331,8 @@ class Restore {
     return {};
   }
 
-  /// Creates folders and links and sets the permissions of folders. Links come last, so that no
-  /// file is written through one; permissions are set from the innermost folder outwards.
+  /// Links are created last, so that no file is written through one; permissions are set from the
+  /// innermost folder outwards.
   Expected<void> finish() const {
     std::error_code error;
     for (const bool link : {false, true})
@@ -411,7 +400,7 @@ Expected<BackupSummary> restore_backup(const fs::path& file, const fs::path& fol
   if (!error && !fs::create_directory(temporary, error) && !error)
     return fail(Error{"exists already: another restore is running, or was interrupted; remove it",
                       temporary.string()});
-  // the original permissions are not known, and a site may contain keys and passwords
+  // The original permissions are not known yet, and a site may contain keys and passwords.
   if (!error) fs::permissions(temporary, fs::perms::owner_all, error);
   if (error) return fail(Error{error.message(), temporary.string()});
   auto restored = Restore(file, temporary).read();

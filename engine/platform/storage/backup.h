@@ -18,22 +18,20 @@ struct BackupSummary {
   std::vector<std::string> left_out;
 };
 
-/// Name of the last file in an archive: the digests of all other files in the format of `sha256sum
-/// -c`.
+/// Last file in an archive: the digests of all other files in the format of `sha256sum -c`.
 inline constexpr const char* backup_digests = ".nonio-backup.sha256";
 
-/// Writes a folder into the archive `file`, which is read back before it gets its name. Other
-/// processes may write into the folder meanwhile: first each database, then the files of each
-/// folder are copied as of one moment. Files that name the last entry of a register are copied
-/// before the register, so that they never name an entry that the copied register lacks. Locks and
-/// temporary files are left out. Errors: `file` exists or is in the folder; a folder changes all
-/// the time; a database is damaged.
+/// Writes a folder into the archive `file`, which is verified before it gets its name. Other
+/// processes may write into the folder meanwhile: each database, and then the files of each folder,
+/// are copied as of one moment. Files that name the last entry of a register are copied before the
+/// register, so that they never name a missing entry. Locks and temporary files are excluded.
+/// Errors: `file` exists or is in the folder; a folder changes all the time; a database is damaged.
 Expected<BackupSummary> write_backup(const std::filesystem::path& folder,
                                      const std::filesystem::path& file);
 
-/// Restores an archive of `write_backup` in `folder`, which must be missing or empty. All digests
-/// are compared before the folder appears with its content. Errors: a file is damaged, missing or
-/// not listed; the folder is not empty.
+/// Restores an archive of `write_backup` in `folder`, which must be missing or empty and appears
+/// only after all digests have been verified. Errors: a file is damaged, missing or not listed; the
+/// folder is not empty.
 Expected<BackupSummary> restore_backup(const std::filesystem::path& file,
                                        const std::filesystem::path& folder);
 

@@ -13,10 +13,10 @@ struct Character {
   std::size_t size = 0;
 };
 
-/// Decodes the first character of a text that is not empty. Its size is 0 if it is not valid UTF-8.
+/// Decodes the first character; `text` must not be empty.
 Character first_of(std::string_view text);
-/// Whether the character is visible and harmless: not a control character, not invisible, not of a
-/// private-use area, no change of the direction of writing.
+/// False for control characters, invisible characters, private-use characters and changes of the
+/// writing direction.
 bool is_shown(std::uint32_t code);
 
 }  // namespace nonio::storage

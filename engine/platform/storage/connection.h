@@ -8,11 +8,10 @@
 
 #include "platform/storage/database.h"
 
-/// The implementation of `Database`: one class for SQLite, one for PostgreSQL.
 namespace nonio::storage {
 
-/// All functions but `rollback` return an error text, "" for success. After an error only
-/// `rollback` may be called.
+/// Interface to SQLite or PostgreSQL. All functions except `rollback` return an error message, or
+/// an empty text on success. After an error only `rollback` may be called.
 class Connection {
  public:
   Connection() = default;
@@ -29,12 +28,11 @@ class Connection {
     for (const Database::Row& row : all) take({row.begin(), row.end()});
     return trouble;
   }
-  /// Runs a statement without rows; a later call may return its error.
+  /// Runs a statement without rows; its error may be returned by a later call.
   virtual std::string put(const char* sql, std::span<const Database::Value> values) = 0;
   virtual std::string script(const std::string& sql) = 0;
   virtual std::string begin() = 0;
   virtual std::string commit() = 0;
-  /// Rolls back the open transaction; does nothing without one.
   virtual void rollback() = 0;
 };
 
@@ -47,7 +45,7 @@ std::string shortest(double number);
 Expected<std::unique_ptr<Connection>> connect_sqlite(const std::filesystem::path& path,
                                                      Database::Use use, double patience);
 
-/// The functions that the library with libpq exports as `nonio_postgresql` (late_library.h).
+/// Functions that the library with libpq exports as `nonio_postgresql` (late_library.h).
 struct PostgreSQL {
   Expected<void> (*check_address)(const std::string& url);
   Expected<std::unique_ptr<Connection>> (*connect)(const Server& server, double patience);

@@ -102,7 +102,6 @@ Database::Transaction::~Transaction() {
 
 Expected<void> Database::Transaction::end() {
   if (!database_.failed()) database_.error_ = database_.connection_->commit();
-  // The destructor rolls the transaction back.
   if (database_.failed()) return database_.take_error();
   open_ = false;
   return {};

@@ -17,20 +17,20 @@ namespace nonio::storage {
 
 class Connection;
 
-/// A PostgreSQL database, as `[database]` of site.toml names it.
+/// A PostgreSQL database according to `[database]` in site.toml.
 struct Server {
-  std::string url;  ///< address postgresql://... without a password, in libpq's format
+  std::string url;  ///< postgresql://... in libpq's format, without a password
   std::string schema;
-  /// File with the password; empty: libpq looks up the password (service file, ~/.pgpass, ...).
+  /// If empty, libpq looks up the password (service file, ~/.pgpass, ...).
   std::filesystem::path password_file;
 };
 
-/// Checks that libpq accepts this address and that it contains no password. The error does not
-/// repeat the address.
+/// Checks that libpq accepts this address and that it contains no password. The error message does
+/// not repeat the address.
 Expected<void> check_address(const std::string& url);
 
-/// A connection to an SQLite file or a server, for one thread of one process, never used after a
-/// fork. After the first error in a transaction all further statements are skipped, and
+/// A connection to an SQLite file or a server, for one thread of one process; it must not be used
+/// after a fork. After the first error in a transaction all further statements are skipped, and
 /// `Transaction::end` returns the error.
 class Database {
  public:
@@ -43,12 +43,12 @@ class Database {
 
   enum class Use { write, create, read };
   static constexpr double usual_patience = 60.0;
-  /// Opens an SQLite file; Use::create creates a missing one. Use::read writes nothing, takes no
-  /// lock and ignores journals: for a file that no process changes. Waits up to `patience` seconds
-  /// for a locked database; then the error satisfies `is_locked`.
+  /// Opens an SQLite file; Use::create creates a missing one. Use::read takes no lock and ignores
+  /// journals, so the file must not change. Waits up to `patience` seconds for a locked database,
+  /// then returns an error for which `is_locked` is true.
   static Expected<Database> open(const std::filesystem::path& path, Use use,
                                  double patience = usual_patience);
-  /// Connects to a server. Tables belong to the schema of `server`, which need not exist yet.
+  /// Tables belong to the schema of `server`, which need not exist yet.
   static Expected<Database> open(const Server& server, double patience = usual_patience);
   Database(Database&&) noexcept;
   Database& operator=(Database&&) noexcept;
@@ -57,33 +57,32 @@ class Database {
   enum class Kind { sqlite, postgresql };
   Kind kind() const { return kind_; }
 
-  /// Runs a statement with these values for its `?` and returns the rows. NULL is returned as "",
-  /// and a double with the fewest digits that reproduce it. Prepared statements are reused.
+  /// `values` replace the `?` of the statement. NULL is returned as "", and a double with the
+  /// fewest digits that reproduce it.
   std::vector<Row> rows(const char* sql, std::initializer_list<Value> values = {});
-  /// Calls `take` for each row of a statement. The row is valid during the call only, and `take`
-  /// must not use the database.
+  /// Calls `take` for each row, which is valid during the call only; `take` must not use the
+  /// database.
   using Take = std::function<void(const std::vector<std::string_view>& row)>;
   void each(const char* sql, std::initializer_list<Value> values, const Take& take);
-  /// Returns the first column of the first row; "" if there is no row.
+  /// Returns the first column of the first row; "" without a row.
   std::string first(const char* sql, std::initializer_list<Value> values = {});
-  /// Runs a statement without rows. Statements are sent to a server in groups, so that an error may
-  /// be noticed only in a later call: at the latest in `rows` or at the end of the transaction.
+  /// Runs a statement without rows. Statements are sent to a server in groups, so an error may be
+  /// reported by a later call: at the latest by `rows` or at the end of the transaction.
   void put(const char* sql, std::initializer_list<Value> values = {});
-  /// Runs several statements in sequence, without values and rows.
+  /// Runs several statements without values and rows.
   void script(const std::string& sql);
   bool failed() const { return !error_.empty(); }
-  /// Returns the first error since the last call of `take_error`.
+  /// Returns and clears the first error since the last call.
   Expected<void> take_error();
 
-  /// A group of statements that take effect together or not at all: rolled back unless `end` was
-  /// called.
+  /// Statements that take effect together. The destructor rolls them back unless `end` was called.
   class Transaction {
    public:
     explicit Transaction(Database& database);
     Transaction(const Transaction&) = delete;
     Transaction& operator=(const Transaction&) = delete;
     ~Transaction();
-    /// Commits; returns when everything is on disk.
+    /// Commits; returns after everything is on disk.
     Expected<void> end();
 
    private:
@@ -91,8 +90,8 @@ class Database {
     bool open_ = true;
   };
 
-  /// While it exists, all reads of an SQLite file are as of one moment, and its lock is taken once.
-  /// A connection to a server has a transaction of its own.
+  /// During its lifetime all reads of an SQLite file are as of one moment under one lock. For a
+  /// server it has no effect.
   class Reading {
    public:
     explicit Reading(Database& database);
@@ -101,7 +100,7 @@ class Database {
     ~Reading();
 
    private:
-    Connection* file_;  ///< null: nothing to be ended
+    Connection* file_;
   };
 
  private:
@@ -117,8 +116,8 @@ class Database {
 Expected<void> copy_database(const std::filesystem::path& from, const std::filesystem::path& to,
                              double patience = Database::usual_patience);
 
-/// Whether the error is temporary: another process has locked the database, or its server cannot be
-/// reached. The same call may succeed later.
+/// Whether a later call may succeed: another process has locked the database, or its server cannot
+/// be reached.
 bool is_locked(const Error& error);
 
 /// Converts CREATE TABLE statements from SQLite's to PostgreSQL's dialect. Texts are sorted by

@@ -24,7 +24,7 @@ struct RunningDigest::State {
 
 namespace {
 
-/// Looks up SHA-256 once. With EVP_sha256(), OpenSSL 3 looks it up by name for every digest, which
+/// Fetched once, because EVP_sha256() of OpenSSL 3 fetches the algorithm for every digest, which
 /// takes as long as hashing a kilobyte.
 const EVP_MD* method() {
   static const EVP_MD* const found = ::EVP_MD_fetch(nullptr, "SHA256", nullptr);

@@ -12,7 +12,6 @@
 
 namespace nonio::storage {
 
-/// Computes the SHA-256 of data that are added in parts.
 class RunningDigest {
  public:
   RunningDigest();
@@ -20,19 +19,19 @@ class RunningDigest {
   RunningDigest(const RunningDigest&) = delete;
   RunningDigest& operator=(const RunningDigest&) = delete;
   void add(std::string_view bytes);
-  std::string hex();  ///< returns the digest in lower-case hexadecimal; call it once, at the end
+  std::string hex();  ///< lower-case hexadecimal SHA-256; call it once, at the end
 
  private:
   struct State;
   std::unique_ptr<State> state_;
 };
 
-/// Returns the SHA-256 of the bytes in lower-case hexadecimal.
+/// Returns the SHA-256 in lower-case hexadecimal.
 std::string sha256(std::string_view bytes);
-/// Returns the HMAC with SHA-256 (RFC 2104) in lower-case hexadecimal.
+/// RFC 2104, in lower-case hexadecimal.
 std::string hmac_sha256(std::string_view key, std::string_view bytes);
-/// Returns the SHA-256 of a file. `after_each_part` is called repeatedly while a long file is read,
-/// for callers that must show signs of life.
+/// `after_each_part` is called repeatedly while a long file is read, for callers that must show
+/// signs of life.
 Expected<std::string> sha256_of_file(const std::filesystem::path& path,
                                      const std::function<void()>& after_each_part = {});
 

@@ -10,8 +10,8 @@
 namespace nonio::storage {
 
 /// Detects lost writes on the file system of the output folder. The kernel reports a lost write
-/// once, and only to descriptors that were open at that time. Therefore this object is created
-/// before the first process that writes, and all processes of the run share it.
+/// only once, and only to descriptors that were open at that time. Therefore an instance is created
+/// before the first process that writes, and is shared by all processes of the run.
 class Disk {
  public:
   explicit Disk(const std::filesystem::path& folder);
@@ -19,11 +19,11 @@ class Disk {
   Disk& operator=(const Disk&) = delete;
   ~Disk();
 
-  /// Flushes the file system. An error if this fails, for example because the disk has lost a write
-  /// since the last call.
+  /// Flushes the file system. An error, for example, if the disk has lost a write since the last
+  /// call.
   Expected<void> flush() const;
-  /// Number of failed flushes in all processes. Work that began at another number is not reliable,
-  /// because it is not known which writes were lost.
+  /// Number of failed flushes in all processes. If it changes during a work step, the step is not
+  /// reliable, because it is not known which writes were lost.
   std::uint32_t losses() const { return losses_ == nullptr ? 0 : losses_->load(); }
 
  private:

@@ -43,7 +43,7 @@ std::function<int(const fs::path&)>& opener() {
   return set;
 }
 
-/// Opens a file without waiting, because a named pipe must not block the run.
+/// O_NONBLOCK, because a named pipe must not block the run.
 Descriptor open_to_read(const fs::path& path) {
   if (opener()) return Descriptor(opener()(path));
   return Descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
@@ -54,7 +54,6 @@ tl::unexpected<Error> system_error(std::string_view what, const fs::path& path) 
   return fail(std::string(what) + " " + path.string() + ": " + std::strerror(code));
 }
 
-/// Creates and fills a file without flushing it; the system begins to write it.
 Expected<Descriptor> write_new(const fs::path& path, std::string_view bytes) {
   Descriptor file(
       ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0644));
@@ -107,7 +106,6 @@ void MappedFile::release(std::size_t offset) const {
 
 namespace {
 
-/// Whether a file was not changed between two calls of fstat: size and times are equal.
 bool same_state(const struct stat& a, const struct stat& b) {
   const auto same = [](const timespec& x, const timespec& y) {
     return x.tv_sec == y.tv_sec && x.tv_nsec == y.tv_nsec;
@@ -115,7 +113,6 @@ bool same_state(const struct stat& a, const struct stat& b) {
   return a.st_size == b.st_size && same(a.st_mtim, b.st_mtim) && same(a.st_ctim, b.st_ctim);
 }
 
-/// Reads up to `room` bytes; returns fewer at the end of the file.
 Expected<std::size_t> read_into(int file, char* to, std::size_t room, const fs::path& path) {
   std::size_t size = 0;
   while (size < room) {
@@ -189,7 +186,6 @@ Expected<RegularFile> open_regular(const fs::path& path) {
 
 namespace {
 
-/// Reads a file in a pack; none if the path is not in a pack.
 std::optional<Expected<std::string>> read_from_pack(const fs::path& path) {
   const auto at = opener() ? std::nullopt : in_pack(path);
   if (!at) return std::nullopt;
@@ -222,8 +218,7 @@ Expected<std::string> read_file(const fs::path& path) {
   if (auto packed = read_from_pack(path)) return std::move(*packed);
   NONIO_TRY(const auto file, open_regular(path));
   std::string bytes;
-  // One more byte than the size is requested. If it is not received, the end of the file is
-  // reached.
+  // One byte more than the size is requested, because a shorter read indicates the end of the file.
   for (std::size_t size = 0, room = std::min(file.size, most_at_once) + 1;; room *= 2) {
     bytes.resize(room);
     NONIO_TRY(const auto read,
@@ -265,7 +260,6 @@ Expected<std::string> read_small_file(const fs::path& path) {
 
 namespace {
 
-/// Returns the size in bytes of the first UTF-8 character (RFC 3629); 0 if it is invalid.
 std::size_t size_of_character(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (byte(0) < 0x80) return 1;
@@ -298,8 +292,6 @@ std::string path_text(std::string_view path) {
 
 namespace {
 
-/// Returns whether `name` is a regular file directly in the folder and not a link, so that no link
-/// has to be resolved.
 bool is_plain_file_in(const fs::path& folder, const std::string& name) {
   struct stat info {};
   return name.find('/') == std::string::npos && name != "." && name != ".." &&
@@ -328,7 +320,7 @@ bool is_artifact_name(std::string_view name) {
   if (name.empty() || name.size() > 200 || name.front() == '.') return false;
   for (const char* own : {"results.json", "run.json", "earlier.json", "last-good"})
     if (name == own) return false;
-  if (name.ends_with(leftover_suffix)) return false;  // a later run would remove the file
+  if (name.ends_with(leftover_suffix)) return false;  // reserved: a later run would remove the file
   for (const char c : name)
     if (c == '/' || c == '\\' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f) return false;
   return true;
@@ -433,8 +425,8 @@ Expected<void> publish(const fs::path& folder, const std::vector<Artifact>& file
   const auto is_new = make_folder(folder);
   if (!is_new) return fail(is_new.error());
   auto done = fill_and_flush(folder, files);
-  // The parent folder is flushed after the files, because a journaling file system commits the new
-  // folder together with the files.
+  // A journaling file system commits the new folder together with the files, so the parent folder
+  // is flushed after them.
   if (done && *is_new) done = flush_folder(fs::absolute(folder).parent_path());
   const std::vector<std::string> names = names_of(files);
   const auto is_ours = [&](const std::string& name) {
@@ -479,8 +471,7 @@ Expected<bool> disk_gives_back(const fs::path& path, std::uint64_t size, std::st
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (!file) return system_error("cannot read", path);
   ::posix_fadvise(file.get(), 0, 0, POSIX_FADV_DONTNEED);
-  // One more byte than expected is requested. If it is not received, the end of the file is
-  // reached.
+  // One byte more than expected is requested, because a shorter read indicates the end of the file.
   std::string buffer(std::min<std::uint64_t>(size + 1, 1 << 20), '\0');
   RunningDigest digest;
   std::uint64_t seen = 0;
@@ -497,7 +488,7 @@ Expected<bool> disk_gives_back(const fs::path& path, std::uint64_t size, std::st
 }
 
 void remove_temporaries(const fs::path& folder, const std::vector<std::string>& names) {
-  constexpr int tries = 3;  // a refusal may be temporary
+  constexpr int tries = 3;
   for (const std::string& name : names)
     for (int i = 0; i < tries; ++i) {
       std::error_code error;

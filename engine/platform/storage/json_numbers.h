@@ -6,9 +6,10 @@
 
 namespace nonio::storage {
 
-/// Returns a value of an object as a number in SI; the suffix of its key states its unit.
+/// Converts to SI; the suffix of the key states the unit.
 Number number_of(const std::string& key, const Json& value);
-/// Returns the value that `put` wrote under this name, in whatever unit; none if it wrote none.
+/// Returns the value that `put` wrote under this name with any unit suffix; std::nullopt without
+/// such a key.
 std::optional<Number> get(const Json& json, const std::string& name);
 
 }  // namespace nonio::storage

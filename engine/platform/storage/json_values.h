@@ -10,7 +10,7 @@
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/format.h"
 
-// Instantiated once, in json_values.cpp, because each source that instantiates the template takes 5
+// Instantiated only in json_values.cpp, because each source that instantiates the template takes 5
 // to 10 % longer to compile.
 #pragma GCC visibility push(default)
 #include <nlohmann/json.hpp>
@@ -19,22 +19,20 @@ extern template class nlohmann::basic_json<nlohmann::ordered_map>;
 
 namespace nonio::storage {
 
-/// JSON whose keys keep the order in which they are written.
 using Json = nlohmann::ordered_json;
 
-/// Parses a text that this program wrote. Throws `Json::exception` if it is not JSON.
+/// For text that this program wrote; throws `Json::exception` if it is not JSON.
 Json parse(std::string_view text);
-/// Parses a text; the result is discarded (`is_discarded`) if the text is not JSON.
+/// The result is discarded (`is_discarded`) if the text is not JSON.
 Json parse_or_discard(std::string_view text);
-/// Parses a text. The result is discarded if the text is not JSON, if an object has a key twice
-/// (programs differ in which one they read), or if it is nested more than 64 deep, because a copy
-/// could exhaust the stack.
+/// For text of unknown origin. The result is discarded if the text is not JSON, if an object has a
+/// key twice (parsers differ in which one they use), or if it is nested more than 64 deep, because
+/// a copy could exhaust the stack.
 Json parse_once(std::string_view text);
 
-/// Returns the text with an indentation of one, so that a diff of two runs is readable. Bytes that
-/// are not UTF-8 (a file name, a plugin's message) become replacement characters.
+/// Indented by one space per level. Bytes that are not UTF-8 become replacement characters.
 std::string dump(const Json& json);
-/// Returns the text in one line; bytes that are not UTF-8 become replacement characters.
+/// Returns one line; bytes that are not UTF-8 become replacement characters.
 std::string dump_line(const Json& json);
 
 inline Json to_json(const Error& error) {
@@ -46,13 +44,12 @@ inline Json to_json(const Error& error) {
   return json;
 }
 
-/// Returns a name with the suffix of its unit: "rms_um".
+/// Appends the suffix of the unit: "rms_um".
 inline std::string key(const std::string& name, Quantity q) {
   return name + std::string(unit_of(q).suffix);
 }
 
-/// Adds a value to an object in the unit of its quantity; a missing or non-finite value is left
-/// out.
+/// Adds a value in the unit of its quantity; a missing or non-finite value is omitted.
 inline void put(Json& json, const std::string& name, const std::optional<double>& value,
                 Quantity q) {
   if (!value) return;

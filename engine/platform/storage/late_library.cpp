@@ -7,8 +7,7 @@
 
 namespace nonio::storage {
 
-// Boost.DLL, used for plugins, takes only paths; dlopen lets the system find the library by its
-// name.
+// Boost.DLL, which loads plugins, requires a path; dlopen finds a library by its name.
 Expected<const void*> exported(const char* library, const char* symbol) {
   const auto why = [&] {
     const char* const words = ::dlerror();

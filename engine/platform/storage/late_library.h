@@ -7,7 +7,7 @@ namespace nonio::storage {
 
 /// Returns a symbol of one of Nonio's libraries, which is loaded at its first use and never
 /// unloaded. The clients of servers need thirty third-party libraries, whose loading would take
-/// half of the start-up time of every command. Not for processes that can no longer open files.
+/// half of the start-up time of every command. The process must be permitted to open files.
 Expected<const void*> exported(const char* library, const char* symbol);
 
 template <class T>

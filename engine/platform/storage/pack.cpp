@@ -36,7 +36,6 @@ constexpr const char* tables =
     "CREATE TABLE digest(name TEXT PRIMARY KEY, sha256 TEXT NOT NULL) WITHOUT ROWID";
 constexpr std::int64_t plain_file = 0100644;
 
-/// Returns the error of the last statements; empty if there is none.
 std::string trouble_of(Database& database) {
   const auto well = database.take_error();
   return well ? std::string() : well.error().message;
@@ -47,14 +46,13 @@ struct OpenPack {
   Database database;
 };
 
-/// The packs that this process used last; they stay open.
 struct Opened {
   std::mutex mutex;
   pid_t process = 0;
   std::list<OpenPack> packs;
 };
 Opened& opened() {
-  // never destroyed: a child that ends must not close connections of its parent
+  // Never destroyed, because a child that exits must not close connections of its parent.
   static auto* const all = new Opened;
   return *all;
 }
@@ -67,7 +65,7 @@ Error damaged(const fs::path& pack, const std::string& what, const std::string& 
 
 Expected<Database*> open_pack(Opened& all, const fs::path& pack) {
   if (all.process != ::getpid()) {
-    // connections of the parent are leaked on purpose: closing them in a child could damage them
+    // The parent's connections are leaked on purpose: closing them in a child could damage them.
     if (all.process != 0) new std::list<OpenPack>(std::move(all.packs));
     all.packs.clear();
     all.process = ::getpid();
@@ -87,7 +85,7 @@ Expected<Database*> open_pack(Opened& all, const fs::path& pack) {
                 "; bring it back from a copy of the output folder");
   auto database = Database::open(pack, Database::Use::read);
   if (!database) return fail(damaged(pack, "", database.error().message));
-  // a view could take the place of a table, and its content could depend on anything
+  // A view could have the name of a table, and its content could depend on anything.
   const std::string both = database->first(
       "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN ('sqlar', 'digest')");
   if (const std::string why = trouble_of(*database); !why.empty() || both != "2")
@@ -104,8 +102,8 @@ std::optional<std::uint64_t> number(const std::string& text) {
   return value;
 }
 
-/// Returns the size that the archive states for a file, none if there is no such file; an error
-/// unless it is a plain, uncompressed file of this size.
+/// Returns std::nullopt if the file does not exist; an error unless it is a plain, uncompressed
+/// file of the stated size.
 Expected<std::optional<std::uint64_t>> size_in(Database& database, const PackAddress& at) {
   const auto rows = database.rows(
       "SELECT mode, sz, length(data), typeof(data) FROM sqlar WHERE name = ?", {at.name});
@@ -164,7 +162,6 @@ Expected<void> PackWriter::end() {
 
 namespace {
 
-/// Returns the result of `use` for an open pack, under a lock, so that no other thread uses a pack.
 template <class Use>
 auto with_pack(const fs::path& pack, const Use& use) -> decltype(use(std::declval<Database&>())) {
   Opened& all = opened();
@@ -174,7 +171,6 @@ auto with_pack(const fs::path& pack, const Use& use) -> decltype(use(std::declva
 }
 
 Expected<std::vector<std::string>> names_in(Database& database, const PackAddress& folder) {
-  // '0' is the character after '/'
   const std::string from = folder.name + "/", to = folder.name + "0";
   std::vector<std::string> names;
   for (const auto& row : database.rows(

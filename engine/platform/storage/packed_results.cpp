@@ -22,8 +22,6 @@ namespace {
 
 constexpr std::string_view first_line = "nonio-packs/1\n";
 
-/// Removes from `text` the part up to the character `end` and returns it without `end`; none if
-/// there is no such character.
 std::optional<std::string_view> cut(std::string_view& text, char end) {
   const std::size_t at = text.find(end);
   if (at == std::string_view::npos) return std::nullopt;
@@ -39,13 +37,12 @@ std::optional<std::uint64_t> number_in(std::string_view text) {
   return value;
 }
 
-/// Returns the row that begins at `at`, without its line feed.
 std::string_view row_at(const std::string& rows, std::size_t at) {
   return std::string_view(rows).substr(at, rows.find('\n', at) - at);
 }
 std::string_view id_in(std::string_view row) { return row.substr(0, row.find('\t')); }
 
-/// By stat, because the kernel copies the credentials of the process for access.
+/// Uses stat, because access() makes the kernel copy the credentials of the process.
 bool is_there_to_read(const fs::path& path) {
   struct stat info {};
   return ::stat(path.c_str(), &info) == 0;
@@ -128,7 +125,6 @@ void Catalogue::each(const std::function<void(std::string_view, const PackFile&)
 }
 
 Expected<void> Catalogue::publish_with(const fs::path& out, const std::vector<Entry>& more) const {
-  // Number of each pack that contains a campaign, by its name
   std::map<std::string, std::size_t> number;
   std::string packs, rows;
   const auto add = [&](std::string_view id, const PackFile& pack) {
@@ -155,10 +151,8 @@ Expected<void> check_catalogue(const fs::path& out) {
 
 namespace {
 
-/// The catalogue as it was last read; it is read again if the file has changed.
 struct KnownCatalogue {
   struct stat at {};
-  /// Content of the catalogue; null: it cannot be read.
   std::shared_ptr<const Catalogue> catalogue;
 };
 
@@ -196,8 +190,6 @@ bool has_record(const fs::path& folder) {
 
 bool is_hashed(const fs::path& out) { return is_there_to_read(out / hashed_mark); }
 
-/// Calls `take` with each subfolder of a folder, which may be missing. Sets `error` if the folder
-/// cannot be read.
 void each_folder_in(const fs::path& folder, std::error_code& error,
                     const std::function<void(const fs::path&)>& take) {
   std::error_code here;
@@ -218,7 +210,7 @@ fs::path results_folder(const fs::path& out, const std::string& id) {
   fs::path own = own_folder(out, id);
   std::shared_ptr<const Catalogue> catalogue;
   if (!catalogue_of(out, catalogue)) return own;
-  // Reading this address gives the error message about the catalogue.
+  // Reading this address returns the error message about the catalogue.
   if (!catalogue) return out / packs_folder / catalogue_name / id;
   const PackFile* pack = catalogue->find(id);
   if (pack == nullptr || has_record(own)) return own;
@@ -228,7 +220,7 @@ fs::path results_folder(const fs::path& out, const std::string& id) {
 Expected<void> each_results_folder(const fs::path& out,
                                    const std::function<void(const fs::path&)>& take) {
   NONIO_TRY(const auto catalogue, Catalogue::read(out));
-  std::set<std::string> in_folders;  // campaigns in folders that a pack contains too
+  std::set<std::string> in_folders;
   std::error_code error;
   const auto take_folder = [&](const fs::path& folder) {
     const std::string id = folder.filename().string();

@@ -26,11 +26,11 @@ struct Clear {
 };
 using Result = std::unique_ptr<PGresult, Clear>;
 
-// Oldest version of the server: the first that writes doubles in the fewest digits
+// PostgreSQL 12, the first version that writes doubles with the fewest digits.
 constexpr int oldest_server = 120000;
 constexpr const char* connect_seconds = "10";
-/// Number of statements that are sent before their answers are read. The answers fit into the
-/// buffers between server and program, so that neither waits for the other.
+/// Number of statements that are sent before their results are read. The results fit into the
+/// buffers between server and program, so that neither side blocks.
 constexpr int most_under_way = 200;
 constexpr Oid type_of_bytes = 17, type_of_doubles = 701;
 
@@ -50,7 +50,6 @@ std::string numbered(std::string_view sql) {
   return out;
 }
 
-/// Values in the form that libpq takes: numbers as text, bytes in binary.
 class Bound {
  public:
   explicit Bound(std::span<const Value> values) {
@@ -148,8 +147,8 @@ class Postgresql final : public Connection {
     return error_of(Result(::PQexec(server_.get(), sql.c_str())).get());
   }
 
-  /// Begins a transaction and takes a lock, so that only one process writes these tables at a time,
-  /// as with SQLite's BEGIN IMMEDIATE.
+  /// Takes a lock, so that only one process writes these tables at a time, as with SQLite's BEGIN
+  /// IMMEDIATE.
   std::string begin() override {
     if (std::string trouble = script("BEGIN ISOLATION LEVEL READ COMMITTED READ WRITE");
         !trouble.empty())
@@ -183,7 +182,7 @@ class Postgresql final : public Connection {
         server_.get(), [](void*, const char*) {}, nullptr);
     if (::PQserverVersion(server_.get()) < oldest_server)
       return name_ + ": expected PostgreSQL 12 or newer";
-    // These are settings that a role or a database may have changed.
+    // A role or a database may have changed these settings.
     return script("SET search_path TO \"" + schema_ +
                   "\"; SET extra_float_digits TO 1; SET bytea_output TO hex; "
                   "SET standard_conforming_strings TO on; SET lock_timeout TO " +
@@ -209,7 +208,6 @@ class Postgresql final : public Connection {
     return name_ + ": " + (words.empty() ? "the connection is lost" : words) + ": " + away_words;
   }
 
-  /// Returns the error text of a result; "" if there is none.
   std::string error_of(const PGresult* result) const {
     const ExecStatusType status = ::PQresultStatus(result);
     if (status == PGRES_COMMAND_OK || status == PGRES_TUPLES_OK || status == PGRES_PIPELINE_SYNC)
@@ -227,7 +225,6 @@ class Postgresql final : public Connection {
     return message == nullptr ? own_error() : error_words(message);
   }
 
-  /// Waits for all statements that were sent, and returns the first error.
   std::string settle() {
     if (under_way_ == 0) return {};
     under_way_ = 0;
@@ -236,7 +233,6 @@ class Postgresql final : public Connection {
     for (bool synced = false; !synced;) {
       const Result result(::PQgetResult(server_.get()));
       if (!result) {
-        // No result: the answers of one statement are complete, or the connection is lost.
         if (::PQstatus(server_.get()) == CONNECTION_OK) continue;
         if (trouble.empty()) trouble = own_error();
         break;
@@ -259,7 +255,6 @@ class Postgresql final : public Connection {
   }
 
   std::unique_ptr<PGconn, Finish> server_;
-  /// Names of prepared statements, by their SQL.
   std::map<std::string, std::string, std::less<>> names_;
   std::string schema_, name_;
   int under_way_ = 0;
@@ -323,7 +318,7 @@ Expected<std::unique_ptr<Connection>> connect(const Server& server, double patie
   const char* values[] = {connect_seconds, "nonio",          server.url.c_str(),
                           "UTF8",          password.c_str(), nullptr};
   // A server that rejects the connection is running; one that is starting or stopping may be
-  // available at the next attempt. Therefore a rejection is accepted only if it is repeated.
+  // available at the next attempt. Therefore only a repeated rejection is final.
   constexpr int trials = 4;
   for (int trial = 1;; ++trial) {
     auto connection =

@@ -10,18 +10,18 @@
 
 namespace nonio::storage {
 
-/// Random numbers that are the same with every standard library, because the distributions of
-/// <random> are not specified.
+/// Gives the same numbers with every standard library, because the distributions of <random> are
+/// not specified.
 class Random {
  public:
   /// Streams of the same seed are independent of each other.
   Random(std::uint64_t seed, std::uint64_t stream)
       : engine_(SplitMix64::mixed(SplitMix64::mixed(seed) + stream)) {}
 
-  /// Returns a number in [0, 1).
+  /// Uniform in [0, 1).
   double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  /// Returns a standard normal random number (Box and Muller).
+  /// Standard normal (Box-Muller method).
   double normal() {
     const double r = std::sqrt(-2.0 * std::log(1.0 - uniform()));
     return r * std::cos(2.0 * std::numbers::pi * uniform());

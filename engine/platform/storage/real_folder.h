@@ -6,8 +6,8 @@
 
 namespace nonio::storage {
 
-/// Resolves all links in the path of a folder, like `fs::canonical`. The result for the parent
-/// folder is reused for its other subfolders, while both paths still lead to the same folder.
+/// Resolves links like `fs::canonical`, but reuses the result of the parent folder for its other
+/// subfolders while both paths still lead to the same folder.
 std::filesystem::path real_folder(const std::filesystem::path& folder, std::error_code& error);
 
 }  // namespace nonio::storage

@@ -8,7 +8,6 @@ namespace fs = std::filesystem;
 
 ScratchFolder::ScratchFolder(const std::string& purpose, const fs::path& below) {
   std::error_code error;
-  // mkdtemp replaces each X by a random letter.
   std::string name =
       ((below.empty() ? fs::temp_directory_path(error) : fs::absolute(below, error)) /
        ("nonio-" + purpose + "-" + std::string(6, 'X')))

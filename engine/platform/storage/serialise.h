@@ -14,8 +14,8 @@
 #include <variant>
 #include <vector>
 
-/// Converts values to bytes and back, between processes and runs of one program on one computer;
-/// numbers are exact. The bytes may come from a process with plugins, so every length is checked.
+/// Binary serialization between processes and runs of one program on one computer; numbers are
+/// exact. The bytes may come from a process with plugins, so every length is checked.
 namespace nonio::storage {
 
 template <class T>
@@ -100,8 +100,8 @@ class ValueReader {
     rest_.remove_prefix(size);
     return true;
   }
-  /// Reads a length. It is refused if the remaining bytes cannot contain that many elements, so
-  /// that a wrong length allocates no memory.
+  /// Rejects a length for which the remaining bytes cannot contain enough elements, so that a wrong
+  /// length allocates no memory.
   std::size_t length(std::size_t element = 1) {
     std::uint64_t size = 0;
     if (!bytes(&size, sizeof size)) return 0;
@@ -181,8 +181,8 @@ class ValueReader {
   bool well_ = true;
 };
 
-/// Lists all members of a type in the order of their declaration; the compiler reports a missing
-/// one. Use it in namespace nonio::storage, where ValueWriter and ValueReader find it.
+/// Lists all members of a type in the order of their declaration; a missing one is a compile error.
+/// Use it in namespace nonio::storage, where ValueWriter and ValueReader find it.
 #define NONIO_MEMBERS(Type, ...)                                          \
   template <class Archive, class T>                                       \
   requires std::same_as<std::remove_const_t<T>, Type>                     \
@@ -198,8 +198,7 @@ std::string pack(const T&... values) {
   return writer.take();
 }
 
-/// Reads values that `pack` has written. Returns false if the bytes are not a result of `pack` for
-/// these types.
+/// Returns false if `bytes` is not a result of `pack` for these types.
 template <class... T>
 bool unpack(std::string_view bytes, T&... values) {
   ValueReader reader(bytes);

@@ -29,7 +29,7 @@ Spool Spool::in(const fs::path& folder) {
   const int unnamed = ::open(folder.c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
   if (unnamed >= 0 || (errno != EOPNOTSUPP && errno != EISDIR && errno != ENOENT))
     return Spool(unnamed);
-  // the file system has no unnamed files
+  // The file system does not support O_TMPFILE.
   std::string name = (folder / ".list-XXXXXX.nonio-tmp").string();
   const int file = ::mkostemps(name.data(), static_cast<int>(std::strlen(".nonio-tmp")), O_CLOEXEC);
   Spool spool(file);

@@ -10,19 +10,18 @@
 
 namespace nonio::storage {
 
-/// Writes a text that may be too long for memory to a file. `flush` returns the first error of all
-/// calls, including those of `add`.
+/// Writes a text that may exceed the memory to a file. `flush` returns the first error of all
+/// calls.
 class Spool {
  public:
-  /// Creates a file at a path, where it remains.
+  /// Creates a permanent file.
   static Spool at(const std::filesystem::path& path);
-  /// Creates a file without a name, in a folder to which no other process writes.
+  /// Creates an unnamed temporary file in a folder to which no other process writes.
   static Spool in(const std::filesystem::path& folder);
 
   void add(std::string_view text);
   void add(Spool& other);
   bool empty() const { return empty_; }
-  /// Writes everything to disk.
   Expected<void> flush();
 
  private:
@@ -31,7 +30,7 @@ class Spool {
 
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
   bool empty_ = true;
-  int error_ = 0;  ///< errno of the first error; 0: none
+  int error_ = 0;  ///< errno of the first error, otherwise 0
 };
 
 }  // namespace nonio::storage

@@ -29,7 +29,7 @@ void bind(sqlite3_stmt* statement, int place, const Value& value) {
     ::sqlite3_bind_blob64(statement, place, bytes.data(), bytes.size(), SQLITE_STATIC);
 }
 
-/// Returns a cell, valid until the next step of the statement. A double is formatted into `real`.
+/// The result is valid until the next step of the statement; `real` is the buffer for a double.
 std::string_view sqlite_cell(sqlite3_stmt* statement, int column, std::string& real) {
   if (::sqlite3_column_type(statement, column) == SQLITE_FLOAT)
     return real = shortest(::sqlite3_column_double(statement, column));
@@ -65,7 +65,7 @@ class Sqlite final : public Connection {
       take(row);
     }
     std::string trouble = step == SQLITE_DONE ? std::string() : error();
-    // bound values are valid only during this call, and a statement that was reset holds no lock
+    // Bound values are valid only during this call, and a statement that was reset holds no lock.
     ::sqlite3_reset(statement);
     ::sqlite3_clear_bindings(statement);
     return trouble;
@@ -82,8 +82,8 @@ class Sqlite final : public Connection {
     return well ? std::string() : error();
   }
 
-  // Takes the write lock at once: two transactions that read first and then write would wait for
-  // each other.
+  // Takes the write lock at once, because two transactions that first read and then write would
+  // wait for each other.
   std::string begin() override { return put("BEGIN IMMEDIATE", {}); }
   std::string commit() override { return put("COMMIT", {}); }
   void rollback() override {
@@ -120,8 +120,6 @@ class Sqlite final : public Connection {
   std::string path_;
 };
 
-/// Returns a path as a URI for SQLite, with special characters escaped and the parameter
-/// immutable=1.
 std::string address_of(const std::filesystem::path& path) {
   constexpr std::string_view digits = "0123456789ABCDEF";
   std::string address = "file:";
@@ -162,7 +160,7 @@ Expected<std::unique_ptr<Connection>> connect_sqlite(const std::filesystem::path
   if (opened != SQLITE_OK) return fail(connection->error());
   ::sqlite3_busy_timeout(file, static_cast<int>(1000.0 * patience));
   ::sqlite3_extended_result_codes(file, 1);
-  // EXTRA also flushes the folder before a commit returns: otherwise the journal could reappear
+  // EXTRA also flushes the folder before a commit returns; otherwise the journal could reappear
   // after a power failure and undo the commit.
   for (const char* pragma : {"PRAGMA synchronous = EXTRA", "PRAGMA foreign_keys = ON"})
     if (const std::string trouble = connection->put(pragma, {}); !trouble.empty())
@@ -189,7 +187,7 @@ Expected<void> copy_database(const std::filesystem::path& from, const std::files
   for (const auto* one : {&source, &copy})
     if (!one->second) return wrong(one->first.get());
   ::sqlite3_busy_timeout(source.first.get(), static_cast<int>(1000.0 * patience));
-  // takes the read lock first, because a step of the copy does not wait for one
+  // Takes the read lock first, because sqlite3_backup_step does not wait for a lock.
   if (::sqlite3_exec(source.first.get(), "BEGIN; SELECT count(*) FROM sqlite_schema", nullptr,
                      nullptr, nullptr) != SQLITE_OK)
     return wrong(source.first.get());

@@ -22,7 +22,6 @@ constexpr std::uint64_t most_octal = 077777777777;  // largest size in 11 octal 
 constexpr std::uint64_t most_pax = 1U << 20U;
 using Block = std::array<char, block>;
 
-/// Position and length of a field in a header.
 struct TarField {
   std::size_t at, length;
 };
@@ -57,7 +56,7 @@ Expected<std::uint64_t> octal_in(const Block& header, TarField field) {
   return value;
 }
 
-/// Returns the sum of all bytes of a header, with blanks in the field of the sum.
+/// The field of the checksum counts as blanks.
 std::uint64_t sum_of(Block header) {
   std::fill_n(header.data() + sum_field.at, sum_field.length, ' ');
   std::uint64_t sum = 0;
@@ -96,7 +95,7 @@ std::uint64_t padding_of(std::uint64_t size) { return (block - size % block) % b
 }  // namespace
 
 Expected<TarWriter> TarWriter::create(const std::filesystem::path& path) {
-  ::unlink(path.c_str());  // a file that already exists may belong to another user
+  ::unlink(path.c_str());  // The file may belong to another user, so it is not overwritten.
   const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600);
   if (fd < 0) return fail(Error{std::strerror(errno), path.string()});
   return TarWriter(fd, path.string());

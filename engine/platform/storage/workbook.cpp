@@ -21,8 +21,8 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// Returns the first `most` characters, counted in UTF-16 as spreadsheets do, with those that a
-/// sheet name must not contain replaced by '_'. Bytes that are not UTF-8 are left out.
+/// Returns the first `most` characters, counted in UTF-16 as spreadsheets do. Characters that a
+/// sheet name must not contain become '_'; bytes that are not UTF-8 are omitted.
 std::string plain_name(std::string_view name, std::size_t most) {
   std::string out;
   for (std::size_t count = 0; !name.empty();) {
@@ -48,7 +48,7 @@ std::string plain_name(std::string_view name, std::size_t most) {
   return out.empty() ? "_" : out;
 }
 
-/// Returns the number of characters of a UTF-8 text, which is at most its length in UTF-16.
+/// The number of code points, which is at most the length in UTF-16.
 std::size_t characters_of(std::string_view text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));

@@ -9,44 +9,43 @@
 
 #include "nonio/sdk/error.h"
 
-/// A spreadsheet as a value, and its conversion to XLSX (ECMA-376).
 namespace nonio::storage {
 
-/// A date YYYY-MM-DD; written as text if it is not a day that spreadsheets represent alike (from
-/// 1900-03-01 on).
+/// A date YYYY-MM-DD. Invalid dates and dates before 1900-03-01, which spreadsheets represent
+/// differently, are written as text.
 struct Day {
   std::string text;
 };
 
-/// Content of a cell. A number that is not finite is written as a blank cell; text is never read as
-/// a formula.
+/// A non-finite number is written as a blank cell; text is never interpreted as a formula.
 using Cell = std::variant<std::monostate, double, std::string, Day>;
 
-/// A chart of curves, each over a column of positions. Rows and columns are counted from 0.
+/// A chart of curves, each with a column of positions. Rows and columns are counted from 0.
 struct Chart {
   struct Curve {
     std::string name, sheet;
     std::size_t position_column = 0, value_column = 0, first_row = 0, last_row = 0;
-    bool line = true;              ///< true: the points are connected by a line
-    std::optional<double> U = {};  ///< expanded uncertainty in the unit of the values, drawn as
-                                   ///< error bars; none: no bars
+    bool line = true;  ///< whether the points are connected by a line
+    /// Expanded uncertainty in the unit of the values; drawn as error bars if stated.
+    std::optional<double> U = {};
   };
   std::string title, position_name, value_name;
   std::vector<Curve> curves;
 };
 
 struct Sheet {
-  /// Name of the sheet; it must be one that spreadsheets accept, as `sheet_name` makes it.
+  /// Must be a valid and unique name, as `sheet_name` returns it.
   std::string name;
   std::vector<std::vector<Cell>> rows{};
-  std::vector<std::size_t> headings{};  ///< numbers of the rows in bold, from 0
+  std::vector<std::size_t> headings{};  ///< indices of the rows in bold
   std::size_t frozen = 0;               ///< number of rows at the top that stay visible
-  std::vector<Chart> charts{};          ///< charts, placed one below another and below the rows
+  std::vector<Chart> charts{};          ///< placed one below another and below the rows
 };
 
 struct Workbook {
   std::string title;
-  std::string date;  ///< date in the properties, YYYY-MM-DD; the same workbook has the same bytes
+  /// Creation date YYYY-MM-DD, stated so that the same workbook gives the same bytes.
+  std::string date;
   std::vector<Sheet> sheets;
 };
 
@@ -57,9 +56,8 @@ inline constexpr std::size_t most_sheet_rows = 1'048'576, most_sheet_columns = 1
 /// apostrophe at either end, different from the names of its other sheets.
 std::string sheet_name(const Workbook& book, const std::string& name);
 
-/// Returns the XLSX file. Charts refer to sheets by their names in `book`. Errors: more rows or
-/// columns than the format allows; a text longer than a cell can contain; no space for temporary
-/// files.
+/// Returns the XLSX file. Errors: more rows or columns than the format allows; a text longer than a
+/// cell can contain; no space for temporary files.
 Expected<std::string> xlsx_bytes(const Workbook& book);
 
 }  // namespace nonio::storage

@@ -14,16 +14,15 @@ namespace nonio::storage {
 
 namespace {
 
-/// Time in the document's properties if no date is stated: the first day that a ZIP archive can
-/// store.
+/// Creation time if no date is stated: 1980-01-01, the first day that a ZIP archive can store.
 constexpr std::time_t no_day = 315532800;
 constexpr std::array<lxw_color_t, 6> colours{0x1B6CA8, 0xC8553D, 0x4D8B31,
                                              0x7A4FA3, 0x8A6D1D, 0x4A4A4A};
-constexpr std::size_t chart_rows = 22;  ///< height of a chart in rows of the usual height
+constexpr std::size_t chart_rows = 22;
 constexpr std::uint16_t chart_width = 900, chart_height = 420;
 
-/// Parses a date; none unless it is a day from 1900-03-01 on, because spreadsheets count the day
-/// 1900-02-29, which did not exist.
+/// Returns std::nullopt before 1900-03-01, because spreadsheets count the day 1900-02-29, which did
+/// not exist.
 std::optional<std::chrono::year_month_day> day_of(const std::string& text) {
   int year = 0;
   unsigned month = 0, day = 0;
@@ -42,9 +41,7 @@ bool is_hexadecimal(char c) {
   return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
 }
 
-/// Escapes text for a cell: "_x0041_" would be read as "A" (ECMA-376 part 1, 22.9.2.19), so its
-/// first underscore is written as such a sequence. Texts that were read from TOML contain only
-/// UTF-8.
+/// "_x0041_" would be read as "A" (ECMA-376 part 1, 22.9.2.19), so its first underscore is escaped.
 std::string escaped(const std::string& text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -61,7 +58,6 @@ struct Formats {
   lxw_format *bold = nullptr, *day = nullptr;
 };
 
-/// Keeps the first error of several calls.
 class First {
  public:
   void operator()(lxw_error error) {
@@ -94,8 +90,6 @@ void write_cell(lxw_worksheet* sheet, lxw_row_t row, lxw_col_t column, const Cel
   }
 }
 
-/// Sets the width of each column to its longest text, but at least 9 and at most 60 characters;
-/// numbers and dates count as 13 characters.
 void set_widths(lxw_worksheet* sheet, const Sheet& rows, First& first) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows.rows)
@@ -156,7 +150,7 @@ void add_chart(lxw_workbook* book, lxw_worksheet* sheet, const Chart& chart, std
   chart_axis_set_name(drawn->y_axis, chart.value_name.c_str());
   chart_axis_set_label_position(drawn->x_axis, LXW_CHART_AXIS_LABEL_POSITION_LOW);
   lxw_chart_options options{};
-  options.x_scale = chart_width / 480.0;  // 480 x 288 is the default size of the library
+  options.x_scale = chart_width / 480.0;  // 480 x 288 is the default size in the library
   options.y_scale = chart_height / 288.0;
   first(worksheet_insert_chart_opt(sheet, static_cast<lxw_row_t>(row), 0, drawn, &options));
 }
@@ -172,8 +166,8 @@ void add_sheet(lxw_workbook* book, const Sheet& sheet, const Formats& formats, F
       write_cell(added, static_cast<lxw_row_t>(r), static_cast<lxw_col_t>(k), sheet.rows[r][k],
                  bold[r] != 0, formats, first);
   worksheet_set_landscape(added);
-  worksheet_set_paper(added, 9);        // paper format A4
-  worksheet_fit_to_pages(added, 1, 0);  // scaled to the width of one page
+  worksheet_set_paper(added, 9);
+  worksheet_fit_to_pages(added, 1, 0);
   if (sheet.frozen > 0) worksheet_freeze_panes(added, static_cast<lxw_row_t>(sheet.frozen), 0);
   for (std::size_t k = 0; k < sheet.charts.size(); ++k)
     add_chart(book, added, sheet.charts[k], sheet.rows.size() + 1 + k * chart_rows, first);

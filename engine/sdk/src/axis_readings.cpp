@@ -16,9 +16,9 @@ bool complete(const std::vector<double>& column, const std::vector<char>& rows) 
   return true;
 }
 
-/// Fills the temperatures of the rows `blank` of one line from the rows `known`. Returns false if a
-/// gap is longer than a quarter of the line, if a row outside of all known rows is more than an
-/// eighth of the line from the nearest, or if fewer than three rows are known.
+/// Interpolates the temperatures of the rows `blank` of one line from the rows `known`. Returns
+/// false if a gap is longer than a quarter of the line, if a row at an end of the line is more than
+/// an eighth of the line from the nearest known row, or if fewer than three rows are known.
 bool fill_blanks(const std::vector<std::uint32_t>& known, const std::vector<std::uint32_t>& blank,
                  AxisReadings& r) {
   if (blank.empty()) return true;
@@ -52,7 +52,7 @@ bool known_temperatures(const Observations& o, AxisReadings& r) {
     gaps = gaps || !has;
   }
   if (!gaps) return true;
-  if (!(r.duration > 0.0)) return false;  // the order in time is not known
+  if (!(r.duration > 0.0)) return false;
   const std::size_t lines = std::max<std::size_t>(o.line.empty() ? 1 : o.lines.size(), 1);
   std::vector<std::vector<std::uint32_t>> known(lines), blank(lines);
   for (std::uint32_t i = 0; i < o.size(); ++i)
@@ -75,7 +75,6 @@ void fill_times(const Observations& o, AxisReadings& r) {
   r.timed = complete(o.time, r.moved);
   const auto line_of = [&](std::size_t i) { return o.line.empty() ? 0U : o.line[i]; };
   const std::size_t lines = std::max<std::size_t>(o.line.empty() ? 1 : o.lines.size(), 1);
-  // By line: its first time, or how many of its readings were met.
   std::vector<double> of_line(lines, r.timed ? std::numeric_limits<double>::infinity() : 0.0);
   for (std::size_t i = 0; r.timed && i < o.size(); ++i)
     if (r.moved[i]) of_line[line_of(i)] = std::min(of_line[line_of(i)], o.time[i]);

@@ -8,15 +8,15 @@
 
 #include "nonio/sdk/powers_of_10.h"
 
-// Three methods of rounding, all of which are exact. Two are faster but not always applicable: one
-// product if no tie is near (`quickly_rounded`), and the same product to 12 digits
-// (`quick_decimal`). The third uses the decimal digits of std::to_chars.
+// All three methods of rounding are exact. Two are faster but not always applicable: one product if
+// no tie is near (`quickly_rounded`), and the same product to 12 digits (`quick_decimal`). The
+// third uses the decimal digits of std::to_chars.
 namespace nonio {
 namespace {
 
-// Returns size * 10^places rounded to an integer. Nothing for places outside of 0..22, for a
-// product of 10^12 or more, or within 0.01 of a tie, which rounding errors of the product could
-// decide.
+// Returns size * 10^places rounded to an integer. Returns std::nullopt for places outside of 0..22,
+// for a product of 10^12 or more, or within 0.01 of a tie, which rounding errors of the product
+// could decide.
 std::optional<std::int64_t> quickly_rounded(double size, int places) {
   if (places < 0 || places >= static_cast<int>(exact_powers_of_10.size())) return std::nullopt;
   const double product = size * exact_powers_of_10[static_cast<std::size_t>(places)];
@@ -27,13 +27,11 @@ std::optional<std::int64_t> quickly_rounded(double size, int places) {
   return rest > 0.5 ? whole + 1 : whole;
 }
 
-// Rounds a size from 1e-11 to 1e12 to 12 significant digits; nothing for other sizes, or if
-// `quickly_rounded` gives nothing.
 std::optional<Decimal> quick_decimal(double size) {
   if (!(size >= 1e-11 && size < 1e12)) return std::nullopt;
   int places = 11;
   while (size >= exact_powers_of_10[static_cast<std::size_t>(12 - places)]) --places;
-  if (places == 11)  // the size is below 10, perhaps even below 1
+  if (places == 11)  // The size is below 10, perhaps even below 1.
     while (size * exact_powers_of_10[static_cast<std::size_t>(places - 11)] < 1.0) ++places;
   const auto digits = quickly_rounded(size, places);
   return digits ? std::optional(Decimal{*digits, places}) : std::nullopt;
@@ -55,7 +53,7 @@ std::string fixed_text_by_digits(double value, int decimals) {
   const char* const from = buffer.data() + held + 2;
   std::from_chars(*from == '+' ? from + 1 : from, end, exponent);
   std::string digits = std::string(1, buffer[0]) + std::string(buffer.data() + 2, held - 1);
-  int whole = exponent + 1;  // digits before the point
+  int whole = exponent + 1;
   if (whole < 1) {
     digits.insert(0, static_cast<std::size_t>(1 - whole), '0');
     whole = 1;
@@ -140,7 +138,7 @@ std::string short_text(double value, int significant) {
 double printed(double si, Quantity quantity) {
   const double value = si * unit_of(quantity).per_si;
   if (!std::isfinite(value)) return value;
-  if (value == 0.0) return 0.0;  // never -0
+  if (value == 0.0) return 0.0;
   if (const auto decimal = quick_decimal(std::fabs(value)))
     return std::copysign(decimal->value(), value);
   return rounded_by_digits(value);
@@ -155,7 +153,7 @@ std::optional<Decimal> shortest_decimal(double size) {
 
 void append_shortest(std::string& out, double value) {
   const double size = std::fabs(value);
-  if (size >= 1e-3 && size < 1e5)  // no exponent in this range
+  if (size >= 1e-3 && size < 1e5)
     if (const auto decimal = shortest_decimal(size)) {
       out += decimal_text(decimal->digits, decimal->places, value < 0.0);
       return;

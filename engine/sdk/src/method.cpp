@@ -63,7 +63,6 @@ Expected<void> check_roles(const Method& method) {
   return {};
 }
 
-/// Checks the readings of any reader against the columns of the method.
 Expected<void> check_readings(const Method& method, const Readings& readings) {
   for (const auto& [name, values] : readings.columns)
     if (values.size() != readings.size())
@@ -87,7 +86,6 @@ Expected<void> check_readings(const Method& method, const Readings& readings) {
 
 using Measured = std::vector<double> Observations::*;
 
-/// Returns the member of Observations for a role; null for a role that has no such column.
 Measured measured(Role role) {
   switch (role) {
     case Role::time:
@@ -119,8 +117,6 @@ Observations::AxisColumn axis_of(const Measurement& m, const Column& position) {
   return {m.axis, position.quantity == Quantity::angle, {}, {}};
 }
 
-/// Returns the direction in which the deviation of a length is sensed, a unit vector; all 0 if the
-/// name of the axis does not start with X, Y or Z.
 std::array<double, 3> sense_of(const Measurement& m) {
   std::array<double, 3> sense{};
   const std::size_t k = coordinate_of(m.lateral.empty() ? m.axis : m.lateral);
@@ -176,7 +172,6 @@ Expected<Observations> observe_by_roles(const Method& method, const MethodInput&
   return o;
 }
 
-/// Returns the values of a role in these observations; empty if they do not determine it.
 std::vector<double> values_of(Role role, const Observations& o) {
   std::vector<double> values;
   if (const Measured kept = measured(role)) return o.*kept;

@@ -27,6 +27,36 @@ SpaceReadings space_of(const Observations& o) {
   return out;
 }
 
+std::optional<Observations> in_bodies(const Observations& o) {
+  constexpr double same = 1e-6;  // rad
+  constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
+  const Observations::Line* first = nullptr;
+  bool differ = false;
+  for (const Observations::Line& line : o.lines) {
+    if (line.body.empty()) continue;
+    if (first == nullptr) first = &line;
+    const double angle = line.body_turned - first->body_turned;
+    differ = differ || std::fabs(std::sin(angle / 2.0)) > same;
+  }
+  if (!differ || o.axis("X") == nullptr || o.axis("Y") == nullptr) return std::nullopt;
+  Observations out = o;
+  std::array<std::vector<double>*, 2> at{};
+  for (auto& axis : out.axes)
+    if (const std::size_t k = coordinate_of(axis.axis); k < 2) at[k] = &axis.position;
+  out.sense.resize(o.size());
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    const Observations::Line& line = o.lines[o.line_of(i)];
+    const double c = std::cos(line.body_turned), s = std::sin(line.body_turned);
+    const double x = (*at[0])[i] - line.body_origin[0], y = (*at[1])[i] - line.body_origin[1];
+    const bool is_of_body = !line.body.empty();
+    (*at[0])[i] = is_of_body ? c * x + s * y : nowhere;
+    (*at[1])[i] = is_of_body ? c * y - s * x : nowhere;
+    const auto& n = o.sense_of(i);
+    out.sense[i] = {c * n[0] + s * n[1], c * n[1] - s * n[0], n[2]};
+  }
+  return out;
+}
+
 bool of_ball_centres(const Observations& o) {
   return !o.angular && !o.axes.empty() && o.axes.front().rotary;
 }

@@ -59,7 +59,7 @@ std::string evidence_text(const Number& n) {
     return value < 1e-4 ? "p < 0.0001" : "p = " + short_text(value, 2);
   const bool deviation =
       n.quantity == Quantity::deviation || n.quantity == Quantity::angular_deviation;
-  // a rounding error is written as 0.000, not as a number with an exponent
+  // A rounding error is written as 0.000, not as a number with an exponent.
   if (deviation && std::fabs(value) < 5e-4) return fixed_text(0.0, 3);
   if (n.quantity != Quantity::length && n.quantity != Quantity::angle) return short_text(value);
   std::string text = fixed_text(value, 4);
@@ -70,7 +70,6 @@ std::string evidence_text(const Number& n) {
 
 namespace {
 
-/// Whether `joined` equals name + suffix; compares without joining them.
 bool is_joined(std::string_view joined, std::string_view name, std::string_view suffix) {
   return joined.size() == name.size() + suffix.size() && joined.starts_with(name) &&
          joined.ends_with(suffix);
@@ -115,7 +114,7 @@ std::string filled(std::string_view text, const Finding& finding, std::string_vi
 Texts said(const Templates& templates, std::string_view language, Texts texts) {
   for (auto& [key, text] : texts) {
     std::string out;
-    for (std::size_t at = 0; at <= text.size();) {  // for each part of the list
+    for (std::size_t at = 0; at <= text.size();) {
       const std::size_t end = std::min(text.find(", ", at), text.size());
       const std::string one = text.substr(at, end - at);
       const std::string term = words(templates, language, "term." + key + "." + one);

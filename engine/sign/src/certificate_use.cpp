@@ -6,7 +6,7 @@
 namespace nonio::sign {
 
 Expected<void> check_signer_use(X509* certificate) {
-  // OpenSSL returns all bits if the certificate has no key usage, because any use is then allowed.
+  // OpenSSL returns all bits if the certificate has no key usage.
   if ((X509_get_key_usage(certificate) & (KU_DIGITAL_SIGNATURE | KU_NON_REPUDIATION)) == 0)
     return fail("is not for signatures: key usage has neither digitalSignature nor nonRepudiation");
   const std::unique_ptr<EXTENDED_KEY_USAGE, Freed<EXTENDED_KEY_USAGE_free>> uses(

@@ -5,9 +5,9 @@
 
 namespace nonio::sign {
 
-/// Returns an error unless the certificate allows its key to sign documents. A key usage, if
-/// present, must contain digitalSignature or nonRepudiation, and an extended key usage
-/// documentSigning, emailProtection or anyExtendedKeyUsage.
+/// Returns an error unless the key usage, if present, contains digitalSignature or nonRepudiation,
+/// and the extended key usage, if present, contains documentSigning, emailProtection or
+/// anyExtendedKeyUsage.
 Expected<void> check_signer_use(X509* certificate);
 
 }  // namespace nonio::sign

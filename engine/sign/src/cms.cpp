@@ -10,7 +10,7 @@ namespace nonio::sign {
 
 namespace {
 
-/// Returns the DER of a SET OF. `members`: DER of each element, in any order.
+/// Returns the DER of a SET OF; DER requires sorted elements.
 std::string set_of(std::vector<std::string> members) {
   std::sort(members.begin(), members.end());
   std::string content;
@@ -34,8 +34,7 @@ std::string attributes_of(CMS_SignerInfo* signer) {
   return set_of(std::move(members));
 }
 
-/// Adds content type and digest to the attributes, which contain signing-certificate-v2 already,
-/// and signs them. CMS_final would add a signing time, which PAdES forbids (EN 319 142-1).
+/// CMS_final is not used because it would add a signing time, which PAdES forbids (EN 319 142-1).
 Expected<void> sign_attributes(const Key::Impl& key, CMS_SignerInfo* signer,
                                const std::string& digest) {
   if (CMS_signed_add1_attr_by_NID(signer, NID_pkcs9_contentType, V_ASN1_OBJECT,

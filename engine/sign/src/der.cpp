@@ -58,7 +58,6 @@ constexpr std::string_view pkcs1 = "\x06\x09\x2a\x86\x48\x86\xf7\x0d\x01\x01"sv;
 /// DER without the last byte of the OIDs 1.2.840.10045.4.3.2 to .4: ECDSA with SHA-256 to SHA-512.
 constexpr std::string_view ecdsa = "\x06\x08\x2a\x86\x48\xce\x3d\x04\x03"sv;
 
-/// Returns 0 for SHA-256, 1 for SHA-384, 2 for SHA-512.
 char rank(const EVP_MD* digest) {
   const int size = EVP_MD_get_size(digest);
   return static_cast<char>(size == 32 ? 0 : size == 48 ? 1 : 2);

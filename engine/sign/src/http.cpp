@@ -31,8 +31,7 @@ struct AddressesFreed {
   void operator()(addrinfo* all) const { ::freeaddrinfo(all); }
 };
 
-/// Returns a connected socket. Reports a refused connection at once, unlike OpenSSL, which retries
-/// until the time limit.
+/// Reports a refused connection at once, unlike OpenSSL, which retries until the time limit.
 Expected<int> connect_to(const char* host, const char* port, int seconds) {
   addrinfo wanted{};
   wanted.ai_socktype = SOCK_STREAM;
@@ -60,7 +59,7 @@ Expected<int> connect_to(const char* host, const char* port, int seconds) {
   return fail(why);
 }
 
-/// Returns a connection; null if the environment states a proxy, through which OpenSSL connects.
+/// Returns null if the environment configures a proxy, through which OpenSSL then connects.
 Expected<BioPtr> connection_to(const OpensslText& host, const OpensslText& port, int seconds) {
   if (OSSL_HTTP_adapt_proxy(nullptr, nullptr, host.text, 0) != nullptr) return BioPtr();
   NONIO_TRY(const auto connected, connect_to(host.text, port.text, seconds));

@@ -10,8 +10,8 @@ namespace nonio::sign {
 
 /// A request over plain HTTP. The answer is signed, so TLS is not needed.
 struct Question {
-  const char* query = nullptr;  ///< media type of the body; null: no body (GET)
-  const char* reply = nullptr;  ///< required media type of the answer; null: any
+  const char* query = nullptr;  ///< media type of the body; null for a request without body (GET)
+  const char* reply = nullptr;  ///< required media type of the answer; null if any type is accepted
   std::string body{};
   std::size_t longest = 0;  ///< largest size of the answer in bytes
   int seconds = 10;

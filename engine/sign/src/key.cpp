@@ -53,8 +53,7 @@ Expected<Key::Impl> open_pkcs12(const std::string& path, const std::string& pass
   return impl;
 }
 
-/// Removes self-signed certificates from the chain. A verifier needs its own copy of the root
-/// anyway, and the files become smaller.
+/// Verifiers have their own copies of the roots, so that the signed files need not contain them.
 void leave_roots_out(std::vector<CertificatePtr>& chain) {
   std::erase_if(chain, [](const CertificatePtr& c) {
     return (X509_get_extension_flags(c.get()) & EXFLAG_SS) != 0;

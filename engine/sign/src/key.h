@@ -18,8 +18,8 @@ struct Key::Impl {
 
 Expected<Key::Impl> open_token(const KeyPlace& place, const std::string& password);
 
-/// Returns the CMS signature over `before` followed by `after`, in DER. `no_time_stamp`: why an
-/// optional time stamp is missing.
+/// Returns the CMS signature over `before` followed by `after`, in DER. Sets `no_time_stamp` to the
+/// reason why an optional time stamp is missing.
 Expected<std::string> make_cms(const Key::Impl& key, std::string_view before,
                                std::string_view after, Time now, const TimeStamping& stamping,
                                std::string& no_time_stamp);

@@ -14,7 +14,6 @@
 
 #include "nonio/sign/sign.h"
 
-/// Owning pointers for OpenSSL objects, and conversions of their bytes and times.
 namespace nonio::sign {
 
 template <auto Free>
@@ -32,8 +31,7 @@ using CertificatePtr = std::unique_ptr<X509, Freed<X509_free>>;
 using PrivateKeyPtr = std::unique_ptr<EVP_PKEY, Freed<EVP_PKEY_free>>;
 using CmsPtr = std::unique_ptr<CMS_ContentInfo, Freed<CMS_ContentInfo_free>>;
 using RevocationPtr = std::unique_ptr<X509_CRL, Freed<X509_CRL_free>>;
-using Borrowed = std::unique_ptr<STACK_OF(X509), Freed<free_stack>>;  ///< stack that does not own
-                                                                      ///< its certificates
+using Borrowed = std::unique_ptr<STACK_OF(X509), Freed<free_stack>>;
 using Owned = std::unique_ptr<STACK_OF(X509), Freed<free_owned_stack>>;
 
 /// Returns OpenSSL's message about the last error, and clears the error queue.
@@ -61,15 +59,14 @@ inline constexpr const char* too_large = "is larger than 100 MB";
 std::string sha256(std::string_view one, std::string_view other = {});
 std::string hex(std::string_view bytes);
 std::string subject_of(const X509* certificate);
-/// Returns the time in seconds since 1970-01-01 UTC; 0 if it is invalid.
+/// Returns seconds since 1970-01-01 UTC; 0 if `time` is invalid.
 Time time_of(const ASN1_TIME* time);
-/// Returns the name of a key's algorithm, such as "RSA-3072" or "P-256"; an error for keys that are
-/// too weak or cannot be used in a CMS. `old`: whether RSA needs 2048 bits, as for existing
-/// signatures, instead of 3072.
+/// Returns, for example, "RSA-3072" or "P-256"; an error for keys that are too weak or cannot be
+/// used in a CMS. `old`: whether RSA keys of 2048 bits are accepted, as for existing signatures,
+/// instead of 3072.
 Expected<std::string> algorithm_of(EVP_PKEY* key, bool old);
 
-/// Returns all certificates of a PEM text. An error if there is none, or if one of them cannot be
-/// read.
+/// Returns an error if the PEM text contains no certificate, or a certificate that cannot be read.
 Expected<std::vector<CertificatePtr>> certificates_of(const std::string& pem);
 
 }  // namespace nonio::sign

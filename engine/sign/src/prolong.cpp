@@ -16,7 +16,6 @@ namespace nonio::sign {
 
 namespace {
 
-/// A chain of certificates, and the times and the role for which its revocation is checked.
 struct Used {
   std::vector<CertificatePtr> chain;
   Revocation revocation;
@@ -121,8 +120,6 @@ class Prolongation {
     return {};
   }
 
-  /// Collects the chains of the signature, of its time stamp, and of each document time stamp. No
-  /// other time stamp covers the newest one yet.
   Expected<void> read_chains(Added& added) {
     const Time now = how_.verifier.now;
     NONIO_TRY(auto stamps, check_document_stamps(added, known_, now));

@@ -28,7 +28,6 @@ bool is_signed_by(X509_CRL* list, X509* issuer) {
   return is_his;
 }
 
-/// Returns the newest list signed by the issuer; null if there is none.
 X509_CRL* newest_list(const Trusted& known, X509* issuer) {
   X509_CRL* newest = nullptr;
   for (const RevocationPtr& l : known.lists)
@@ -63,8 +62,7 @@ Expected<void> check_list(const X509_CRL* list, X509* issuer, Time now) {
   return {};
 }
 
-/// Returns the time from which the certificate is regarded as revoked: the date of its revocation,
-/// or its invalidity date if that is earlier.
+/// Returns the revocation date, or the invalidity date if that is earlier.
 Time revoked_from(const X509_REVOKED* entry) {
   const Time when = time_of(X509_REVOKED_get0_revocationDate(entry));
   const std::unique_ptr<ASN1_GENERALIZEDTIME, Freed<ASN1_GENERALIZEDTIME_free>> invalid(
@@ -88,7 +86,7 @@ bool leaves_stamps_good(const X509_REVOKED* entry) {
 /// Entry of a revocation list or an OCSP answer for one certificate.
 struct Said {
   Time made = 0, next = 0;
-  Time revoked = 0;  ///< time of the revocation; 0: not revoked
+  Time revoked = 0;  ///< time of the revocation; 0 if not revoked
   bool leaves_stamps_good = false;
 };
 
@@ -144,8 +142,7 @@ Expected<void> check_responder(OCSP_BASICRESP* answer, X509* issuer) {
   return {};
 }
 
-/// Returns the answer's entry for the certificate; none if the answer is only about other
-/// certificates, or if the status is unknown.
+/// Returns nullopt if the answer is only about other certificates, or if the status is unknown.
 std::optional<Said> said_by(OCSP_BASICRESP* answer, X509* one, X509* issuer) {
   for (int i = 0; i < OCSP_resp_count(answer); ++i) {
     OCSP_SINGLERESP* single = OCSP_resp_get0(answer, i);
@@ -170,8 +167,7 @@ std::optional<Said> said_by(OCSP_BASICRESP* answer, X509* one, X509* issuer) {
   return std::nullopt;
 }
 
-/// Returns the entry of a statement for the certificate; none if the statement is from another
-/// issuer or about another certificate, or if the status is unknown. An error if it is damaged.
+/// Returns nullopt unless the statement is about the certificate and its status is known.
 Expected<std::optional<Said>> heard(const Statement& s, X509* one, X509* issuer) {
   if (s.answer) {
     const auto said = said_by(s.answer.get(), one, issuer);
@@ -188,8 +184,7 @@ Expected<std::optional<Said>> heard(const Statement& s, X509* one, X509* issuer)
 
 std::string kind_of(const Statement& s) { return s.answer ? "answer (OCSP)" : "list"; }
 
-/// Returns why an entry cannot prove that the certificate was good at `at`; returns an empty text
-/// if it can.
+/// Returns why an entry cannot prove that the certificate was good at `at`, or an empty text.
 std::string why_not(const Said& said, X509* one, X509* issuer, Time at, Time seen) {
   const std::string whose = " for " + quoted(subject_of(one));
   if (said.made > seen + clock_tolerance)
@@ -259,9 +254,8 @@ class Line {
   }
 
  private:
-  /// Checks the lists given by the verifier. While the certificate is valid, only the newest list
-  /// of the issuer is used, and it must be current. After the expiry, every list of the issuer is
-  /// checked, and one that was made before the expiry proves the status.
+  /// While the certificate is valid, only the newest list of the issuer is used, and it must be
+  /// current. After the expiry, any list that was made before the expiry proves the status.
   Expected<void> check_given() {
     const bool has_run_out = time_of(X509_get0_notAfter(one_)) < revocation_.now;
     X509_CRL* newest = newest_list(known_, issuer_);

@@ -58,8 +58,7 @@ Expected<SignedData> SignedData::parse(std::string_view der, Content content) {
   return out;
 }
 
-/// Reads the outer structure (RFC 5652, 5.1) and checks its unsigned parts, which OpenSSL accepts
-/// leniently.
+/// Also checks the unsigned parts (RFC 5652, 5.1), about which OpenSSL is lenient.
 Expected<void> SignedData::read_outside(Content content) {
   const auto info = Der::only(der_, Der::sequence);
   if (!info || !Der::sound(der_)) return malformed("no DER");
@@ -153,8 +152,7 @@ Expected<void> SignedData::read_unsigned(std::string_view text, Content content)
   return {};
 }
 
-/// Finds the signer's certificate by issuer and serial number. They are compared byte by byte,
-/// because OpenSSL's comparison ignores case and spaces.
+/// Issuer and serial number are compared byte by byte, because OpenSSL ignores case and spaces.
 Expected<void> SignedData::find_certificate(std::string_view identifier) {
   for (std::size_t i = 0; i < certificates_.size(); ++i) {
     X509* c = certificates_[i].get();
@@ -209,8 +207,7 @@ Expected<void> SignedData::check_certificate_named() const {
     return bytes_of(static_cast<const ASN1_STRING*>(
         CMS_signed_get0_data_by_OBJ(signer_, OBJ_nid2obj(nid), -3, V_ASN1_SEQUENCE)));
   };
-  // Syntax: SigningCertificateV2 ::= SEQUENCE { SEQUENCE OF ESSCertIDv2 { algorithm (SHA-256),
-  // hash, .. } }
+  // RFC 5035: SEQUENCE { SEQUENCE OF ESSCertIDv2 { algorithm (default SHA-256), hash, ... } }
   std::string_view text = attribute(NID_id_smime_aa_signingCertificateV2);
   const EVP_MD* kind = EVP_sha256();
   // Time stamps may use the first version of the attribute, with SHA-1.

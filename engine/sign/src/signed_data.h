@@ -9,7 +9,6 @@
 
 namespace nonio::sign {
 
-/// Trusted roots and revocation data of a verifier.
 struct Trusted {
   std::vector<CertificatePtr> signer_roots, time_roots;
   std::vector<RevocationPtr> lists;
@@ -26,23 +25,21 @@ class SignedData {
   /// every byte that is not signed, only one value is accepted.
   static Expected<SignedData> parse(std::string_view der, Content content);
 
-  /// Checks that the signed attributes of a detached signature are exactly those that Nonio writes,
-  /// once each.
+  /// Returns an error unless the signed attributes are exactly those that Nonio writes, once each.
   Expected<void> check_attributes() const;
   /// Checks the signed digest of `before` followed by `after`, and the signature over it.
   Expected<void> check_signature(std::string_view before, std::string_view after) const;
-  /// Checks that the signed attributes name the signer's certificate (ESS signing-certificate, RFC
-  /// 5035).
+  /// Checks the signed reference to the signer's certificate (ESS, RFC 5035).
   Expected<void> check_certificate_named() const;
 
-  /// Returns all certificates in the structure, which are not checked yet.
+  /// Returns all certificates of the structure without any check.
   const std::vector<CertificatePtr>& certificates() const { return certificates_; }
   X509* certificate() const { return signer_certificate_; }
   std::string_view certificate_der() const { return signer_der_; }
   std::string_view signature() const { return signature_; }
   /// Returns the content of a time stamp (TSTInfo, RFC 3161); empty for a detached signature.
   std::string_view content() const { return content_; }
-  /// Returns the time-stamp token of a signature; empty if there is none.
+  /// Returns the time-stamp token of a signature; empty without a token.
   std::string_view time_stamp() const { return token_; }
 
  private:
@@ -63,22 +60,18 @@ class SignedData {
   std::string_view signer_der_, signature_, content_, token_;
 };
 
-/// Returns the chain from this certificate through `others` to a root, with this certificate first.
-/// All must be valid at `at`.
+/// Returns the chain from this certificate to a root. All certificates must be valid at `at`.
 Expected<std::vector<CertificatePtr>> chain_of(X509* certificate,
                                                const std::vector<CertificatePtr>& others,
                                                const std::vector<CertificatePtr>& roots, Time at);
-/// Returns an error unless each certificate was issued and validly signed by one of `certificates`
-/// or `roots`.
+/// Each certificate must be issued and validly signed by one of `certificates` or `roots`.
 Expected<void> check_issued(const std::vector<CertificatePtr>& certificates,
                             const std::vector<CertificatePtr>& roots);
 
-/// Returns an error unless each certificate is in the chain exactly once, because no signature
-/// covers the list of certificates.
+/// Each certificate must be in the chain exactly once, because no signature covers the list.
 Expected<void> check_only(const std::vector<CertificatePtr>& certificates,
                           const std::vector<CertificatePtr>& chain);
-/// Returns those of `others` that lead from the certificate towards the root, each followed by its
-/// issuer.
+/// Returns those of `others` that lead from the certificate towards the root, in this order.
 std::vector<CertificatePtr> way_up(X509* certificate, std::vector<CertificatePtr> others);
 
 }  // namespace nonio::sign

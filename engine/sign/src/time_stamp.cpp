@@ -51,7 +51,7 @@ Expected<Request> request_for(std::string_view imprint_wanted) {
                  {reinterpret_cast<const char*>(random.data()), random.size()}};
 }
 
-/// Returns the token of a TimeStampResp ::= SEQUENCE { status, token } with its bytes unchanged.
+/// Returns the token of a TimeStampResp (RFC 3161) with its bytes unchanged.
 Expected<std::string> token_of(const std::string& answer) {
   ERR_clear_error();
   const unsigned char* at = data_of(answer);
@@ -125,8 +125,7 @@ Expected<Stamp> check_time_stamp(std::string_view token, std::string_view stampe
                 text_of(now) + " (a wrong clock, here or there?)");
   if (X509_check_purpose(data.certificate(), X509_PURPOSE_TIMESTAMP_SIGN, 0) != 1)
     return fail("was made by " + quoted(stamp.by) + ", whose certificate is not for time stamps");
-  // The chain is checked at the time of the stamp, which remains valid after the server's
-  // certificate has expired.
+  // A stamp remains valid after the certificate of its server has expired.
   auto chain = chain_of(data.certificate(), data.certificates(), known.time_roots, stamp.time);
   if (!chain)
     return fail("was made by " + quoted(stamp.by) +

@@ -32,8 +32,7 @@ void Report::skip(const char* id, const std::string& why, bool essential) {
 
 namespace {
 
-/// Whether `who` denotes the signer: by subject, or by SHA-256 in hexadecimal digits with or
-/// without colons.
+/// Whether `who` is the subject, or the SHA-256 in hexadecimal digits with or without colons.
 bool is_of(std::string who, const std::string& subject, const std::string& fingerprint) {
   if (who == subject) return true;
   std::erase(who, ':');
@@ -124,7 +123,7 @@ std::vector<CertificatePtr> Report::check_chain(X509* certificate,
   bool looked = false;
   const auto revocation =
       check_revocation(*chain, known, {out_.at, verifier.now, Revocation::Of::signer}, looked);
-  // Statements in the file about other certificates are no check of the signer's certificate.
+  // Statements about other certificates do not check the signer's certificate.
   if (revocation && !looked)
     skip("certificate.revocation", *revocation, !known.lists.empty());
   else
@@ -134,8 +133,7 @@ std::vector<CertificatePtr> Report::check_chain(X509* certificate,
 
 namespace {
 
-/// Checks a PDF: first the signature, which is found by its position, and then the other content,
-/// if no essential check has failed or was omitted so far.
+/// Parses the content only if no essential check of the signature has failed or was omitted.
 class PdfCheck {
  public:
   PdfCheck(std::string_view bytes, const Verifier& verifier)
@@ -244,8 +242,7 @@ class PdfCheck {
            chain_of(signer, data.certificates(), known.signer_roots, std::min(verifier_.now, last));
   }
 
-  /// Reads the updates and checks their time stamps, if the checks so far have passed. The caller
-  /// has checked that the signer is trusted, because anyone can append updates.
+  /// The caller has checked that the signer is trusted, because anyone can append updates.
   Expected<Added> check_updates(Trusted& known, std::vector<std::vector<CertificatePtr>>& chains) {
     if (!out_.holds()) return fail("are not read: the signature does not hold");
     if (!file()) return fail(file().error());

@@ -24,15 +24,15 @@ class Report {
   void skip(const char* id, const std::string& why, bool essential = true);
   void check_signer(X509* certificate, const Verifier& verifier);
   /// Checks a time stamp over `stamped` and sets `Verified::at` to its time; without a time stamp,
-  /// to `existed` if that is not 0. `said`: the signer's own time; `existed`: when the whole file
-  /// is proved to have existed, 0 if nothing proves it. Returns the chain of the stamp; empty if
-  /// there is no stamp or it is not valid.
+  /// to `existed` if that is not 0. `said`: the signer's own time; `existed`: time at which the
+  /// whole file is proved to have existed, or 0. Returns the chain of the stamp; empty without a
+  /// valid stamp.
   std::vector<CertificatePtr> check_stamp(const char* id, std::string_view token,
                                           std::string_view stamped, const std::string& said,
                                           const Trusted& known, const Verifier& verifier,
                                           Time existed);
-  /// Checks the use, the chain and the revocation of the signer's certificate at `Verified::at`.
-  /// Returns the chain; empty if it does not lead to a trusted root.
+  /// Checks use, chain and revocation at `Verified::at`. Returns the chain; empty if it does not
+  /// lead to a trusted root.
   std::vector<CertificatePtr> check_chain(X509* certificate,
                                           const std::vector<CertificatePtr>& others,
                                           const Trusted& known, const Verifier& verifier);

@@ -11,8 +11,7 @@ namespace nonio::sign {
 
 namespace {
 
-/// Computes the SHA-256 of several beginnings of a file, each followed by other bytes, in one pass
-/// over the file.
+/// Computes digests of several beginnings of a file in one pass over the file.
 class FileDigest {
  public:
   explicit FileDigest(std::string_view bytes) : bytes_(bytes), context_(EVP_MD_CTX_new()) {
@@ -40,7 +39,6 @@ class FileDigest {
   std::size_t done_ = 0;
 };
 
-/// Adds the statements and certificates of a store; the statements are covered by the next stamp.
 Expected<void> take_store(const pdf::Store& store, Added& added) {
   const auto take = [&](Expected<Statement> statement) -> Expected<void> {
     if (!statement) return fail(statement.error());
@@ -122,7 +120,8 @@ Expected<std::vector<Stamp>> check_document_stamps(Added& added, Trusted& known,
 Expected<void> check_needed(const Added& added, const Trusted& known,
                             const std::vector<std::vector<CertificatePtr>>& chains) {
   std::set<std::string> in_chains, found;
-  for (const auto& chain : chains)  // except the root, which the verifier has
+  // The last certificate of a chain is the root, which no update contains.
+  for (const auto& chain : chains)
     for (std::size_t i = 0; i + 1 < chain.size(); ++i) in_chains.insert(der_of(chain[i].get()));
   for (const std::string& der : added.certificates)
     if (!in_chains.contains(der) || !found.insert(der).second)

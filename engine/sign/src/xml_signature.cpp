@@ -29,7 +29,6 @@ namespace {
 using ContextPtr = std::unique_ptr<xmlSecDSigCtx, Freed<xmlSecDSigCtxDestroy>>;
 using XmlKeyPtr = std::unique_ptr<xmlSecKey, Freed<xmlSecKeyDestroy>>;
 
-/// Initializes xmlsec on the first call. Returns whether the initialization succeeded.
 bool started() {
   static const bool well = [] {
     xmlInitParser();
@@ -74,7 +73,7 @@ Expected<void> check_nodes(const xmlNode* node) {
   return {};
 }
 
-/// Returns the document in Canonical XML 1.0, without comments; an empty text if this fails.
+/// Returns Canonical XML 1.0 without comments; an empty text on failure.
 std::string canonical(xmlDoc* document) {
   xmlOutputBuffer* buffer = xmlAllocOutputBuffer(nullptr);
   std::string out;
@@ -86,8 +85,7 @@ std::string canonical(xmlDoc* document) {
   return out;
 }
 
-/// Returns the canonical form of a document; an error if it contains anything that this form would
-/// omit.
+/// Returns an error for a document with nodes that its canonical form would omit.
 Expected<std::string> canonical_form(std::string_view bytes) {
   NONIO_TRY(const auto document, parse_xml(bytes));
   if (auto sound = check_nodes(document.get()->children); !sound) return fail(sound.error());
@@ -96,8 +94,7 @@ Expected<std::string> canonical_form(std::string_view bytes) {
   return text;
 }
 
-/// Converts an ECDSA signature from DER to r and s as two fixed-size numbers, as XML requires (RFC
-/// 4050).
+/// XML requires r and s as two numbers of fixed size (RFC 4050) instead of DER.
 Expected<std::string> side_by_side(const std::string& der, std::size_t size) {
   const unsigned char* at = data_of(der);
   const std::unique_ptr<ECDSA_SIG, Freed<ECDSA_SIG_free>> pair(
@@ -123,7 +120,6 @@ std::size_t size_of(EVP_PKEY* key) {
   return static_cast<std::size_t>(EVP_PKEY_get_bits(key) + 7) / 8;
 }
 
-/// Returns the time in the XML format, for example 2026-11-22T14:20:00Z.
 std::string xml_time(Time time) {
   std::string text = text_of(time).substr(0, 19);
   text[10] = 'T';
@@ -173,10 +169,9 @@ Expected<Signed> sign_xml(const Key::Impl& key, std::string_view bytes, Time now
 
 namespace {
 
-/// The bytes of a signed document around its signature. The document is in canonical form, so it
-/// need not be parsed as XML to determine what was signed.
+/// The canonical form makes it possible to find the signature without parsing XML.
 struct Parts {
-  std::string_view before, after;  ///< bytes before and after the signature
+  std::string_view before, after;
   XmlSignature signature;
 
   static Expected<Parts> of(std::string_view bytes) {
@@ -187,8 +182,7 @@ struct Parts {
           "with its root and a new line");
     bytes.remove_prefix(xml_head.size());
     bytes.remove_suffix(1);
-    // The signature is searched only at the end of the document, because the content is not
-    // authenticated yet.
+    // Only the end is searched, because the content is not authenticated yet.
     const std::size_t root_end = bytes.rfind('<');
     const std::size_t from = bytes.size() - std::min(bytes.size(), longest_xml_signature);
     const std::size_t begin = bytes.find(signature_begin, from);
@@ -270,8 +264,6 @@ Expected<void> ask_xmlsec(xmlDoc* document, X509* certificate) {
   return {};
 }
 
-/// Checks that the document is its own canonical form byte by byte, has only one signature, and is
-/// accepted by xmlsec too.
 Expected<void> check_form(std::string_view bytes, const Parts& parts, X509* certificate) {
   if (parts.before.find(signature_namespace) != std::string_view::npos)
     return fail("has more than one signature");

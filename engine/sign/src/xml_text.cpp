@@ -32,8 +32,7 @@ std::string base64(std::string_view bytes) {
   return out;
 }
 
-/// Decodes Base64; empty if the text is invalid. Non-canonical Base64 is detected later, because
-/// `read_xml_signature` writes the signature again and compares the texts.
+/// Returns "" for invalid text; `read_xml_signature` detects noncanonical Base64.
 std::string from_base64(std::string_view text) {
   std::string out(text.size() / 4 * 3 + 3, '\0');
   const int size = EVP_DecodeBlock(reinterpret_cast<unsigned char*>(out.data()), data_of(text),
@@ -45,8 +44,7 @@ std::string from_base64(std::string_view text) {
   return out;
 }
 
-/// Returns an element followed by a line feed; empty elements have an end tag, as the canonical
-/// form requires.
+/// Empty elements have an end tag, as the canonical form requires.
 std::string element(std::string_view name, std::string_view attributes, std::string_view content) {
   std::string out = "<";
   out += name;
@@ -74,8 +72,7 @@ std::string without_line_end(std::string text) {
   return text;
 }
 
-/// Returns the element SignedInfo. `alone`: whether it declares the namespaces that it would
-/// otherwise inherit from its parents.
+/// `alone`: whether the element declares the namespaces that it would inherit from its parents.
 std::string info(const XmlSignature& s, bool alone) {
   const std::string content = element(
       "Reference", attribute("Id", "content") + " " + attribute("URI", ""),
@@ -154,8 +151,7 @@ std::string XmlSignature::text() const {
 
 namespace {
 
-/// Returns the text between two marks and advances `rest` to the second one. Empty if a mark is
-/// missing.
+/// Returns the text between two marks and advances `rest` to the second mark, if both exist.
 std::string_view between(std::string_view& rest, std::string_view begin, std::string_view end) {
   const std::size_t from = rest.find(begin);
   if (from == std::string_view::npos) return {};

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // One line measured before and after an adjustment: whether the compensation table had its effect.
 #include <algorithm>
 #include <array>
@@ -26,8 +25,7 @@ bool same_line(const Measurement& a, const Measurement& b) {
          a.at == b.at && a.from == b.from && a.to == b.to;
 }
 
-/// Index of the measurement of the same line before the adjustment; nullopt if none or several
-/// exist.
+/// nullopt if there is no such measurement, or if there are several.
 std::optional<std::size_t> before_of(const Campaign& campaign, const Measurement& after) {
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < campaign.measurements.size(); ++i) {
@@ -45,7 +43,6 @@ bool applies(const Campaign& campaign, const Measurement& m) {
          before_of(campaign, m).has_value();
 }
 
-/// Stops by the axis position; those of a diagonal by the distance from its start corner.
 math::MeasuredLine line_by_way(const Observations& o, const Measurement& m) {
   return math::measured_line(m.kind == "diagonal" ? math::along_diagonal(o, m) : o, 0);
 }
@@ -100,14 +97,14 @@ const char* name_of(BeforeAfter::Answer answer) {
   return "before-after.cannot-tell";
 }
 
-/// The reversal has its own compensation value, so it is judged apart from the mean curve.
+/// The reversal has its own compensation value, so it is assessed separately from the mean curve.
 struct ReversalJudged {
   bool as_predicted = true;
   std::optional<Finding> finding{};
 };
 
-/// Standard uncertainty of B_mean from environment, repetition, and drift that was not excluded, in
-/// m or rad.
+/// Standard uncertainty of B_mean from environment, repetition, and drift that was not excluded, m
+/// or rad.
 double u_of_reversal(const AnalysisInput& in, const Environment& environment,
                      const math::AxisTest& test) {
   const math::Budget budget =
@@ -167,7 +164,7 @@ ReversalJudged judge_reversal(const AnalysisInput& in, const Observations& o,
                                              {"change", -(is.mean - wanted * was.mean), q}}}};
 }
 
-/// The table "worked" only if both the pitch and the reversal are as predicted.
+/// "Worked" requires that both the pitch and the reversal are as predicted.
 const char* name_of(BeforeAfter::Answer answer, const ReversalJudged& reversal) {
   if (answer == BeforeAfter::Answer::worked && !reversal.as_predicted)
     return "before-after.mean-as-predicted";

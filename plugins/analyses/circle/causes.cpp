@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Converts the columns of the circle fit to named values.
 #include "causes.h"
 
 #include <algorithm>
@@ -25,8 +23,7 @@ const CauseFit::Value& of(const CauseFit& fit, Cause c) {
   return fit.of[static_cast<std::size_t>(c)];
 }
 
-/// Circular deviation of one direction (+1) caused by the given causes after removal of their
-/// center.
+/// Circular deviation of one direction (+1) due to the given causes after removal of their center.
 double alone_of(const CircleModel& model, std::initializer_list<std::pair<Cause, double>> causes) {
   constexpr int points = 720;
   std::vector<double> r(points);
@@ -128,14 +125,14 @@ class Values {
           Quantity::time);
   }
 
-  /// One component (cosine or sine) of a cyclic error by the machine's zero. It is also given if
-  /// not significant, so that it can be followed over time.
+  /// Cosine or sine component of a cyclic error, relative to the machine's zero. It is also
+  /// reported if not significant, for the history.
   void waves(Cause c, std::string name) {
     const auto& v = of(fit_, c);
     out_.push_back({std::move(name), "", "", v.value, Quantity::deviation, v.u, v.by_bin, 0.0});
   }
 
-  /// An amplitude is given only if significant, because noise also has an amplitude.
+  /// Reported only if significant, because noise also has an amplitude.
   void cyclic(std::size_t k) {
     const Cause sine = k == 0 ? Cause::cyclic_u_sin : Cause::cyclic_v_sin,
                 cosine = k == 0 ? Cause::cyclic_u_cos : Cause::cyclic_v_cos;
@@ -187,7 +184,7 @@ std::pair<std::string, double> squareness_of(const Circle& circle) {
   const std::string plane = circle.axis[0].substr(0, 1) + circle.axis[1].substr(0, 1);
   if (plane == "XY") return {"C0Y", 1.0};
   if (plane == "YZ") return {"A0Z", 1.0};
-  return {"B0Z", -1.0};  // ZX: a turn of +Z towards +X reduces the angle
+  return {"B0Z", -1.0};  // ZX: a rotation of +Z towards +X reduces the angle
 }
 
 std::vector<CauseValue> cause_values(const Circle& circle, const CircleModel& model,

@@ -13,21 +13,22 @@ namespace nonio::circle {
 struct CauseValue {
   std::string name;     ///< C0Y, B_X, lateral_X, ...
   std::string finding;  ///< finding id if significant ("circle.squareness"); may be empty
-  std::string axis;     ///< axis that it belongs to; empty: both
+  std::string axis;     ///< empty if it concerns both axes
   double value = 0.0;   ///< SI
   Quantity quantity = Quantity::deviation;
   double u = 0.0;              ///< standard uncertainty by repetition
   std::vector<double> by_bin;  ///< derivative with respect to the means of the fit
-  double alone = 0.0;          ///< circular deviation that this cause makes alone, m
+  double alone = 0.0;          ///< circular deviation due to this cause alone, m
 };
 
 /// Inputs of the decomposition that the readings do not contain.
 struct Wish {
   bool calibrated_length = false;
-  std::optional<double> feed{};  ///< m/s; nullopt: not stated
+  std::optional<double> feed{};  ///< m/s; absent if not stated
 };
 
-/// Values that the readings determine, in report order. `refused`: a finding for each other value.
+/// Values that the readings determine, in report order. A finding for each other value is added to
+/// `refused`.
 std::vector<CauseValue> cause_values(const Circle&, const math::CircleModel&, const math::CauseFit&,
                                      const Wish&, std::vector<Finding>& refused);
 

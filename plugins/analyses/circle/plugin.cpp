@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Circular tests (ISO 230-4): deviations of the path and their causes.
 #include <algorithm>
 #include <cmath>
@@ -50,10 +49,9 @@ Followed conditions_of(const Measurement& m) {
   return out;
 }
 
-/// Marks the values that are followed over time. These quantities differ from those of runs and
-/// diagonals because the method differs. Values that are not linear in the readings (G, H, F,
-/// amplitudes, spikes) are not followed. Circles are comparable at the same position, radius and
-/// feed.
+/// Selects the values for the history. These quantities differ from those of runs and diagonals
+/// because the method differs. Values that are not linear in the readings (G, H, F, amplitudes,
+/// spikes) are excluded. Circles are comparable at the same position, radius and feed.
 void follow(const Campaign& campaign, const Measurement& m, Evaluation& e) {
   const std::string plane = plane_of(m);
   const Followed conditions = conditions_of(m);
@@ -71,14 +69,13 @@ using math::Cause;
 using math::CircleReading;
 using math::PathCircle;
 
-constexpr std::size_t fewest = 12;                                          // readings per path
+constexpr std::size_t fewest = 12;
 constexpr double per_deg = std::numbers::pi / 180.0, most_left_out = 20.0;  // deg
 // Source: docs/dev/constants.md, A12.
 constexpr double share_for_attention = 0.2;
 
 bool applies(const Campaign&, const Measurement& m) { return m.kind == "circle"; }
 
-/// A path and its result. If there are several runs, the largest result is reported.
 struct Worst {
   double value = -INFINITY;
   std::uint32_t run = 0;
@@ -107,8 +104,8 @@ struct Work {
   }
 };
 
-/// Splits the fixed error of the instrument, which is common to all readings. An offset changes the
-/// radius; a gain error (U_fixed at the largest deviation) is proportional to the deviation.
+/// Divides the fixed error of the instrument, which is common to all readings, into an offset,
+/// which changes the radius, and a gain error (U_fixed at the largest deviation).
 void device_errors(Work& w) {
   double largest = 0.0, mean = 0.0;
   for (const auto& bin : w.fit.bins) mean += bin.deviation / static_cast<double>(w.fit.bins.size());
@@ -177,7 +174,7 @@ std::vector<double> by_bins(const Work& w, const std::vector<CircleReading>& pat
 void add(Work& w, std::string name, double v, Quantity q, double u, const std::vector<double>& by) {
   v = steady(v, std::max(std::fabs(v), u)), u = steady(u, u);
   math::Shares shares = w.readings.shares(by);
-  // Shares that cancel leave rounding errors of the processor. They are set to 0.
+  // Shares that cancel leave rounding errors, which are set to 0.
   double largest = 0.0;
   for (const double share : shares.u) largest = std::max(largest, std::fabs(share));
   for (double& share : shares.u)
@@ -185,7 +182,6 @@ void add(Work& w, std::string name, double v, Quantity q, double u, const std::v
   w.out.values.push_back(w.budget->value(std::move(name), v, q, u, shares));
 }
 
-/// Contribution of noise to a value of one run's path in a direction (+1, -1; 0: both).
 template <class Of>
 double noise_adds(const Work& w, int direction, std::uint32_t run, const Of& value) {
   return w.noise->adds([&](const std::vector<CircleReading>& all) {
@@ -197,12 +193,11 @@ double noise_adds(const Work& w, int direction, std::uint32_t run, const Of& val
 }
 
 /// Standard uncertainty by repetition of a maximum: noise of `readings` single readings, and the
-/// bias `adds` that noise gives to a maximum. The value is not corrected for this bias.
+/// bias `adds` of a maximum due to noise. The value is not corrected for this bias.
 double repetition(const Work& w, double readings, double adds) {
   return std::hypot(std::sqrt(readings) * w.fit.s_reading, adds);
 }
 
-/// G of each direction and of both, and H. The largest value of several runs is reported.
 void path_values(Work& w) {
   for (const auto& [name, direction] : {std::pair{"G_ccw", 1}, {"G_cw", -1}, {"G_b", 0}}) {
     if (direction == 0 && !w.circle.both()) continue;
@@ -240,7 +235,6 @@ void path_values(Work& w) {
   add(w, "H", H->H, Quantity::deviation, repetition(w, 2.0, adds), by_bins(w, pair, 0, 1));
 }
 
-/// Centers, and the values that require a calibrated length.
 void circle_values(Work& w) {
   const auto ls = math::least_squares_circle(w.circle.readings, w.circle.R),
              mz = math::minimum_zone(w.circle.readings, w.circle.R);
@@ -271,7 +265,6 @@ void circle_values(Work& w) {
   }
 }
 
-/// The spike of largest absolute height on the first (`of_v` false) or second axis; height 0: none.
 math::Spike worst_spike(const Work& w, const std::vector<CircleReading>& readings, bool of_v) {
   math::Spike worst;
   for (const math::Spike& s : math::reversal_spikes(readings, w.model, w.fit))
@@ -282,7 +275,7 @@ math::Spike worst_spike(const Work& w, const std::vector<CircleReading>& reading
 void spikes(Work& w, double total) {
   for (std::size_t k = 0; k < 2; ++k) {
     const math::Spike worst = worst_spike(w, w.circle.readings, k == 1);
-    if (worst.height == 0.0) continue;  // no readings after a reversal
+    if (worst.height == 0.0) continue;
     const double adds = w.noise->adds([&](const std::vector<CircleReading>& all) {
       return std::fabs(worst_spike(w, all, k == 1).height);
     });
@@ -302,7 +295,6 @@ void spikes(Work& w, double total) {
   }
 }
 
-/// The values of all causes, and findings of those that exceed U, by descending share.
 void causes(Work& w, const Wish& wish) {
   std::vector<Finding> refused;
   const auto values = cause_values(w.circle, w.model, w.fit, wish, refused);
@@ -343,7 +335,6 @@ void causes(Work& w, const Wish& wish) {
   for (Finding& f : refused) w.out.findings.push_back(std::move(f));
 }
 
-/// Means of the readings in sectors of 10° for each direction, for a check by hand.
 void points(Work& w) {
   constexpr std::size_t sectors = 36;
   std::array<std::array<double, sectors>, 2> sum{}, n{};

@@ -9,7 +9,6 @@
 
 namespace nonio::circle {
 
-/// A circle of the manifest with its readings.
 struct Circle {
   std::array<std::string, 2> axis;  ///< first and second axis of the plane
   std::array<double, 2> centre{};   ///< commanded, m
@@ -24,7 +23,7 @@ struct Circle {
 
 Expected<Circle> circle_of(const Measurement&, const Observations&);
 
-/// x rounded to ten digits of `size`, so that results are identical on all processors.
+/// Rounds x to ten digits of `size`, so that results are identical on all processors.
 double steady(double x, double size);
 
 }  // namespace nonio::circle

@@ -32,7 +32,6 @@ std::string list(const std::vector<std::string>& ids) {
   return out;
 }
 
-/// Collects the data of one set; `run` calls the steps in order.
 class Gatherer {
  public:
   Gatherer(const AnalysisInput& in, const std::vector<Set>& sets, const Set& set)
@@ -60,7 +59,6 @@ class Gatherer {
   void use(std::size_t i) {
     if (measurement(i).id != in_.measurement.id) out_.uses.push_back(measurement(i).id);
   }
-  /// End positions of measurement i on an axis, the smaller one first, m.
   std::pair<double, double> ends(std::size_t i, const std::string& axis) const {
     const double a = measurement(i).from.at(axis), b = measurement(i).to.at(axis);
     return std::minmax(a, b);
@@ -160,7 +158,6 @@ class Gatherer {
     return true;
   }
 
-  /// n equal steps from corner to corner, equal on both diagonals.
   Step lay_grid() {
     const auto x = ends(out_.D1, out_.x_axis), y = ends(out_.D1, out_.y_axis);
     out_.x0 = x.first;
@@ -217,7 +214,6 @@ class Gatherer {
     return refuse("refused-one-direction", {{"which", ids(which)}});
   }
 
-  /// The line with its sign chosen so that X of the kernel increases along it.
   math::GridLine line_of(std::size_t i, const math::MeasuredLine& curve) {
     const auto& sense = observations(i).lines.front().sense;
     const double sign = sense_of(i) < 0.0 ? -1.0 : 1.0;
@@ -272,7 +268,6 @@ class Gatherer {
     return list(names);
   }
 
-  /// The curve of measurement i, reduced to the grid points. A missing grid point is an error.
   OrRefusal<math::MeasuredLine> on_grid(std::size_t i, bool along_x) {
     math::MeasuredLine all = math::measured_line(observations(i), 0);
     math::MeasuredLine out = all;
@@ -315,8 +310,6 @@ class Gatherer {
     return out;
   }
 
-  /// Appends one curve for each needed direction that was measured. Returns false if a direction of
-  /// D1 or D2 is missing.
   template <class T>
   bool put_all(std::vector<T>& to, const T& empty, const math::MeasuredLine& curve,
                bool of_x) const {
@@ -345,10 +338,8 @@ class Gatherer {
     return {};
   }
 
-  /// Example of the manifest key `at` for a line of X, used in messages.
   std::string place_example() const { return "{ " + out_.y_axis + " = 500 }"; }
 
-  /// Position of a line of X on the other axis (key `at`), m; nullptr if not stated.
   const double* place(std::size_t i) const {
     const auto& at = measurement(i).at;
     const auto it = at.find(out_.y_axis);
@@ -357,7 +348,7 @@ class Gatherer {
 
   Step find_x() {
     auto found = candidates("axis", out_.x_axis);
-    // The line of the slave comes second, in any manifest order, because `slave_shift` refers to
+    // The line of the slave is the second, in any manifest order, because `slave_shift` refers to
     // its zero.
     std::stable_partition(found.begin(), found.end(),
                           [&](std::size_t i) { return measurement(i).side != "slave"; });
@@ -398,7 +389,6 @@ class Gatherer {
     return yaw.empty() ? Step{} : find_yaw(yaw);
   }
 
-  /// Yaw as measured with an autocollimator or angular optics.
   Step find_yaw(const std::vector<std::size_t>& found) {
     auto curve = on_grid(found.front(), true);
     if (!curve) return tl::unexpected<Finding>(curve.error());
@@ -406,7 +396,7 @@ class Gatherer {
     if (!put_all(yaw, {}, *curve, true)) return one_direction(found);
     const double stated = in_.options.number("yaw_u_urad") * 1e-6;
     for (math::MeanCurve& of : yaw) {
-      if (out_.mirrored)  // a positive yaw turns from X of the machine to Y
+      if (out_.mirrored)  // A positive yaw rotates from X of the machine to Y.
         for (double& v : of.mean) v = -v;
       of.u = stated > 0.0 ? stated : curve->u_mean(of.direction);
       of.dof = stated > 0.0 ? INFINITY : static_cast<double>(curve->dof);
@@ -418,7 +408,6 @@ class Gatherer {
     return {};
   }
 
-  /// Compares the yaw from the two lines of X with the yaw read by another instrument.
   void compare_yaw(const math::MeanCurve& yaw, const std::vector<std::size_t>& found) {
     constexpr double limit = 4.0;
     const auto of = [&](std::size_t k) -> const math::PitchLine& {
@@ -442,8 +431,7 @@ class Gatherer {
                                .texts = {{"id", ids(found)}, {"lines", out_.lines_of_x}}});
   }
 
-  /// Refuses positioning lines that were read at another height (Z) than the diagonals, if both are
-  /// stated.
+  /// Refuses positioning lines at another height (Z) than the diagonals, if both are stated.
   Step look_at_heights() {
     constexpr double other_height = 1e-3;
     const auto& from = measurement(out_.D1).from;
@@ -459,7 +447,6 @@ class Gatherer {
     return {};
   }
 
-  /// The measurement of the same line with the straightedge turned over (`reversal_of`).
   std::optional<std::size_t> turned_over(std::size_t first) const {
     for (std::size_t i = 0; i < in_.campaign.measurements.size(); ++i)
       if (measurement(i).reversal_of == measurement(first).id) return i;
@@ -497,7 +484,6 @@ class Gatherer {
     return {};
   }
 
-  /// Adds the lines other than D1 and D2 if their stops are grid points.
   void add_third_lines() {
     for (const std::size_t i : third_) {
       const math::MeasuredLine curve = curve_of_line(i);
@@ -548,7 +534,7 @@ class Gatherer {
                                        {"other", measurement(out_.D2).id}}});
   }
 
-  /// Compares means over all stops: B(D1) + B(D2) = 2 (c B(X) + s B(Y)). Lateral parts cancel.
+  /// B(D1) + B(D2) = 2 (c B(X) + s B(Y)) for the means over all targets. Lateral parts cancel.
   void compare_reversals() {
     const auto& r = out_.readings;
     const double c = std::fabs(r.D1.cx), s = std::fabs(r.D1.cy);

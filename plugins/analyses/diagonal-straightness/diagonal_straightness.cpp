@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Squareness and straightness of two axes from the diagonals of their rectangle.
 #include <algorithm>
 #include <array>
@@ -97,12 +96,10 @@ class Lines {
   std::vector<BudgetLine> out_;
 };
 
-/// The lines of a set for the uncertainty budget, in the order of solve_diagonals.
 std::vector<BudgetLine> budget_lines(const Collected& c, const Campaign& campaign) {
   return Lines(c, campaign).all();
 }
 
-/// Readings of this measurement and of those named in `uses`.
 std::vector<const Observations*> observations_of(const AnalysisInput& in,
                                                  const std::vector<std::string>& uses) {
   std::vector<const Observations*> out{&in.observations};
@@ -113,13 +110,12 @@ std::vector<const Observations*> observations_of(const AnalysisInput& in,
 }
 
 constexpr double um = 1e-6;
-constexpr std::size_t enough_dof = 10;  ///< degrees of freedom for a noise from residuals
+constexpr std::size_t enough_dof = 10;
 
 bool applies(const Campaign& campaign, const Measurement& m) {
   return m.kind == "diagonal" && set_led_by(sets_of(campaign), campaign, m) != nullptr;
 }
 
-/// Writes the curves and values of one solved set to the evaluation.
 class Report {
  public:
   Report(const AnalysisInput& in, const Collected& c, const math::DiagonalResult& r,
@@ -175,7 +171,6 @@ class Report {
     return in.options.number("reading_u_um") > 0.0 ? "options.diagonal-straightness.reading_u_um"
                                                    : "readings";
   }
-  /// Largest standard uncertainty of a mean of all length curves, m; from residuals if not known.
   double noise() const {
     if (!r_.noise_known) return r_.residual_u;
     double most = std::max(c_.readings.D1.u, c_.readings.D2.u);
@@ -204,7 +199,6 @@ class Report {
               Quantity q = Quantity::deviation) {
     series(name, axis, c.value, c, q);
   }
-  /// Adds curve `v` with the uncertainty of `c`; an empty `v` is omitted.
   void series(const char* name, const std::string& axis, const std::vector<double>& v,
               const math::KnownCurve& c, Quantity q = Quantity::deviation) {
     if (v.empty()) return;
@@ -213,7 +207,6 @@ class Report {
     e_.series.push_back(std::move(s));
   }
 
-  /// The diagonals by distance from the first corner: as measured, and without positioning and yaw.
   void add_points() {
     const auto& r = c_.readings;
     const double L = std::hypot(r.Lx, r.Ly);
@@ -288,7 +281,6 @@ class Report {
     e_.findings.push_back(std::move(f));
   }
 
-  /// Compares C0Y with a square of the same plane and state, whose readings are independent.
   void compare_squares() {
     constexpr double level = 0.01;
     if (!known_ || !complete_) return;
@@ -316,14 +308,13 @@ class Report {
                         {"U_square", *b.U, Quantity::small_angle},
                         {"p", one.p, Quantity::probability}},
            .texts = {{"name", lines.square}}});
-      return;  // only the first such square is compared
+      return;
     }
   }
   void use(const std::string& id) {
     if (std::find(e_.uses.begin(), e_.uses.end(), id) == e_.uses.end()) e_.uses.push_back(id);
   }
 
-  /// Compares a directly measured straightness with the even part computed without it.
   void compare(const std::optional<math::Agreement>& a, const std::string& axis,
                const char* curve) {
     constexpr double level = 0.01;
@@ -372,7 +363,7 @@ class Report {
   const math::DiagonalResult& r_;
   Evaluation& e_;
   bool known_;
-  bool complete_;  ///< all inputs of the uncertainty are stated
+  bool complete_;
   math::BudgetOf budget_;
 };
 

@@ -15,6 +15,15 @@ std::vector<Set> sets_of(const Campaign& campaign) {
     if (at == sets.end()) at = sets.insert(sets.end(), Set{name, {}});
     at->lines.push_back(i);
   }
+  // The first set is the one before the adjustment; unless stated, the first of the manifest.
+  const auto rank = [&](const Set& set) {
+    for (const std::size_t i : set.lines)
+      if (const std::string& stated = campaign.measurements[i].adjustment; !stated.empty())
+        return stated == "before" ? 0 : 2;
+    return 1;
+  };
+  std::stable_sort(sets.begin(), sets.end(),
+                   [&](const Set& a, const Set& b) { return rank(a) < rank(b); });
   return sets;
 }
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// A plane whose Y carries X is evaluated with exchanged axes, which is a mirror image. To convert
-// its results:
-//   EYX and EXY, with their even parts, are exchanged; q = c EXY + s EYX stays the same at each
-// point
-//   C0Y and derived results keep their sign, because the right angle opens to the same side
-//   rotations about Z change their sign
-//   the first diagonal stays the same line; the second one starts at its other end
+// A plane whose Y carries X is evaluated with exchanged axes, which is a mirror image. Conversion
+// of its results:
+// - EYX and EXY, with their even parts, are exchanged; q = c EXY + s EYX stays the same at each
+// point.
+// - C0Y and derived results keep their sign, because the right angle opens to the same side.
+// - Rotations about Z change their sign.
+// - The first diagonal stays the same line; the second one starts at its other end.
 #include <algorithm>
 #include <utility>
 
@@ -20,7 +19,6 @@ void negate(std::vector<double>& values) {
   for (double& v : values) v = -v;
 }
 
-/// Reverses the deviations along a line, because its start and end are exchanged.
 void turn_line(std::vector<double>& values) {
   std::reverse(values.begin(), values.end());
   negate(values);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Straightness of a line of motion, measured directly: with straightness optics, a straightedge and
 // its reversal, a taut wire, or by integration of a level or autocollimator.
 #include <algorithm>
@@ -17,22 +16,24 @@ namespace nonio::direct_straightness {
 
 namespace {
 
-/// Deviations across the line of motion, e = D y, from the means y of one or two measurements.
+/// Deviations perpendicular to the line of motion, e = D y, from the means y of one or two
+/// measurements.
 struct Points {
-  std::string name;                     ///< such as "EYX"
+  std::string name;
   std::vector<double> x, e;             ///< positions and deviations, m
-  std::vector<double> artefact;         ///< deviations of the straightedge, m; empty: no reversal
+  std::vector<double> artefact;         ///< deviations of the straightedge, m; empty without a
+                                        ///< reversal
   std::vector<std::vector<double>> by;  ///< D: one row per point, one column per mean
   std::vector<double> u;                ///< standard uncertainty of each mean by repetition
-  double dof = 0.0;                     ///< smallest of the measurements; 0: no repetition
+  double dof = 0.0;                     ///< smallest of the measurements; 0 without repetition
   std::vector<math::BudgetLine> lines;
   std::vector<math::MeasuredLine> measured;  ///< in the order of `lines`
-  std::vector<std::string> uses;             ///< id of the reversal; otherwise empty
-  int direction = 0;                         ///< direction of approach, +1 or -1; 0: means of both
+  std::vector<std::string> uses;
+  int direction = 0;  ///< direction of approach, +1 or -1; 0 for the mean of
+                      ///< both
   bool integrated = false;
 };
 
-/// The data of a measurement, or the finding that explains why it cannot be evaluated.
 using PointsOrRefusal = tl::expected<Points, Finding>;
 
 using Text = std::pair<std::string, std::string>;
@@ -57,7 +58,6 @@ std::pair<char, double> moved_along(char about, char axis) {
   return {order[3 - a - b], (b + 3 - a) % 3 == 1 ? 1.0 : -1.0};
 }
 
-/// One measurement: its means by stops, and its direction of approach (0: both).
 struct Side {
   math::MeasuredLine line;
   int direction = 0;
@@ -105,7 +105,6 @@ void put_side(Points& p, const Side& s, math::BudgetLine::Kind kind) {
   p.lines.push_back(std::move(line));
 }
 
-/// Index of the measurement with the straightedge turned over; nullopt if none.
 std::optional<std::size_t> reversal_of(const AnalysisInput& in) {
   const auto& all = in.campaign.measurements;
   for (std::size_t i = 0; in.all != nullptr && i < all.size(); ++i)
@@ -113,8 +112,7 @@ std::optional<std::size_t> reversal_of(const AnalysisInput& in) {
   return std::nullopt;
 }
 
-/// Reversal: the motion has (y1 + y2)/2, the straightedge (y1 - y2)/2. Returns a finding on
-/// failure.
+/// The motion is (y1 + y2)/2, the straightedge (y1 - y2)/2. Returns a finding on failure.
 std::optional<Finding> reverse(Points& p, const AnalysisInput& in, std::size_t other,
                                const Side& first) {
   const std::string& id = in.campaign.measurements[other].id;
@@ -162,14 +160,14 @@ PointsOrRefusal from_lengths(const AnalysisInput& in) {
   return p;
 }
 
-/// A level or autocollimator whose foot is moved in steps of its own length. A reading belongs to
-/// the center of the foot. The points are the ends of the foot at each position.
+/// A level or autocollimator whose base is moved in steps of its own length. A reading belongs to
+/// the center of the base. The points are the ends of the base at each position.
 PointsOrRefusal from_angles(const AnalysisInput& in) {
   const auto side = side_of(in.observations, in.measurement.id);
   if (!side) return tl::unexpected<Finding>(side.error());
   const double foot = *in.measurement.foot;
   const auto& stops = side->line.stops;
-  constexpr double slack = 0.01;  // relative to the foot: 1 % of the effect of an angle
+  constexpr double slack = 0.01;  // relative to the base: 1 % of the effect of an angle
   for (std::size_t i = 1; i < stops.size(); ++i)
     if (std::fabs(stops[i].position - stops[i - 1].position - foot) > slack * foot)
       return refuse("foot", {{"foot", foot, Quantity::length},
@@ -197,7 +195,6 @@ PointsOrRefusal points_of(const AnalysisInput& in) {
   return in.measurement.kind == "angle" ? from_angles(in) : from_lengths(in);
 }
 
-/// Derivatives with respect to the means, from those with respect to the points.
 std::vector<double> by_means(const Points& p, const std::vector<double>& by_points) {
   std::vector<double> row(p.u.size(), 0.0);
   for (std::size_t i = 0; i < by_points.size(); ++i)
@@ -211,7 +208,6 @@ bool applies(const Campaign&, const Measurement& m) {
   return m.kind == "straightness" ? m.reversal_of.empty() : m.kind == "angle" && m.foot.has_value();
 }
 
-/// Straightness about the three reference straight lines.
 struct Lines {
   math::Straightness least_squares, minimum_zone, end_points;
 };
@@ -225,7 +221,6 @@ Expected<Lines> lines_of(const Points& p) {
   return Lines{std::move(*lsq), std::move(*zone), std::move(*ends)};
 }
 
-/// Writes the results, with their uncertainty if the readings have a repetition.
 class Report {
  public:
   Report(const Points& p, const math::ReadingModel& model, Evaluation& e)
@@ -310,7 +305,6 @@ std::vector<const Observations*> observations_of(const AnalysisInput& in, const 
   return out;
 }
 
-/// Reports straightness that noise alone can produce, with the estimate from noise.
 void judge_noise(const Points& p, const Lines& lines, Evaluation& e) {
   double most = 0.0;
   for (std::size_t i = 0; i < p.by.size(); ++i) {

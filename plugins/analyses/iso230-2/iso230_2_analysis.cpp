@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // ISO 230-2: accuracy and repeatability of positioning of a linear or rotary axis.
 #include <cmath>
 
@@ -33,7 +32,8 @@ void add_values(Evaluation& e, const AxisAnalysis& a, const Iso230Result& r) {
   add_value(e, a, "B_mean", r.B_mean, U.B_mean, Made::of_environment);
 }
 
-/// One row per target. A column has one U, the largest: for a mean U of M, for s U of R = 2 k s.
+/// One row per target. The U of a column applies to all targets: that of M to the means, and that
+/// of R divided by 2 k to s.
 PointTable table(const AxisAnalysis& a, const Iso230Result& r) {
   const Iso230Uncertainty U = iso230_2_uncertainty(a.budget.value_or(Budget{}), a.approaches, r.k);
   PointTable points;

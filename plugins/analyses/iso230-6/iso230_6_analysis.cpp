@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // ISO 230-6: positioning along body and face diagonals.
 #include <algorithm>
 #include <cmath>
@@ -26,11 +25,10 @@ bool applies(const Campaign&, const Measurement& m) {
   return m.kind == "diagonal" && (moving == 2 || moving == 3);
 }
 
-/// One line between two corners; both directions of travel have the same name.
 struct Diagonal {
   std::size_t measurement = 0;
-  std::string name;               ///< PPP, NPP, PNP, PPN; PP, PN of a face
-  std::vector<std::string> axes;  ///< sorted X, Y, Z
+  std::string name;  ///< PPP, NPP, PNP, PPN; PP, PN of a face
+  std::vector<std::string> axes;
 };
 
 Diagonal diagonal_of(const Campaign& campaign, std::size_t i) {
@@ -52,7 +50,6 @@ bool same_box(const Measurement& a, const Measurement& b, const std::string& axi
   return std::fabs(x.first - y.first) <= same_end && std::fabs(x.second - y.second) <= same_end;
 }
 
-/// The diagonals of the same box and the same state as `of`, in manifest order.
 std::vector<Diagonal> set_of(const Campaign& campaign, const Measurement& of) {
   std::vector<Diagonal> out;
   for (std::size_t i = 0; i < campaign.measurements.size(); ++i) {
@@ -95,7 +92,6 @@ std::optional<Tested> tested(const AnalysisInput& in, std::size_t i) {
   return out;
 }
 
-/// Values of one diagonal. R and A require five approaches from each direction at each target.
 void put_values(Evaluation& e, const AxisAnalysis& a, const Tested& t) {
   const Iso230Result& r = t.result;
   add_value(e, a, "E", r.E, t.U.E, Made::of_all);
@@ -156,7 +152,6 @@ Finding blind_finding(const Campaign& campaign, const std::vector<Diagonal>& set
                     {"combinations", joined(combinations, "; ")}}};
 }
 
-/// Names of the diagonals of a complete set that were not measured.
 std::vector<std::string> missing_of(const std::vector<Diagonal>& set) {
   std::vector<std::string> names{"PP", "PN"}, out;
   if (set.front().axes.size() == 3) names = {"PPP", "NPP", "PNP", "PPN"};
@@ -166,7 +161,6 @@ std::vector<std::string> missing_of(const std::vector<Diagonal>& set) {
   return out;
 }
 
-/// Values of the machine: the largest of its diagonals, with U of that diagonal.
 void put_machine(const AnalysisInput& in, const AxisAnalysis& a, const std::vector<Diagonal>& set,
                  Evaluation& e) {
   struct Largest {

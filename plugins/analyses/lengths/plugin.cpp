@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Length measuring errors (based on ISO 10360-2) of a machine that measures with its own probe.
 #include "nonio/sdk/plugin.h"
 
@@ -111,8 +110,6 @@ class Worker {
     return in_.observations.lines[e.line].name.starts_with(std::string(test) + " ");
   }
 
-  /// Compares the errors of a test with their limits. Values: the largest and smallest error and,
-  /// with a limit, the error nearest to it.
   void put_test(const char* test, const std::vector<LengthError>& all,
                 const math::ReadingModel& model, math::BudgetOf& budget) {
     std::vector<LengthError> errors;
@@ -280,7 +277,6 @@ class Worker {
          .texts = {{"name", test}}});
   }
 
-  /// Table: largest and smallest error and the limit, for each length at each position.
   void points(const std::vector<LengthError>& all) {
     std::map<std::pair<std::size_t, double>, std::array<double, 2>> rows;
     for (const LengthError& e : all) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Periodic error of an axis from a dense run over two or more periods of its screw or scale.
 #include "nonio/sdk/plugin.h"
 
@@ -30,7 +29,6 @@ struct Sides {
   std::vector<Pass> plus, minus;
 };
 
-/// One pass per run and direction, sorted by position.
 Sides passes_of(const Observations& o) {
   std::map<std::pair<std::uint32_t, int>, std::vector<std::pair<double, double>>> rows;
   const auto& axis = o.axes.front();
@@ -46,8 +44,6 @@ Sides passes_of(const Observations& o) {
   return out;
 }
 
-/// Period in m: the option period_mm, otherwise screw_pitch of the manifest; 0 if neither is
-/// stated.
 double period_of(const AnalysisInput& in) {
   if (const double asked = in.options.number("period_mm", 0.0); asked > 0.0) return asked * 1e-3;
   const Axis* axis = in.campaign.machine.axis(in.measurement.axis);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Positioning of an axis by several rules (standards) at once from one set of statistics. The rules
-// are defined in engine/math/axis/positioning.cpp.
+// Positioning of an axis by several rules (standards) at once from one set of statistics.
+// engine/math/axis/positioning.cpp defines the rules.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -25,7 +24,7 @@ using Rules = std::vector<const math::PositioningRule*>;
 struct TakenOff {
   double value = 0.0;  ///< m or rad
   Quantity quantity = Quantity::deviation;
-  std::string option;  ///< value of the option nmtba_offset
+  std::string option;
 };
 
 using math::Confidence;
@@ -52,7 +51,6 @@ std::string titles(const Rules& rules) {
 
 class Remarks {
  public:
-  /// Adds a remark on the rules `of`; no remark if `of` is empty.
   void say(const char* id, const Rules& of, std::vector<Number> evidence = {}) {
     if (!of.empty()) out_.push_back({id, std::move(evidence), {{"rules", titles(of)}}, {}, {}});
   }
@@ -65,14 +63,12 @@ class Remarks {
   std::vector<Remark> out_;
 };
 
-/// Titles of the rules by the name used in the values: "iso-1988" is "ISO 230-2:1988".
 Remark evaluated(const Rules& rules) {
   Remark out{"rules.evaluated", {}, {{"rules", titles(rules)}}, {}, {}};
   for (const PositioningRule* r : rules) out.texts.emplace_back(r->name, r->title);
   return out;
 }
 
-/// Remarks: which rules apply, what each evaluates, how reliable its formula is, why they differ.
 std::vector<Remark> remarks_on(const Rules& rules, const TakenOff& off, bool with_U) {
   Remarks remarks;
   for (const double k : {2.0, 3.0})
@@ -160,7 +156,6 @@ Offset offset_option(const Settings& options) {
   return Offset::mean_of_all;
 }
 
-/// Adds the values of the rules and returns the names of values that cannot be computed.
 std::string add_values(Evaluation& e, const AxisAnalysis& a, const AxisStatistics& statistics,
                        const Rules& rules, Offset offset) {
   std::string absent;
@@ -228,7 +223,6 @@ void name_absent(std::vector<Finding>& findings, const std::string& absent) {
       if (name == "absent") text = absent.empty() ? "–" : absent;
 }
 
-/// Findings for rules that require 5 or 7 approaches if fewer were measured.
 void plan(Evaluation& e, const AxisAnalysis& a, const Rules& rules) {
   for (const std::size_t asked : {5U, 7U}) {
     std::string titles;

@@ -20,7 +20,7 @@ namespace {
 constexpr double per_K = 1e-6, per_um_per_m = 1e-6;
 const std::string of_options = "options.rigid-body.";
 
-/// The name of a ball: the name of its line up to the first space ("B1 x" is "B1").
+/// "B1" for the line "B1 x".
 std::string ball_of(const std::string& line) { return line.substr(0, line.find(' ')); }
 
 std::size_t number_of(Artefact& a, const std::string& name) {
@@ -48,7 +48,7 @@ void put_certificate(const Observations& o, Artefact& a) {
   }
 }
 
-/// Positions of axes that were not read, from `at` of the manifest, m; NaN if not stated.
+/// Positions of stationary axes, from `at` of the manifest, m; NaN if not stated.
 Corner stood_at(const Measurement& m) {
   Corner at;
   at.fill(std::numeric_limits<double>::quiet_NaN());
@@ -57,7 +57,6 @@ Corner stood_at(const Measurement& m) {
   return at;
 }
 
-/// Means of each ball, and the times of its readings.
 struct Probed {
   math::ArtefactPlacement placement;
   std::vector<BudgetLine::Visit> visits;  ///< in time order, equal for all coordinates
@@ -78,7 +77,7 @@ Probed probed(const Measurement& m, const Observations& o, Artefact& a) {
   const Corner stood = stood_at(m);
   const auto first = static_cast<std::size_t>(std::find(measured.begin(), measured.end(), true) -
                                               measured.begin());
-  std::map<std::size_t, std::size_t> place;  // index of a ball in the placement, by ball
+  std::map<std::size_t, std::size_t> place;
   std::vector<std::array<std::size_t, 3>> count;
   for (const std::size_t i : order) {
     const std::size_t b = number_of(a, ball_of(o.lines[o.line_of(i)].name));
@@ -104,7 +103,6 @@ Probed probed(const Measurement& m, const Observations& o, Artefact& a) {
   return out;
 }
 
-/// Whether a measurement belongs to the evaluated state or to no state.
 bool of_state(const AnalysisInput& in, const Measurement& m) {
   return state_of(m).empty() || state_of(m) == state_of(in.measurement);
 }
@@ -124,7 +122,6 @@ BudgetLine budget_of(const AnalysisInput& in, const math::RigidLine& line, std::
   return b;
 }
 
-/// Relative standard uncertainties of the scale of an artefact, from the options.
 struct ScaleInputs {
   double device, temperature, expansion;
   double all() const { return std::hypot(device, temperature, expansion); }
@@ -179,7 +176,7 @@ void take_artefact(const AnalysisInput& in, const std::string& name, std::size_t
     math::RigidLine& line = made->lines[l];
     if (l < made->of.size()) {
       const auto [placement, k] = made->of[l];
-      // All coordinates of a placement share one common error.
+      // All coordinates of a placement have one common error.
       if (l == 0 || made->of[l - 1].placement != placement) {
         common = out.lines.size();
         out.used.push_back(a.placements[placement].name);
@@ -207,7 +204,6 @@ ReadingModel::Input input(const ReadingModel& model, const char* id, Distributio
   return out;
 }
 
-/// Index of the first reading of a line among all readings of the model.
 std::size_t first_of(const ReadingModel& model, std::size_t line) {
   std::size_t first = 0;
   for (std::size_t l = 0; l < line; ++l) first += model.lines[l].length.size();
@@ -226,7 +222,7 @@ void put_one(ReadingModel& model, ReadingModel::Input in, std::size_t line, std:
 void put_artefact(const AnalysisInput& in, const Lines& lines, const Stated& stated,
                   ReadingModel& model) {
   const math::RigidLine& line = lines.lines[stated.line];
-  const std::size_t n = line.readings.size() - 1;  // the last one is the scale
+  const std::size_t n = line.readings.size() - 1;
   auto fixed = input(model, "artefact-fixed", Distribution::normal,
                      "certificate of " + stated.name + ", U_um");
   fixed.is.correlation = Correlation::readings;
@@ -239,7 +235,7 @@ void put_artefact(const AnalysisInput& in, const Lines& lines, const Stated& sta
   fixed.of_line[stated.line] = fixed.is.u;
   model.inputs.push_back(std::move(fixed));
   const ScaleInputs scale = scale_of(in);
-  double longest = 0.0;  // the budget states the effect of the scale on the longest line
+  double longest = 0.0;  // The budget states the effect of the scale on the longest line.
   for (const BudgetLine& b : lines.budget)
     for (const double d : b.length) longest = std::max(longest, d);
   const auto put = [&](const char* id, double u, Distribution d, const char* key) {
@@ -283,8 +279,8 @@ void take_artefacts(const AnalysisInput& in, std::size_t& unknowns, Lines& out) 
   for (const std::string& name : names) take_artefact(in, name, unknowns, out);
 }
 
-/// Balls and certified values were not read by the instrument. Only inputs of the machine and its
-/// environment remain for balls, and no inputs for certified values.
+/// The instrument did not read balls and certified values. For balls only inputs of the machine and
+/// its environment remain, for certified values none.
 void keep_own_inputs(const Lines& lines, ReadingModel& model) {
   static const std::set<std::string> of_machine{"temperature", "expansion", "drift"};
   bool instrument = false;

@@ -35,7 +35,6 @@ BudgetLine::Kind budget_kind(RigidLine::Kind kind) {
   return kind == RigidLine::Kind::angle ? BudgetLine::Kind::angle : BudgetLine::Kind::length;
 }
 
-/// Position of a reading, m; NaN for a coordinate that is not stated.
 Corner place_of(const Observations& o, const Measurement& m, std::size_t row) {
   Corner at;
   at.fill(std::numeric_limits<double>::quiet_NaN());
@@ -47,7 +46,6 @@ Corner place_of(const Observations& o, const Measurement& m, std::size_t row) {
   return at;
 }
 
-/// Direction of approach, +1 or -1, of the first axis that states one; +1 if none does.
 int way_of(const Observations& o, std::size_t row) {
   for (const auto& column : o.axes)
     if (column.approach.size() == o.size() && column.approach[row] != 0)
@@ -66,8 +64,8 @@ bool certified(const Campaign& c, const std::string& name) {
   return square != nullptr && square->error && square->U;
 }
 
-/// The lines of a square that compare its axes, if `m` is one of these lines; otherwise nullopt.
-/// The square must be turned over or certified.
+/// The lines of a square that compare its axes, if `m` is one of these lines. The square must be
+/// reversed or certified.
 std::optional<math::SquareLines> on_square(const Campaign& c, const Measurement& m) {
   if (m.square.empty()) return std::nullopt;
   for (math::SquareLines& s : math::squares_of(c)) {
@@ -83,8 +81,8 @@ std::optional<math::SquareLines> on_square(const Campaign& c, const Measurement&
 struct Reader {
   const AnalysisInput& in;
   Lines& out;
-  std::size_t unknowns = 0;                    ///< number of unknowns that lines share
-  std::map<std::string, std::size_t> named{};  ///< unknowns of squares (set-ups and errors) by name
+  std::size_t unknowns = 0;
+  std::map<std::string, std::size_t> named{};  ///< unknowns of squares (setup and error) by name
 
   std::size_t unknown(const std::string& name) {
     const auto [at, fresh] = named.try_emplace(name, unknowns);
@@ -92,8 +90,8 @@ struct Reader {
     return at->second;
   }
 
-  /// On a face of a square, the slope is that of the axis plus the set-up, which both faces share.
-  /// The error of the square enters the second face, with opposite sign when turned over
+  /// On a face of a square, the slope is that of the axis plus the setup, which is common to both
+  /// faces. The error of the square is added on the second face, with opposite sign if reversed
   /// (square.h).
   void share_square(const Measurement& m, RigidLine& line) {
     const auto square = on_square(in.campaign, m);
@@ -116,7 +114,6 @@ struct Reader {
     line.shared.push_back({unknown("error " + square->square), std::move(way)});
   }
 
-  /// Adds a line for each certified square error.
   void state_squares() {
     for (const Square& square : in.campaign.squares) {
       const auto error = named.find("error " + square.name);
@@ -172,7 +169,7 @@ struct Reader {
   BudgetLine budget_line(const RigidLine& line) {
     BudgetLine b;
     b.kind = budget_kind(line.kind);
-    b.group = out.lines.size();  // each line has its own set-up
+    b.group = out.lines.size();  // each line has its own setup
     const auto along = [&](const math::RigidReading& r) {
       double sum = 0.0;
       for (std::size_t k = 0; k < 3; ++k)
@@ -207,7 +204,7 @@ void find_box(Lines& out) {
     if (!(out.low[k] <= out.high[k])) out.low[k] = out.high[k] = 0.0;
 }
 
-/// Places readings without a stated coordinate at the center of the volume.
+/// Readings without a stated coordinate are assumed at the center of the volume.
 void centre(Lines& out) {
   for (std::size_t l = 0; l < out.lines.size(); ++l) {
     bool any = false;

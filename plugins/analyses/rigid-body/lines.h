@@ -20,10 +20,11 @@ struct Lines {
   std::vector<math::RigidLine> lines;
   std::vector<math::BudgetLine> budget;          ///< one for each line, readings in the same order
   std::vector<std::string> groups;               ///< kinds of measurements with readings
-  std::vector<bool> angular;                     ///< per group: readings are angles
+  std::vector<bool> angular;                     ///< per group: whether readings are angles
   std::vector<std::string> used;                 ///< ids of the measurements used
   std::vector<const Observations*> tables;       ///< readings of each measurement in `used`
-  std::vector<std::string> left_out, centred;    ///< ids: not usable; assumed centered
+  std::vector<std::string> left_out, centred;    ///< ids of measurements that are not usable, and
+                                                 ///< of those assumed at the center
   std::vector<std::size_t> measurement_of_line;  ///< index into `used`
   std::vector<Stated> stated;
   std::vector<std::string> certificates;  ///< ids of measurements with certified values
@@ -32,7 +33,7 @@ struct Lines {
   std::vector<Finding> findings;
   math::Corner low{}, high{};  ///< box that contains all readings, m
 
-  /// Index of the group of readings with a common scatter; it is added if new.
+  /// Index of the group of readings with a common scatter; a new group is added.
   std::size_t group_of(const std::string& kind, bool angle);
 };
 
@@ -40,7 +41,7 @@ struct Lines {
 bool is_taken(const Campaign&, const Measurement&);
 /// Whether a measurement like this one makes a squareness of its state identifiable.
 bool shows_squareness(const Campaign&, const Measurement&);
-/// Lines of the measurements of the same state as the input, or without a state.
+/// Measurements of the same state as the input, or without a state.
 Lines lines_of(const AnalysisInput&);
 
 }  // namespace nonio::rigid_body

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // The 21 geometric errors of three linear axes, as far as the readings of a campaign determine
 // them, and the error of the tool point in the whole volume.
 #include <algorithm>
@@ -26,7 +25,7 @@ std::string listed_names(const std::vector<std::string>& names) {
   return out;
 }
 
-/// Text such as "ECX.1 - 0.889 EYX.2".
+/// "ECX.1 - 0.889 EYX.2"
 std::string text_of(const Combination& c) {
   std::string out;
   for (const auto& [name, size] : c) {
@@ -47,7 +46,6 @@ Number count(const char* name, std::size_t n) {
   return {name, static_cast<double>(n), Quantity::count};
 }
 
-/// State shared by the steps of the analysis.
 struct Work {
   const AnalysisInput& in;
   Lines lines;
@@ -58,7 +56,6 @@ struct Work {
   void say(Finding f) { out.findings.push_back(std::move(f)); }
 };
 
-/// Index of the length group with the largest scatter, which the budget states.
 std::size_t printed_group(const Work& w) {
   std::size_t best = 0;
   for (std::size_t g = 0; g < w.s.scatter.size(); ++g)
@@ -203,7 +200,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   return std::move(w.out);
 }
 
-/// Whether a measurement of the state makes a squareness identifiable; required for the volume.
+/// The volume requires a measurement of the state that makes a squareness identifiable.
 bool has_squareness(const Campaign& c, const std::string& state) {
   return std::any_of(c.measurements.begin(), c.measurements.end(), [&](const Measurement& m) {
     return shows_squareness(c, m) && is_taken(c, m) &&
@@ -211,7 +208,7 @@ bool has_squareness(const Campaign& c, const std::string& state) {
   });
 }
 
-/// True for the first measurement of each state. If no state is named, for the first of all.
+/// True for the first measurement of each state or, if no state is named, of the campaign.
 bool applies(const Campaign& c, const Measurement& of) {
   if (!is_taken(c, of) || !has_squareness(c, state_of(of))) return false;
   const bool states = std::any_of(c.measurements.begin(), c.measurements.end(), [&](const auto& m) {

@@ -13,7 +13,7 @@ namespace {
 using math::ChainRefusal;
 
 constexpr double surely = 1e-3;  // significance level of residual tests
-// Smallest effect of a pattern on the residuals that counts. A common scale has only 1e-5.
+// Smallest relative effect of a pattern on the residuals; a common scale has only 1e-5.
 constexpr double least_shown = 1e-3;
 constexpr double no_chain_share = 1e-3;  // limit of s relative to the extent if no sigma is stated
 
@@ -25,7 +25,6 @@ Finding finding(const char* id, std::vector<Number> evidence,
 Number count(const char* name, double n) { return {name, n, Quantity::count}; }
 Number um(const char* name, double v) { return {name, v, Quantity::deviation}; }
 
-/// Largest extent of the centers along one coordinate, m.
 double extent(const Places& places) {
   double size = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -100,8 +99,8 @@ class Solver {
                           {{"axes", axes()}}));
   }
 
-  /// Removes the effects of the linear axes from the residuals. If these effects exceed the stated
-  /// bound, nothing is removed.
+  /// Removes the effects of the linear axes from the residuals, unless these effects exceed the
+  /// stated bound.
   void set_scatter() {
     const math::ChainFit& fit = out_.fit;
     scatter_ = fit.s, dof_ = fit.dof;
@@ -115,7 +114,7 @@ class Solver {
                      [](const auto& input) { return input.is.id == "linear-axes"; });
     if (linear == model_.inputs.end() || fit.residual_by.empty()) return;
     std::vector<std::vector<double>> basis;
-    double most = 0.0;  // norm of the effects, all errors at their bound
+    double most = 0.0;
     for (const auto& pattern : linear->patterns) {
       std::vector<double> shown;
       for (const auto& row : fit.residual_by) shown.push_back(dot(row, pattern));
@@ -175,7 +174,6 @@ class Solver {
     out_.from_readings = true;
   }
 
-  /// Reports angles as unreliable if the residuals along them exceed the other residuals.
   void tell_angles() {
     for (std::size_t j = 0; j < chain_.axes.size(); ++j) {
       const auto& f = out_.fit.followed[j];

@@ -12,17 +12,16 @@
 
 namespace nonio::rotary_chain {
 
-/// The names, separated by ", ".
 std::string listed(const std::vector<std::string>& names);
 
-/// Options of the user, in SI units; nullopt: not stated.
+/// Options of the user, in SI units; absent if not stated.
 struct Wish {
   std::optional<double> sigma;        ///< standard uncertainty of a coordinate
   std::optional<double> linear_axes;  ///< bound of squareness and scale difference, rad
   std::optional<double> offset;       ///< nominal distance of the axes, m
   std::optional<double> U_tool;       ///< U of the stated tool length, k = 2, m
   double tolerance = 0.0, tolerance_direction = 0.0;
-  double circle_limit = 10.0;  ///< no chain if s is above this many sigma
+  double circle_limit = 10.0;  ///< largest accepted s, in multiples of sigma
 };
 
 /// The fitted chain, or the findings that explain why it is refused.
@@ -35,12 +34,12 @@ struct Solved {
   std::vector<std::vector<double>> residual_by;
   std::vector<Finding> findings;
 };
-/// Fits the chain. If the model has a bound for squareness and scales of the linear axes, their
-/// effects are removed from the scatter, because the budget contains them separately.
+/// If the model has a bound for squareness and scales of the linear axes, their effects are removed
+/// from the scatter, because the budget contains them separately.
 Solved solve(const AnalysisInput&, const Chain&, const Places&, const Wish&,
              const math::ReadingModel&);
 
-/// One value that is reported if it is identifiable.
+/// A value that is reported if it is identifiable.
 struct Candidate {
   std::string name;
   Quantity quantity = Quantity::length;
@@ -48,13 +47,13 @@ struct Candidate {
   double by_tool = 0.0;  ///< derivative with respect to the stated tool length
   bool is_direction() const { return quantity != Quantity::length; }
 };
-/// All values of the chain in report order, including those that are not identifiable.
+/// All values in report order, including those that are not identifiable.
 std::vector<Candidate> candidates(const Chain&, const Places&, const math::ChainFit&);
 /// The pair of tools with the largest difference of stated lengths.
 struct Tools {
-  bool two = false;              ///< false: no two tools have different stated lengths
-  std::size_t from = 0, to = 0;  ///< indexes of the shorter and longer tool
-  double stated = 0.0;           ///< difference of their lengths, m
+  bool two = false;              ///< whether two tools have different stated lengths
+  std::size_t from = 0, to = 0;  ///< indices of the shorter and longer tool
+  double stated = 0.0;           ///< difference of the lengths, m
 };
 Tools tools_of(const Places&);
 double tool_length(const Measurement&);

@@ -22,13 +22,11 @@ bool has_all(const Observations& o, const Chain& chain) {
                      [&](const auto& axis) { return o.axis(axis) != nullptr; });
 }
 
-/// One center during its collection.
 struct Place {
   math::ChainReading mean;
   double when = std::numeric_limits<double>::infinity();
 };
 
-/// Collects the centers of one measurement.
 class Collector {
  public:
   Collector(const Observations& o, const Chain& chain) : o_(o) {
@@ -38,11 +36,11 @@ class Collector {
              std::all_of(o.time.begin(), o.time.end(), [](double t) { return std::isfinite(t); });
   }
 
-  /// Centers ordered by time, or by run and position if no times exist. Returns a finding if a
-  /// position is repeated in one run and direction.
+  /// Ordered by time or, without times, by run and position. Returns a finding if a position is
+  /// repeated in one run and direction.
   tl::expected<std::vector<Place>, Finding> places(std::size_t ball, std::size_t tool) {
     for (std::size_t i = 0; i < o_.size(); ++i) {
-      if (o_.line_of(i) != 0) continue;  // each of the three lines has the whole position
+      if (o_.line_of(i) != 0) continue;  // each of the three lines contains the whole position
       math::ChainReading r;
       for (const auto* column : angles_) r.angle.push_back(column->position[i]);
       for (std::size_t k = 0; k < 3; ++k) r.at[k] = at_[k]->position[i];
@@ -79,7 +77,7 @@ class Collector {
   void add(std::size_t i, const math::ChainReading& r) {
     Place& place = places_[key_of(r)];
     if (place.mean.angle.empty()) place.mean = r, place.mean.weight = 0.0;
-    place.mean.angle = std::min(place.mean.angle, r.angle);  // independent of the row order
+    place.mean.angle = std::min(place.mean.angle, r.angle);
     place.mean.weight += 1.0;
     for (std::size_t k = 0; k < 3; ++k)
       place.mean.at[k] += (r.at[k] - place.mean.at[k]) / place.mean.weight;
@@ -94,7 +92,6 @@ class Collector {
   std::map<std::vector<long long>, Place> places_;
 };
 
-/// Index of the tool of a measurement; equal stated offsets are one tool.
 std::size_t tool_of(const Measurement& m, Places& out) {
   for (std::size_t t = 0; t < out.tools.size(); ++t)
     if (out.tools[t]->tool_offset == m.tool_offset) return t;

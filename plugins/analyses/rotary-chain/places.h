@@ -24,7 +24,7 @@ struct Places {
   std::vector<const Observations*> tables;  ///< readings of each measurement in `used`
   std::vector<std::string> used, left_out;  ///< ids of measurements, each with its own ball
   std::vector<const Measurement*> tools;    ///< the first measurement of each tool
-  double stated_u = 0.0;                    ///< u of a center from its file, m; 0: not stated
+  double stated_u = 0.0;                    ///< u of a center from its file, m; 0 if not stated
   std::vector<Finding> findings;
   bool sound = true;
 };
@@ -33,7 +33,7 @@ struct Places {
 /// by their number. A position repeated in one run and direction is a finding.
 Places places_of(const AnalysisInput&, const Chain&);
 
-/// Same state of the machine and same adjustment ("before" or "after").
+/// Compares the state of the machine and the adjustment ("before" or "after").
 bool same_state(const Measurement&, const Measurement&);
 
 }  // namespace nonio::rotary_chain

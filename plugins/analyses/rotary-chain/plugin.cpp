@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Two rotary axes of a machine as one kinematic chain: both axis lines from one fit of ball
 // centers.
 #include "nonio/sdk/plugin.h"
@@ -17,7 +16,6 @@ namespace {
 constexpr double per_um = 1e-6, per_urad = 1e-6, per_mm = 1e-3;
 constexpr const char* linear_axes_key = "options.rotary-chain.linear_axes_urad";
 
-/// True for the first measurement of each state.
 bool applies(const Campaign& c, const Measurement& m) {
   for (const Measurement& other : c.measurements)
     if (other.kind == "ball-centres" && same_state(other, m)) return other.id == m.id;
@@ -41,7 +39,6 @@ Wish wish_of(const Settings& options) {
   return wish;
 }
 
-/// The order of the axes; nullopt unless two different rotary axes of the machine are named.
 std::optional<Chain> chain_of(const AnalysisInput& in) {
   Chain chain;
   chain.axes = in.options.texts("tables");
@@ -55,7 +52,6 @@ std::optional<Chain> chain_of(const AnalysisInput& in) {
   return chain;
 }
 
-/// State shared by the steps of the analysis.
 struct Work {
   const AnalysisInput& in;
   Chain chain;
@@ -100,7 +96,6 @@ math::ReadingModel model_of(const Work& w, const Environment& environment) {
   return model;
 }
 
-/// Standard uncertainty of a value by the repetition of the coordinates.
 double repetition_in(const Work& w, const std::vector<double>& by) {
   const std::size_t n = w.places.readings.size();
   double sum = 0.0;
@@ -116,7 +111,6 @@ math::Shares shares_of(const Work& w, const Candidate& c) {
   return shares;
 }
 
-/// Whether the readings determine no parameter of the axis.
 bool is_unseen(const math::ChainFit& fit, std::size_t axis) {
   return std::count_if(fit.open.begin(), fit.open.end(), [&](const auto& combination) {
            return combination.size() == 1 && combination[0] / 4 == axis;
@@ -126,7 +120,7 @@ bool is_unseen(const math::ChainFit& fit, std::size_t axis) {
 void say_separation(Work& w, const std::vector<std::string>& withheld) {
   if (withheld.empty()) return;
   const math::ChainFit& fit = w.solved.fit;
-  std::vector<std::string> names;  // of the fit parameters
+  std::vector<std::string> names;
   for (std::size_t l = 0; l < w.chain.axes.size(); ++l) {
     for (const std::size_t k : fit.across[l])
       names.push_back(std::string(1, "xyz"[k]) + "_" + w.chain.axes[l]);
@@ -157,7 +151,7 @@ void say_separation(Work& w, const std::vector<std::string>& withheld) {
         {{"names", listed(withheld)}, {"which", which}});
 }
 
-/// The pivot length needs the stated tool length and its U, because the fit only determines their
+/// The pivot length needs the stated tool length and its U, because the fit determines only their
 /// sum.
 bool pivot_stated(const Work& w) {
   return !w.places.tools.empty() && tool_length(*w.places.tools.front()) > 0.0 &&
@@ -188,7 +182,6 @@ void say_tools(Work& w, const math::BudgetOf& budget) {
           {{"one", w.places.tools[tools.from]->id}, {"other", w.places.tools[tools.to]->id}});
 }
 
-/// Compares the distance of the axes with its nominal value.
 void say_offset(Work& w, const Value& distance) {
   if (!w.wish.offset) return;
   const double U = distance.U.value_or(distance.repeatability.value_or(0.0));
@@ -200,8 +193,8 @@ void say_offset(Work& w, const Value& distance) {
         {{"one", w.chain.axes[0]}, {"other", w.chain.axes[1]}});
 }
 
-/// Names for the history. They differ from those of a single axis, because both axes are at 0. A
-/// center coordinate along its axis is omitted, because it depends on the ball position.
+/// Names in the history differ from those of a single axis, because both axes are at 0. A center
+/// coordinate along its axis is omitted, because it depends on the ball position.
 void follow(Evaluation& e) {
   const auto component = [&](const std::string& name) {
     for (const Value& v : e.values)
@@ -233,7 +226,7 @@ void put_values(Work& w, math::BudgetOf& budget) {
       withheld.push_back(c.name);
       continue;
     }
-    if (c.name.starts_with("pivot_") && !pivot_stated(w)) continue;  // reported by a finding
+    if (c.name.starts_with("pivot_") && !pivot_stated(w)) continue;
     const double u = repetition_in(w, c.value.by);
     const math::Shares shares = shares_of(w, c);
     const math::Expanded e = budget.expand(u, shares);

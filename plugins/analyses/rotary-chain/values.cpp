@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Values of a chain: point and direction of each axis, relation of the two axes, and for a head the
 // distance from the axis to the tool.
 #include <algorithm>
@@ -19,7 +18,6 @@ Vector3 minus(const Vector3& a, const Vector3& b) {
 }
 Vector3 times(double f, const Vector3& v) { return {f * v[0], f * v[1], f * v[2]}; }
 
-/// Reference point for the center of an axis: the first ball, or for a head the tool tip (0).
 Vector3 anchor(const Chain& chain, const ChainState& s, std::size_t axis) {
   return chain.is_head(axis) ? Vector3{} : s.ball.front();
 }
@@ -38,7 +36,7 @@ Vector3 tool_vector(const Places& places, const Tools& tools, const ChainState& 
   return times(length_of / length(along), along);
 }
 
-/// Whether all components across the axis are identifiable; the component along it varies little.
+/// Uses the components perpendicular to the axis, because the component along it varies little.
 bool identifies_direction(const math::ChainFit& fit, std::size_t axis) {
   return std::all_of(fit.across[axis].begin(), fit.across[axis].end(), [&](std::size_t k) {
     return math::chain_value(fit, [&](const ChainState& s) { return s.lines[axis].direction[k]; })

@@ -24,9 +24,9 @@ const Observations::AxisColumn* column(const Observations& o, std::string_view a
   return nullptr;
 }
 
-/// The centers by ascending axis position. Readings of several runs, directions or turns at one
-/// position become one center, weighted by their number. A position repeated in one run and
-/// direction is a finding.
+/// Sorted by axis position. Readings of several runs, directions or revolutions at one position
+/// become one center, weighted by their number. A position repeated in one run and direction is a
+/// finding.
 tl::expected<std::vector<math::BallCentre>, Finding> centres_of(const Observations& o) {
   const auto *x = column(o, "X"), *y = column(o, "Y"), *z = column(o, "Z");
   std::vector<math::BallCentre> out;
@@ -35,7 +35,7 @@ tl::expected<std::vector<math::BallCentre>, Finding> centres_of(const Observatio
   std::map<long long, math::BallCentre> places;
   std::set<std::tuple<std::uint32_t, int, double>> seen;
   for (std::size_t i = 0; i < o.size(); ++i) {
-    if (o.line_of(i) != 0) continue;  // each of the three lines has the whole position
+    if (o.line_of(i) != 0) continue;  // each of the three lines contains the whole position
     const double angle = rotary.position[i];
     const int approach = rotary.approach.empty() ? 0 : rotary.approach[i];
     if (!std::isfinite(angle) || !seen.emplace(o.run_of(i), approach, angle).second) {
@@ -65,7 +65,7 @@ constexpr double significant = 0.01;      // significance level of a wave
 constexpr double surely = 1e-3;           // significance level of residuals above the stated sigma
 constexpr double no_circle_share = 1e-3;  // limit relative to the radius if no sigma is stated
 constexpr double half_turn = std::numbers::pi, full_turn = 2.0 * std::numbers::pi;
-constexpr double opposite = 1e-3;     // rad, tolerance of half a turn between two positions
+constexpr double opposite = 1e-3;     // rad, tolerance of half a revolution between two positions
 constexpr double least_sine = 0.5;    // of half the angle between two positions: 60 deg
 constexpr double few = 7;             // degrees of freedom below which Student's factor is large
 constexpr double shear_unit = 10e-6;  // rad, example for the sensitivity of an arc
@@ -144,7 +144,7 @@ class Judge {
     return false;
   }
   /// A circle through three points has no residuals. It is reported without U unless the arc is
-  /// shorter than half a turn.
+  /// shorter than half a revolution.
   bool without_U(Finding f) {
     out_.U_known = false;
     out_.findings.push_back(std::move(f));
@@ -165,7 +165,6 @@ class Judge {
     return true;
   }
 
-  /// sigma is the stated value, or from the residuals, or from the instrument.
   bool with_sigma() {
     const RotaryFit& fit = out_.fit;
     if (wish_.sigma) {
@@ -218,8 +217,8 @@ class Judge {
                           {um("s", left), um("limit", limit), mm("radius", fit.radius)}));
   }
 
-  /// With three points of a full turn, a squareness error of the linear axes shifts the center but
-  /// leaves no residuals.
+  /// With three points of a full revolution, a squareness error of the linear axes shifts the
+  /// center but leaves no residuals.
   bool squareness_known() {
     const RotaryFit& fit = out_.fit;
     out_.U_shear = 2.0 / std::numbers::sqrt3 * fit.shear_shift * wish_.linear_axes.value_or(0.0);
@@ -282,8 +281,8 @@ class Judge {
   ///
   ///     c = (p + q)/2 + cot(t/2)/2 m x (q - p)      u = s/2 sqrt(1/w_p + 1/w_q)/|sin(t/2)|
   ///
-  /// t: angle from p to q by the encoder. At half a turn, c is the middle. An error dt of the angle
-  /// moves c by radius dt/(2 sin(t/2)).
+  /// t: angle from p to q by the encoder. At half a revolution, c is the middle. An error dt of the
+  /// angle moves c by radius dt/(2 sin(t/2)).
   void tell_two_points() {
     const RotaryFit& fit = out_.fit;
     const auto& all = out_.centres;
@@ -328,7 +327,6 @@ class Judge {
                                     std::move(evidence)));
   }
 
-  /// Reports angles as unreliable if the residuals along the circle exceed the other residuals.
   void tell_angles() {
     const RotaryFit& fit = out_.fit;
     double along = 0.0, rest = 0.0;
@@ -369,7 +367,7 @@ class Judge {
   const Wish& wish_;
   Judged out_;
   DoubleWave radial_, axial_;
-  bool exceeds_ = false;  ///< the residuals exceed the stated sigma
+  bool exceeds_ = false;
 };
 
 }  // namespace

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Center, direction and radius of a rotary axis from the centers of a ball that turns with it.
+// Center, direction and radius of a rotary axis from the centers of a ball that rotates with it.
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>
@@ -15,7 +14,8 @@
 namespace nonio::rotary_kinematics {
 namespace {
 
-/// Derivatives of the fitted values by the coordinates: x of every center, then y, then z.
+/// Derivatives of the fitted values with respect to the coordinates: x of every center, then y,
+/// then z.
 struct Derivatives {
   using Row = std::vector<double>;
   std::array<Row, 3> centre, direction;
@@ -25,7 +25,6 @@ struct Derivatives {
 
 constexpr std::size_t most_residuals = 500;  // the derivatives grow with its square
 
-/// Numerical derivatives by central differences.
 Derivatives derivatives_of(const Judged& judged, bool use_angles) {
   constexpr double step = 1e-5;  // m: far above rounding, far below the radius
   const std::size_t n = judged.centres.size();
@@ -42,7 +41,7 @@ Derivatives derivatives_of(const Judged& judged, bool use_angles) {
       for (const double sign : {1.0, -1.0}) {
         centres[i].at[k] = judged.centres[i].at[k] + sign * step;
         const auto fit = math::fit_rotary(centres, use_angles);
-        if (!fit) continue;  // does not occur if the first fit converged
+        if (!fit) continue;
         const double by = sign / (2.0 * step);
         for (std::size_t c = 0; c < 3; ++c) {
           d.centre[c][at] += by * fit->centre[c];
@@ -60,7 +59,7 @@ Derivatives derivatives_of(const Judged& judged, bool use_angles) {
 }
 
 /// Error model of the coordinates of one circle, or of several circles in one frame; its lines are
-/// x, y and z. linear_axes: bound of squareness and scale difference, rad; nullopt: not stated.
+/// x, y and z. linear_axes: bound of squareness and scale difference, rad; absent if not stated.
 math::ReadingModel coordinate_model(const Campaign& c, const Environment& e,
                                     const std::vector<const Judged*>& circles,
                                     std::optional<double> linear_axes) {
@@ -76,8 +75,6 @@ math::ReadingModel coordinate_model(const Campaign& c, const Environment& e,
   return math::probed_model(c, e, places);
 }
 
-/// Converts derivatives with respect to (center, direction) to derivatives with respect to
-/// coordinates.
 Derivatives::Row chain(const Derivatives& d, const std::array<double, 6>& by_line) {
   Derivatives::Row out(d.radius.size(), 0.0);
   for (std::size_t i = 0; i < out.size(); ++i)
@@ -123,7 +120,6 @@ double range(const std::vector<double>& values) {
   return *high - *low;
 }
 
-/// State shared by the steps of the analysis of one axis.
 struct Work {
   const AnalysisInput& in;
   Wish wish;
@@ -171,7 +167,6 @@ void add_values(Work& w) {
   w.out.values.push_back({"run_out_axial", range(fit.axial), Quantity::deviation});
 }
 
-/// Standard uncertainty of a value by the repetition of the coordinates.
 double repetition_in(const Judged& j, const std::vector<double>& by) {
   const std::size_t n = j.centres.size();
   double sum = 0.0;
@@ -212,7 +207,6 @@ void add_curves(Work& w) {
   add_curve(w, "axial", angle, fit.axial, w.by.axial);
 }
 
-/// Joins the derivatives of two circles: x of both, y of both, z of both.
 std::vector<double> joined(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> out;
   const auto n = static_cast<std::ptrdiff_t>(a.size() / 3),
@@ -224,7 +218,6 @@ std::vector<double> joined(const std::vector<double>& a, const std::vector<doubl
   return out;
 }
 
-/// Degrees of freedom of two combined repetitions (Welch-Satterthwaite).
 double joined_dof(double u_a, double dof_a, double u_b, double dof_b) {
   const double fourth = std::pow(u_a, 4) / dof_a + std::pow(u_b, 4) / dof_b;
   return fourth > 0.0 ? std::pow(std::hypot(u_a, u_b), 4) / fourth : INFINITY;
@@ -235,7 +228,7 @@ void add_relation(Work& w, const std::string& id, const Judged& j) {
   const auto a = math::relation_of(j.fit, j.sigma, w.own.fit, 0.0),
              b = math::relation_of(j.fit, 0.0, w.own.fit, w.own.sigma);
   const auto by = derivatives_of(j, w.wish.use_angles);
-  // Both circles share one frame, so a common error of the instrument cancels in the distance.
+  // Both circles are in one frame, so a common error of the instrument cancels in the distance.
   const auto model =
       coordinate_model(w.in.campaign, w.limits.environment, {&j, &w.own}, w.wish.linear_axes);
   auto distance = model.shares(joined(chain(by, r.distance_by_a), chain(w.by, r.distance_by_b)));
@@ -268,14 +261,13 @@ void add_relations(Work& w) {
       continue;
     }
     const Judged j = judge((*in.all)[i], wish_of(in.campaign, (*in.all)[i], in.options));
-    if (!j.given) continue;  // its own evaluation reports the reason
+    if (!j.given) continue;
     add_relation(w, other.id, j);
     w.out.uses.push_back(other.id);
     w.out.notes.push_back({"rotary.chain", {}, {{"one", other.id}, {"other", in.measurement.id}}});
   }
 }
 
-/// Readings of all measurements of this kind, because they may be compared.
 std::vector<const Observations*> observations_of(const AnalysisInput& in) {
   std::vector<const Observations*> out{&in.observations};
   for (std::size_t i = 0; in.all != nullptr && i < in.all->size(); ++i)
@@ -283,7 +275,6 @@ std::vector<const Observations*> observations_of(const AnalysisInput& in) {
   return out;
 }
 
-/// Gives the model the residuals of this circle, if all positions have the same number of readings.
 void show_residuals(math::ReadingModel& model, const Judged& j, const Derivatives& by) {
   const bool alike = std::all_of(j.centres.begin(), j.centres.end(),
                                  [&](const auto& c) { return c.weight == j.centres[0].weight; });
@@ -293,7 +284,7 @@ void show_residuals(math::ReadingModel& model, const Judged& j, const Derivative
   model.see_residuals(rows, j.fit.dof);
 }
 
-/// If another axis turned as well, the centers are not on a circle.
+/// If another axis moved too, the centers are not on a circle.
 Evaluation of_two_axes(const Measurement& m, const std::string& other) {
   Evaluation out;
   out.findings.push_back(
@@ -301,7 +292,6 @@ Evaluation of_two_axes(const Measurement& m, const std::string& other) {
   return out;
 }
 
-/// Result of a circle through three points whose U cannot be computed.
 Evaluation without_U(Judged judged) {
   Evaluation e;
   e.findings = std::move(judged.findings);

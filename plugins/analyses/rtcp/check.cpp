@@ -133,7 +133,7 @@ class Check {
     }
   }
 
-  /// Squareness and scale errors (within ±bound) of the linear axes that follow the ball. They are
+  /// Squareness and scale errors (within +-bound) of the linear axes that follow the ball. They are
   /// zero at the axis point stored in the control.
   math::ReadingModel::Input linear_axes(double bound) const {
     const double u = bound / std::numbers::sqrt3;
@@ -159,7 +159,6 @@ class Check {
     return input;
   }
 
-  /// Position error of each ball along X, Y and Z, with the axis at 0.
   math::ReadingModel::Input ball_place(double U) const {
     math::ReadingModel::Input input;
     for (std::size_t b = 0; b < out_.fit.place.size(); ++b)
@@ -222,7 +221,6 @@ class Check {
     }
   }
 
-  /// Reports the values that the sensing directions do not determine.
   void report_not_identifiable() {
     std::string by_ball, by_direction;
     for (std::size_t k = 0; k < 4; ++k) {
@@ -246,7 +244,7 @@ class Check {
   const Wish& wish_;
   Checked out_;
   bool probe_ = false;
-  std::vector<std::string> names_;  ///< of the lines, sorted; a line is an index into it
+  std::vector<std::string> names_;
 };
 
 }  // namespace

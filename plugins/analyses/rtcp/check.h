@@ -11,7 +11,7 @@
 
 namespace nonio::rtcp {
 
-/// Options of the user, in SI units; nullopt: not stated.
+/// Options of the user, in SI units; absent if not stated.
 struct Wish {
   std::optional<bool> head;           ///< whether the axis carries the tool
   std::optional<double> sigma;        ///< standard uncertainty of a reading

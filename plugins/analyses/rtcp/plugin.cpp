@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Errors of the rotary axis parameters of a control, from readings with active tool center point
 // control.
 #include "nonio/sdk/plugin.h"
@@ -131,8 +130,6 @@ void tell_left(const Checked& c, Evaluation& out) {
                           .texts = {{"names", names}}});
 }
 
-/// Index of the measurement of the same axis before the adjustment; nullopt if none or several
-/// exist.
 std::optional<std::size_t> before_of(const Campaign& campaign, const Measurement& after) {
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < campaign.measurements.size(); ++i) {
@@ -144,9 +141,8 @@ std::optional<std::size_t> before_of(const Campaign& campaign, const Measurement
   return found;
 }
 
-/// Which factor f fits after = f before, by a chi-square test: f = 0 if the new parameters
-/// compensate, 1 if they are not active, 2 if their sign is wrong. The new parameters are from
-/// `one`.
+/// Chi-square test of the factor f in after = f before: 0 if the new parameters compensate, 1 if
+/// they are not active, 2 if their sign is wrong. The new parameters are from `one`.
 void compare(const Checked& one, const Checked& two, const std::string& before, Evaluation& out) {
   const auto u_one = whole_u(one), u_two = whole_u(two);
   double n = 0.0, p[3] = {1.0, 1.0, 1.0}, top = 0.0, bottom = 0.0;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Small steps of a linear axis: deviations of the shortest and the longest step, and the loss of
 // the first step after a reversal.
 #include "nonio/sdk/plugin.h"
@@ -35,7 +34,6 @@ Difference of_step(const SmallSteps& all, const SmallSteps::One& s, std::string 
           .scale = static_cast<double>(s.direction)};
 }
 
-/// Smallest and largest step deviation at each target, for each direction.
 PointTable table(const SmallSteps& all) {
   struct Errors {
     double least = NAN, largest = NAN;

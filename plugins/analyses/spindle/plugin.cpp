@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Axes of rotation (ISO 230-7): error motions of a spindle from one sensor or several sensors.
 #include "nonio/sdk/plugin.h"
 
@@ -20,27 +19,27 @@ namespace nonio::spindle {
 namespace {
 
 struct Place {
-  double ball = 0.0, sensor = 0.0;  ///< orientations, rad, rounded to 0.001°
+  double ball = 0.0, sensor = 0.0;  ///< orientations, rad, rounded to 0.001 deg
   auto operator<=>(const Place&) const = default;
 };
 
 struct SetUps {
-  std::map<std::string, std::map<Place, math::Turns>> of;  ///< by sensor (X, Y1) and place
-  std::vector<Finding> findings;                           ///< sensors without turns
+  std::map<std::string, std::map<Place, math::Turns>> of;
+  std::vector<Finding> findings;
   bool resampled = false;
 };
 
-/// Error separation by the orientations of one sensor: a pair with ball and sensor turned by 180°,
-/// or the ball turned in equal steps over 360°.
+/// Error separation by the orientations of one sensor: a pair with ball and sensor rotated by 180
+/// deg, or the ball rotated in equal steps over 360 deg.
 struct Separation {
   enum class Kind { none, donaldson, multi_step } kind = Kind::none;
   std::vector<Place> places;  ///< results are in the orientation of the first
 };
 
 constexpr double full = 2.0 * std::numbers::pi;
-constexpr double grain = full / 360e3;  // 0.001°, in rad
+constexpr double grain = full / 360e3;  // 0.001 deg, in rad
 
-/// Rounded to 0.001° within [0°, 360°), in rad.
+/// Rounded to 0.001 deg within [0, 360 deg), in rad.
 double rounded(double angle) {
   const double turned = std::fmod(std::fmod(angle, full) + full, full);
   const double steps = std::round(turned / grain);
@@ -123,7 +122,6 @@ using math::Turns;
 
 bool applies(const Campaign&, const Measurement& m) { return m.kind == "spindle"; }
 
-/// Source of a set of values: one sensor, two sensors together, or a tilt.
 struct Channel {
   std::string name;
   Turns turns;
@@ -187,7 +185,7 @@ class Worker {
   void one(const Channel& c, const Separation* how) {
     const ErrorMotion e = math::error_motion(c.turns);
     const double half = e.total / 2.0, N = static_cast<double>(c.turns.N);
-    // The total motion is defined for these turns only, so it has no repetition uncertainty.
+    // The total motion is defined for these revolutions only, so it has no repetition uncertainty.
     const double total = c.axial ? e.total_with_once : e.total;
     put(c, "total", total, 0.0, INFINITY, -total / 2.0, total / 2.0, c.with_ball && !c.axial);
     std::vector<double> curve = c.axial ? e.with_once : e.motion;
@@ -213,8 +211,8 @@ class Worker {
     }
   }
 
-  /// Replaces `curve` by the spindle motion without the form error of the ball, and adds that form
-  /// error.
+  /// Replaces `curve` by the spindle motion without the form error of the ball, and adds the form
+  /// error as a result.
   void separate(const Channel& c, const Separation& how, std::vector<double>& curve,
                 double& u_mean) {
     const auto& places = set_ups_.of.at(c.name);
@@ -296,7 +294,7 @@ class Worker {
     return found == set_ups_.of.end() ? nullptr : &found->second.begin()->second;
   }
 
-  /// Rotating sensitive direction, from two sensors at 90° in the plane nearest to the spindle
+  /// Rotating sensitive direction, from two sensors at 90 deg in the plane nearest to the spindle
   /// nose.
   void both_directions() {
     for (const auto& [x, y] : {std::pair{"X", "Y"}, {"X1", "Y1"}}) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Squareness of two axes measured against the two faces of one square.
 #include "nonio/math/square.h"
 
@@ -26,7 +25,6 @@ bool applies(const Campaign& campaign, const Measurement& m) {
   return !m.square.empty() && led_by(campaign, m).has_value();
 }
 
-/// Compares the error found for the square with its certificate.
 void judge_certificate(const AnalysisInput& in, const math::SquareLines& lines, double found,
                        const math::Expanded& e, Evaluation& out) {
   for (const Square& square : in.campaign.squares) {

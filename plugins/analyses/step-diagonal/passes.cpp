@@ -18,14 +18,13 @@ Number count(const char* name, std::size_t n) {
   return {name, static_cast<double>(n), Quantity::count};
 }
 
-/// One line of the observations, with its positions as numbers of moves of each axis from the
-/// start.
+/// One line of the observations, with its positions as numbers of moves of each axis.
 struct Line {
   std::string name;
   std::array<int, 3> sign{};
   std::vector<std::size_t> rows;
-  std::size_t n = 0;                              ///< number of steps per axis
-  std::vector<std::array<std::size_t, 3>> moves;  ///< numbers of moves of each axis, for each row
+  std::size_t n = 0;
+  std::vector<std::array<std::size_t, 3>> moves;
 };
 
 Expected<void> place(Passes& p, const AnalysisInput& in) {
@@ -43,8 +42,6 @@ Expected<void> place(Passes& p, const AnalysisInput& in) {
   return {};
 }
 
-/// Number of steps per axis: travel divided by the smallest distance of two positions, the largest
-/// of the axes.
 std::size_t steps_of(const Passes& p, const Observations& o, const Line& line) {
   std::size_t n = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -60,8 +57,6 @@ std::size_t steps_of(const Passes& p, const Observations& o, const Line& line) {
   return n;
 }
 
-/// Counts the moves to each row of the line. Returns the first row that is not a whole number of
-/// steps from the start; nullopt: none.
 std::optional<std::size_t> count_moves(const Passes& p, const Observations& o, Line& line) {
   line.n = steps_of(p, o, line);
   for (const std::size_t row : line.rows) {
@@ -76,7 +71,7 @@ std::optional<std::size_t> count_moves(const Passes& p, const Observations& o, L
         return row;
       moves[k] = static_cast<std::size_t>(std::llround(steps));
     }
-    if (moves[0] + moves[1] + moves[2] == 0) return row;  // error: row before the first move
+    if (moves[0] + moves[1] + moves[2] == 0) return row;
     line.moves.push_back(moves);
   }
   return std::nullopt;
@@ -93,7 +88,6 @@ std::vector<Line> lines_of(const Observations& o) {
   return lines;
 }
 
-/// Number of readings up to the first one that contradicts this order of the axes.
 std::size_t in_order(const Line& line, const std::array<std::size_t, 3>& order) {
   math::StepDiagonals d;
   d.order = order;
@@ -109,7 +103,6 @@ std::string words(const std::array<std::size_t, 3>& order) {
   return out;
 }
 
-/// The order of the axes that agrees with the largest number of readings.
 std::array<std::size_t, 3> order_of(const Line& line) {
   std::array<std::size_t, 3> order{0, 1, 2}, best = order;
   do
@@ -118,7 +111,6 @@ std::array<std::size_t, 3> order_of(const Line& line) {
   return best;
 }
 
-/// Text such as "sd.csv:17"; only the file name if the line number is not known.
 std::string place_of(const AnalysisInput& in, std::size_t row) {
   const auto& lines = in.observations.source_line;
   return in.measurement.file + (row < lines.size() ? ":" + std::to_string(lines[row]) : "");
@@ -218,7 +210,6 @@ double mean_of(std::span<const math::AxisTest::Reading> readings) {
   return sum / static_cast<double>(readings.size());
 }
 
-/// Mean deviations of an axis, with their standard uncertainty by repetition.
 math::AxisSeries series_of(const math::AxisTest& test, const std::vector<double>& times,
                            std::size_t axis) {
   math::AxisSeries s{axis, {}, {}, 0.0, {}};
@@ -250,8 +241,6 @@ math::AxisSeries series_of(const math::AxisTest& test, const std::vector<double>
   return s;
 }
 
-/// Whether `m` is named by the option `lengths`; without this option, whether it has the same
-/// state.
 bool wanted(const AnalysisInput& in, const Measurement& m) {
   const auto ids = in.options.texts("lengths");
   if (!ids.empty()) return std::find(ids.begin(), ids.end(), m.id) != ids.end();
@@ -329,7 +318,7 @@ double triple(const Vector3& a, const Vector3& b, const Vector3& c) {
          a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-/// Readings of a pass if the carriage of `axis` turns about e_w by a = shape(-1..1) over its
+/// Readings of a pass if the carriage of `axis` rotates about e_w by a = shape(-1..1) over its
 /// travel. The beam starts at P in direction u. The center R of rotation is at the position of the
 /// axes that carry `axis`, and in the middle of those that it carries. Reading: a w.(u x (R - P))
 /// minus its first value.

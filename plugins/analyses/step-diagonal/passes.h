@@ -7,14 +7,13 @@
 #include "nonio/math/step_diagonals.h"
 #include "nonio/sdk/plugin.h"
 
-/// Input of the step diagonal kernel from the observations of a campaign.
 namespace nonio::step_diagonal {
 
 /// The passes of a measurement, or the findings that explain why they cannot be evaluated.
 struct Passes {
   math::StepDiagonals readings;
-  std::vector<std::string> axes;   ///< names of the axes along X, Y, Z
-  std::vector<std::string> names;  ///< names of the passes, such as "SD PPP"
+  std::vector<std::string> axes;   ///< along X, Y, Z
+  std::vector<std::string> names;  ///< such as "SD PPP"
   std::vector<Finding> refusal;
 };
 Expected<Passes> passes_of(const AnalysisInput& in);
@@ -22,17 +21,16 @@ Expected<Passes> passes_of(const AnalysisInput& in);
 /// The positioning measurements of the campaign along the axes of the passes.
 struct Lengths {
   std::vector<math::AxisSeries> series;
-  std::vector<std::string> ids;  ///< ids of the measurements, one per series
+  std::vector<std::string> ids;  ///< one measurement per series
   std::vector<Finding> findings;
 };
 Lengths lengths_of(const AnalysisInput& in, const Passes& passes);
 
-/// Passes and series for the uncertainty budget, in the order of solve_step_diagonals.
+/// Budget lines of the passes, then of the positioning measurements, as in solve_step_diagonals.
 std::vector<math::BudgetLine> budget_lines(const Passes&, const Lengths&, const Campaign&);
-/// Effect of yaw and pitch of each axis, within ±angle (rad), on the passes. Linear and quadratic
+/// Effect of yaw and pitch of each axis, within +-angle (rad), on the passes. Linear and quadratic
 /// shapes over the travel have half of the variance each.
 math::ReadingModel::Input angles_input(const Passes&, const math::ReadingModel&, double angle);
-/// Readings of the measurement and of those in `Lengths`.
 std::vector<const Observations*> observations_of(const AnalysisInput&, const Lengths&);
 
 }  // namespace nonio::step_diagonal

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Sequential step diagonals: three positioning, six straightness and three squareness errors of a
 // volume, as far as the readings determine them.
 #include <algorithm>
@@ -37,8 +36,6 @@ PointTable table_of(const Passes& p) {
   return table;
 }
 
-/// Adds a table with one row per whole step (`target` along the diagonal, one column per pass), and
-/// D_max, the largest deviation in it, with U.
 void put_whole_steps(const Passes& p, const math::StepSolution& s, const math::ReadingModel& model,
                      math::BudgetOf* budget, Evaluation& out) {
   PointTable table = table_of(p);
@@ -52,7 +49,6 @@ void put_whole_steps(const Passes& p, const math::StepSolution& s, const math::R
       if (std::fabs(v) > most) most = std::fabs(v), pass = k - 1, step = i;
     }
   if (budget != nullptr && step > 0) {
-    // Difference of this reading and the one before the first move.
     std::vector<double> row(model.readings(), 0.0);
     const std::size_t zero = pass * (3 * p.readings.n + 1);
     row[zero + 3 * step] = 1.0;
@@ -76,7 +72,7 @@ Finding attention(const char* id, std::vector<Number> evidence,
   return {.id = id, .attention = true, .evidence = std::move(evidence), .texts = std::move(texts)};
 }
 
-/// Largest distance of a stop from the beam, m. The mirror must be larger than this.
+/// Largest distance of a target from the beam, m. The mirror must be larger.
 double lateral(const StepDiagonals& d) {
   double most = 0.0;
   for (std::size_t t = 1; t < 3; ++t) {
@@ -92,7 +88,6 @@ double lateral(const StepDiagonals& d) {
   return most;
 }
 
-/// State shared by the steps of the analysis.
 struct Work {
   const AnalysisInput& in;
   const Passes& passes;
@@ -141,7 +136,6 @@ void judge_lengths(Work& w, const StepSolution& s) {
                                                      number("u", gap->u, Quantity::deviation)}));
 }
 
-/// Names of the positioning errors whose scale is not identifiable, separated by ", ".
 std::string open_scales(const StepSolution& s) {
   std::string open;
   for (const StepCurve& c : s.curves)
@@ -158,7 +152,7 @@ void say_scales(Work& w, const StepSolution& s) {
                                      {{"scales", open}}));
 }
 
-/// Whether stated angular errors could cause a straightness above budget_um; adds a finding.
+/// Whether the stated angular errors could cause a straightness above budget_um; adds a finding.
 bool withheld(Work& w, const StepCurve& c) {
   const double angle = w.in.options.number("angle_urad") * urad;
   const double budget = w.in.options.number("budget_um") * um;
@@ -208,8 +202,7 @@ void put_values(Work& w, const StepSolution& s, const ReadingModel& model) {
   if (certain && model.missing.empty()) w.out.budget = budget.budget();
 }
 
-/// Limits of the environment. The drift is increased to that of the check sums if this is
-/// significant.
+/// The drift is increased to that of the check sums if this is significant.
 HeldLimits limits_of(const Work& w) {
   HeldLimits held = limits_held(w.in.campaign, observations_of(w.in, w.lengths));
   auto& drift = held.environment.drift;

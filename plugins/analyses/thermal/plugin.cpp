@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Thermal tests (ISO 230-3): a machine at rest (ETVE), a rotating spindle, or a cycling axis.
 #include "nonio/sdk/plugin.h"
 

@@ -10,13 +10,12 @@ namespace nonio::thermal {
 
 namespace {
 
-/// Indexes of start and stop of the spindle. The speed of a row applies until the next row.
+/// Start and stop of the spindle. The speed of a row applies until the next row.
 struct Run {
   std::size_t start = 0, stop = 0;
   bool stopped = false;
 };
 
-/// Start and stop from the readings of one line; nullopt if the spindle never turns.
 std::optional<Run> run_of(const Observations& o, const std::vector<std::size_t>& rows,
                           Tracks& out) {
   const auto& s = o.axes.front();
@@ -64,7 +63,6 @@ Followed followed(std::string name, const math::Track& whole, const std::optiona
   return f;
 }
 
-/// Difference of two tracks divided by their distance, at the times that both contain.
 math::Track tilt_of(const math::Track& one, const math::Track& two, double distance) {
   math::Track out;
   std::size_t j = 0;

@@ -9,7 +9,6 @@
 #include "nonio/sdk/observations.h"
 #include "nonio/sdk/results.h"
 
-/// Displacements over time in a thermal test.
 namespace nonio::thermal {
 
 enum class Test { etve, spindle, axis };
@@ -17,10 +16,10 @@ enum class Test { etve, spindle, axis };
 /// One sensor, or a tilt from two sensors; 0 at its first reading.
 struct Followed {
   std::string name;    ///< X, Y1; for a tilt A (about X) or B (about Y)
-  math::Track run;     ///< of a spindle: from start to stop; otherwise all
-  math::Track cool;    ///< from the stop on, 0 at the stop; empty: no stop
+  math::Track run;     ///< from start to stop of a spindle, otherwise the whole test
+  math::Track cool;    ///< from the stop on, 0 at the stop; empty without a stop
   bool tilt = false;   ///< whether values are in rad instead of m
-  double lever = 0.0;  ///< of a tilt: distance of the sensors, m
+  double lever = 0.0;  ///< distance of the sensors of a tilt, m
 };
 
 struct Tracks {
@@ -31,7 +30,8 @@ struct Tracks {
   std::vector<Finding> findings;
 };
 
-/// Displacement of each sensor, split at start and stop of the spindle; the visits of an axis.
+/// Displacement of each sensor, divided at start and stop of a spindle; for an axis test, its
+/// visits of the targets.
 Tracks tracks_of(const Measurement&, const Observations&);
 
 }  // namespace nonio::thermal

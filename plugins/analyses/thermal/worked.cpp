@@ -101,7 +101,6 @@ class Worker {
     put_constants(f.name, f.run, 1.0, Quantity::deviation, 1.0);
   }
 
-  /// Time constants of a track in `quantity`; its values times `lever` are lengths in m.
   TimeConstants put_constants(const std::string& name, const Track& k, double lever,
                               Quantity quantity, double scale) {
     const TimeConstants fit = math::time_constants(k);
@@ -174,7 +173,6 @@ class Worker {
     out_.findings.push_back(std::move(f));
   }
 
-  /// Reports the item of largest absolute value among all targets and directions.
   void put_largest(const char* name, const std::vector<Item>& all) {
     const auto worst = std::max_element(all.begin(), all.end(), [](const Item& a, const Item& b) {
       return std::fabs(a.value) < std::fabs(b.value);
@@ -274,7 +272,6 @@ class Worker {
         {"reversal_" + m_.axis, "t", Quantity::time, Quantity::deviation, r.time, r.d, {}});
   }
 
-  /// Table: range and end value for each target and direction.
   void points() {
     std::set<double> places;
     for (const auto& v : tracks_.visits) places.insert(v.position);
@@ -296,7 +293,6 @@ class Worker {
       }
   }
 
-  /// Warm-up time by the slowest sensor; a lower limit if a sensor has no result.
   void settle() {
     if (tracks_.test == Test::etve || slowest_name_.empty()) return;
     out_.findings.push_back({.id = open_ ? "thermal.warm-up-at-least" : "thermal.warm-up-time",

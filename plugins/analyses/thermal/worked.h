@@ -23,7 +23,7 @@ struct Worked {
   std::vector<Finding> findings;
   std::vector<Series> series;
   PointTable points;
-  double drift = 0.0;  ///< largest change in a window of a machine at rest, m; 0: not known
+  double drift = 0.0;  ///< largest change in a window of a machine at rest, m; 0 if not known
   std::string drift_sensor;
 };
 

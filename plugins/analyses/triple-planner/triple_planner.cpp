@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Plans the stops of two axes and of the diagonals of their rectangle on a common grid.
+// Plans the targets of two axes and of the diagonals of their rectangle on a common grid.
 #include <algorithm>
 
 #include "nonio/math/triples.h"
@@ -14,7 +13,6 @@ namespace {
 
 constexpr double mm = 1e-3;
 
-/// The axis named by an option. Error: unknown axis, rotary axis, or no travel stated.
 Expected<const Axis*> planned_axis(const CampaignInput& in, const char* option) {
   const std::string name = in.options.text(option);
   const Axis* axis = in.campaign.machine.axis(name);

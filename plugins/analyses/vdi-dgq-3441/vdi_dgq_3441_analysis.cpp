@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // VDI/DGQ 3441: statistical testing of positional accuracy of a linear or rotary axis.
 #include <cmath>
 
@@ -45,7 +44,6 @@ PointTable table(const AxisAnalysis& a, const VdiResult& r) {
   return points;
 }
 
-// Replaces the names of absent ISO 230-2 values in the common findings by those of VDI/DGQ 3441.
 void name_absent(std::vector<Finding>& findings) {
   for (Finding& f : findings)
     for (auto& [name, text] : f.texts)
@@ -54,7 +52,6 @@ void name_absent(std::vector<Finding>& findings) {
             f.id == "runs.single" ? "P, Ps_max, Ps_mean" : "P, Pa, Ps_max, Ps_mean, U_max, U_mean";
 }
 
-// Findings for properties that ISO 230-2 shows but the averages of VDI/DGQ 3441 hide.
 void hidden(const AxisAnalysis& a, const VdiResult& vdi, Evaluation& e) {
   const Iso230Result iso = evaluate_iso230_2(a.test, 2.0);
   if (scatter_is_asymmetric(a.test) && std::isfinite(iso.R_plus) && std::isfinite(iso.R_minus) &&

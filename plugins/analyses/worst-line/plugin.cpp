@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Linear displacement on several lines in the volume; the worst line gives each value.
 #include "nonio/sdk/plugin.h"
 
@@ -25,7 +24,6 @@ struct Line {
   math::Iso230Uncertainty U{};
 };
 
-/// Indexes of measurements of the same axis in the same state, in manifest order.
 std::vector<std::size_t> lines_of(const Campaign& c, const Measurement& of) {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < c.measurements.size(); ++i) {
@@ -62,7 +60,8 @@ constexpr Of values[] = {
     {"B", &math::Iso230Result::B, &math::Iso230Uncertainty::B, Made::of_environment},
 };
 
-/// If a value is missing on one line, no worst value is reported, because this line could be worst.
+/// If a value is missing on one line, no worst value is reported, because this line could be the
+/// worst.
 void put_worst(const std::vector<Line>& lines, Evaluation& e) {
   for (const Of& of : values) {
     const Line* worst = nullptr;
@@ -93,7 +92,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   const std::vector<std::size_t> all = lines_of(in.campaign, in.measurement);
   Evaluation e;
   const Measurement& first = in.campaign.measurements[all.front()];
-  if (first.id != in.measurement.id) return e;  // the first line has the results of all
+  if (first.id != in.measurement.id) return e;
   std::vector<Line> lines;
   for (const std::size_t i : all) {
     NONIO_TRY(auto l, line(in, i));

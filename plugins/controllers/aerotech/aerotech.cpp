@@ -14,9 +14,9 @@ using controllers::CrossCurve;
 using controllers::CrossJob;
 using controllers::Sheet;
 
-// .cal: corrections at equal distances from home. The control adds all tables of an axis, and the
-// end value of a table applies beyond it, so one table for each side of home is enough. A table of
-// a whole turn is not repeated.
+// .cal: corrections at equal distances from home. The control adds all tables of an axis, and
+// beyond a table its end value applies, so that one table for each side of home suffices. A table
+// of a whole revolution is not repeated.
 ControlTable declared() {
   ControlTable t;
   t.name = ".cal";
@@ -36,9 +36,9 @@ ControlTable declared() {
 constexpr std::string_view two_tables = "two tables from home";
 
 Expected<std::vector<Artifact>> files(const Sheet& s) {
-  const auto below = std::llround(-s.grid.first / s.grid.step);  // number of points below home
+  const auto below = std::llround(-s.grid.first / s.grid.step);
   const auto above = std::llround(s.grid.last() / s.grid.step);
-  const auto entry = [&](std::int64_t k) {  // k steps from home; 0 outside of the grid
+  const auto entry = [&](std::int64_t k) {
     const std::int64_t i = k + below;
     if (i < 0 || i >= static_cast<std::int64_t>(s.plus.size())) return std::string("0.0");
     return s.entry(s.plus[static_cast<std::size_t>(i)]);
@@ -60,10 +60,10 @@ Expected<std::vector<Artifact>> files(const Sheet& s) {
   return std::vector<Artifact>{{"aerotech-" + s.job.stem + ".cal", std::move(out)}};
 }
 
-/// Table with one row per position of the second axis, one column per position of the first axis;
-/// each cell has both corrections in um.
+/// One row per position of the second axis, one column per position of the first axis; each cell
+/// contains both corrections in um.
 std::string plane(const CrossJob& job, const std::vector<controllers::KnownAxis>& axes) {
-  const CrossCurve &a = job.curves[0], &b = job.curves[1];  // a corrects the input axis of b
+  const CrossCurve &a = job.curves[0], &b = job.curves[1];
   const std::string row = std::to_string(axis_named(axes, b.input).number);
   const std::string col = std::to_string(axis_named(axes, a.input).number);
   const auto step = [](const CrossCurve& c) {
@@ -94,16 +94,15 @@ std::vector<double> even(double step, std::size_t n) {
   return out;
 }
 
-/// Value of a word such as "SAMPLEDIST=10" in a table head; NaN if missing.
 double value_in(const std::vector<std::string_view>& words, std::string_view key) {
   for (const auto w : words)
     if (w.rfind(key, 0) == 0) return controllers::real(w.substr(key.size())).value_or(NAN);
   return NAN;
 }
 
-/// First word after the `numbers` numbers of a head that is not in `known` (which has prefixes
-/// ending with '='); empty: none. Unknown words (units, NEGCOR, a third axis) change the meaning of
-/// a table.
+/// First word after the `numbers` numbers of a head that is not in `known`, whose elements with a
+/// final '=' are prefixes. Unknown words (units, NEGCOR, a third axis) change the meaning of a
+/// table.
 std::string_view not_understood(const std::vector<std::string_view>& head, std::size_t numbers,
                                 std::initializer_list<std::string_view> known) {
   for (std::size_t i = numbers; i < head.size(); ++i)

@@ -8,10 +8,8 @@
 namespace nonio::aerotech {
 namespace {
 
-/// Assigns the lines of a file, in order, to tables.
 class Blocks {
  public:
-  /// The axis of the table that contains this line; 0: outside of tables or in a plane.
   std::int64_t axis_of(std::string_view line) {
     const auto words = controllers::words_of(line.substr(0, line.find_first_of(";'")));
     if (words.empty()) return axis_;

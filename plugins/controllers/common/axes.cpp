@@ -8,7 +8,8 @@
 namespace nonio::controllers {
 namespace {
 
-// Allowed keys, with those that all controls accept because they describe the machine; empty: any.
+// Adds the keys that all controls accept because they describe the machine. Empty if any key is
+// allowed.
 std::set<std::string> full_keys(const std::vector<std::string_view>& keys) {
   std::set<std::string> out;
   if (!keys.empty())
@@ -83,7 +84,7 @@ KnownAxis axis_of_file(const std::vector<KnownAxis>& axes, std::string_view file
   if (!ours) return axes.size() == 1 ? axes.front() : KnownAxis{std::string(file), 0, false, {}};
   std::string_view stem = file.substr(prefix.size());
   stem = stem.substr(0, stem.rfind('.'));
-  const KnownAxis* found = nullptr;  // the longest matching name
+  const KnownAxis* found = nullptr;
   for (const KnownAxis& a : axes) {
     const std::string part = file_part(a.name);
     const bool fits = stem == part || stem.rfind(part + "-", 0) == 0;

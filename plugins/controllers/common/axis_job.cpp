@@ -34,10 +34,9 @@ Expected<void> check_names(const NumberTables& settings, const ControllerInput& 
   return {};
 }
 
-/// The compensation that was active during the measurement of the axis.
 struct Active {
-  std::optional<std::string> table;  ///< file names; empty: none; nullopt: not stated
-  bool backlash = false;             ///< whether the backlash value is stated
+  std::optional<std::string> table;  ///< file names; empty without a table, absent if not stated
+  bool backlash = false;
 };
 
 const Measurement* measurement_of(const ControllerInput& input, const std::string& id) {
@@ -89,8 +88,8 @@ std::vector<std::string> about(const ControllerInput& input, const AxisJob& job)
   return lines;
 }
 
-// Ids of drift findings with severity warning. They are computed here because the analyses that
-// report drift are optional.
+// Ids of drift findings with severity warning, computed here because the analyses that report drift
+// are optional.
 std::vector<std::string> drift_of(const math::AxisTest& test) {
   std::vector<Finding> findings;
   math::drift_findings(test, findings);
@@ -100,7 +99,6 @@ std::vector<std::string> drift_of(const math::AxisTest& test) {
   return ids;
 }
 
-// Suspect readings as text: target, run and direction, such as "190.0 mm (3, +)".
 std::vector<std::string> suspects_of(const math::AxisTest& test, const AxisJob& job) {
   std::vector<Finding> findings;
   math::suspect_findings(test, findings);
@@ -154,7 +152,7 @@ void say_what_was_left_out(const AxisJob& job, OutputResult& result) {
     say("table.reversal-unjudged");
 }
 
-// Refuses a table of an unstable axis, because its error changes.
+// The error of an unstable axis changes, so a table cannot compensate it.
 void refuse_drift(const AxisJob& job, OutputResult& result) {
   result.findings.push_back(
       {"table.refused-drift",
@@ -167,7 +165,6 @@ void refuse_drift(const AxisJob& job, OutputResult& result) {
            job.axis + " in the options of this control."});
 }
 
-// Gives each of several measurements of an axis (before, after) its own file names.
 Expected<void> name_files(std::vector<AxisJob>& jobs, OutputResult& result) {
   std::map<std::string, std::size_t> count;
   for (const AxisJob& j : jobs) ++count[j.axis];
@@ -198,8 +195,8 @@ Expected<void> name_files(std::vector<AxisJob>& jobs, OutputResult& result) {
   return {};
 }
 
-/// Gantry axes measured on parallel lines without a stated `side`, so that the tables of master and
-/// slave could be exchanged.
+/// Gantry axes measured on parallel lines without a stated `side`, for which the tables of master
+/// and slave could be exchanged.
 std::set<std::string> unsided_axes(const Campaign& campaign) {
   std::set<std::string> axes;
   if (campaign.machine.structure != "gantry") return axes;
@@ -215,12 +212,10 @@ std::set<std::string> unsided_axes(const Campaign& campaign) {
   return axes;
 }
 
-/// Whether the control needs an axis number (key "number:") that is not stated.
 bool number_unsaid(const AxisJob& job, const std::vector<std::string_view>& keys) {
   return job.number == 0 && std::find(keys.begin(), keys.end(), "number:") != keys.end();
 }
 
-/// Adds a finding that states the missing axis number and the file for it.
 void refuse_number(const std::string& axis, const std::string& measurement,
                    const ControllerInput& input, OutputResult& result) {
   const std::string& asset = input.campaign.machine.asset;
@@ -256,8 +251,26 @@ bool lacks_number(const std::vector<std::string>& of, const ControllerInput& inp
 bool states_active(const ControllerInput& input, const std::string& axis,
                    const std::string& measurement, bool backlash_in_options, OutputResult& result) {
   const Active active = active_of(input, axis, measurement, backlash_in_options);
-  if (active.table && active.backlash) return true;
   const Axis* a = input.campaign.machine.axis(axis);
+  if (active.table && active.backlash) {
+    const Measurement* m = measurement_of(input, measurement);
+    const bool none =
+        active.table->empty() && (a == nullptr || a->active_backlash.value_or(0.0) == 0.0);
+    const bool after = m != nullptr && m->adjustment == "after" && m->compensation != "off";
+    if (!none || !(after || (m != nullptr && m->compensation == "on"))) return true;
+    // A table from it would replace the one that was loaded meanwhile.
+    result.findings.push_back(
+        {"table.active-contradicted",
+         false,
+         {},
+         {{"axis", axis},
+          {"measurement", measurement},
+          {"stated", after ? "adjustment = \"after\"" : "compensation = \"on\""}},
+         measurement,
+         "If no table and no backlash value was active, state compensation = \"off\" in this "
+         "[[measurement]]. Otherwise state what was active, in a campaign of its own."});
+    return false;
+  }
   const std::string backlash =
       a != nullptr && a->rotary ? "active_backlash_deg" : "active_backlash_mm";
   const std::string missing = active.table      ? backlash

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Findings about the table of an axis: refusals, warnings, reversal, remaining deviations.
 #include <algorithm>
 
 #include "nonio/controllers/axis_job.h"
@@ -56,8 +54,7 @@ std::string suspect_warning(const AxisJob& job, OutputResult& result) {
          "; do not load this table before they are explained";
 }
 
-// Adds a finding if the F test shows a varying reversal, and a single value would leave more than a
-// quarter of it.
+// The F test shows a varying reversal, and a single value would leave more than a quarter of it.
 void doubt_uneven_reversal(const AxisJob& job, OutputResult& result) {
   constexpr double level = 0.01, share = 0.25;
   const math::Reversal& r = job.reversal;
@@ -163,12 +160,17 @@ void predict(const AxisJob& job, const math::Correction& whole, OutputResult& re
   const bool both = curve.bidirectional();
   const double U_B = both && !job.held ? job.U.B_mean : 0.0;
   const double E_after = math::predicted_after(was.E(), will.E(), std::max(job.U.E, U_B));
-  // Without a known scale, the curve is not the axis error; the diagonals then have the
-  // predictions.
-  if (job.scale_known) {
+  // Without a known scale, the curve is not the axis error, and predictions are made for the
+  // diagonals instead.
+  // Without all targets, the values of the axis are not known before compensation either.
+  if (job.scale_known && curve.left_out == 0) {
     add(both ? "E" : job.from_diagonals ? "M" : curve.plus.empty() ? "E-" : "E+", was.E(), E_after);
     add("B", was.B(), math::predicted_after(was.B(), will.B(), U_B));
     add("M", was.M(), math::predicted_after(was.M(), will.M(), job.U.M));
+  }
+  if (std::isnan(job.U.E) && will.E() < was.E()) {
+    Remark& note = result.notes.emplace_back(remark(job, "table.not-predicted"));
+    note.texts.emplace_back("id", job.measurement);
   }
   if (!(will.E() < was.E()))
     result.findings.push_back({"table.no-gain",

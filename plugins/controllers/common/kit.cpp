@@ -12,7 +12,6 @@
 namespace nonio::controllers {
 namespace {
 
-/// The curve of a whole turn if the control repeats its table every turn, otherwise the axis curve.
 const math::ErrorCurve& compensated_curve(const AxisJob& job, const Writer& w) {
   return w.turn_end == TurnEnd::repeats ? job.table_curve() : job.curve;
 }
@@ -28,7 +27,6 @@ std::string in_steps(double si, double step, double unit) {
   return decimals == 0 ? fixed_text(si / unit, 0) : decimal(si * (1.0 / unit), decimals);
 }
 
-/// Whether the reference must be a grid point, because entries refer to it.
 bool anchored(const ControlTable& t) {
   return t.entry == Entry::increment || t.zero == ControlTable::Zero::first;
 }
@@ -51,8 +49,7 @@ math::GridRule rule_of(const AxisJob& job, const ControllerInput& input, const W
   return rule;
 }
 
-/// Extends the grid so that increments exist on both sides of the reference, even if the axis is
-/// homed at its end.
+/// Increments must exist on both sides of the reference, even if it is at an end of the axis.
 void surround(math::Grid& grid, double reference) {
   if (reference - grid.first < grid.step / 2.0) {
     grid.first -= grid.step;
@@ -70,7 +67,6 @@ std::vector<double> wanted(const AxisJob& job, const Writer& w) {
   return rows;
 }
 
-/// The targets as rows, without rows that are equal after rounding.
 std::vector<double> listed(const AxisJob& job, const Writer& w, const ControlTable& t) {
   const double unit = t.position_unit.of(job.rotary);
   const int digits = decimals_of(t.position_step.of(job.rotary), unit);
@@ -100,8 +96,8 @@ Expected<void> place_points(Sheet& s, const Writer& w) {
   return {};
 }
 
-/// The curve at x. If the table of a turn does not repeat, the gap after its last point is
-/// interpolated to the first value.
+/// If the table of a revolution is not repeated, the gap after its last point is interpolated to
+/// the first value.
 double value_at(const AxisJob& job, const Writer& w, const std::vector<double>& values, double x) {
   const auto& position = compensated_curve(job, w).position;
   const double open = position.front() + full_turn - position.back();
@@ -149,7 +145,6 @@ struct Outside {
   std::size_t where = 0;
 };
 
-/// The largest out-of-range increment, for a value step multiplied by `coarser`; largest 0: none.
 Outside outside(const Sheet& s, double coarser) {
   Outside out;
   if (!s.table.increment) return out;
@@ -163,7 +158,7 @@ Outside outside(const Sheet& s, double coarser) {
   return out;
 }
 
-/// Advice for out-of-range increments. An option value is suggested only if it is sufficient.
+/// An option value is suggested only if it is sufficient.
 std::string advice(const Sheet& s, const Writer::Coarser& c) {
   const std::string smaller = s.job.rotary ? "step_deg" : "step_mm";
   if (c.option.empty()) return "set a smaller " + smaller;
@@ -193,8 +188,8 @@ Expected<void> check_range(const Sheet& s, const Writer& w) {
   return {};
 }
 
-/// Sets the position with entry 0 before the points are placed. Increments refer to it, so it
-/// cannot be the nearest end of the measured range.
+/// Called before the points are placed. Increments are relative to the reference, so it cannot be
+/// the nearest end of the measured range.
 Expected<void> set_reference(Sheet& s, OutputResult& result) {
   const auto told = s.job.position_setting("reference");
   if (!anchored(s.table)) {
@@ -238,7 +233,6 @@ Expected<Sheet> sheet_of(const AxisJob& job, const ControlTable& table,
   return s;
 }
 
-/// Reports a reversal that is left to a backlash parameter or not compensated.
 void look_at_reversal(const AxisJob& job, const ControlTable& t, OutputResult& result) {
   if (!t.backlash.empty()) return doubt_backlash(job, result);
   Remark stays = remark(job, "table.reversal-stays");
@@ -246,7 +240,6 @@ void look_at_reversal(const AxisJob& job, const ControlTable& t, OutputResult& r
   result.notes.push_back(std::move(stays));
 }
 
-/// True if the files of the axis were written; false, with findings, if its table is refused.
 Expected<bool> write_axis(AxisJob& job, const ControllerInput& input, const Writer& w,
                           OutputResult& result) {
   const bool directions =
@@ -280,7 +273,6 @@ Expected<bool> write_axis(AxisJob& job, const ControllerInput& input, const Writ
   return true;
 }
 
-/// The other side of a gantry axis by its name in the control; empty: not a gantry axis.
 std::string other_side(const Machine& machine, const std::string& axis) {
   for (const Axis& a : machine.axes) {
     if (a.slave.empty()) continue;
@@ -290,7 +282,7 @@ std::string other_side(const Machine& machine, const std::string& axis) {
   return {};
 }
 
-/// Replaces a table for one gantry side by a finding, because it would rotate the beam.
+/// A table for one gantry side only would rotate the beam, so it is replaced by a finding.
 void withdraw_one_sided(std::vector<AxisJob>& jobs, std::vector<OutputResult>& of_jobs,
                         const Machine& machine) {
   std::set<std::string> written;

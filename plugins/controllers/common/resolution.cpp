@@ -13,7 +13,6 @@ namespace {
 constexpr double least_step = 1e-6, least_angle = 1.0 / arcsec_per_rad, digits = 3.0,
                  steepest = 1e-3, impossible = 5e-2;
 
-/// Smallest nonzero difference of two readings; 0 if all are equal.
 double resolution_of(std::vector<double> all) {
   std::sort(all.begin(), all.end());
   const double size = all.empty() ? 0.0 : std::max(std::fabs(all.front()), std::fabs(all.back()));
@@ -27,7 +26,6 @@ double resolution_of(std::vector<double> all) {
 
 enum class Side { plus, minus, both };
 
-/// Variance of the mean of the directions in `side` at target i, from repeated readings.
 double variance_at(const math::AxisTest& test, std::size_t i, Side side) {
   double sum = 0.0, sides = 0.0;
   for (const bool minus : {false, true}) {
@@ -43,7 +41,6 @@ double variance_at(const math::AxisTest& test, std::size_t i, Side side) {
   return sides > 0.0 ? sum / (sides * sides) : 0.0;
 }
 
-/// Keeps the steepest step. variance(i): of value i.
 template <class Variance>
 void look_at(const std::vector<double>& position, const std::vector<double>& value,
              const Variance& variance, double resolution, bool rotary,

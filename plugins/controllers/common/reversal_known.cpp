@@ -9,7 +9,7 @@
 namespace nonio::controllers {
 namespace {
 
-/// Whether the machine model contains drift of the axis. Its tables are then free of drift.
+/// A table from a model with drift is free of drift.
 bool is_drift_modelled(const Campaign& campaign, const std::string& axis) {
   return std::any_of(campaign.model.begin(), campaign.model.end(), [&](const std::string& e) {
     const bool drift = e.find("drift") != e.npos || e.starts_with("warm-up");

@@ -8,7 +8,6 @@
 namespace nonio::controllers {
 namespace {
 
-/// Positioning series: EXX, EYY, EZZ, or EXX_shape if the scale is not known.
 struct Positioning {
   bool is = false, shape = false;
 };

@@ -12,10 +12,9 @@
 namespace nonio::controllers {
 namespace {
 
-/// A table that is 0 at a target cannot exceed E. More than twice E is not a table of this axis.
+/// A table that is 0 at a target cannot exceed E; one of more than twice E is not from this axis.
 constexpr double times_explained = 2.0;
 
-/// Limits from the readings: range of all mean deviations, and their steepest change. SI.
 struct Explained {
   double E = 0.0, slope = 0.0;
 };
@@ -37,7 +36,7 @@ Explained explained(const AxisJob& job) {
 
 struct Limit {
   double value;
-  std::string key;  ///< setting of the maker; empty: limit from the readings
+  std::string key;
 };
 
 Limit tighter(double of_readings, std::optional<double> of_maker, std::string key) {
@@ -134,8 +133,9 @@ std::string size_words(const AxisJob& job, const TableSize& size) {
          decimal(size.slope * slope.per_si, 3) + " " + std::string(slope.symbol) +
          limit("slope_um_per_m", "slope_arcsec_per_deg", slope.symbol) + " from " +
          with_unit(job, size.slope_from, 4) +
-         (job.scale_known ? "; E of the axis " + deviation_words(job, explained(job).E)
-                          : std::string());
+         (job.scale_known && job.curve.left_out == 0
+              ? "; E of the axis " + deviation_words(job, explained(job).E)
+              : std::string());
 }
 
 void note_zero(const AxisJob& job, double zero, OutputResult& result) {

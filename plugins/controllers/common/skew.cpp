@@ -12,7 +12,7 @@
 namespace nonio::controllers {
 namespace {
 
-/// Signs of ISO 230-1: C0Y turns +Y towards -X, B0Z turns +Z towards +X, A0Z turns +Z towards -Y.
+/// ISO 230-1: C0Y rotates +Y towards -X, B0Z rotates +Z towards +X, A0Z rotates +Z towards -Y.
 struct Square {
   const char *plane, *value;
   double lean;  ///< rotation of the second axis towards the first, per unit of `value`

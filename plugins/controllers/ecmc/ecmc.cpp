@@ -7,8 +7,7 @@ namespace {
 using Confidence = ControlTable::Confidence;
 using controllers::Sheet;
 
-// The table has (reading of the encoder - true position), the opposite of the deviation. The
-// control subtracts it.
+// The table contains encoder reading minus true position, which the control subtracts.
 ControlTable declared() {
   ControlTable t;
   t.name = "encoder.lookuptable";
@@ -48,7 +47,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
     if (w.empty() || w[0].front() == '#' || w[0].rfind("PREC=", 0) == 0) return false;
     if (w[0] == "scale:" && (w.size() != 2 || controllers::real(w[1]) != 1.0))
       return fail("expected scale: 1, found \"" + std::string(line) + "\"");
-    if (w[0].back() == ':') return false;  // settings that accompany the table
+    if (w[0].back() == ':') return false;
     const auto x = controllers::real(w[0]), v = controllers::real(w.size() == 2 ? w[1] : "");
     if (!x || !v) return controllers::no_point(line);
     raw.position.push_back(*x);

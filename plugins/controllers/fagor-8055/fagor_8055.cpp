@@ -8,7 +8,7 @@ namespace {
 
 using Confidence = ControlTable::Confidence;
 
-// Position and error in each direction, referred to machine zero (NPOINTS P16, LSCRWCOM P15).
+// Position and error in each direction, relative to machine zero (NPOINTS P16, LSCRWCOM P15).
 ControlTable declared() {
   ControlTable t;
   t.name = "LSCRWCOM";

@@ -38,7 +38,6 @@ ControlTable declared() {
   return t;
 }
 
-/// The declaration with units, range and magnification from the options.
 ControlTable table_of(const Settings& o) {
   ControlTable t = *controllers::chosen(declared(), o);
   const double m = static_cast<double>(o.integer("magnification", 1));
@@ -53,16 +52,16 @@ ControlTable table_of(const Settings& o) {
   return t;
 }
 
-// Parameters of one axis without its compensation values; the comments are parameter numbers.
+// Parameters of one axis without its compensation values; comments are parameter numbers.
 struct Parameters {
   std::int64_t reference = 0, low = 0, high = 0;  // 3620, 3621, 3622
   std::int64_t magnification = 1;                 // 3623
-  std::int64_t interval = 0, turn = 0;            // 3624; 3625, 0 unless rotary over a turn
+  std::int64_t interval = 0, turn = 0;            // 3624; 3625, 0 unless rotary over a revolution
   std::int64_t negative_low = 0, opposite = 0;    // 3626, 3627
   std::int64_t backlash = 0;                      // 1851
 };
 
-// In a table of a whole turn, the first value (at the reference position) repeats the last one.
+// In a table of a whole revolution, the first value (at the reference position) repeats the last.
 Integers numbers_of(Integers steps, bool turn) {
   if (turn) steps.insert(steps.begin(), steps.back());
   return steps;
@@ -84,18 +83,17 @@ Expected<Parameters> parameters_of(const Sheet& s) {
   return p;
 }
 
-// Assigns point numbers. All axes share one list, and each axis gets the next free range unless its
+// All axes share one list of point numbers; each axis gets the next free range unless its
 // reference_number is stated.
 struct Numbering {
   std::int64_t next = 0;
   struct Range {
     std::string axis;
     std::int64_t low, high;
-    bool chosen = false;  ///< true: range chosen by the program, not stated
+    bool chosen = false;
   };
   std::vector<Range> taken{};
 
-  /// The first number at or above `low` with `above` more free numbers after it.
   static std::int64_t free_from(std::int64_t low, std::int64_t above, const Settings& o) {
     const auto used = controllers::ranges_of(o.texts("taken"));
     for (std::size_t i = 0; i < used.size();)
@@ -109,7 +107,7 @@ struct Numbering {
   Expected<void> place(const Sheet& s, Parameters& p) {
     const Settings& o = s.input.options;
     const auto intervals = static_cast<std::int64_t>(s.plus_steps.size());
-    const std::int64_t before =  // numbers below that of the reference position
+    const std::int64_t before =
         p.turn != 0 ? 0 : std::llround((s.reference - s.grid.first) / s.grid.step) - 1;
     const auto asked = s.job.setting("reference_number");
     const std::int64_t all = o.integer("reference_number", -1);

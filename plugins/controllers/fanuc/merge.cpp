@@ -14,10 +14,11 @@ namespace {
 
 constexpr std::int64_t first_pitch = 10000;
 
-/// One value of a punched text (N1851A3P12); a block can have several axes. axis 0: common value.
+/// One value of a punched text (N1851A3P12). A block can have several axes; axis 0 is a common
+/// value.
 struct Word {
   std::int64_t number = 0, axis = 0, value = 0;
-  std::size_t at = 0, size = 0;  ///< position and number of the digits after P, in bytes
+  std::size_t at = 0, size = 0;
 };
 
 std::optional<std::int64_t> digits_at(std::string_view text, std::size_t at, std::size_t& end) {
@@ -58,7 +59,6 @@ struct Range {
   bool meets(const Range& other) const { return low <= other.high && other.low <= high; }
 };
 
-/// Point numbers that an axis with these parameters uses in both directions.
 std::vector<Range> ranges_of(const Values& p) {
   const auto at = [&](std::int64_t n) {
     const auto it = p.find(n);
@@ -85,7 +85,6 @@ class Backup {
     return it == axes_.end() || value == it->second.end() ? std::nullopt
                                                           : std::optional(value->second);
   }
-  /// Ranges of other axes, and nonzero values outside of the ranges of this axis.
   std::vector<Range> foreign(std::int64_t axis) const {
     std::vector<Range> out;
     for (const auto& [other, values] : axes_)
@@ -128,8 +127,8 @@ class Backup {
   Values pitch_;
 };
 
-/// Offset for the point numbers of the new table: to the range that the axis has in the backup, or
-/// to the first free range.
+/// Offset of the new point numbers to the range of the axis in the backup, or to the first free
+/// range.
 Expected<std::int64_t> shift_of(const std::vector<Range>& fresh, const Backup& backup,
                                 std::int64_t axis, const MergeInput& in) {
   const auto mine = backup.own(axis);

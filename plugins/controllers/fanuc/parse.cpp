@@ -16,14 +16,14 @@ namespace {
 using ParameterValues = std::map<std::int64_t, std::int64_t>;
 
 struct Memory {
-  std::map<std::int64_t, ParameterValues> parameter;  // by axis
-  std::map<std::int64_t, std::int64_t> pitch;         // by point number
-  std::int64_t least = -7, most = 7;                  // permitted range of one compensation value
+  std::map<std::int64_t, ParameterValues> parameter;
+  std::map<std::int64_t, std::int64_t> pitch;
+  std::int64_t least = -7, most = 7;  // permitted range of a compensation value
 };
 
 Expected<void> put(Memory& memory, std::int64_t number, std::int64_t axis, std::int64_t value,
                    const std::string& whole_line) {
-  constexpr std::int64_t word = 1000000000;  // largest plausible parameter value
+  constexpr std::int64_t word = 1000000000;
   if (number < 0 || number > word || std::abs(value) > word || std::abs(axis) > word)
     return fail("not a block: " + whole_line);
   if (number < 10000) {
@@ -54,7 +54,7 @@ Expected<void> block(Memory& memory, std::string_view line) {
     if (letter == 'A') axis = n;
     line.remove_prefix(static_cast<std::size_t>(r.ptr - line.data()));
     if (letter != 'P') continue;
-    has_value = true;  // a block has one P, or one for each A
+    has_value = true;
     if (auto ok = put(memory, number, axis, n, whole_line); !ok) return ok;
   }
   return has_value ? Expected<void>{} : fail("not a block: " + whole_line);
@@ -76,7 +76,7 @@ Expected<void> punched(Memory& memory, std::string_view text) {
 }
 
 // Absolute compensation in pulses at the ends of the intervals, 0 at the reference position. Point
-// n has the change over the interval that ends (n - reference) intervals from this position.
+// n contains the change over the interval that ends (n - reference) intervals from this position.
 Expected<std::vector<double>> staircase(const Memory& m, const ParameterValues& p,
                                         std::int64_t offset) {
   std::vector<double> value{0.0};
@@ -92,7 +92,6 @@ Expected<std::vector<double>> staircase(const Memory& m, const ParameterValues& 
   return value;
 }
 
-// Whether the values of a whole turn end as they begin; the first value repeats the last one.
 bool closed(const std::vector<double>& s) {
   const std::size_t n = s.size();
   return n > 2 && s[n - 1] == s[1] && s[n - 2] == s[0];
@@ -141,7 +140,7 @@ Expected<LoadedTable> table(const Memory& m, const ParameterValues& p,
   const double pulse = static_cast<double>(p.at(3623)) * unit.detection;
   const double step = static_cast<double>(p.at(3624)) * unit.interval;
   const double first = turn ? 0.0 : axis.position_setting("reference").value_or(0.0);
-  // The first value of a whole turn repeats the last one, so it is skipped.
+  // The first value of a whole revolution repeats the last one, so it is skipped.
   for (std::size_t i = turn ? 1 : 0; i < plus->size(); ++i) {
     const double at = static_cast<double>(p.at(3621) - 1 - p.at(3620)) + static_cast<double>(i);
     out.position[0].push_back(first + at * step);
@@ -154,7 +153,7 @@ Expected<LoadedTable> table(const Memory& m, const ParameterValues& p,
   return out;
 }
 
-/// Parameter 1001#0 (INM) is 1 on machines in inch. The options must then state the units.
+/// Parameter 1001#0 (INM) is 1 on machines in inch; the options must then state the units.
 Expected<void> check_units(const Memory& m, const Settings& o) {
   const auto common = m.parameter.find(0);
   if (common == m.parameter.end()) return {};
@@ -183,7 +182,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   if (o.flag("extended")) memory.least = -128, memory.most = 127;
   bool any = false;
   for (const Artifact& f : in.files) {
-    if (f.bytes.rfind('%', 0) != 0) continue;  // skip the accompanying text file
+    if (f.bytes.rfind('%', 0) != 0) continue;
     any = true;
     if (auto done = punched(memory, f.bytes); !done) return tl::unexpected<Error>(done.error());
   }

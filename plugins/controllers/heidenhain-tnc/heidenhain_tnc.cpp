@@ -39,7 +39,7 @@ ControlTable declared() {
 
 struct Layout {
   bool listed, power_of_two;
-  // First columns as in the table editor, where a cell begins at the column of its heading.
+  // First columns in the table editor, where a cell begins at the column of its heading.
   std::size_t position, negative, first_axis, width;
 };
 
@@ -71,7 +71,7 @@ std::vector<std::string> axis_columns(const Campaign& campaign, const AxisJob& j
   return names;
 }
 
-// The .COM text. Comments are not allowed in it, so they are in a second file.
+// A .COM file must not contain comments; these are in a second file.
 std::string com_table(const Sheet& s, const std::vector<std::string>& axes, const Crosses& crosses,
                       const Layout& layout) {
   const auto place = [&](std::size_t i) { return s.position[i] / s.position_unit(); };
@@ -110,11 +110,10 @@ bool unfit_for_columns(const std::vector<std::string>& axes) {
   return false;
 }
 
-/// Row positions: the targets, and the points of the cross curves.
 std::vector<double> wanted(const AxisJob& job, const Crosses& crosses, const Layout& layout) {
   std::vector<double> at = job.table_curve().position;
   if (crosses.empty()) return at;
-  if (!layout.listed) return crosses.front()->position;  // evenly spaced positions
+  if (!layout.listed) return crosses.front()->position;
   for (const CrossCurve* cross : crosses)
     at.insert(at.end(), cross->position.begin(), cross->position.end());
   std::sort(at.begin(), at.end());
@@ -150,7 +149,7 @@ std::string words(const Sheet& s, const Crosses& crosses, const Layout& layout,
   return controllers::comments(lines, "");
 }
 
-// Writes one row per combination of tables. No row is active if an axis has two tables.
+// One row per combination of tables. No row is active if an axis has two tables.
 std::string cma_table(const std::vector<const AxisJob*>& written,
                       const std::vector<std::string>& axes, const Layout& layout) {
   const std::size_t active = 5, first = layout.listed ? 14 : 8;
@@ -178,7 +177,6 @@ std::string cma_table(const std::vector<const AxisJob*>& written,
   return layout.listed ? out + "[END]\n" : out;
 }
 
-/// Cross columns for the table of this axis; empty if several states of the machine have some.
 Crosses columns_of(const std::vector<CrossJob>& sets, const AxisJob& job,
                    const ControllerInput& input) {
   Crosses columns;
@@ -192,7 +190,6 @@ Crosses columns_of(const std::vector<CrossJob>& sets, const AxisJob& job,
   return states == 1 ? columns : Crosses{};
 }
 
-/// Predicts the effect of cross columns and pitch together.
 void predict_columns(const CrossJob& set, const std::vector<AxisJob>& jobs,
                      const ControllerInput& input, OutputResult& result) {
   const controllers::Replay replay = controllers::replay_of(set, jobs, input);

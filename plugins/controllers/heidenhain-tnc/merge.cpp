@@ -15,18 +15,16 @@ bool is_table(const Artifact& a) {
 }
 bool is_assignment(const Artifact& a) { return a.bytes.rfind("BEGIN CONFIG.CMA", 0) == 0; }
 
-/// Name of the table after "BEGIN ", such as AXIS_X.COM.
 std::string name_of(const Artifact& table) {
   const std::string_view rest = std::string_view(table.bytes).substr(6);
   return std::string(rest.substr(0, rest.find_first_of(" \r\n")));
 }
 
 struct Cell {
-  std::size_t line = 0, column = 0, width = 0;  ///< in characters; width: to the next heading
+  std::size_t line = 0, column = 0, width = 0;
   std::string text{};
 };
 
-/// The cell of an axis in the active line ('*'), or in the only line.
 Expected<Cell> cell_of(const std::string& cma, const std::string& axis) {
   const auto lines = lines_of(cma);
   if (lines.size() < 3) return fail("CONFIG.CMA has no line");
@@ -53,7 +51,6 @@ Expected<Cell> cell_of(const std::string& cma, const std::string& axis) {
   return cell;
 }
 
-/// Returns the text with this cell filled; columns after it keep their position.
 Expected<std::string> filled(const std::string& cma, const Cell& cell, const std::string& text) {
   if (text.size() >= cell.width) return fail("CONFIG.CMA has no room for " + text);
   std::size_t at = 0;
@@ -94,7 +91,7 @@ Expected<std::vector<Artifact>> merge(const MergeInput& in) {
     if (!text) return fail(text.error());
     out.push_back({cma->name, std::move(*text)});
   }
-  for (const Artifact& a : in.table)  // accompanying text with the backlash value
+  for (const Artifact& a : in.table)
     if (!is_table(a) && !is_assignment(a)) out.push_back(a);
   return out;
 }

@@ -5,8 +5,8 @@
 
 namespace nonio::heidenhain_tnc {
 
-/// Writes the .COM table under the name that CONFIG.CMA assigns to the axis. An empty cell of
-/// CONFIG.CMA is filled.
+/// Writes the .COM table under the name that CONFIG.CMA assigns to the axis, and fills an empty
+/// cell of CONFIG.CMA.
 Expected<std::vector<Artifact>> merge(const MergeInput& in);
 
 }  // namespace nonio::heidenhain_tnc

@@ -15,7 +15,7 @@ namespace {
 using controllers::KnownAxis;
 using Lines = std::vector<std::string_view>;
 
-// The word that starts in this column of the line. The table editor only uses column positions.
+// The word that begins in this column; the table editor uses only column positions.
 std::string_view cell(std::string_view line, std::size_t column) {
   if (column == std::string_view::npos || column >= line.size()) return {};
   const std::string_view rest = line.substr(column);
@@ -27,7 +27,6 @@ std::optional<double> real(std::string_view s) {
   return controllers::real(s);
 }
 
-// First column of a heading; npos if missing.
 std::size_t column_of(std::string_view head, std::string_view name) {
   for (std::size_t at = 0; (at = head.find(name, at)) != std::string_view::npos; ++at) {
     const bool begins = at == 0 || head[at - 1] == ' ';
@@ -42,7 +41,7 @@ std::optional<double> after(std::string_view line, std::string_view key) {
   return at == std::string_view::npos ? std::nullopt : real(cell(line, at + key.size()));
 }
 
-/// Positions of all rows. If line 1 has DATUM and DISTANCE, the rows must agree with them.
+/// If line 1 has DATUM and DISTANCE, the rows must agree with them.
 Expected<std::vector<double>> positions(const Lines& lines, std::size_t end) {
   const auto datum = after(lines[0], "DATUM:"), distance = after(lines[0], "DISTANCE:");
   if (datum.has_value() != distance.has_value() || (distance && !(*distance > 0.0)))
@@ -60,7 +59,6 @@ Expected<std::vector<double>> positions(const Lines& lines, std::size_t end) {
   return out;
 }
 
-/// The numbers of a column; empty if it has none. Error: partly filled.
 Expected<std::vector<double>> column(const Lines& lines, std::size_t end, std::string_view name) {
   std::vector<double> out;
   const std::size_t at = column_of(lines[1], name);
@@ -88,7 +86,6 @@ LoadedTable table(const KnownAxis& input, const KnownAxis& output, const std::ve
   return t;
 }
 
-/// Axis by the name of its table, from CONFIG.CMA.
 using Owners = std::map<std::string, std::string, std::less<>>;
 
 void note_owners(std::string_view cma, Owners& owners) {
@@ -118,7 +115,7 @@ Expected<std::vector<LoadedTable>> com(std::string_view bytes, const std::vector
   if (x->size() < 2 || x->size() > most)
     return fail(std::to_string(x->size()) + " rows, the control takes 2 to " +
                 std::to_string(most));
-  const auto name_of_table = cell(lines[0], 6);  // AXIS_X.COM or AXIS-X-before.COM
+  const auto name_of_table = cell(lines[0], 6);
   const auto owner = owners.find(name_of_table);
   const KnownAxis input = owner != owners.end()
                               ? axis_named(axes, owner->second)
@@ -146,7 +143,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   const auto axes = controllers::known_axes(in);
   if (!axes) return tl::unexpected<Error>(axes.error());
   std::vector<LoadedTable> tables;
-  std::map<std::string, double> backlash;  // keys are axes; "" applies to any axis
+  std::map<std::string, double> backlash;
   const auto most = static_cast<std::size_t>(in.options.integer("max_points", 256));
   Owners owners;
   for (const Artifact& f : in.files)

@@ -4,7 +4,6 @@
 namespace nonio::klipper {
 namespace {
 
-// Text for the command SET_SKEW XY=AC,BD,AD, in mm.
 std::string text(const std::vector<controllers::Face>& faces) {
   std::string out = "SET_SKEW";
   for (const controllers::Face& f : faces)
@@ -13,8 +12,8 @@ std::string text(const std::vector<controllers::Face>& faces) {
   return out + "\nSKEW_PROFILE SAVE=nonio\n";
 }
 
-// Factors as saved by SKEW_PROFILE SAVE in printer.cfg: [skew_correction NAME] with xy_skew =
-// -0.00354, the tangent that SET_SKEW computes, below the mark of SAVE_CONFIG.
+// Parses printer.cfg after SKEW_PROFILE SAVE: [skew_correction NAME] with xy_skew = -0.00354, the
+// tangent that SET_SKEW computes, below the mark of SAVE_CONFIG.
 Expected<std::map<std::string, double>> saved(std::string_view file) {
   std::map<std::string, double> factors;
   std::vector<std::string> profiles;

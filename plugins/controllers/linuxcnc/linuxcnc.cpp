@@ -26,21 +26,19 @@ ControlTable declared() {
   return t;
 }
 
-/// The declaration for type 1: columns 2 and 3 are corrections.
 ControlTable corrections(ControlTable t) {
   t.entry = ControlTable::Entry::absolute;
   t.sign = ControlTable::Sign::correction;
   return t;
 }
 
-/// The declaration in units of the machine: type 1 has corrections, type 0 actual positions.
 ControlTable table_of(const Settings& o) {
   ControlTable t = declared();
   if (o.text("units", "mm") == "inch") t.position_unit.linear = t.value_unit.linear = 25.4e-3;
   return o.integer("type") == 0 ? t : corrections(std::move(t));
 }
 
-// Only lines with three numbers, because the control stops reading at any other line.
+// Contains only lines with three numbers, because the control stops reading at any other line.
 std::string comp_file(const Sheet& s) {
   std::string out;
   for (std::size_t i = 0; i < s.position.size(); ++i) {
@@ -51,15 +49,14 @@ std::string comp_file(const Sheet& s) {
   return out;
 }
 
-/// Joint number from 0; nullopt: not stated.
 std::optional<std::string> joint_of(const AxisJob& job) {
   const auto joint = job.setting("joint"), number = job.setting("number");
   if (!joint && !number) return std::nullopt;
   return fixed_text(joint ? *joint : *number, 0);
 }
 
-/// The section heading of the joint. If it is not stated, comments replace it, so that lines are
-/// not inserted into a wrong section.
+/// If the joint is not stated, comments replace the section heading, so that lines are not inserted
+/// into a wrong section.
 std::string section_of(const AxisJob& job) {
   const auto joint = joint_of(job);
   if (joint) return "[JOINT_" + *joint + "]\n";
@@ -70,7 +67,7 @@ std::string section_of(const AxisJob& job) {
          "], or number in the machine's record\n";
 }
 
-/// The number of lines, to detect a truncated table; it is written to the second file.
+/// The number of lines, in a second file, serves to detect a truncated table.
 std::string lines_said(const std::string& comp, const Sheet& s) {
   return comp + " has " + std::to_string(s.position.size()) + " lines";
 }
@@ -126,8 +123,8 @@ Expected<std::vector<Artifact>> files(const Sheet& s) {
       {comp, comp_file(s)}, {stem + ".ini", ini_snippet(s, comp)}, {stem + ".txt", words(s, comp)}};
 }
 
-/// Error if lines were not read. The control silently stops at the first line that is not three
-/// numbers, so a truncated or partly effective file would not be detected.
+/// An error if lines were not read. The control silently stops at the first line that is not three
+/// numbers, so a truncated file would not be detected.
 Expected<void> whole(const Artifact& f, std::size_t taken, const std::vector<Artifact>& files) {
   const auto all = controllers::lines_of(f.bytes);
   std::size_t last = all.size();
@@ -156,7 +153,7 @@ Expected<void> whole(const Artifact& f, std::size_t taken, const std::vector<Art
 }
 
 /// Whether the entries rise with this slope from each end, within a tenth of the range. Actual
-/// positions have slope 1 and corrections slope 0. The file does not state its type.
+/// positions have slope 1, corrections slope 0; the file does not state its type.
 bool follow(const controllers::RawTable& raw, double slope) {
   const auto& x = raw.position;
   const double tenth = 0.1 * (x.back() - x.front());
@@ -168,7 +165,6 @@ bool follow(const controllers::RawTable& raw, double slope) {
   return true;
 }
 
-/// Error if COMP_FILE_TYPE or LINEAR_UNITS in the files contradict the options.
 Expected<void> check_type(const TableInput& in) {
   const std::int64_t type = in.options.integer("type");
   const std::string units = in.options.text("units", "mm");
@@ -191,7 +187,7 @@ Expected<void> check_type(const TableInput& in) {
 
 // As in the source of the control: reading stops at the first line that is not three numbers, a
 // line whose nominal position does not increase is dropped (an error here), and corrections are
-// floats. The file name states the axis, unless the machine has only one.
+// floats. The file name identifies the axis, unless the machine has only one.
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   if (auto fits = check_type(in); !fits) return tl::unexpected<Error>(fits.error());
   const auto axes = controllers::known_axes(in);
@@ -200,7 +196,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   std::vector<LoadedTable> tables;
   for (const Artifact& f : in.files) {
     controllers::RawTable raw{controllers::axis_of_file(*axes, f.name, "linuxcnc-"), {}, {}};
-    raw.backlash = 0.0;  // BACKLASH is ignored with a table
+    raw.backlash = 0.0;  // the control ignores BACKLASH with a table
     const double unit = t.value_unit.of(raw.axis.rotary);
     std::size_t taken = 0;
     for (const std::string_view line : controllers::lines_of(f.bytes)) {
@@ -220,7 +216,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
       raw.plus.push_back(*plus);
       raw.minus.push_back(*minus);
     }
-    if (raw.position.empty()) continue;  // an .ini file, or no effective line
+    if (raw.position.empty()) continue;
     if (auto ok = whole(f, taken, in.files); !ok) return tl::unexpected<Error>(ok.error());
     const bool rises = follow(raw, 1.0), flat = follow(raw, 0.0);
     if (t.entry == ControlTable::Entry::absolute && rises && !flat)

@@ -28,7 +28,7 @@ ControlTable declared() {
   return t;
 }
 
-/// The declaration in encoder counts per mm or deg, because the file uses counts only.
+/// In encoder counts per mm or deg, because the file contains only counts.
 Expected<ControlTable> in_counts(const controllers::AxisSettings& settings, const std::string& axis,
                                  bool rotary, ControlTable t) {
   const auto counts = settings.find(rotary ? "counts_per_deg" : "counts_per_mm");
@@ -44,8 +44,8 @@ Expected<ControlTable> in_counts(const controllers::AxisSettings& settings, cons
 }
 
 /// Numbers of entries outside of the readings that repeat the end value: to the end of the travel,
-/// or a tenth of the table if no travel is stated. Without them, the value would jump to the other
-/// end.
+/// or a tenth of the table if no travel is stated. Without them, the value would jump to that of
+/// the other end.
 struct Held {
   std::size_t below = 0, above = 0;
 };
@@ -72,7 +72,7 @@ Expected<std::vector<Artifact>> files(const Sheet& s) {
   const auto below = static_cast<std::size_t>(std::llround(-s.grid.first / s.grid.step));
   const bool turn = s.job.turn.has_value();
   const Held held = turn ? Held{} : held_of(s);
-  std::vector<std::int64_t> circle;  // from motor zero upwards; negative positions follow
+  std::vector<std::int64_t> circle;  // from motor zero upwards, then the negative positions
   for (std::size_t i = below + 1; i < q.size() - (turn ? 1 : 0); ++i) circle.push_back(q[i]);
   circle.insert(circle.end(), held.above, q.back());
   circle.insert(circle.end(), held.below, q.front());
@@ -107,11 +107,10 @@ Expected<std::vector<Artifact>> files(const Sheet& s) {
 }
 
 struct Word {
-  std::string text;  ///< word in upper case
+  std::string text;
   std::size_t line = 0;
 };
 
-/// Splits into words without comments (';' or "//" to the end of the line).
 std::vector<Word> words_in(std::string_view bytes) {
   std::vector<Word> out;
   std::size_t number = 0;
@@ -128,8 +127,8 @@ std::vector<Word> words_in(std::string_view bytes) {
   return out;
 }
 
-/// One definition: #motor DEFINE COMP entries[,#source[,#target]],span and its entries. An earlier
-/// line may address the motor.
+/// #motor DEFINE COMP entries[,#source[,#target]],span and its entries. The motor may be addressed
+/// by an earlier line.
 struct Definition {
   std::size_t motor = 0, source = 0, target = 0;
   std::int64_t entries = 0, span = 0;
@@ -141,14 +140,13 @@ class Definitions {
  public:
   Definitions(const Artifact& file) : file_(file), words_(words_in(file.bytes)) {}
 
-  /// All definitions; empty for an accompanying text without a table.
   Expected<std::vector<Definition>> all() {
     std::vector<Definition> out;
     while (at_ < words_.size()) {
       if (const auto motor = motor_at(at_)) {
         motor_ = *motor;
         ++at_;
-      } else if (is("DELETE") || is("DEL")) {  // deletes a table that existed before
+      } else if (is("DELETE") || is("DEL")) {
         at_ += 2;
       } else if (is("DEFINE") || is("DEF")) {
         NONIO_TRY(auto one, definition());
@@ -220,7 +218,7 @@ class Definitions {
   std::size_t at_ = 0, motor_ = 0;
 };
 
-/// The axis of the target motor. If source and target are equal and the target is unknown, the axis
+/// The axis of the target motor; if source and target are equal and the target is unknown, the axis
 /// of the motor that stores the table.
 controllers::KnownAxis axis_of(const std::vector<controllers::KnownAxis>& axes,
                                const Definition& d) {
@@ -253,10 +251,10 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   if (!axes) return tl::unexpected<Error>(axes.error());
   std::vector<LoadedTable> tables;
   std::map<std::string, double> backlash;
-  std::optional<Error> unknown;  // error about a motor without an axis
+  std::optional<Error> unknown;
   for (const Artifact& f : in.files) {
     NONIO_TRY(const auto all, Definitions(f).all());
-    if (all.empty()) {  // text that accompanies a table
+    if (all.empty()) {
       if (const auto v = controllers::parameter_in(f.bytes, declared().backlash))
         backlash[axis_of_file(*axes, f.name, "pmac-").name] = *v;
       continue;

@@ -25,7 +25,7 @@ ControlTable declared() {
   return t;
 }
 
-// One line of config.g. A plane without a result keeps the value of the control.
+// A plane without a result keeps the value in the control.
 std::string text(const std::vector<controllers::Face>& faces) {
   std::string out = "M556 S" + fixed_text(height, 0);
   for (const Pair& pair : pairs)

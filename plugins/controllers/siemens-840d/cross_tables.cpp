@@ -13,7 +13,7 @@ using controllers::CrossCurve;
 using controllers::CrossJob;
 using controllers::decimal;
 
-constexpr int digits = 6;  // number of decimals of values in mm
+constexpr int digits = 6;
 constexpr double per_si = 1e3;
 
 /// Name of an axis in the control: (AX1), or "AX1" in newer editions.
@@ -26,7 +26,6 @@ struct Naming {
   }
 };
 
-/// The axes that these tables move, such as "X (AX1), Y (AX2), X2 (AX4)".
 std::string outputs(const CrossJob& job, const std::vector<controllers::KnownAxis>& axes) {
   std::string out;
   for (const std::string& axis : job.outputs())
@@ -85,7 +84,6 @@ std::string file_text(const CrossJob& job, const ControllerInput& input, std::in
   return out + "M17\n";
 }
 
-/// Adds a note about functions to be enabled, once for consecutive sets with the same axes.
 void note_enabling(const CrossJob& job, const std::vector<controllers::KnownAxis>& axes,
                    std::vector<Remark>& notes) {
   const Remark note{job.volume       ? "siemens.cross-volume"
@@ -132,7 +130,7 @@ Expected<void> write_cross_tables(const ControllerInput& input,
   if (!axes) return tl::unexpected<Error>(axes.error());
   const Naming name{*axes, input.options.flag("quoted_axes")};
   std::int64_t first = input.options.integer("first_cec_table");
-  if (input.options.flag("directions")) {  // numbers after those of all direction tables
+  if (input.options.flag("directions")) {
     std::size_t most = input.campaign.machine.axes.size();
     for (const controllers::KnownAxis& axis : *axes) most = std::max(most, axis.number);
     first += 2 * static_cast<std::int64_t>(most);

@@ -5,12 +5,12 @@
 
 namespace nonio::siemens_840d {
 
-/// Error if one of these CEC tables is in use (option `taken`).
+/// An error if one of these CEC tables is in use (option `taken`).
 Expected<void> free_tables(std::int64_t first, std::size_t count, const Settings& options);
-/// Returns text that these table numbers were not read from the control.
+/// Text that these table numbers were not read from the control.
 std::string chosen_words(std::int64_t first, std::size_t count);
 
-/// Adds a note that these table numbers were not read from the control.
+/// Adds the text of `chosen_words` as a note.
 void note_chosen(const std::string& axis, std::int64_t first, std::size_t count,
                  OutputResult& result);
 

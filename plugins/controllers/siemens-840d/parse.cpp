@@ -16,7 +16,7 @@ using controllers::KnownAxis;
 using controllers::real;
 using controllers::trimmed;
 
-// One line `$NAME[a,b,...]=value`.
+// `$NAME[a,b,...]=value`
 struct Assignment {
   std::string name;
   std::vector<std::string> index;
@@ -34,13 +34,12 @@ struct Table {
 constexpr std::int64_t most_elements = 5000;  // limit of MD38000 (manual K3)
 
 struct Memory {
-  std::size_t points = 0;                // MD38000, MD18342; 0: not stated
-  std::map<std::string, Table> encoder;  // by encoder and axis: "0,AX1"
-  std::map<std::string, Table> cec;      // by table number
+  std::size_t points = 0;
+  std::map<std::string, Table> encoder;
+  std::map<std::string, Table> cec;
   std::map<std::string, double> backlash;
 };
 
-// AX1 from (AX1) or "AX1"; empty if too short.
 std::string axis_word(const std::string& s) {
   return s.size() > 2 ? s.substr(1, s.size() - 2) : std::string();
 }
@@ -106,7 +105,7 @@ Expected<void> put_entry(Table& table, const std::string& index, const Assignmen
   return {};
 }
 
-/// Error unless MD10240 of the control and MD32711 of an axis are 1 (metric).
+/// MD10240 of the control and MD32711 of an axis must be 1 (metric).
 Expected<void> put_unit(const Assignment& a) {
   const auto v = real(a.value);
   if (v && *v == 1.0) return {};
@@ -207,7 +206,6 @@ Expected<LoadedTable> loaded(const Table& t, const KnownAxis& input, const Known
   return out;
 }
 
-// The axis of the number n in AXn.
 KnownAxis axis_of(const std::vector<KnownAxis>& axes, const std::string& word) {
   const auto number = word.rfind("AX", 0) == 0 ? controllers::whole(word.substr(2)) : std::nullopt;
   KnownAxis axis = number && *number > 0 ? axis_numbered(axes, static_cast<std::size_t>(*number))

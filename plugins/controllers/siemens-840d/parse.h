@@ -7,8 +7,8 @@
 
 namespace nonio::siemens_840d {
 
-/// Parses the files as the manual describes the control. It is independent of the code that writes
-/// the files, so that it can verify it.
+/// Follows the manual of the control, independently of the code that writes the files, so that it
+/// verifies them.
 Expected<std::vector<LoadedTable>> parse(const TableInput&);
 
 }  // namespace nonio::siemens_840d

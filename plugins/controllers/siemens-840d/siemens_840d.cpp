@@ -32,7 +32,6 @@ ControlTable declared() {
 
 std::string axis_name(const Sheet& s) { return "AX" + std::to_string(s.job.number); }
 
-// Comments that all files of an axis share, followed by those of this table.
 std::string remarks(const Sheet& s, const std::vector<std::string>& of_table) {
   return controllers::comments(s.warning, "; ") + controllers::comments(s.job.about, "; ") +
          controllers::comments(of_table, "; ");
@@ -43,7 +42,6 @@ const char* const sign_is =
 const char* const sign_does =
     "the control adds them to the actual position, a positive entry drives towards minus";
 
-// Lines that both kinds of table share; `index` is "0,AX1" or the number of a table.
 std::string range_lines(const std::string& variable, const std::string& index, const Sheet& s) {
   const auto line = [&](const char* name, const std::string& value) {
     return "$" + variable + "_" + name + "[" + index + "]=" + value + "\n";

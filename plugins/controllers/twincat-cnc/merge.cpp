@@ -17,7 +17,7 @@ std::string_view first_word(std::string_view line) {
 
 bool is_table(std::string_view line) { return first_word(line).starts_with("kw.ssfk."); }
 
-/// A comment line that Nonio writes: "# P-AXIS-00103 getriebe[0].lose = 40".
+/// "# P-AXIS-00103 getriebe[0].lose = 40"
 bool is_word(std::string_view line) {
   return line.starts_with("# P-AXIS-00103 ") && line.find(lose) != std::string_view::npos;
 }
@@ -30,7 +30,6 @@ std::optional<std::int64_t> number_of(const std::string& list) {
   return std::nullopt;
 }
 
-/// The value in the comment line of `is_word`, formatted as parameter value.
 std::string lose_of(std::string_view word) {
   const auto words = controllers::words_of(word.substr(word.find(lose) + lose.size()), " =\t\r");
   return words.empty() ? std::string() : std::string(words.front());
@@ -59,7 +58,7 @@ Expected<std::vector<Artifact>> merge(const MergeInput& in) {
     auto text = *controllers::with_lines(
         kept, [](std::string_view line) { return is_table(line) || is_word(line); }, fresh,
         kept.size());
-    if (!value.empty())  // update the parameter if the list contains it
+    if (!value.empty())
       if (auto with_value = controllers::with_lines(
               text, [](std::string_view line) { return first_word(line) == lose; },
               std::string(lose) + "  " + value + "\n", {}))

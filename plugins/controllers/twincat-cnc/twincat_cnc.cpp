@@ -15,8 +15,8 @@ using controllers::CrossCurve;
 using controllers::CrossJob;
 using controllers::Sheet;
 
-// kw.ssfk: actual - setpoint in 0.1 um or 0.0001 deg, bilateral in both directions.
-// kw.crosscomp: of a slave axis by the position of its master; its sign is not documented.
+// kw.ssfk: actual - setpoint in 0.1 um or 0.0001 deg, for both directions. kw.crosscomp: of a slave
+// axis by the position of its master; its sign is not documented.
 ControlTable declared() {
   ControlTable t;
   t.name = "kw.ssfk, kw.crosscomp";
@@ -52,8 +52,7 @@ std::string head(const std::vector<std::string>& words, std::size_t number,
 // P-AXIS-00103 has 16 bits and the unit of the lists, 0.1 um (0.0001 deg).
 constexpr std::int64_t most_lose = 32767;
 
-/// The header text of a list, with the backlash in units of the parameter instead of mm. Error: it
-/// exceeds 16 bits.
+/// The backlash is in units of the parameter instead of mm. Error: it exceeds 16 bits.
 Expected<std::vector<std::string>> words_with_lose(const Sheet& s) {
   std::vector<std::string> words = s.words();
   const double unit = s.position_unit();
@@ -85,7 +84,6 @@ Expected<std::vector<Artifact>> files(const Sheet& s) {
   return std::vector<Artifact>{{"twincat-cnc-" + s.job.stem + ".lis", out}};
 }
 
-// Numbers by key of a list.
 using List = std::map<std::string, double, std::less<>>;
 
 List read_list(std::string_view bytes) {
@@ -130,7 +128,6 @@ Expected<LoadedTable> screw(const List& list, const controllers::KnownAxis& axis
   return controllers::loaded(declared(), raw);
 }
 
-/// Converts kw.crosscomp to a table. `sign`: contribution of one unit to the slave axis.
 Expected<LoadedTable> cross(const List& list, const std::vector<controllers::KnownAxis>& axes,
                             const controllers::KnownAxis& slave, double sign) {
   const auto master = list.find("kw.crosscomp.master_ax_nr");
@@ -150,7 +147,6 @@ Expected<LoadedTable> cross(const List& list, const std::vector<controllers::Kno
   return t;
 }
 
-/// Value of "getriebe[0].lose = 30" in comments or in the list of the axis, SI; nullopt: none.
 std::optional<double> lose_in(std::string_view bytes, bool rotary) {
   const std::string_view key = "getriebe[0].lose";
   const std::size_t at = bytes.find(key);
@@ -217,8 +213,7 @@ std::string cross_list(const CrossCurve& c, const std::vector<controllers::Known
   return out;
 }
 
-/// Writes cross tables of two diagonals. Step diagonals are skipped, because a slave has only one
-/// master.
+/// Step diagonals are skipped, because a slave has only one master.
 Expected<void> write_cross(const ControllerInput& in,
                            const std::vector<controllers::AxisJob>& pitch, OutputResult& result) {
   const std::string said = in.options.text("cross_sign");

@@ -41,7 +41,6 @@ Expected<std::vector<Artifact>> files(const Sheet& s) {
   return std::vector<Artifact>{{"twincat-nc-ptp-" + s.job.stem + ".st", out + "END_VAR\n"}};
 }
 
-/// The integer after this key; nullopt: none.
 std::optional<std::int64_t> number_behind(std::string_view text, std::string_view key) {
   const std::size_t at = text.find(key);
   if (at == std::string_view::npos) return std::nullopt;
@@ -49,7 +48,7 @@ std::optional<std::int64_t> number_behind(std::string_view text, std::string_vie
   return words.empty() ? std::nullopt : controllers::whole(words.front());
 }
 
-/// Error if the number of elements differs from the declared one, because the text was truncated.
+/// If the number of elements differs from the declared one, the text was truncated.
 Expected<void> whole(const Artifact& f) {
   const std::string_view text = f.bytes;
   const std::string_view element = "Compensation :=";

@@ -14,9 +14,9 @@ using controllers::AxisJob;
 using controllers::CrossCurve;
 using controllers::CrossJob;
 
-// ISG CSV: a line of names, rows of numbers,
-// comments, # before the next block. X, Y, Z and the errors (named as in ISO 230-1) are in mm.
-// Columns of angular errors (rad) are omitted, because lengths and diagonals do not determine them.
+// ISG CSV: a line of names, rows of numbers, comments, # before the next block. X, Y, Z and the
+// errors (named as in ISO 230-1) are in mm. Columns of angular errors (rad) are omitted, because
+// lengths and diagonals do not determine them.
 ControlTable declared() {
   ControlTable t;
   t.name = "ISG CSV (vol_comp)";
@@ -36,7 +36,7 @@ struct Block {
   std::string axis;
   std::vector<double> position;
   std::map<std::string, CrossCurve> curves;
-  double zero = 0.0;  ///< position at which these errors are 0, m
+  double zero = 0.0;
 };
 
 std::vector<Block> blocks_of(const std::vector<AxisJob>& jobs, const std::vector<CrossJob>& sets) {
@@ -87,7 +87,6 @@ std::string text_of(const std::vector<Block>& blocks, double sign,
   return out;
 }
 
-/// Text about the zero of the errors over one axis and the size of its positioning error.
 std::string zero_words(const Block& b, const std::vector<AxisJob>& jobs) {
   std::string out =
       "errors over " + b.axis + ": zero at " + controllers::decimal(b.zero * 1e3, 4) + " mm";
@@ -108,7 +107,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   if (!t) return tl::unexpected<Error>(t.error());
   const double sign = t->sign == ControlTable::Sign::error ? -1.0 : 1.0;
   std::vector<LoadedTable> tables;
-  std::size_t first = 0;  // index of the first table of this block
+  std::size_t first = 0;
   bool names = true;
   for (const Artifact& f : in.files)
     if (auto ended = controllers::ends_whole(f.name, f.bytes); !ended)
@@ -148,7 +147,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   return tables.empty() ? Expected<std::vector<LoadedTable>>(fail("no block of errors")) : tables;
 }
 
-/// True, with a finding, if an axis has a slave, because the file has no data for a second side.
+/// Refuses axes with a slave, because the file has no data for a second side.
 bool second_side(const ControllerInput& in, OutputResult& result) {
   for (const Axis& axis : in.campaign.machine.axes) {
     if (axis.slave.empty()) continue;
@@ -202,7 +201,7 @@ Expected<OutputResult> write(const ControllerInput& in) {
     if (!c) continue;
     const auto size = controllers::size_of(*read, job.axis, job.curve.position);
     if (controllers::oversized(job, size, table->value_step.linear, result)) {
-      result.artifacts.clear();  // because the single file contains all axes
+      result.artifacts.clear();
       return result;
     }
     controllers::predict(job, *c, result);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // deviation = c d p/2; d: direction of approach, +1 or -1; p: position from the center of the
-// measured range, m or rad; c: growth of the reversal along the travel, m/m or rad/rad.
+// measured range, m or rad; c: slope of the reversal along the travel, m/m or rad/rad.
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 

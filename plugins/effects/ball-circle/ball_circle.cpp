@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The circle of ball centers, which is part of every model of these readings. Line 1 has the radial
-// and line 2 the axial readings:
+// Circle of ball centers, which is part of every model of these readings. Line 1 contains the
+// radial and line 2 the axial readings:
 //     centre     n . e1, n . e2     (c1, c2: m)       n: direction of sensing
-//     direction  axial rows: -P . e1, -P . e2   (d1, d2: rad)     P: place of the ball, m
+//     direction  axial rows: -P . e1, -P . e2   (d1, d2: rad)     P: position of the ball, m
 // e1, e2: machine axes most nearly perpendicular to the rotary axis, in the order X, Y, Z (C: X, Y;
 // B: X, Z; A: Y, Z). Radius and height are the zeros of the two lines. Values are corrections to
 // the circle fitted to all centers.
@@ -12,7 +12,7 @@ namespace nonio::ball_circle {
 
 namespace {
 
-/// Indexes of the coordinates across the rotary axis; empty if there is no axial reading.
+/// Indices of the coordinates perpendicular to the rotary axis; empty without an axial reading.
 std::vector<std::size_t> across(const Observations& o) {
   for (std::size_t i = 0; i < o.line.size(); ++i) {
     if (o.line_of(i) != 1) continue;

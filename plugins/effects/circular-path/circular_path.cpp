@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Circles: lines whose readings are sensed along the radius, at P = c + R n. With n = (cos t, sin t)
-// in the plane and d = +1 counter-clockwise, -1 clockwise:
+// Circles: lines whose readings are sensed along the radius, at P = c + R n. With n = (cos t, sin
+// t) in the plane and d = +1 counter-clockwise, -1 clockwise:
 //     circle-centre    part of every model: a n_1 + b n_2, position of the instrument; a, b: m
 //     servo-mismatch   XY, YZ, ZX: w d sin t cos t; w: m, path lag F/Kv of the first axis less that
-//                      of the second: lag opposes the motion, e = -F/Kv v
+//                      of the second: the lag is opposite to the motion, e = -F/Kv v
 #include <algorithm>
 
 #include "nonio/sdk/space_readings.h"
@@ -25,8 +25,7 @@ std::vector<std::size_t> rows_of(const Observations& o, std::size_t line) {
   return rows;
 }
 
-/// The plane of the circle on which the readings of a line lie, if they are sensed along its
-/// radius; nullptr otherwise.
+/// Null unless the readings of the line are on a circle and sensed along its radius.
 const Plane* circle_plane(const Observations& o, const SpaceReadings& s, std::size_t line) {
   using V = SpaceLine::Vector;
   if (o.sense.empty() || o.angular || of_ball_centres(o)) return nullptr;
@@ -61,8 +60,7 @@ const Plane* circle_plane(const Observations& o, const SpaceReadings& s, std::si
   return nullptr;
 }
 
-/// Direction of travel from the approach of the axes: +1 counter-clockwise, -1 clockwise, 0 not
-/// known.
+/// Direction of travel: +1 counter-clockwise, -1 clockwise, 0 not known.
 int turn_of(const Observations& o, const Plane& plane, std::size_t i) {
   double turn = 0.0;
   for (const auto& axis : o.axes) {
@@ -99,7 +97,6 @@ Expected<Effect::Columns> centre(const Observations& o, const Axis& place,
   return out;
 }
 
-/// Names of the planes in which circles were measured in both directions.
 std::vector<std::string> mismatches(const Observations& o) {
   std::vector<std::string> names;
   if (o.sense.empty()) return names;

@@ -18,7 +18,7 @@ static std::vector<double> targets(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
   if (!r) return {};
   const std::vector<double> all = targets_of(*r);
-  // Two readings per target are required; otherwise the curve would be the readings themselves.
+  // With fewer than two readings per target, the curve would consist of the readings themselves.
   if (all.size() < fewest_targets || all.size() > most_targets || o.size() < 2 * all.size())
     return {};
   return {static_cast<double>(all.size())};
@@ -30,7 +30,6 @@ static std::vector<double> reversals(const Observations& o, const Axis& axis) {
   return targets(o, axis);
 }
 
-/// One column per target: `of(reading)` at readings of this target, otherwise 0.
 template <class Value>
 static Expected<Effect::Columns> by_target(const Observations& o, const Axis& axis, Value of) {
   NONIO_TRY(const auto r, readings_of(o, axis));
@@ -47,7 +46,7 @@ static Expected<Effect::Columns> by_target(const Observations& o, const Axis& ax
 static Expected<Effect::Columns> of_position(const Observations& o, const Axis& axis,
                                              const std::vector<double>&) {
   auto columns = by_target(o, axis, [](const AxisReadings&, std::size_t) { return 1.0; });
-  if (columns && !columns->empty()) columns->erase(columns->begin());  // the line zero is free
+  if (columns && !columns->empty()) columns->erase(columns->begin());  // free zero of the line
   return columns;
 }
 
@@ -56,7 +55,7 @@ static Expected<Effect::Columns> of_reversal(const Observations& o, const Axis& 
   return by_target(o, axis, [](const AxisReadings& r, std::size_t i) { return r.d[i] / 2.0; });
 }
 
-/// Numbers of knots with at least six readings per knot.
+/// At least six readings per knot.
 static std::vector<double> knots(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
   if (!r || !(r->duration > 0.0)) return {};

@@ -6,7 +6,7 @@
 
 namespace nonio::gear_mesh {
 
-/// Requires more than two teeth, because one and two periods are eccentricity and harmonic2.
+/// One and two periods are the effects eccentricity and harmonic2.
 static bool applies(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
   return r && axis.rotary && axis.teeth && *axis.teeth > 2 && r->length > 0.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Errors of the linear axes that measure ball centers: the circle becomes an ellipse. A machine
-// whose axes have errors e reads P - e at P. n: direction of sensing; x, y, z: position, m:
+// Errors of the linear axes that measure ball centers distort the circle into an ellipse. A machine
+// with axis errors e measures P - e at P. n: direction of sensing; x, y, z: position, m:
 //     linear-squareness  XY: +c y n_x   XZ: -c z n_x   YZ: +c z n_y   (signs as squareness, rad)
 //     linear-scale       X: -k x n_x, and so on   (k: m/m, as scale)
 #include "nonio/sdk/space_readings.h"

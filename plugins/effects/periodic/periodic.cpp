@@ -13,7 +13,7 @@ namespace nonio::periodic {
 constexpr double usual_leads[] = {0.0025, 0.003, 0.004, 0.005, 0.006,  0.008, 0.010, 0.012,
                                   0.0127, 0.016, 0.020, 0.025, 0.0254, 0.032, 0.040};
 
-/// Targets in ascending order. Targets of several lines that differ only by rounding are merged.
+/// Targets of several lines that differ only by rounding are merged.
 static std::vector<double> places_of(const AxisReadings& r) {
   const double same = 1e-5 * r.length;
   std::vector<double> places = targets_of(r);
@@ -23,10 +23,10 @@ static std::vector<double> places_of(const AxisReadings& r) {
   return places;
 }
 
-/// Candidate periods, m: screw_pitch of the manifest if stated. Otherwise at least three periods
+/// Periods to be tested, m: screw_pitch of the manifest if stated. Otherwise at least three periods
 /// over the range, and fewer than half as many periods as intervals (uneven targets: twice as
 /// many). The step is a quarter of a spectral line, wider above 240 periods, but not for circles,
-/// whose readings are sparse at high speed. Of shorter periods, only usual screw leads are tried
+/// whose readings are sparse at high speed. Of shorter periods, only usual screw leads are tested
 /// with uneven targets, because some arbitrary period would always fit.
 static std::vector<double> grid(const Observations& o, const Axis& axis) {
   constexpr double most = 240.0, fewest_periods = 3.0;
@@ -41,7 +41,7 @@ static std::vector<double> grid(const Observations& o, const Axis& axis) {
   bool even = true;
   for (std::size_t k = 1; k < targets.size(); ++k)
     even = even && std::abs(targets[k] - targets[k - 1] - mean) <= 0.01 * mean;
-  double limit = intervals * (even ? 0.5 : 2.0);  // maximum number of periods over the range
+  double limit = intervals * (even ? 0.5 : 2.0);  // largest number of periods over the range
   if (!o.sense.empty()) limit = std::min(limit, fewest_periods + 0.25 * most);
   const double step = std::max(0.25, (limit - fewest_periods) / most);
   std::vector<double> periods;

@@ -8,7 +8,7 @@
 
 namespace nonio::pitch_curve {
 
-/// Numbers of knots: at most 10, and at least three targets per two free values, so that the curve
+/// Numbers of knots: at most 10, with at least three targets per two free values, so that the curve
 /// cannot follow single targets. `explain` omits curves that need more than half of the targets.
 static std::vector<double> grid(const Observations& o, const Axis& axis) {
   constexpr int fewest = 3, most = 10;

@@ -13,7 +13,6 @@ static bool applies(const Observations& o, const Axis& axis) {
   return r && r->duration > 0.0;
 }
 
-/// At most `most` different instants in ascending order, evenly selected.
 static std::vector<double> thinned(std::vector<double> instants, std::size_t most) {
   std::sort(instants.begin(), instants.end());
   instants.erase(std::unique(instants.begin(), instants.end()), instants.end());
@@ -24,8 +23,8 @@ static std::vector<double> thinned(std::vector<double> instants, std::size_t mos
   return kept;
 }
 
-/// Candidate instants, s, between consecutive readings of a line. More instants at ends of passes
-/// (change of run or direction) than within passes are used.
+/// Instants to be tested, s, between consecutive readings of a line: more at ends of passes (change
+/// of run or direction) than within passes.
 static std::vector<double> grid(const Observations& o, const Axis& axis) {
   constexpr std::size_t most_ends = 300, most_others = 100;
   const auto r = readings_of(o, axis);

@@ -10,7 +10,7 @@ namespace nonio::run_out {
 
 namespace {
 
-/// Values of m (1 to 3). The circle leaves n - 3 values of n angles; at most half of them are used.
+/// m = 1 to 3. The circle leaves n - 3 values of n angles, of which at most half are used.
 std::vector<double> grid(const Observations& o, const Axis&) {
   if (!of_ball_centres(o)) return {};
   const std::set<double> angles(o.axes.front().position.begin(), o.axes.front().position.end());

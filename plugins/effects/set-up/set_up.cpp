@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Unknowns of the set-up, part of every model of such readings:
-//     line-slope   of a line sensed across its travel (straightness): a q, the straightedge or beam
-//                  was not parallel to the axis; q: distance along the travel, m; a: rad
-//     mirror-tilt  of a step diagonal: (a t1 + b t2) . P, the mirror was not square to the beam;
-//                  t1, t2: unit vectors across the beam, P: commanded point, m; a, b: rad
-//     body-turn    of a part on the table: (w x P) . n; w: turn about one axis, rad; n: direction of
-//                  sensing
-//     body-size    of a part of unknown temperature: a P . n; a: m/m
+// Unknowns of the setup, which are part of every model of such readings:
+// line-slope   of a line sensed across its travel (straightness): a q, the straightedge or beam
+//              was not parallel to the axis; q: distance along the travel, m; a: rad
+// mirror-tilt  of a step diagonal: (a t1 + b t2) . P, the mirror was not square to the beam;
+//              t1, t2: unit vectors across the beam, P: commanded point, m; a, b: rad
+// body-turn    of a part on the table: (w x P) . n; w: rotation about one axis, rad; n: direction
+//              of sensing
+// body-size    of a part of unknown temperature: a P . n; a: m/m
 #include <algorithm>
 
 #include "nonio/sdk/space_readings.h"
@@ -23,7 +23,7 @@ Vector unit(Vector v) {
   return v;
 }
 
-/// Whether the line is straight and sensed at a right angle to its direction.
+/// Whether the line is straight and sensed perpendicular to its direction.
 bool sensed_across(const SpaceLine& line) {
   return line.straight && line.length > 0.0 &&
          std::fabs(SpaceLine::dot(line.farthest, line.sense)) < 1e-6 * line.length;
@@ -50,7 +50,6 @@ SpaceLine line_named(const Observations& o, const std::string& name) {
   return {};
 }
 
-/// One column per direction: the displacement of each reading of the line along it.
 Effect::Columns ways_along(const Observations& o, const SpaceLine& line,
                            const std::vector<Vector>& directions) {
   Effect::Columns out(directions.size(), std::vector<double>(o.size(), 0.0));
@@ -60,7 +59,7 @@ Effect::Columns ways_along(const Observations& o, const SpaceLine& line,
   return out;
 }
 
-/// The direction with a positive largest component, independent of the start of the line.
+/// The largest component is positive, so that the result does not depend on the start of the line.
 Vector upwards(Vector v) {
   const auto largest = std::max_element(
       v.begin(), v.end(), [](double a, double b) { return std::fabs(a) < std::fabs(b); });
@@ -101,7 +100,6 @@ std::vector<std::string> bodies(const Observations& o, bool of_unknown_size) {
   return out;
 }
 
-/// Column of `of(point, direction of sensing)` at the readings of a body, otherwise 0.
 template <class Of>
 std::vector<double> column_of(const Observations& o, const std::string& body, Of of) {
   const SpaceReadings s = space_of(o);
@@ -120,7 +118,7 @@ std::vector<double> column_of(const Observations& o, const Turn& turn) {
   });
 }
 
-/// Whether a column varies within a line; otherwise the zeros of the lines already contain it.
+/// Otherwise the zeros of the lines already contain the column.
 bool varies_in_a_line(const Observations& o, const std::vector<double>& column) {
   std::vector<double> first(o.lines.size(), std::nan(""));
   for (std::size_t i = 0; i < column.size(); ++i) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Chain bed - X - Y - Z - tool, x, y, z from the corner of the measured volume:
 //     XY (C0Y):  e_x = -c y     XZ (B0Z):  e_x = +c z     YZ (A0Z):  e_y = -c z
-// c: rad; signs of ISO 230-1: C0Y > 0 turns +Y towards -X, B0Z > 0 turns +Z towards +X, A0Z > 0
-// turns +Z towards -Y.
+// c: rad; signs of ISO 230-1: C0Y > 0 rotates +Y towards -X, B0Z > 0 rotates +Z towards +X, A0Z > 0
+// rotates +Z towards -Y.
 #include "nonio/sdk/space_readings.h"
 
 namespace nonio::squareness {
@@ -39,6 +39,18 @@ Expected<Effect::Columns> columns(const Observations& o, const Axis& axis,
   return fail("squareness: expected XY, XZ or YZ, found " + axis.name);
 }
 
+std::vector<std::string> of_bodies(const Observations& o) {
+  const auto in = in_bodies(o);
+  return in ? of(*in) : std::vector<std::string>();
+}
+
+Expected<Effect::Columns> columns_of_bodies(const Observations& o, const Axis& axis,
+                                            const std::vector<double>& shape) {
+  const auto in = in_bodies(o);
+  return in ? columns(*in, axis, shape)
+            : fail("part-squareness: expected parts that were turned by different angles");
+}
+
 }  // namespace
 
 NONIO_PLUGIN(registry) {
@@ -50,6 +62,15 @@ NONIO_PLUGIN(registry) {
              .applies = [](const Observations&, const Axis&) { return true; },
              .columns = columns,
              .instances = of});
+  registry.add(
+      Effect{.info = {"part-squareness", "1.0.0",
+                      "A squareness that turns with the part: of fixture or measuring machine"},
+             .linear = {{"c", "squareness in the frame of the part", Quantity::small_angle}},
+             .shapes = {},
+             .compensable = false,
+             .applies = [](const Observations&, const Axis&) { return true; },
+             .columns = columns_of_bodies,
+             .instances = of_bodies});
 }
 
 }  // namespace nonio::squareness

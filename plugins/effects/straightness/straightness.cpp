@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // EYX: e_y = sum c_k s_k(x), and the five others; s_k: smooth basis of cubic splines without
 // constant and slope over the positions where lines determine it (nonio/math/spline.h), rms 1; c_k:
-// m. A slope is squareness, or the set-up of the line.
+// m. A slope is squareness, or the setup of the line.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,7 +14,7 @@ namespace nonio::straightness {
 namespace {
 
 struct Name {
-  std::size_t error = 3, axis = 3;  // coordinates 0 to 2; 3: none
+  std::size_t error = 3, axis = 3;  // coordinates 0 to 2; 3 if not set
 };
 Name read(const std::string& name) {
   if (name.size() != 3 || name[0] != 'E') return {};
@@ -32,9 +32,9 @@ std::vector<std::string> of(const Observations& o) {
   return names;
 }
 
-/// The readings, with a position along the axis only on lines that move along it and sense the
-/// error. On other lines the zero of the line includes the error, and a slope over their positions
-/// would be confused with squareness.
+/// Keeps the position along the axis only on lines that move along it and sense the error. On other
+/// lines the zero of the line includes the error, and a slope over their positions would be
+/// confused with squareness.
 SpaceReadings told(const Observations& o, const Name& name) {
   constexpr double least = 1e-9;  // smallest component of a unit vector that senses
   SpaceReadings s = space_of(o);
@@ -78,6 +78,23 @@ Expected<Effect::Columns> columns(const Observations& o, const Axis& place,
   return out;
 }
 
+std::vector<std::string> of_bodies(const Observations& o) {
+  const auto in = in_bodies(o);
+  return in ? of(*in) : std::vector<std::string>();
+}
+
+std::vector<double> grid_of_bodies(const Observations& o, const Axis& place) {
+  const auto in = in_bodies(o);
+  return in ? grid(*in, place) : std::vector<double>();
+}
+
+Expected<Effect::Columns> columns_of_bodies(const Observations& o, const Axis& place,
+                                            const std::vector<double>& shape) {
+  const auto in = in_bodies(o);
+  return in ? columns(*in, place, shape)
+            : fail("part-straightness: expected parts that were turned by different angles");
+}
+
 }  // namespace
 
 NONIO_PLUGIN(registry) {
@@ -91,6 +108,16 @@ NONIO_PLUGIN(registry) {
              .applies = [](const Observations& o, const Axis& a) { return !grid(o, a).empty(); },
              .columns = columns,
              .instances = of});
+  registry.add(Effect{
+      .info = {"part-straightness", "1.0.0",
+               "A bow that turns with the part: of fixture, clamping or measuring machine"},
+      .linear = {{"s", "rms of the curve over the places", Quantity::deviation}},
+      .shapes = {{{"knots", "knots of the spline", Quantity::count}, grid_of_bodies, false}},
+      .curve = true,
+      .compensable = false,
+      .applies = [](const Observations& o, const Axis& a) { return !grid_of_bodies(o, a).empty(); },
+      .columns = columns_of_bodies,
+      .instances = of_bodies});
 }
 
 }  // namespace nonio::straightness

@@ -18,7 +18,7 @@ static bool applies(const Observations& o, const Axis& axis) {
   return r && r->temperature && r->length > 0.0 && varies(*r);
 }
 
-/// Reason why the effect does not apply; the rows without a temperature if only some have none.
+/// Returns the rows without a temperature if only some have none.
 static WhyNot why_not(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
   if (!r || !(r->length > 0.0)) return {};

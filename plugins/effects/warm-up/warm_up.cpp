@@ -12,12 +12,12 @@ static bool applies(const Observations& o, const Axis& axis) {
   return r && r->length > 0.0 && r->duration > 0.0;
 }
 
-/// Time constants in equal ratios. Below 1/40 of the duration, the warm-up ends within a few
+/// Time constants with a constant ratio. Below 1/40 of the duration, the warm-up ends within a few
 /// readings. Above 1.5 durations, it cannot be distinguished from the straight line of
 /// growth-drift.
 static std::vector<double> grid(const Observations& o, const Axis& axis) {
   constexpr int count = 14;
-  constexpr double shortest = 1.0 / 40.0, longest = 1.5;  // time constants relative to the duration
+  constexpr double shortest = 1.0 / 40.0, longest = 1.5;  // relative to the duration
   const auto r = readings_of(o, axis);
   if (!r || !(r->duration > 0.0)) return {};
   std::vector<double> taus;

@@ -4,12 +4,12 @@
 //     yaw:X   (ECX)  e_x = -y a(x)            pitch:X (EBX)  e_x = +z a(x)
 //     roll:X  (EAX)  e_y = -z a(x), e_z = +y a(x)
 //     pitch:Y (EAY)  e_y = -z a(y)            roll:Y  (EBY)  e_x = +z a(y)
-// with a flat mirror on the tool (step diagonals), which turns with it, in addition
+// with a flat mirror on the tool (step diagonals), which rotates with the tool, in addition
 //     (w x n) . (P - Q) a,  w: axis of the angle, n: direction of sensing, Q: a point on the beam
 // and, if one carriage follows its bent guide (structure single-column), its lateral motion:
 //     yaw:X   e_y = +integral of a dx         pitch:X  e_z = -integral of a dx
 // a = sum c_k s_k; s_k without constant, which is squareness: the straight line, then the smooth
-// basis (nonio/math/spline.h), rms 1 over the measured places; c_k: rad. ECY and the angles of Z
+// basis (nonio/math/spline.h), rms 1 over the measured positions; c_k: rad. ECY and the angles of Z
 // have no lever in this chain: they need a tool offset.
 #include <numeric>
 
@@ -28,7 +28,7 @@ struct Angle {
   const char* kind;
   std::size_t axis, about;
   std::vector<Lever> levers;
-  std::size_t guided;  // direction of a bent guide's effect; 3: none
+  std::size_t guided;  // direction of a bent guide's effect; 3 without such an effect
   double guide_sign;
 };
 
@@ -53,8 +53,7 @@ bool follows_its_guide(const Observations& o, const Angle& a) {
   return o.structure == "single-column" && a.guided < 3;
 }
 
-/// Whether the angle is identifiable: readings that sense its error move along a lever and the
-/// axis.
+/// Whether readings that sense the error of the angle move along a lever and the axis.
 bool shown(const Observations& o, const SpaceReadings& s, const Angle& a) {
   if (!s.moves(a.axis)) return false;
   for (const Lever& lever : a.levers)
@@ -63,7 +62,6 @@ bool shown(const Observations& o, const SpaceReadings& s, const Angle& a) {
   return false;
 }
 
-/// The basis at x: a straight line and, if knots >= 2, smooth functions.
 Expected<Effect::Columns> basis_at(const std::vector<double>& x, const std::vector<double>& places,
                                    int knots) {
   const auto n = static_cast<double>(places.size());
@@ -78,8 +76,8 @@ Expected<Effect::Columns> basis_at(const std::vector<double>& x, const std::vect
   return out;
 }
 
-/// Integrals of the basis from the first position to each other one: two-point Gauss rule in 16
-/// parts of each interval (exact for cubics; a part may contain a knot).
+/// Integrals of the basis from the first position: two-point Gauss rule in 16 parts of each
+/// interval (exact for cubics; a part may contain a knot).
 Expected<Effect::Columns> integrals(const std::vector<double>& places, int knots) {
   constexpr std::size_t parts = 16;
   const double offset = 0.5 / std::sqrt(3.0);
@@ -138,7 +136,6 @@ Expected<Effect::Columns> columns(const Observations& o, const Angle& a, int kno
   Effect::Columns out(basis.size(), std::vector<double>(o.size(), 0.0));
   for (std::size_t i = 0; i < o.size(); ++i) {
     if (!std::isfinite(s.r[a.axis][i])) continue;
-    // The nearest position is equal within rounding.
     const auto above =
         std::lower_bound(places.begin(), places.end(), s.r[a.axis][i] - 1e-6 * s.length[a.axis]);
     const auto place = static_cast<std::size_t>(std::min(above, places.end() - 1) - places.begin());

@@ -24,7 +24,7 @@ constexpr const char* nominal[] = {"nominal_x", "nominal_y", "nominal_z"};
 constexpr const char* measured[] = {"measured_x", "measured_y", "measured_z"};
 constexpr double largest = 0.01;  // m, largest plausible deviation
 
-/// Whether the angle is a multiple of 90°, for which coordinates remain exact.
+/// Coordinates remain exact for multiples of 90 deg.
 bool is_quarter(double angle) {
   return std::fabs(std::remainder(angle, std::numbers::pi / 2)) < 1e-9;
 }
@@ -47,10 +47,10 @@ Expected<std::pair<double, bool>> growth_of(const Measurement& m) {
   return std::pair{expansion * (temperatures[1] - temperatures[0]), true};
 }
 
-/// Collects the three lines of a part; lines without readings are omitted.
 class Rows {
  public:
-  Rows(const Measurement& m, std::array<bool, 3> places, bool size_known) {
+  Rows(const Measurement& m, std::array<bool, 3> places, bool size_known, const Vector& origin,
+       double turned) {
     o_.measurement = m.id;
     for (std::size_t k = 0; k < 3; ++k) {
       axis_[k] = o_.axes.size();
@@ -59,6 +59,8 @@ class Rows {
       o_.lines[k].sense[k] = 1.0;
       o_.lines[k].body = m.id;
       o_.lines[k].body_size_known = size_known;
+      o_.lines[k].body_origin = origin;
+      o_.lines[k].body_turned = turned;
     }
     places_ = places;
   }
@@ -104,7 +106,7 @@ Expected<Observations> observations_of(const MethodInput& in) {
     if (const auto at = origin.find(coordinates[k]); at != origin.end())
       from[k] = at->second * 1e-3;
   const std::vector<double>* z = r.column(nominal[2]);
-  Rows rows(m, {true, true, z != nullptr}, growth.second);
+  Rows rows(m, {true, true, z != nullptr}, growth.second, from, angle);
   std::uint64_t missing = 0;
   for (std::size_t i = 0; i < r.size(); ++i) {
     const Vector p{(*r.column(nominal[0]))[i], (*r.column(nominal[1]))[i],
@@ -147,7 +149,6 @@ Expected<Observations> observations_of(const MethodInput& in) {
   return o;
 }
 
-/// One feature for each position at which all sensed coordinates have readings.
 Expected<Readings> readings_of_part(const SimulationInput& in) {
   const Measurement& m = in.measurement;
   NONIO_TRY(const auto growth, growth_of(m));

@@ -39,7 +39,7 @@ constexpr Part parts[] = {{"title", add_title},           {"amendment", add_amen
                           {"overview", add_overview},     {"opinions", add_opinions},
                           {"statements", add_statements}, {"authority", add_authority}};
 
-/// Mandatory parts of a certificate. A template can move but not omit them.
+/// Mandatory parts, which a template can move but not omit.
 constexpr const char* wanted[] = {"title",    "amendment",  "parties",  "item",
                                   "method",   "conditions", "results",  "conformity",
                                   "opinions", "statements", "authority"};

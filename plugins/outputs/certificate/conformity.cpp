@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Results with their limits and decisions, on the first page (ISO/IEC 17025:2017, 7.8.6).
 #include <algorithm>
 #include <cmath>
@@ -16,15 +15,13 @@ using namespace reports;
 
 namespace {
 
-/// A result on the first page; limit nullptr: no tolerance limit.
 struct Shown {
   const pages::Measured* measured;
   const Value* value;
   const Conformity* limit;
 };
 
-/// Whether the summary of the template names the value; "A+" (printed "A↑") is also included for
-/// "A" if the test has no "A".
+/// "A+" (printed "A↑") also matches "A" if the test has no "A".
 bool is_named(const Source& source, const Evaluation& e, const std::string& name) {
   const std::vector<std::string>& summary = source.look.summary;
   const auto in_summary = [&](const std::string& n) {
@@ -38,7 +35,7 @@ bool is_named(const Source& source, const Evaluation& e, const std::string& name
 }
 
 /// All results with a limit, because no other part contains their decisions, and those that the
-/// template names. If there are more than 18, fewer of these are shown.
+/// template names. If there are more than 18, fewer of the latter are shown.
 std::vector<Shown> shown_results(const Source& source,
                                  const std::vector<pages::Measured>& measured) {
   constexpr std::size_t most = 18;
@@ -60,7 +57,7 @@ std::vector<Shown> shown_results(const Source& source,
       if (limited(s)) with_limit.insert(s.measured);
     std::erase_if(all,
                   [&](const Shown& s) { return !limited(s) && with_limit.contains(s.measured); });
-  } else {  // keep the first one per measurement
+  } else {
     const pages::Measured* last = nullptr;
     std::erase_if(all,
                   [&](const Shown& s) { return std::exchange(last, s.measured) == s.measured; });
@@ -72,7 +69,6 @@ std::vector<Shown> shown_results(const Source& source,
 /// height.
 bool is_brief(const Source& source) { return source.in.campaign.certificate.languages.size() > 1; }
 
-/// Text such as "A: bi-directional accuracy; B: largest reversal error."
 std::string meanings(const Source& source, const std::vector<Shown>& all) {
   std::string text;
   std::set<std::string> said;
@@ -125,7 +121,9 @@ void add_conformity(const Source& source, Blocks& blocks) {
   if (limits) table.columns.push_back({w.get("results.decision"), "", false});
   for (const Shown& s : all) {
     const Value& v = *s.value;
-    const Printed shown = printed_result(v.value, v.U, v.quantity, source.language());
+    const Printed shown =
+        printed_result(v.value, v.U, v.quantity, source.language(),
+                       s.limit == nullptr ? std::nullopt : std::optional(s.limit->tolerance));
     std::vector<Table::Cell> row = {{s.measured->measurement.id}, {pages::symbol(v.name), true}};
     if (!brief) row.push_back({w.get_or("value." + pages::without_rule(v.name), "")});
     row.push_back({shown.value});

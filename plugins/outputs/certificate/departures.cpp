@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Departures of a test from its method as far as readings and manifest show them (ISO/IEC
-// 17025:2017, 7.8.2.1 n), and its parameters. The user cannot suppress them.
+// Parameters of a test and its departures from the method as far as readings and manifest show them
+// (ISO/IEC 17025:2017, 7.8.2.1 n). The user cannot suppress them.
 #include <algorithm>
 
 #include "certificate.h"
@@ -16,7 +15,6 @@ using namespace reports;
 
 namespace {
 
-/// Text such as "x.csv: line 57 (88.0 µm), line 60 (91.2 µm). Reason: ..."; empty: none.
 std::string excluded(const Source& source, const pages::Measured& m) {
   std::string which;
   for (const Remark& note : m.observations.notes) {
@@ -33,7 +31,6 @@ std::string excluded(const Source& source, const pages::Measured& m) {
                                                        {"reason", reason.empty() ? "–" : reason}}));
 }
 
-/// Text about an edition of ISO 230-2 before 2014; otherwise empty.
 std::string edition(const Source& source, const Results::Analysed& a) {
   for (const Remark& note : a.evaluation.notes)
     for (const Number& n : note.evidence)
@@ -59,7 +56,6 @@ std::string quantity(const Source& source, double si, Quantity q, const char* un
   return pages::plain_number(source, si, q) + " " + (unit != nullptr ? unit : unit_text(q));
 }
 
-/// Text such as "X 0 mm, Z −120 mm".
 std::string places(const Source& source, const std::map<std::string, double>& at) {
   std::string text;
   for (const auto& [axis, position] : at)
@@ -106,7 +102,6 @@ std::vector<std::string> departures_of(const Source& source, const pages::Measur
 
 namespace {
 
-/// Name such as "instrument L-1" or "sensor pressure 77" in the language of the document.
 std::string instrument_name(const Source& source, const std::string& name) {
   constexpr std::string_view instrument = "instrument", sensor = "sensor ";
   if (name.starts_with(instrument))
@@ -123,7 +118,7 @@ std::string instrument_name(const Source& source, const std::string& name) {
 std::string expired_text(const Source& source) {
   std::string all;
   const auto add = [&](const std::string& text) { all += (all.empty() ? "" : " ") + text; };
-  std::vector<std::string> said;  // finding ids; their reasons follow once
+  std::vector<std::string> said;
   for (const Results::Analysed& a : source.in.results.analyses)
     for (const Finding& f : a.evaluation.findings) {
       const std::string words = source.words.get_or("expired." + f.id, "");
@@ -153,7 +148,7 @@ std::string test_parameters(const Source& source, const pages::Measured& m) {
   const Measurement& t = m.measurement;
   const Environment& e = source.in.campaign.environment;
   std::string said, not_said;
-  const bool moves = pages::over_one_position(t);  // the test moves from target to target
+  const bool moves = pages::over_one_position(t);
   const auto add = [&](const char* name, bool there, const std::string& sentence,
                        bool wanted = true) {
     if (there)
@@ -166,7 +161,6 @@ std::string test_parameters(const Source& source, const pages::Measured& m) {
   };
   const double per_minute = 60.0;
   const Quantity travel = position_of(m.rotary);
-  // The feed of a circle is printed with its readings.
   if (t.kind != "circle" || !t.feed)
     add("feed", t.feed.has_value(),
         with("test.feed", "feed",

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Texts of the DCC, equal to those of the printed pages in all languages.
 #include <algorithm>
 
@@ -14,7 +13,6 @@ using namespace reports;
 
 namespace {
 
-/// The text `say(source)` in every language of the certificate.
 template <class Say>
 dcc::Text in_all(const std::vector<Source>& sources, const Say& say) {
   dcc::Text text;
@@ -123,7 +121,7 @@ void add_statements(const std::vector<Source>& sources, dcc::About& about) {
   const auto add = [&](const char* ref_type, dcc::Text says) {
     about.statements.push_back({ref_type, std::move(says)});
   };
-  const auto own = [&](const char* key, const std::string& text) {  // adds a text from the manifest
+  const auto own = [&](const char* key, const std::string& text) {
     if (!text.empty())
       add("", in_all(sources, [&](const Source& s) { return labelled(s, key, text); }));
   };

@@ -50,8 +50,8 @@ std::vector<std::string> split(const std::string& text) {
   return out;
 }
 
-/// Adds the missing keys of the uncertainty budget. A budget with a zero entry such as no drift
-/// also prevents a certificate, because a result would lack U.
+/// A budget with a zero entry, for example no drift, also prevents a certificate, because a result
+/// would lack U.
 void want_uncertainty(const OutputInput& in, List& list) {
   for (const Results::Analysed& a : in.results.analyses) {
     if (a.plugin == reports::model_analysis || a.evaluation.values.empty()) continue;

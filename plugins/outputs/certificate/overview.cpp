@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// The figures of the first page.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -49,7 +47,6 @@ Span span_of(const pages::Measured& m, bool scatter) {
   return span;
 }
 
-/// Adds two lines whose distance is the tolerance limit, centered on the measured range.
 bool add_limit(const Source& source, const pages::Measured& m, Plot& plot) {
   for (const char* name : {"A", "E"}) {
     const Conformity* limit = limit_of(source.in, m, name);
@@ -78,7 +75,6 @@ bool add_limit(const Source& source, const pages::Measured& m, Plot& plot) {
   return false;
 }
 
-/// Adds the mean curves of the test before the adjustment behind those after it.
 void lay_under(const Source& source, const pages::Measured& before, Plot& plot) {
   for (const Results::Analysed* a : before.analyses) {
     const PointTable& points = a->evaluation.points;
@@ -104,7 +100,6 @@ void lay_under(const Source& source, const pages::Measured& before, Plot& plot) 
   }
 }
 
-/// The same test of the same axis before the adjustment; nullptr if none.
 const pages::Measured* as_found(const std::vector<pages::Measured>& all,
                                 const pages::Measured& after) {
   if (after.measurement.adjustment != "after") return nullptr;
@@ -119,8 +114,6 @@ bool looks_alike(const Curve& a, const Curve& b) {
   return a.kind == b.kind && a.colour == b.colour && a.dash == b.dash && a.marker == b.marker;
 }
 
-/// Moves the legends of several plots to a common one. A plot keeps its legend if one of its lines
-/// looks different from the line of the same name.
 Plot common_legend(std::vector<Plot>& plots) {
   Plot common;
   common.only_legend = true;
@@ -128,9 +121,7 @@ Plot common_legend(std::vector<Plot>& plots) {
     return std::find_if(common.curves.begin(), common.curves.end(),
                         [&](const Curve& k) { return k.legend == c.legend; });
   };
-  const auto is_own = [](const Curve& c) {  // limit lines differ between axes
-    return c.legend.empty() || c.dash == Dash::dash_dot;
-  };
+  const auto is_own = [](const Curve& c) { return c.legend.empty() || c.dash == Dash::dash_dot; };
   for (Plot& plot : plots) {
     if (!plot.scales || std::any_of(plot.curves.begin(), plot.curves.end(), [&](const Curve& c) {
           return !is_own(c) && known(c) != common.curves.end() && !looks_alike(*known(c), c);
@@ -165,7 +156,7 @@ void add_overview(const Source& source, Blocks& blocks) {
     if (!plot) continue;
     if (plot->scales) {
       plot->title = pages::heading_of(source, m);
-    } else {  // the caption is printed with the measurement
+    } else {
       plot->x_title.clear();
       for (Curve& c : plot->curves) c.legend.clear();
     }

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Blocks of the first page and the statements; clauses are those of ISO/IEC 17025:2017.
 #include <algorithm>
 #include <cctype>
@@ -23,7 +22,6 @@ void widen(Range& range, const std::vector<double>& values) {
     if (std::isfinite(v)) range.low = std::min(range.low, v), range.high = std::max(range.high, v);
 }
 
-/// Text such as "19.8 – 20.3 °C"; one number if both are equal; empty if not known.
 std::string range_text(const Source& source, const Range& range, Quantity q, const char* unit,
                        int decimals) {
   if (!range.known()) return {};
@@ -38,7 +36,6 @@ void paragraph(Blocks& blocks, std::string text, std::string field, Look look = 
   if (!text.empty()) blocks.push_back({Paragraph{std::move(text), look}, std::move(field)});
 }
 
-/// Text such as "2026-03-23" or "2026-03-23 – 2026-03-25".
 std::string days(const Campaign& c) {
   return c.end_date.empty() || c.end_date == c.date ? c.date : c.date + " – " + c.end_date;
 }
@@ -108,7 +105,6 @@ void add_title(const Source& source, Blocks& blocks) {
 
 namespace {
 
-/// One row per change, with the previous and the new text.
 void add_changes(const Source& source, const FileChange& file, Grid& into) {
   const Wording& w = source.words;
   const std::string field = "amendment.changes";
@@ -143,7 +139,7 @@ Grid changes_of(const Source& source) {
   return changes;
 }
 
-/// Whether the changes would move the results off the first page; they then precede the method.
+/// Long changes would displace the results from the first page; they therefore precede the method.
 bool is_long(const Grid& changes) {
   constexpr std::size_t few = 6;
   return changes.rows.size() > few;
@@ -190,8 +186,6 @@ void add_parties(const Source& source, Blocks& blocks) {
 
 namespace {
 
-/// Text such as "Thermo T2, no. 17, certificate C-3 (LAT 9), calibrated 2026-01-02, valid until
-/// 2027-01-02".
 std::string sensor_text(const Source& source, const Sensor& s) {
   std::string text;
   const auto add = [&](const std::string& part, const char* between = ", ") {
@@ -244,7 +238,6 @@ void add_item(const Source& source, Blocks& blocks) {
 
 namespace {
 
-/// Whether its readings contribute to a printed result, possibly of another measurement.
 bool has_part(const OutputInput& in, const pages::Measured& m) {
   const auto& analyses = in.results.analyses;
   return is_printed(m) ||
@@ -271,7 +264,6 @@ std::string not_reported_text(const Source& source) {
 
 namespace {
 
-/// Departures found by the program, then those stated by the user (default: none).
 void add_departures(const Source& source, Blocks& blocks) {
   const CertificateTexts& texts = source.in.campaign.certificate;
   blocks.push_back({Heading{label(source, "method_heading.departures"), 2}, "departures"});
@@ -305,7 +297,6 @@ void add_departures(const Source& source, Blocks& blocks) {
 
 namespace {
 
-/// Adds the methods. If an analysis used two methods, each is listed with its measurements.
 void add_methods(const Source& source, Blocks& blocks) {
   struct Method {
     std::string plugin, words, measurements;
@@ -362,7 +353,6 @@ void add_method(const Source& source, Blocks& blocks) {
 
 namespace {
 
-/// Known facts about the correction of a measurement to the reference temperature.
 struct Normalised {
   std::optional<bool> is;             ///< from the file, otherwise from the manifest
   std::optional<double> coefficient;  ///< 1/K
@@ -385,7 +375,7 @@ Normalised normalised(const Source& source, const pages::Measured& m) {
 
 /// Results refer to 20 degC (ISO 1, ISO 230-2), and a document must state how they were converted.
 std::string reference_temperature_text(const Source& source) {
-  std::vector<std::pair<std::string, std::string>> sentences;  // text, measurements
+  std::vector<std::pair<std::string, std::string>> sentences;
   for (const pages::Measured& m : pages::measured(source.in)) {
     if (!has_part(source.in, m) || m.observations.angular) continue;
     const Normalised n = normalised(source, m);
@@ -464,7 +454,6 @@ void add_statements(const Source& source, Blocks& blocks) {
 
 namespace {
 
-/// The approving person, or the person responsible for the rules that approved the certificate.
 std::string released_by(const Source& source) {
   const Issue& issue = *source.in.issue;
   const std::string& responsible = source.in.campaign.laboratory.authoriser;
@@ -475,7 +464,6 @@ std::string released_by(const Source& source) {
 
 }  // namespace
 
-/// Adds instructions for verification of a print, and the digest of the readings.
 void add_authority(const Source& source, Blocks& blocks) {
   const Wording& w = source.words;
   const Issue& issue = *source.in.issue;
@@ -490,7 +478,7 @@ void add_authority(const Source& source, Blocks& blocks) {
 
 namespace {
 
-/// Percent-encodes a value for the fragment of a URL (RFC 3986, 2.1).
+/// RFC 3986, 2.1; for the fragment of a URL.
 std::string percent_encoded(std::string_view text) {
   constexpr std::string_view digits = "0123456789ABCDEF", plain = "-._~";
   std::string out;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // The certificate (or report) of calibration for the customer: a PDF and a Digital Calibration
 // Certificate. The host assigns the number and signs both.
 #include <algorithm>
@@ -16,15 +15,12 @@ namespace {
 
 using Blocks = std::vector<Block>;
 
-/// Whether two texts are equal except for the decimal separator.
 bool same(const std::string& a, const std::string& b) {
   const auto plain = [](char c) { return c == ',' ? '.' : c; };
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [&](char x, char y) { return plain(x) == plain(y); });
 }
 
-/// Joins texts with equal beginnings: "Hall 4 (beim Auftraggeber / at the customer's)". False if
-/// not possible.
 bool join_in_brackets(std::string& a, const std::string& b) {
   const std::size_t open = a.find(" (");
   if (open == std::string::npos || open == 0 || b.find(" (") != open || !a.ends_with(')') ||
@@ -57,8 +53,8 @@ void merge(Grid& a, const Grid& b) {
   }
 }
 
-/// Joins the texts of two plots, in axis titles by " · " because "/" precedes the unit. The y title
-/// stays in one language for lack of space.
+/// Axis titles are joined by " · ", because "/" precedes the unit. The y title remains in one
+/// language for lack of space.
 void merge(Plot& a, const Plot& b) {
   join(a.title, b.title);
   join(a.x_title, b.x_title, " · ");
@@ -67,7 +63,7 @@ void merge(Plot& a, const Plot& b) {
     join(a.curves[i].legend, b.curves[i].legend);
 }
 
-/// Joins the titles. The row labels must not depend on the language.
+/// The row labels must not depend on the language.
 void merge(BarChart& a, const BarChart& b) {
   join(a.title, b.title);
   join(a.x_title, b.x_title, " · ");
@@ -138,7 +134,6 @@ void prepare(const Templates& templates) {
   if (const auto look = look_of(templates, words_file)) (void)pages::fonts_of(templates, *look);
 }
 
-/// Marks values that the customer stated with " *". Keys that are not printed remain in `keys`.
 void mark(Blocks& blocks, std::vector<std::string>& keys) {
   std::vector<std::string> found;
   const auto visit = [&](const auto& self, Blocks& all) -> void {
@@ -225,8 +220,8 @@ std::vector<Error> check_templates(const Templates& templates) {
 
 }  // namespace
 
-/// A title is a claim if it contains one of the words listed, separated by commas, in title.claims
-/// of any language.
+/// A title is a claim if it contains one of the words in title.claims of any language, a list
+/// separated by commas.
 std::string accredited_claim(const OutputInput& in) {
   const auto lower = [](std::string text) {
     for (char& c : text)

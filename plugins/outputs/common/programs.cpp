@@ -13,7 +13,6 @@ namespace nonio::programs {
 
 namespace {
 
-/// Printable ASCII on one line, without characters that end a comment.
 std::string plain(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -32,7 +31,6 @@ constexpr double full_turn = 360.0 * deg;
 constexpr double slack = 1e-9;         // m or rad, tolerance for rounding
 constexpr double most_readings = 1e5;  // limit per program: 140 h at 5 s per reading
 
-/// Plan of the diagonals: n equal steps of two axes.
 struct Plan {
   std::string x, y;
   int n = 0;
@@ -80,7 +78,7 @@ class Requests {
     }
     for (auto it = asked.begin(); it != asked.end(); ++it) {
       const std::string& what = *it;
-      if (std::find(asked.begin(), it, what) != it) continue;  // listed twice
+      if (std::find(asked.begin(), it, what) != it) continue;
       const auto done = what == "axes"             ? axes()
                         : what == "diagonals"      ? diagonals(false)
                         : what == "half-diagonal"  ? diagonals(true)
@@ -103,7 +101,6 @@ class Requests {
     return rotary ? o_.number("over_travel_deg") * deg : o_.number("over_travel_mm") * mm;
   }
 
-  /// The linear axis with this name. Error: unknown, rotary, or without travel.
   Expected<const Axis*> axis(const std::string& name) const {
     const Axis* a = in_.campaign.machine.axis(name);
     if (a == nullptr || a->rotary || !a->travel)
@@ -112,7 +109,6 @@ class Requests {
     return a;
   }
 
-  /// Error if `length` plus the over-travel at both ends exceeds the travel of the axis.
   Expected<void> room(const Axis& a, double length) const {
     const double wanted = length + 2.0 * over_travel(a.rotary);
     const double travel = a.travel->second - a.travel->first;
@@ -123,7 +119,6 @@ class Requests {
                                        number(travel / mm) + " mm");
   }
 
-  /// Error if the program is too long for a realistic measurement.
   Expected<void> bounded(const std::string& name, double stops) const {
     const double readings = stops * wish_.runs * (wish_.both_directions ? 2.0 : 1.0);
     if (readings <= most_readings) return {};
@@ -183,9 +178,9 @@ class Requests {
            last + over_travel(a.rotary) > a.travel->second + slack;
   }
 
-  /// Range of the targets: the travel without the over-travel. A rotary axis with a full turn has
-  /// targets at 0 deg and 360 deg, if possible from a cardinal angle, even if the over-travel then
-  /// exceeds the travel.
+  /// The travel without the over-travel. A rotary axis with a full revolution has targets at 0 deg
+  /// and 360 deg, if possible from a cardinal angle, even if the over-travel then exceeds the
+  /// travel.
   std::pair<double, double> range(const Axis& a) const {
     const auto [from, to] = *a.travel;
     const double o = over_travel(a.rotary);
@@ -197,7 +192,6 @@ class Requests {
     return {from, from + full_turn};
   }
 
-  /// Distributes the targets as required by ISO 230-2.
   Expected<void> spread(const Axis& a, const std::string& choice, math::AxisTargets& wanted,
                         std::string& how) const {
     const double length = wanted.last - wanted.first;
@@ -269,7 +263,6 @@ class Requests {
     return {};
   }
 
-  /// Stops of `start`, `from` and `to` in the table rows, for the axis in option `axes`.
   Expected<void> sign_probe() {
     const std::vector<std::string> names = o_.texts("axes");
     const Axis* a = names.size() == 1 ? in_.campaign.machine.axis(names.front()) : nullptr;
@@ -341,7 +334,6 @@ class Requests {
   std::vector<Program> programs_;
 };
 
-/// The programs requested by the options.
 Expected<std::vector<Program>> requested(const OutputInput& in) { return Requests(in).all(); }
 
 std::string trimmed(std::string text) {
@@ -357,8 +349,7 @@ std::string file_part(std::string_view name) {
   return out;
 }
 
-/// Error if the dialect does not support the name. In some dialects a digit after the axis letter
-/// would be read as part of the position.
+/// In some dialects a digit after the axis letter would be read as part of the position.
 Expected<void> check_name(const std::string& axis, const Dialect& dialect) {
   const auto letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
   if (letter(axis.front()) && file_part(axis) == axis && (axis.size() == 1 || dialect.long_names))

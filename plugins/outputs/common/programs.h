@@ -8,18 +8,17 @@
 #include "nonio/math/measuring_path.h"
 #include "nonio/sdk/plugin.h"
 
-/// Functions shared by all writers of part programs: which lines to measure, where to stop, and the
-/// comments. A dialect only formats. Compiled into each plugin.
+/// Functions for all writers of part programs: which lines to measure, where to stop, and the
+/// comments. A dialect only formats. They are compiled into each plugin.
 namespace nonio::programs {
 
-/// One part program: a path, and information for the operator.
 struct Program {
   math::MeasuringPath path;
   std::vector<std::string> about;  ///< comment lines in plain ASCII
   double feed = 0.0;               ///< mm/min, or deg/min of a rotary axis
 };
 
-/// Formats a position for programs: mm or deg, with as many decimals as it needs, at most six.
+/// mm or deg, with as many decimals as needed, at most six.
 std::string position(const math::MeasuringPath& path, std::size_t axis, double si);
 /// Formats seconds or a feed, without trailing zeros.
 std::string number(double value);
@@ -32,7 +31,7 @@ struct Dialect {
   bool long_names = false;  ///< whether an axis may have a name such as X1
 };
 
-/// Returns the options common to all program writers, followed by `own`.
+/// The options common to all program writers, followed by `own`.
 std::vector<Option> options(std::vector<Option> own);
 /// Writes one file for each line to be measured.
 Expected<OutputResult> written(const OutputInput& in, const Dialect& dialect);

@@ -16,7 +16,6 @@
 namespace nonio::csv_output {
 namespace {
 
-/// The value in printed units; empty if it is not finite.
 std::string number(double si, Quantity quantity) {
   if (!std::isfinite(si)) return {};
   std::string text;
@@ -66,7 +65,7 @@ std::vector<std::string> value_row(const Results& results, const Results::Analys
   return row;
 }
 
-/// Adds rows for tolerances without a value, so that they are not overlooked.
+/// Tolerances without a value have rows, so that they are not overlooked.
 void add_undecided(std::string& out, const Results& results) {
   for (const Conformity& c : results.conformity) {
     const bool has_value =
@@ -108,7 +107,6 @@ std::string table_file(const PointTable& points) {
   return out;
 }
 
-/// A file name with safe characters that no other output file has.
 std::string file_name(const std::string& kind, const Results::Analysed& a,
                       const std::vector<Artifact>& others) {
   const auto plain = [](std::string part) {
@@ -129,7 +127,6 @@ std::string file_name(const std::string& kind, const Results::Analysed& a,
   return name;
 }
 
-/// One row per point of the curves of one axis over another (EYX, EXX).
 std::string series_file(const std::vector<Series>& all) {
   std::string out = "curve,over,position,position_unit,value,unit,U,k\n";
   for (const Series& s : all)

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // A Digital Calibration Certificate without the PDF, for users with their own certificate numbers.
 #include <algorithm>
 
@@ -14,7 +13,6 @@ constexpr const char* version = "1.0.0";
 
 bool applies(const Campaign&) { return true; }
 
-/// Error that lists the keys of all missing items.
 Expected<void> check(const Campaign& c) {
   std::string missing;
   const auto want = [&](bool there, const char* key) {
@@ -33,7 +31,6 @@ Expected<void> check(const Campaign& c) {
   return fail("a DCC needs what is missing: " + missing);
 }
 
-/// Adds one entry per tolerance, without texts.
 void add_decided(const OutputInput& in, dcc::About& about) {
   const std::string& rule = in.campaign.certificate.decision_rule;
   about.norm = rule.starts_with("ilac")    ? "ILAC-G8:09/2019"

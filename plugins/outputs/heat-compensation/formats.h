@@ -11,8 +11,8 @@ namespace nonio::heat_compensation {
 
 struct Format {
   const char* name;  ///< choice of option `control`
-  const char* note;  ///< id of the remark about inferred facts; nullptr: none
-  /// Returns the id of the finding that refuses the law; empty: accepted.
+  const char* note;  ///< id of the remark about inferred facts, or null
+  /// Returns the id of the finding that refuses the law, or an empty text.
   std::string (*refusal)(const Law&);
   std::vector<Artifact> (*files)(const OutputInput&, const Law&);
 };

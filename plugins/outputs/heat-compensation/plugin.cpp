@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // The model of displacements over time as the thermal compensation of a control.
 #include "formats.h"
 

@@ -17,7 +17,6 @@
 namespace nonio::json_output {
 namespace {
 
-/// Writes an array on one line; write(out, i) appends element i.
 template <class Write>
 void list(JsonWriter& json, std::string_view name, std::size_t size, Write write) {
   std::string out = "[";
@@ -29,7 +28,6 @@ void list(JsonWriter& json, std::string_view name, std::size_t size, Write write
   json.raw(out += ']');
 }
 
-/// Writes an array of numbers in printed units; null for values that are not finite.
 void numbers(JsonWriter& json, const std::string& name, const std::vector<double>& si,
              Quantity quantity) {
   if (si.empty()) return;
@@ -62,8 +60,8 @@ void directions(JsonWriter& json, const std::string& name,
   });
 }
 
-/// `target` and `direction` of a measurement of one axis; otherwise a column for each axis, and
-/// the direction of sensing of each reading (the general form).
+/// `target` and `direction` of a measurement of one axis; otherwise a column for each axis, and the
+/// direction of sensing of each reading.
 void places(JsonWriter& json, const Observations& obs) {
   if (obs.axes.size() == 1 && obs.lines.size() <= 1) {
     directions(json, "direction", obs.axes[0].approach);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Script of the stored page, which contains its data. It updates the figures (draw.js) when
-// effects, directions or runs are switched off or on. The fragment of the URL stores what is off.
+// Script of the stored page, which contains its data. It updates the figures (draw.js) and the numbers
+// of the fit when effects, directions or runs are switched off or on. All that is shown is of one fit:
+// what is known of the whole model only is hidden meanwhile. The fragment of the URL stores what is off.
 "use strict";
 (function () {
   const data = JSON.parse(document.getElementById("data").textContent);
@@ -10,50 +11,52 @@
   const figure = (k) => document.getElementById("picture-" + k);
   const pictures = nonioPictures({figure, tip: document.getElementById("tip"), hidden: out});
   const {number, text, finite} = pictures;
-  let residual = data.residual;
 
-  // ---- residuals without some effects: for one effect, from a fit of the others; for several
-  // effects, their fitted parts are added to the residuals, and the zero of each measurement is
-  // updated ----
-  let refitted = null;
-  function work() {
-    const one = out.e.size === 1 ? data.effects[[...out.e][0]].without : null;
-    refitted = one;
-    residual = (one ? one.residual : data.residual).slice();
-    if (!one) for (const e of out.e) data.effects[e].says.forEach((v, i) => (residual[i] += v));
-    if (out.e.size > 0 && !one) {
-      const sum = new Map(), weight = new Map();
-      const add = (map, key, v) => map.set(key, (map.get(key) || 0) + v);
-      for (let i = 0; i < n; i++) {
-        add(sum, data.measurement[i], data.weight[i] * (residual[i] - data.residual[i]));
-        add(weight, data.measurement[i], data.weight[i]);
-      }
-      for (let i = 0; i < n; i++) {
-        const all = weight.get(data.measurement[i]);
-        if (all > 0) residual[i] -= sum.get(data.measurement[i]) / all;
-      }
+  /// The fit that is shown: for one effect less, the fit of the others; for several effects less,
+  /// their fitted parts are added to the residuals, and the zero of each measurement is updated.
+  function fit_shown() {
+    if (out.e.size === 0) return data;
+    const refitted = out.e.size === 1 && data.effects[[...out.e][0]].without;
+    if (refitted) return {...data, ...refitted, refitted: true};
+    const residual = data.residual.slice(), sum = new Map(), weight = new Map();
+    for (const e of out.e) data.effects[e].says.forEach((v, i) => (residual[i] += v));
+    const add = (map, key, v) => map.set(key, (map.get(key) || 0) + v);
+    for (let i = 0; i < n; i++) {
+      add(sum, data.measurement[i], data.weight[i] * (residual[i] - data.residual[i]));
+      add(weight, data.measurement[i], data.weight[i]);
     }
+    for (let i = 0; i < n; i++) {
+      const all = weight.get(data.measurement[i]);
+      if (all > 0) residual[i] -= sum.get(data.measurement[i]) / all;
+    }
+    return {...data, residual, left_out: null, rms: null, cv_rms: null, largest: null};
   }
 
-  function rms() {
-    let squares = 0, weight = 0;
+  /// RMS, number and largest residual of the readings shown. If these are all, the fit states them,
+  /// because a page of very many readings contains a sample.
+  function numbers(fit) {
+    if (out.d.size === 0 && out.r.size === 0 && finite(fit.rms)) return {rms: fit.rms, count: fit.readings, largest: fit.largest, cv_rms: fit.cv_rms};
+    let squares = 0, weight = 0, largest = 0;
     for (const i of pictures.shown) {
-      squares += data.weight[i] * residual[i] * residual[i];
-      weight += data.weight[i];
+      const v = fit.residual[i];
+      squares += fit.weight[i] * v * v;
+      weight += fit.weight[i];
+      if (fit.weight[i] > 0 && Math.abs(v) > Math.abs(largest)) largest = v;
     }
-    return weight > 0 ? Math.sqrt(squares / weight) : NaN;
+    return {rms: weight > 0 ? Math.sqrt(squares / weight) : NaN, count: pictures.shown.filter(pictures.counted).length, largest};
   }
 
   function draw() {
-    work();
-    pictures.draw(residual);
-    const whole = out.d.size === 0 && out.r.size === 0 && refitted;
-    const now = whole ? refitted.rms : rms(), all = out.e.size === 0;
+    const fit = fit_shown(), whole = out.e.size === 0;
+    pictures.set(fit);
+    pictures.draw(fit.residual);
+    const {rms, count, largest, cv_rms} = numbers(fit), unit = data.unit;
     const names = [...out.e].sort((a, b) => a - b).map((e) => data.effects[e].name).join(", ");
-    document.getElementById("rms").textContent =
-      (finite(now) ? text(words.rms_now, {rms: number(now, 2), unit: data.unit, count: pictures.shown.filter(pictures.counted).length}) : words.no_readings) +
-      (all ? "" : " " + text(refitted ? words.without : words.not_refitted, {effects: names})) +
-      (whole && finite(refitted.cv_rms) ? " " + text(words.without_cv, {rms: number(refitted.cv_rms, 2), unit: data.unit}) : "");
+    const sentences = [finite(rms) ? text(words.rms_now, {rms: number(rms, 2), unit, count}) + " " + text(words.largest, {value: number(largest, 2), unit}) : words.no_readings];
+    if (finite(cv_rms)) sentences.push(text(words.without_cv, {rms: number(cv_rms, 2), unit}));
+    if (!whole) sentences.push(text(fit.refitted ? words.without : words.not_refitted, {effects: names}), words.of_whole);
+    document.getElementById("rms").textContent = sentences.join(" ");
+    for (const part of document.querySelectorAll(".whole")) part.hidden = !whole;
   }
 
   // ---- selection of effects, directions and runs: checkboxes and URL fragment ----
@@ -101,7 +104,6 @@
     recall();
     draw();
   });
-  pictures.set(data);
   recall();
   draw();
 })();

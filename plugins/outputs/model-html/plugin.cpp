@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // The model of each part of the machine as a self-contained HTML page. Its texts are in
 // templates/words/<language>/pictures.toml.
 #include "nonio/sdk/plugin.h"
@@ -21,7 +20,6 @@
 namespace nonio::model_html {
 namespace {
 
-/// Input of a page.
 struct Source {
   const OutputInput& in;
   const ModelFit& fit;
@@ -46,7 +44,6 @@ void add_head(View& view, const Source& source) {
   view.set("identity", line);
 }
 
-/// Adds the verdict in a box, and below it the remaining patterns as a list.
 void add_notes(View& view, const Source& source) {
   const auto says = [&](const Finding& f, const char* part) {
     return Html{typeset_html(finding_text(source.in.templates, source.words.language(), f, part))};
@@ -60,8 +57,7 @@ void add_notes(View& view, const Source& source) {
     }
     view.flag("attention", f.attention);
     const Html title = says(f, "title");
-    if (title.text != f.id || says(f, "says").text.empty())
-      view.set("note_title", title);  // a verdict has no title
+    if (title.text != f.id || says(f, "says").text.empty()) view.set("note_title", title);
     for (const char* part : {"says", "advice"})
       if (const Html text = says(f, part); !text.text.empty()) view.add("note").set("note", text);
   }
@@ -82,7 +78,6 @@ void add_parameters(View& view, const Source& source) {
     if (!text.empty()) view.add("about_fit").set("about_fit", text);
 }
 
-/// Adds descriptions and remedies of effects from the catalog.
 void add_cards(View& view, const Source& source) {
   bool any = false;
   for (const ModelFit::Candidate& c : source.fit.candidates) {
@@ -100,8 +95,6 @@ void add_cards(View& view, const Source& source) {
   view.flag("cards", any);
 }
 
-/// Adds effects that are not in the model: with evidence, without evidence, and what to measure
-/// next.
 void add_candidates(View& view, const Source& source) {
   const std::string& language = source.words.language();
   const auto rows = candidate_rows(source.fit, language);
@@ -119,7 +112,7 @@ void add_candidates(View& view, const Source& source) {
         "plan", Html{typeset_html(finding_text(source.in.templates, language, f, "says"))});
 }
 
-/// Adds the decrease of RMS per effect as bars in percent of the chart width, which need no script.
+/// The decrease of RMS per effect as bars in percent of the chart width, which need no script.
 void add_steps(View& view, const Source& source) {
   const ModelFit& fit = source.fit;
   const Wording& words = source.words;
@@ -168,22 +161,28 @@ void add_pictures(View& view, const Source& source) {
   }
 }
 
-std::string legend(const Source& source, const workbench::Kept& kept) {
+/// Returns what the legend states of the fit of the whole model.
+std::string legend_numbers(const Source& source) {
   const ModelFit& fit = source.fit;
   const Wording& words = source.words;
   const Quantity q = deviation_of(fit.angular);
-  std::string text = words.get("picture.legend") + " ";
-  text += fit.floor ? words.get("picture.legend_floor",
-                                {{"s", printed_number(*fit.floor, q, 2, words.language())},
-                                 {"unit", unit_text(q)}})
-                    : words.get("picture.no_floor");
+  std::string text = fit.floor
+                         ? words.get("picture.legend_floor",
+                                     {{"s", printed_number(*fit.floor, q, 2, words.language())},
+                                      {"unit", unit_text(q)}})
+                         : words.get("picture.no_floor");
   if (!fit.suspects.empty())
     text +=
         " " + words.get("picture.legend_suspect", {{"count", std::to_string(fit.suspects.size())}});
-  if (kept.rows.size() < fit.size())
-    text += " " + words.get("page.thinned", {{"shown", std::to_string(kept.rows.size())},
-                                             {"all", std::to_string(fit.size())}});
   return text;
+}
+
+std::string legend(const Source& source, const workbench::Kept& kept) {
+  const std::string text = source.words.get("picture.legend");
+  if (kept.rows.size() == source.fit.size()) return text;
+  return text + " " +
+         source.words.get("page.thinned", {{"shown", std::to_string(kept.rows.size())},
+                                           {"all", std::to_string(source.fit.size())}});
 }
 
 Expected<std::string> page_of(const Source& source) {
@@ -199,14 +198,13 @@ Expected<std::string> page_of(const Source& source) {
   add_pictures(view, source);
   view.set("pictures_heading", words.get("picture.heading", {{"part", source.fit.part}}));
   view.set("toggling", Html{typeset_html(words.get("page.toggling"))});
-  view.set("legend", legend(source, kept));
+  view.set("legend", legend(source, kept)).set("legend_numbers", legend_numbers(source));
   view.set("data", Html{workbench::data_of(drawn, kept, false)});
   return page_text("model", view, words);
 }
 
 bool applies(const Campaign& campaign) { return !campaign.model.empty(); }
 
-/// The file name for a part, with safe characters.
 std::string file_name(const std::string& part) {
   std::string name = "model-" + part + ".html";
   for (char& c : name) {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// The history of the machine up to this campaign.
 #include "nonio/sdk/history.h"
 
 #include <algorithm>
@@ -23,7 +21,6 @@ namespace {
 
 constexpr const char* history_field = "history";
 
-/// Days since 1970-01-01; `day` must be YYYY-MM-DD.
 double day_number(const std::string& day) {
   const auto part = [&](std::size_t at, std::size_t n) {
     int value = 0;
@@ -121,7 +118,7 @@ class HistoryPage {
     if (c.cause == "instrument") return w_.get("history.instrument_cause");
     if (c.cause == "table") return w_.get("history.table_cause");
     if (c.cause != "event") return w_.get("history.unknown_cause");
-    return kind(c.event.substr(0, c.event.find(": ")));  // the text is printed with the events
+    return kind(c.event.substr(0, c.event.find(": ")));
   }
 
   std::string change(const HistorySeries& s, const HistoryChange& c) const {
@@ -163,7 +160,6 @@ class HistoryPage {
     return w_.get("history.new_value");
   }
 
-  /// Table columns about the previous value: value, date, difference.
   struct Before {
     std::string value = "–", since = "–", difference = "–";
     bool any = false;
@@ -183,7 +179,6 @@ class HistoryPage {
     return {};
   }
 
-  /// The step without a unit, which has its own column; a factor is printed with "×".
   std::string step_text(const HistorySeries& s, const HistoryStep& step) const {
     const FollowedNumbers shown = numbers(s);
     return shown.is_scatter() ? "× " + scatter_text(source_.site, step.size, step.u)
@@ -223,7 +218,6 @@ class HistoryPage {
     if (!table.rows.empty()) blocks.push_back({std::move(table), history_field});
   }
 
-  /// Converts dates to positions on the horizontal axis.
   struct Time {
     double first = 0.0;
     bool years = false;
@@ -322,8 +316,6 @@ class HistoryPage {
     return c;
   }
 
-  /// Indexes of the series with a plot below the table, limited by the page height; changed ones
-  /// first.
   std::vector<std::size_t> drawn(double height, std::size_t per_row) const {
     constexpr double line = 8.6, around = 2.4;
     double taken = 150 + line * std::ceil(static_cast<double>(events().size()) / 140.0);
@@ -404,14 +396,13 @@ class HistoryPage {
   const Wording& w_;
   const HistorySoFar& h_;
   const std::string& id_;
-  std::vector<std::size_t> shown_{};  ///< indexes of series, in page order
+  std::vector<std::size_t> shown_{};
 };
 
 }  // namespace
 
 void add_history(const Source& source, Blocks& blocks) {
   if (!source.in.options.flag("history")) return;
-  // no new page for a single sentence
   if (source.in.history != nullptr && !source.in.history->campaigns.empty())
     blocks.push_back({PageBreak{}});
   blocks.push_back({Heading{source.words.get("history.title"), 1}, history_field});

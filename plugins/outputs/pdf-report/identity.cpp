@@ -14,9 +14,8 @@ using namespace reports;
 namespace {
 
 const std::vector<double> identity_shares = {0.36, 0.29, 0.35};
-const std::vector<double> title_shares = {0.66, 0.34};  // laboratory, and column of the instrument
+const std::vector<double> title_shares = {0.66, 0.34};
 
-/// Key of the subtitle, depending on the kinds of measurements.
 const char* subtitle_of(const Source& source) {
   bool positioning = false, other = false;
   for (const Measurement& m : source.in.campaign.measurements)
@@ -92,15 +91,15 @@ namespace {
 void add_conformity(const Source& source, std::vector<std::string>& lines) {
   const Wording& w = source.words;
   for (const Conformity& c : source.in.results.conformity) {
-    if (c.decision == Decision::conforms || c.reason == "no-value") continue;  // printed below
+    if (c.decision == Decision::conforms || c.reason == "no-value") continue;
     const Value* value = nullptr;
     for (const Results::Analysed& a : source.in.results.analyses)
       if (a.plugin == c.plugin && a.measurement == c.measurement)
         for (const Value& v : a.evaluation.values)
           if (v.name == c.name) value = &v;
-    const Printed shown =
-        value != nullptr ? printed_result(value->value, value->U, c.quantity, source.language())
-                         : Printed{"–", ""};
+    const Printed shown = value != nullptr ? printed_result(value->value, value->U, c.quantity,
+                                                            source.language(), c.tolerance)
+                                           : Printed{"–", ""};
     const std::string what =
         w.get(c.decision == Decision::does_not_conform ? "status.does_not_conform"
                                                        : "status.cannot_be_decided",
@@ -120,7 +119,7 @@ bool has_results(const Evaluation& e) {
          !e.rows.columns.empty();
 }
 
-/// Status if no action is required. It is green only if something was evaluated and compared with a
+/// Status if no action is required; green only if something was evaluated and compared with a
 /// tolerance.
 void say_what_was_looked_at(const Source& source, Status& status, bool of_laboratory) {
   const Results& results = source.in.results;
@@ -163,7 +162,7 @@ void add_status(const Source& source, Blocks& blocks) {
   }
   add_conformity(source, status.lines);
   bool requires_action = !status.lines.empty();
-  bool of_laboratory = false;  // warnings printed only in the laboratory part
+  bool of_laboratory = false;
   for (const Measured& m : measured(source.in)) {
     for (const Finding* f : m.findings)
       if (f->attention && is_for_laboratory(source, *f))

@@ -14,7 +14,6 @@ using namespace reports;
 
 namespace {
 
-/// Adds the verdict as a note without title, then the remaining patterns as a list.
 void add_what_it_says(const Source& source, const ModelFit& fit, Blocks& blocks) {
   const std::string field = "model of " + fit.part;
   for (const Finding& f : fit.diagnosis) {
@@ -55,8 +54,6 @@ void add_parameters(const Source& source, const ModelFit& fit, Blocks& blocks) {
     blocks.push_back({Paragraph{text, Paragraph::Look::small}, field});
 }
 
-/// Adds effects that are not in the model: with evidence as a table, others as a sentence; then
-/// what to measure next.
 void add_candidates(const Source& source, const ModelFit& fit, Blocks& blocks) {
   const Wording& words = source.pictures;
   const std::string field = "candidates for the model of " + fit.part;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Readings with their model, and the page of residuals. Its nine figures always have the same
 // positions, so that readers find them. A figure without data states this in its frame.
 #include <algorithm>
@@ -23,7 +22,6 @@ std::vector<double> scaled(std::vector<double> values, double factor) {
   return values;
 }
 
-/// The color mixed with 50 % white.
 Colour pale(Colour c) { return {(1 + c.red) / 2, (1 + c.green) / 2, (1 + c.blue) / 2}; }
 
 class Pictures {
@@ -88,7 +86,6 @@ class Pictures {
     return plot;
   }
 
-  /// Plot of readings and model by pass, and of the residuals below it, over the same positions.
   std::array<Plot, 2> with_model(const PictureWords& said, const PictureWords& left) const {
     Plot above = frame(said), below = frame(left);
     below.title.clear();
@@ -133,7 +130,6 @@ class Pictures {
 
   std::string legend() const { return words_.get("picture.legend") + " " + marks(); }
 
-  /// Legend of the gray band and the rings.
   std::string marks() const {
     std::string text =
         fit_.floor
@@ -179,13 +175,13 @@ class Pictures {
     return plot;
   }
 
-  double held(double y) const {  // clamps suspect readings to the edge of the figure
+  double held(double y) const {
     const double inset = 0.03 * (range_.second - range_.first);
     return std::clamp(y, range_.first + inset, range_.second - inset);
   }
 
-  /// Adds readings by direction, in printed units. `row`: index of the reading of each point;
-  /// empty: i.
+  /// Readings by direction, in printed units. `row` is the index of the reading of each point; if
+  /// it is empty, point i is reading i.
   void scatter(Plot& plot, const std::vector<double>& x, const std::vector<double>& y,
                const std::vector<std::size_t>& row = {}) const {
     Curve plus, minus, other;
@@ -217,21 +213,18 @@ class Pictures {
     if (c.x.size() > 1) plot.curves.push_back(std::move(c));
   }
 
-  /// Adds residuals over x (SI), and their mean along x.
   void residuals(Plot& plot, const std::vector<double>& x, double per_si) const {
     scatter(plot, scaled(x, per_si), scaled(fit_.residual, per_si_));
     const Trace mean = mean_by_part(fit_, x);
     line(plot, scaled(mean.x, per_si), scaled(mean.y, per_si_), style_.text);
   }
 
-  /// Horizontal positions of a measurement's targets in a figure over position.
   std::vector<double> along(std::vector<double> targets, std::size_t measurement) const {
     for (double& t : targets)
       t = lanes_.names.empty() ? (t - scale_.from) * scale_.per_si : lanes_.at(measurement, t);
     return targets;
   }
 
-  /// Horizontal position of every reading.
   std::vector<double> places() const {
     if (lanes_.names.empty()) return along(fit_.target, 0);
     std::vector<double> out(fit_.size());
@@ -284,7 +277,6 @@ class Pictures {
     }
   }
 
-  /// For very many readings: mean of the model at each target.
   void mean_model(Plot& plot) const {
     ModelFit model = fit_;
     for (std::size_t i = 0; i < model.size(); ++i)
@@ -386,7 +378,7 @@ class Pictures {
   Quantity deviation_;
   PlaceScale scale_;
   double per_si_;
-  std::vector<char> suspect_;  ///< for each reading: suspected misreading
+  std::vector<char> suspect_;
   Lanes lanes_;
   std::pair<double, double> range_;
 };
@@ -425,7 +417,7 @@ void add_pictures(const Source& source, const ModelFit& fit, Blocks& blocks) {
   constexpr double between = 7;
   const double heading = 9 + 1.3 * style.heading + 6, legend = 3 * 1.3 * style.small + 2;
   const double around = 5 + 3 * 1.3 * style.small + 2 + between;
-  const double end = 1.3 * style.small + 2;  // height of the last line of the report
+  const double end = 1.3 * style.small + 2;
   const double height = (page_room(style) - heading - legend - end) / 3 - around;
   const auto said = picture_words(fit, source.pictures);
   for (std::size_t i = 0; i < said.size(); i += per_row) {

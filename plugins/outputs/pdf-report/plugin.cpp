@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // The report of a campaign as a PDF. Its texts and layout are in templates/.
 #include "nonio/sdk/plugin.h"
 

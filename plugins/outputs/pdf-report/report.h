@@ -18,25 +18,22 @@ using reports::Wording;
 using pages::Blocks;
 using pages::Measured;
 
-/// Input of every part of the report.
 struct Source : pages::Source {
   const Wording& pictures;  ///< texts of the model figures
   const Wording& site;      ///< texts of the laboratory's pages: quantities, events
 };
 
-/// Reads and checks the layout template.
 Expected<pages::Look> look_of(const Templates&, const std::string& name);
 
-/// Title, status (with required actions), campaign, machine, instrument.
 void add_title(const Source&, Blocks&);
 void add_identity(const Source&, Blocks&);
 void add_status(const Source&, Blocks&);
 
-/// Results of analyses of the whole campaign: rows of a plan, and findings.
+/// Analyses of the whole campaign: rows of a plan, and findings.
 void add_plans(const Source&, Blocks&);
 /// Whether the block "laboratory" prints all advice.
 bool has_laboratory_part(const Source&);
-/// Whether a finding is printed in that block only, because a model is not a result.
+/// Whether a finding is printed in the block "laboratory" only, because a model is not a result.
 bool is_for_laboratory(const Source&, const Finding&);
 void add_laboratory(const Source&, Blocks&);
 void add_findings(const Source&, const Measured&, Blocks&);
@@ -58,16 +55,14 @@ void add_residuals(const Source&, Blocks&);
 /// Nine figures in fixed positions on one page, with their heading.
 void add_pictures(const Source&, const ModelFit&, Blocks&);
 
-/// History of the machine up to this campaign; one page if the option `history` is set.
+/// One page if the option `history` is set.
 void add_history(const Source&, Blocks&);
 
 void add_tables(const Source&, Blocks&);
 void add_notes(const Source&, Blocks&);
 
-/// A finding as a block of the document.
 reports::Block note_of(const Source&, const Finding&);
 
-/// The complete document.
 reports::Document compose(const Source&);
 
 }  // namespace nonio::pdf_report

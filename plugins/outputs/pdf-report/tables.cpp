@@ -25,12 +25,11 @@ Block note_of(const Source& source, const Finding& f) {
 
 namespace {
 
-/// Whether the output is that of a controller plugin, recognized by its content.
 bool speaks(const OutputResult& r) {
   return !r.predictions.empty() || !r.findings.empty() || !r.notes.empty();
 }
 
-/// The finding as a block; its advice is omitted if a laboratory part contains it.
+/// The advice is omitted if a laboratory part contains it.
 Block without_advice(const Source& source, const Finding& f) {
   Block block = note_of(source, f);
   if (has_laboratory_part(source)) std::get<Note>(block.what).advice.clear();
@@ -58,8 +57,8 @@ bool has_laboratory_part(const Source& source) {
   return std::find(blocks.begin(), blocks.end(), "laboratory") != blocks.end();
 }
 
-/// Adds recommended actions for operators and maintenance. The pages before this part contain all
-/// results for a customer.
+/// Recommended actions for operators and maintenance. All results for a customer are on the
+/// preceding pages.
 void add_laboratory(const Source& source, Blocks& blocks) {
   Blocks advice;
   std::set<std::string> printed_already;
@@ -67,7 +66,7 @@ void add_laboratory(const Source& source, Blocks& blocks) {
     for (const Finding* f : m.findings) {
       Block block = note_of(source, *f);
       Note& note = std::get<Note>(block.what);
-      const bool whole = is_for_laboratory(source, *f);  // the finding is printed only in this part
+      const bool whole = is_for_laboratory(source, *f);
       if ((note.advice.empty() && !whole) ||
           !printed_already.insert(m.measurement.id + note.title).second)
         continue;
@@ -103,7 +102,6 @@ std::string file_names(const OutputResult& result) {
   return out;
 }
 
-/// A row per table and measurement, with each result before and after.
 struct Row {
   const Results::Written* output;
   std::string measurement;
@@ -122,8 +120,6 @@ std::vector<Row> prediction_rows(const Source& source, std::vector<std::string>&
   return rows;
 }
 
-/// Table of predictions. With more than four results there are no file names in it; they follow
-/// below.
 Table predictions(const Source& source, bool& with_files) {
   const Wording& w = source.words;
   std::vector<std::string> names;
@@ -169,7 +165,6 @@ std::string remark(const Source& source, const Remark& note) {
   return remark_text(source.in.templates, source.language(), note);
 }
 
-/// Whether an analysis of the measurement reported the same finding.
 bool already_said(const Source& source, const Finding& f) {
   for (const Results::Analysed& a : source.in.results.analyses)
     for (const Finding& known : a.evaluation.findings)
@@ -237,7 +232,7 @@ void add_tables(const Source& source, Blocks& blocks) {
   }
   for (const Results::Written& output : outputs) {
     std::string notes;
-    std::set<std::string> said;  // omits repetitions for several measurements of an axis
+    std::set<std::string> said;
     for (const Remark& note : output.result.notes)
       if (const std::string text = remark(source, note); said.insert(text).second)
         notes += (notes.empty() ? "" : " ") + text;
@@ -278,14 +273,12 @@ void add_plans(const Source& source, Blocks& blocks) {
 
 namespace {
 
-/// Whether inputs for the uncertainty of its values are not stated.
 bool lacks_statements(const Results::Analysed& a) {
   const auto& findings = a.evaluation.findings;
   return std::any_of(findings.begin(), findings.end(),
                      [](const Finding& f) { return f.id == "uncertainty.no-data"; });
 }
 
-/// Explanations of the numbers in the report, as far as such numbers occur.
 std::string meaning_of_numbers(const Source& source) {
   const Results& results = source.in.results;
   std::string all;
@@ -325,7 +318,7 @@ void add_notes(const Source& source, Blocks& blocks) {
   std::set<std::string> said;
   std::string methods;
   for (const Results::Analysed& a : results.analyses)
-    for (const Remark& note : a.evaluation.notes)  // notes on rules are below their tables
+    for (const Remark& note : a.evaluation.notes)
       if (pages::rules_of(a) == nullptr && said.insert(remark(source, note)).second)
         methods += (methods.empty() ? "" : " ") + remark(source, note);
   add(methods);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // The plans of diagonals as a printed sheet: a table of triples, or plans with their stops.
 #include "nonio/sdk/plugin.h"
 
@@ -26,7 +25,6 @@ Expected<pages::Look> look_of(const Templates& templates, const std::string& nam
                           {"results", "plots", "findings", "targets", "budget"});
 }
 
-/// The table of the first analysis with triples; nullptr: none.
 const PointTable* rows_of(const Results& results) {
   for (const Results::Analysed& a : results.analyses)
     if (const PointTable& rows = a.evaluation.rows;
@@ -54,7 +52,6 @@ struct Sheet {
   std::string number(double value, int decimals) const {
     return printed_number(value, Quantity::ratio, decimals, words.language());
   }
-  /// A length in mm with this number of decimals.
   std::string length(double si, int decimals) const {
     return printed_number(si, Quantity::length, decimals, words.language());
   }
@@ -78,7 +75,6 @@ struct Sheet {
 
 using Cells = std::vector<Table::Cell>;
 
-/// Triples with their ratio, in three blocks of columns.
 Block look_up(const Sheet& s) {
   constexpr std::size_t columns_per_row = 3;
   const std::size_t height = (s.count() + columns_per_row - 1) / columns_per_row;
@@ -133,14 +129,13 @@ Block plans(const Sheet& s) {
   return {std::move(table), "plans"};
 }
 
-/// Position of the lowest stop of an axis: start of the travel plus over-travel, m.
+/// Lowest stop of an axis: start of the travel plus over-travel, m.
 double start(const Sheet& s, const Axis& a) {
   return a.travel->first + s.in.options.number("over_travel_mm") * mm;
 }
 
 Table::Cell place(const Sheet& s, double si, int decimals) { return {s.length(si, decimals)}; }
 
-/// Adds the stops of one plan, in two blocks side by side.
 void add_stops(const Sheet& s, std::size_t row, std::vector<Block>& blocks) {
   constexpr std::size_t columns_per_row = 2;
   const Wording& w = s.words;

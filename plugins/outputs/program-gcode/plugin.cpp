@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Part programs of a measurement in ISO 6983 G-code.
 #include "nonio/sdk/plugin.h"
 
@@ -10,7 +9,6 @@ namespace {
 
 using programs::Program;
 
-/// The dwell in the given word, because controls differ in word and unit.
 std::string dwell(double seconds, const std::string& word) {
   if (word == "X") return "G4 X" + programs::number(seconds);
   if (word == "P-ms") return "G4 P" + programs::number(seconds * 1e3);

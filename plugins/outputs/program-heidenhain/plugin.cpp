@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Part programs of a measurement in HEIDENHAIN conversational language.
 #include "nonio/sdk/plugin.h"
 
@@ -10,7 +9,6 @@ namespace {
 
 using programs::Program;
 
-/// Numbers the blocks from 0, which is BEGIN PGM.
 class Blocks {
  public:
   void add(const std::string& text) { out_ += std::to_string(number_++) + " " + text + "\n"; }

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Part programs that probe a ball on a rotary axis, or on a pair of stacked rotary axes, at several
 // angles and heights (kind ball-centres). Each touch is logged as nine numbers, X Y Z A B C U V W,
 // for the reader linuxcnc-probe.
@@ -22,11 +21,10 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-/// A rotary axis about a line parallel to a coordinate axis.
 struct Turning {
   std::string axis;
   Vector centre{};
-  bool with = true;  ///< right-handed about +X, +Y or +Z; false: left-handed
+  bool with = true;  ///< right-handed about +X, +Y or +Z; otherwise left-handed
   std::size_t about() const { return static_cast<std::size_t>(axis.front() - 'A'); }
   Vector direction(const Vector&, double angle) const;
   Vector point(const Vector&, double angle) const;
@@ -34,19 +32,17 @@ struct Turning {
 
 struct Ball {
   Turning table;                      ///< the axis that carries the ball
-  std::optional<Turning> carrier;     ///< the axis that carries the table; nullopt: none
+  std::optional<Turning> carrier;     ///< absent if no other axis carries the table
   Vector at{}, stem{0.0, 0.0, -1.0};  ///< mm; unit vector along the stem; at axis positions 0
   double radius = 0.0, approach = 0.0, beyond = 0.0;
 };
 
-/// The ball at one position of the axes.
 struct Place {
   double angle = 0.0;
   std::optional<double> carrier{};
   Vector ball{}, stem{};
 };
 
-/// One touch: from outside the ball to a point inside it.
 struct Touch {
   Vector from{}, to{};
 };
@@ -112,7 +108,6 @@ std::vector<Touch> touches(const Ball& ball, const Place& place) {
 
 constexpr std::array<const char*, 3> linear{"X", "Y", "Z"};
 
-/// Values of the options, in mm and deg.
 struct Wish {
   std::string dialect;
   Ball ball;
@@ -133,10 +128,9 @@ std::string mm(double value) {
   return text.find('.') == std::string::npos ? text + ".0" : text;
 }
 
-/// Formats the program in the language of the control.
 struct Dialect {
   const Wish& w;
-  std::string log;  ///< name of the log file
+  std::string log;
   std::string out;
 
   bool siemens() const { return w.dialect == "siemens"; }
@@ -172,7 +166,7 @@ struct Dialect {
   void touch(const Touch& t, const Place& place) {
     const std::string feed = " F" + programs::number(w.probe_feed);
     std::string to;
-    std::size_t k = 0;  // index of the axis with the largest motion
+    std::size_t k = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       if (t.from[i] != t.to[i]) to += (to.empty() ? "" : " ") + (linear[i] + mm(t.to[i]));
       if (std::fabs(t.from[i] - t.to[i]) > std::fabs(t.from[k] - t.to[k])) k = i;
@@ -218,7 +212,6 @@ std::optional<Vector> three(const Settings& o, const char* name) {
   return Vector{v[0], v[1], v[2]};
 }
 
-/// Adds the carrying axis and its positions if option `carried_by` is set.
 Expected<void> add_carrier(const Settings& o, const Machine& machine, Wish& w) {
   Turning carrier;
   carrier.axis = o.text("carried_by");
@@ -271,7 +264,7 @@ Expected<Wish> wish_of(const Settings& o, const Machine& machine) {
   const auto places = static_cast<std::size_t>(o.integer("places"));
   if (!(from < to) || to - from > 360.0)
     return wrong("to_deg", "from_deg to_deg: expected a range of at most 360 deg, from below to");
-  const bool turn = to - from > 359.999;  // the last position would equal the first
+  const bool turn = to - from > 359.999;
   for (std::size_t i = 0; i < places; ++i)
     w.angles.push_back(from + (to - from) * static_cast<double>(i) /
                                   static_cast<double>(turn ? places : places - 1));
@@ -282,7 +275,6 @@ Expected<Wish> wish_of(const Settings& o, const Machine& machine) {
   return w;
 }
 
-/// Error if the position is outside of the travel, if this is stated.
 Expected<void> reaches(const Machine& machine, const char* name, double value, bool rotary) {
   const Axis* axis = machine.axis(name);
   if (axis == nullptr || !axis->travel) return {};
@@ -293,7 +285,6 @@ Expected<void> reaches(const Machine& machine, const char* name, double value, b
                std::string("axis ") + name + " would go to " + mm(value) + ", outside its travel");
 }
 
-/// All positions in program order.
 std::vector<Place> places_of(const Wish& w, double height) {
   std::vector<Place> out;
   std::vector<std::optional<double>> carrier(w.carrier_angles.begin(), w.carrier_angles.end());
@@ -324,7 +315,6 @@ void begin(Dialect& d, const Wish& w) {
   d.begin();
 }
 
-/// Error if the machine cannot reach a position or one of its touches.
 Expected<void> reaches(const Wish& w, const Machine& machine, const Place& place, double safe) {
   if (auto there = reaches(machine, w.ball.table.axis.c_str(), place.angle, true); !there)
     return there;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Part programs of a measurement for SINUMERIK.
 #include "nonio/sdk/plugin.h"
 
@@ -10,7 +9,7 @@ namespace {
 
 using programs::Program;
 
-/// The word for a position; an axis name of several characters needs "=".
+/// An axis name of several characters needs "=".
 std::string word(const std::string& axis, const std::string& value) {
   return axis + (axis.size() > 1 ? "=" : "") + value;
 }

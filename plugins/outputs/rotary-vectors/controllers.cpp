@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Kinematic parameters with the names that controls use.
 #include <algorithm>
 #include <cmath>
@@ -10,11 +9,11 @@
 namespace nonio::rotary_vectors {
 namespace {
 
-/// A table C on a tilting axis: A turns about X, B about Y. Coordinates in m.
+/// A table C on a tilting axis: A rotates about X, B about Y. Coordinates in m.
 struct TiltingTable {
   const Line *c = nullptr, *tilt = nullptr;
-  std::size_t about = 0;   ///< coordinate along the tilting axis: 0 for A, 1 for B
-  std::size_t across = 1;  ///< the other horizontal coordinate
+  std::size_t about = 0;  ///< coordinate along the tilting axis: 0 for A, 1 for B
+  std::size_t across = 1;
   std::array<double, 3> c_point{}, tilt_point{};
 };
 
@@ -30,7 +29,6 @@ bool along(const Line& line, std::size_t coordinate) {
   return line.direction[coordinate].value > near;
 }
 
-/// Like `along`, but for both signs of rotation.
 bool parallel(const Line& line, std::size_t coordinate) {
   constexpr double near = 0.999;
   return std::fabs(line.direction[coordinate].value) > near;
@@ -76,16 +74,14 @@ void meet(TiltingTable& t) {
   t.c_point = point_at(*t.c, 2, t.tilt_point[2]);
 }
 
-/// A parameter of a control and the reliability of its meaning.
 struct Field {
-  std::string name;  ///< parameter name in the control
+  std::string name;
   double value = 0.0;
-  bool length = true;      ///< in mm; false: dimensionless
-  bool documented = true;  ///< false: inferred, for the reason `why`
+  bool length = true;      ///< whether it is in mm; otherwise dimensionless
+  bool documented = true;  ///< otherwise inferred, for the reason `why`
   const char* why = "";
 };
 
-/// The parameters of one control.
 struct Change {
   std::string control;
   std::vector<Field> fields;
@@ -95,7 +91,6 @@ std::string text_of(const Field& f, double value) {
   return f.length ? millimetres(value) : component(value);
 }
 
-/// The present value from the options, SI; nullopt: not stated.
 std::optional<double> before(const Wish& wish, const Change& c, const Field& f) {
   const auto table = wish.before.find(c.control);
   if (table == wish.before.end()) return std::nullopt;
@@ -104,7 +99,8 @@ std::optional<double> before(const Wish& wish, const Change& c, const Field& f) 
   return f.length ? value->second * 1e-3 : value->second;
 }
 
-/// Whether all lengths change within the limit and all stated names are known; adds findings.
+/// All lengths must change within the limit and all stated names must be known; otherwise adds
+/// findings.
 bool within_limits(const Wish& wish, const Change& c, OutputResult& result) {
   bool good = true;
   for (const Field& f : c.fields)
@@ -129,7 +125,6 @@ bool within_limits(const Wish& wish, const Change& c, OutputResult& result) {
   return good;
 }
 
-/// Table of name, present value, new value, change, and reliability of the meaning.
 std::string rows_of(const Wish& wish, const Change& c, const char* comment) {
   std::size_t wide = 0;
   for (const Field& f : c.fields) wide = std::max(wide, f.name.size());
@@ -177,7 +172,7 @@ std::string linuxcnc(const TiltingTable& t, const std::string& campaign, const C
   return out;
 }
 
-/// Rows of a kinematics table: from the machine base to the tilting axis, and from it to C.
+/// Rows of a kinematics table: from the machine base to the tilting axis, and from there to C.
 std::string heidenhain(const TiltingTable& t, const std::string& campaign, const Change& c) {
   std::string out = "; " + campaign + ": values for a kinematics table (iTNC 530), mm\n";
   out += "; Documented: the columns KEY, AXIS, COORD and the keys Trans, MachAxis.\n";
@@ -196,7 +191,6 @@ std::string heidenhain(const TiltingTable& t, const std::string& campaign, const
   return out;
 }
 
-/// Adds two vectors: `first` names that to the tilting axis, `second` that from it to C.
 void put_vectors(const TiltingTable& t, Change& c, const std::array<const char*, 3>& first,
                  const std::array<const char*, 3>& second, bool documented, const char* why) {
   for (std::size_t k = 0; k < 3; ++k)
@@ -261,7 +255,6 @@ bool contains(const std::vector<std::string>& list, const char* name) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
 
-/// Present value, new value and change for each control with stated values; empty: none.
 std::string log_of(const std::string& campaign, const Wish& wish, const std::vector<Change>& all) {
   std::string out;
   for (const Change& c : all)

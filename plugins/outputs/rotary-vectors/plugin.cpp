@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Center and direction of rotary axes as text, JSON and CSV, and as parameters of controls.
 #include "nonio/sdk/plugin.h"
 
@@ -23,7 +22,6 @@ std::string padded(std::string text, std::size_t width) {
 
 namespace {
 
-/// The axis from values with this suffix; nullopt if one is missing.
 std::optional<Line> line_of(const Results::Analysed& a, const std::string& suffix) {
   const auto take = [&](const std::string& name, Value& into) {
     for (const Value& v : a.evaluation.values)
@@ -45,7 +43,6 @@ std::optional<Line> line_of(const Results::Analysed& a, const std::string& suffi
   return line;
 }
 
-/// The axes stated by a note of rotary-chain, such as "B, C".
 std::string noted(const Evaluation& e, std::string_view note) {
   for (const Remark& r : e.notes)
     for (const auto& [name, text] : r.texts)

@@ -15,13 +15,13 @@ struct Line {
   std::string measurement, axis;
   std::array<Value, 3> centre, direction;
   Value radius;
-  std::vector<std::string> shares_reference;  ///< measurements it was compared with
+  std::vector<std::string> shares_reference;  ///< measurements with which it was compared
   /// If two axes were fitted together: those that carry the workpiece, in order: "B, C".
   bool of_chain = false;
   std::string tables{};
   bool head = false;  ///< the axis carries the tool; coordinates relative to its tip
 };
-/// The rotary axes of all results, including each axis of a common fit.
+/// All rotary axes with a result; two axes that were fitted together are two lines.
 std::vector<Line> lines_of(const Campaign&, const Results&);
 
 /// Fixed decimals for a resolution of 0.1 um and 0.1 urad.

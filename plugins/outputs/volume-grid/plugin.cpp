@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Errors of the tool point on a grid as JSON for volumetric compensation, with predicted residuals.
 #include "nonio/sdk/plugin.h"
 
@@ -20,7 +19,7 @@ using Vector = std::array<double, 3>;
 constexpr std::array<const char*, 3> places{"X", "Y", "Z"}, errors{"e_x", "e_y", "e_z"},
     uncertainties{"U_x", "U_y", "U_z"};
 
-/// The error map of an analysis: nodes over X, Y, Z; Z varies fastest.
+/// Nodes over X, Y, Z; Z varies fastest.
 struct Grid {
   std::string measurement;
   std::array<std::vector<double>, 3> nodes;
@@ -52,8 +51,8 @@ std::optional<Grid> grid_of(const Results::Analysed& a) {
   return g;
 }
 
-/// The interval of a coordinate and the relative position in it. Outside of the grid, the edge
-/// applies.
+/// Interval of a coordinate and the relative position in it. Outside of the grid, the values of the
+/// edge apply.
 struct Cell {
   std::size_t low = 0, high = 0;
   double part = 0.0;
@@ -67,7 +66,6 @@ Cell cell_of(const std::vector<double>& nodes, double at) {
   return {high - 1, high, std::clamp(part, 0.0, 1.0)};
 }
 
-/// Trilinear interpolation of the error.
 Vector interpolated(const Grid& g, const Vector& at) {
   std::array<Cell, 3> cell;
   for (std::size_t k = 0; k < 3; ++k) cell[k] = cell_of(g.nodes[k], at[k]);
@@ -85,7 +83,6 @@ Vector interpolated(const Grid& g, const Vector& at) {
   return out;
 }
 
-/// Position of a reading, m; a coordinate that is not stated is the center of the grid.
 Vector place_of(const Grid& g, const Measurement& m, const Observations& o, std::size_t row) {
   Vector at{};
   for (std::size_t k = 0; k < 3; ++k) at[k] = (g.nodes[k].front() + g.nodes[k].back()) / 2.0;
@@ -97,7 +94,6 @@ Vector place_of(const Grid& g, const Measurement& m, const Observations& o, std:
   return at;
 }
 
-/// RMS about the mean of each line, as measured and predicted with compensation, m.
 struct Predicted {
   double before = 0.0, after = 0.0;
   std::size_t readings = 0;

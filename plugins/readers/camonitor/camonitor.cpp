@@ -22,14 +22,12 @@ using namespace readers;
 
 namespace {
 
-/// One line: PV, date, time, value, and optionally status and severity.
 struct Entry {
   std::string_view pv, value;
   std::int64_t time = 0;  ///< us since 1970-01-01 in the time zone of the log
   std::uint64_t line = 0;
 };
 
-/// Value of `count` digits at `at`; -1: not digits.
 int digits(std::string_view text, std::size_t at, std::size_t count) {
   int value = 0;
   if (at + count > text.size()) return -1;
@@ -40,7 +38,6 @@ int digits(std::string_view text, std::size_t at, std::size_t count) {
   return value;
 }
 
-/// Time in us from "2022-04-07" and "08:23:29.748369"; nullopt: invalid.
 std::optional<std::int64_t> time_of(std::string_view date, std::string_view time) {
   const int year = digits(date, 0, 4), month = digits(date, 5, 2), day = digits(date, 8, 2);
   const int h = digits(time, 0, 2), m = digits(time, 3, 2), s = digits(time, 6, 2);
@@ -64,7 +61,6 @@ std::optional<std::int64_t> time_of(std::string_view date, std::string_view time
   return ((days * 24LL + h) * 60 + m) * 60'000'000LL + s * 1'000'000LL + us;
 }
 
-/// nullopt: not a line of a camonitor log.
 std::optional<Entry> entry_of(std::string_view line) {
   const auto fields = by_blanks(line);
   if (fields.size() < 4) return std::nullopt;
@@ -73,7 +69,7 @@ std::optional<Entry> entry_of(std::string_view line) {
   return Entry{fields[0], fields[3], *time, 0};
 }
 
-/// Entries of these PVs in stable time order, because the initial values of a log are unordered.
+/// In stable time order, because the initial values of a log are unordered.
 Expected<std::vector<Entry>> entries_of(std::string_view bytes,
                                         const std::vector<std::string_view>& pvs) {
   std::vector<Entry> entries;
@@ -101,9 +97,8 @@ Expected<std::vector<Entry>> entries_of(std::string_view bytes,
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Data from the options that the log does not contain.
 struct Wiring {
-  std::string target, reference, test;             ///< names of PVs
+  std::string target, reference, test;
   double target_unit = 0.0, reference_unit = 0.0;  ///< SI value of one unit of each PV
   double gain = 1.0;
 };
@@ -121,7 +116,6 @@ Expected<double> unit_of_option(const ReadInput& input, const char* option, bool
                                     "\"; a log does not state its units"));
 }
 
-/// List of up to 12 PVs in the log, for messages.
 std::string pvs_of(std::string_view bytes) {
   std::set<std::string> known;
   Lines lines(bytes);
@@ -160,7 +154,7 @@ Expected<Wiring> wiring_of(const ReadInput& input, bool rotary) {
 /// Step number: 1101 is forward, cycle 1, position 1; 2109 is backward, cycle 1, position 9.
 /// Numbers from 3000 on belong to other tests (limit switches, standstill).
 struct Step {
-  int direction = 0;  ///< 1 forward, -1 backward; 0: not a step of the test
+  int direction = 0;  ///< 1 forward, -1 backward, 0 if it is no step of the test
   std::uint32_t cycle = 0, position = 0;
 };
 Step step_of(std::int64_t number) {
@@ -172,12 +166,11 @@ Step step_of(std::int64_t number) {
 
 struct Sample {
   Step step;
-  double target = 0.0, reference = 0.0;  ///< as logged
-  std::uint64_t line = 0;                ///< line number of the reference value
+  double target = 0.0, reference = 0.0;
+  std::uint64_t line = 0;
   std::int64_t time = 0;
 };
 
-/// Samples the latest values whenever the test number changes.
 class Sampler {
  public:
   Sampler(const Wiring& wiring) : wiring_(wiring) {}
@@ -228,7 +221,6 @@ class Sampler {
   std::vector<Sample> samples_;
 };
 
-/// The target of each position. Error: it differs between cycles or directions.
 Expected<std::map<std::uint32_t, double>> targets_of(const std::vector<Sample>& samples) {
   std::map<std::uint32_t, double> targets;
   for (const Sample& s : samples) {
@@ -242,7 +234,6 @@ Expected<std::map<std::uint32_t, double>> targets_of(const std::vector<Sample>& 
   return targets;
 }
 
-/// Error if a cycle does not contain every position in a direction.
 Expected<void> whole(const std::vector<Sample>& samples, std::size_t positions) {
   std::map<std::pair<int, std::uint32_t>, std::size_t> passes;
   for (const Sample& s : samples) ++passes[{s.step.direction, s.step.cycle}];
@@ -255,8 +246,8 @@ Expected<void> whole(const std::vector<Sample>& samples, std::size_t positions) 
   return {};
 }
 
-/// Adds a note with the fitted line of reference over target. Error: its slope is not within 10 %
-/// of 1.
+/// Adds a note with the fitted line of reference over target. Error: its slope deviates from 1 by
+/// more than 10 %.
 Expected<void> check_line(const std::vector<Sample>& samples, const Wiring& w, Observations& obs,
                           bool rotary) {
   std::vector<double> x, y;
@@ -316,7 +307,6 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
   return runs.finish();
 }
 
-/// Whether the first three nonblank lines are camonitor entries.
 bool recognises(std::string_view head) {
   Lines lines(head);
   std::string_view line;

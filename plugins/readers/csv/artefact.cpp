@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Balls of an artefact: centers probed by the machine, and certified positions or lengths.
 #include <algorithm>
 #include <cmath>
@@ -47,7 +46,7 @@ class BallLines {
 
 constexpr const char* coordinate_columns[] = {"x_mm", "y_mm", "z_mm"};
 
-/// The measured coordinates; a hole in a plate has no height.
+/// A hole in a plate has no height.
 std::vector<std::size_t> coordinates_in(const Table& table) {
   std::vector<std::size_t> out;
   for (std::size_t k = 0; k < 3; ++k)
@@ -64,7 +63,6 @@ Expected<void> few_enough(const Table& table) {
   return fail("expected at most 20000 rows, found " + std::to_string(table.size()));
 }
 
-/// Error if a ball or a pair of balls occurs twice.
 class Once {
  public:
   Expected<void> see(std::string what, const Table& table, std::size_t row, const char* meant) {

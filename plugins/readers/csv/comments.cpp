@@ -86,8 +86,7 @@ constexpr std::string_view fillers[] = {
     "in",      "en",    "is",     "are",    "sind",   "ist", "the", "values", "werte", "valori",
     "valores", "given", "stated", "column", "spalte", "of",  "all", "alle",   "sono",  "son"};
 
-/// The unit that a word names, as in column names; empty: none. "m" and "in" count only in
-/// brackets.
+/// Returns the unit as in column names, or an empty text. "m" and "in" are units only in brackets.
 std::string_view unit_in(const Word& word) {
   struct Name {
     std::string_view word, unit;
@@ -121,7 +120,7 @@ struct Contradiction {
   std::string column;
 };
 
-/// A unit in the comment that contradicts the column it refers to; nullopt: none.
+/// A unit in the comment that contradicts the column to which it refers.
 std::optional<Contradiction> wrong_unit_in(const std::vector<Word>& words, const Header& header,
                                            const Expectation& e) {
   const std::string_view target = e.rotary ? "deg" : "mm";
@@ -136,7 +135,6 @@ std::optional<Contradiction> wrong_unit_in(const std::vector<Word>& words, const
       continue;
     }
     const std::string_view unit = unit_in(word);
-    // degrees Celsius or Fahrenheit
     const bool thermal = unit == "deg" && i + 1 < words.size() &&
                          (words[i + 1].text == "c" || words[i + 1].text == "f");
     if (!unit.empty() && !thermal) {
@@ -156,7 +154,7 @@ std::optional<Contradiction> wrong_unit_in(const std::vector<Word>& words, const
   return std::nullopt;
 }
 
-/// The axis Y of "axis: Y" if it is another axis of the machine; nullopt: none.
+/// The axis Y of "axis: Y", if it is another axis of the machine.
 std::optional<std::string> other_axis(const std::vector<Word>& words, const ReadInput& input) {
   constexpr std::string_view names[] = {"axis", "achse", "asse", "eje", "轴"};
   const Measurement& m = input.measurement;
@@ -180,7 +178,7 @@ std::optional<std::string> other_axis(const std::vector<Word>& words, const Read
 
 Ends ends_of(std::string_view bytes) {
   if (bytes.size() <= 2 * head_and_foot) return {std::string(bytes), {}};
-  const std::size_t after_head = bytes.rfind('\n', head_and_foot - 1) + 1;  // npos + 1 is 0
+  const std::size_t after_head = bytes.rfind('\n', head_and_foot - 1) + 1;
   const std::size_t foot = bytes.rfind('\n', bytes.size() - head_and_foot - 2) + 1;
   return {std::string(bytes.substr(0, after_head)),
           std::string(bytes.substr(std::max(after_head, foot)))};

@@ -22,8 +22,7 @@ namespace {
 
 constexpr std::size_t report_every = std::size_t{4} << 20U;
 
-/// Estimated number of rows, from line counts in windows of the file. It is only used to reserve
-/// memory.
+/// From line counts in windows of the file; only used to reserve memory.
 std::size_t estimated_rows(std::string_view bytes, std::size_t columns) {
   constexpr std::size_t window = 4096, windows = 64;
   if (bytes.empty()) return 0;
@@ -41,7 +40,6 @@ std::size_t estimated_rows(std::string_view bytes, std::size_t columns) {
   return std::min(rows, bytes.size() / shortest) + 64;
 }
 
-/// Converts the rows after a header to observations.
 class Rows {
  public:
   Rows(const Header& header, const Expectation& expectation, Observations& obs)
@@ -51,7 +49,7 @@ class Rows {
         obs_(obs) {}
 
   void reserve(std::size_t rows);
-  /// False if the row is invalid; `error` has the reason. A bool is used for speed.
+  /// False if the row is invalid; `error` contains the reason. A bool is used for speed.
   bool add(std::string_view line, std::uint64_t number);
   const Error& error() const { return error_; }
   Expected<void> finish();
@@ -94,11 +92,11 @@ class Rows {
   Observations& obs_;
   std::vector<std::string_view> fields_;
   std::uint64_t line_ = 0;
-  std::uint64_t first_point_ = 0, first_comma_ = 0;  ///< first line with each decimal mark; 0: none
+  std::uint64_t first_point_ = 0, first_comma_ = 0;  ///< first line with each decimal mark, or 0
   std::uint64_t empty_rows_ = 0;
   std::vector<Key> not_taken_;
-  std::vector<double> channel_;               ///< channel values of the row, by column
-  std::vector<std::vector<Sample>> samples_;  ///< samples of each channel
+  std::vector<double> channel_;  ///< channel values of the row, by column
+  std::vector<std::vector<Sample>> samples_;
   PassOrder order_;
   Error error_;
 };
@@ -137,7 +135,7 @@ Error Rows::bad_number(std::size_t column) const {
   return at(column, std::move(message));
 }
 
-/// Refuses mixed decimal marks, because 1.234 in a file with decimal commas may mean 1234.
+/// Mixed decimal marks are refused, because 1.234 in a file with decimal commas may mean 1234.
 bool Rows::consistent_mark(const Field& number, std::size_t column) {
   const bool point = number.mark == DecimalMark::point;
   std::uint64_t& first = point ? first_point_ : first_comma_;
@@ -213,7 +211,7 @@ bool Rows::add(std::string_view line, std::uint64_t line_number) {
   line_ = line_number;
   if (!split(line, header_.separator, fields_))
     return refuse({"unterminated quoted field, or text after the closing quote: " + shown(line)});
-  // Rows of separators only, as written by spreadsheets, are skipped.
+  // Spreadsheets write rows that contain only separators.
   if (fields_[0].empty() &&
       std::all_of(fields_.begin(), fields_.end(), [](auto field) { return field.empty(); })) {
     ++empty_rows_;
@@ -232,7 +230,6 @@ bool Rows::add(std::string_view line, std::uint64_t line_number) {
   return true;
 }
 
-/// Adds the channels in time order.
 void Rows::put_channels() {
   std::size_t k = 0;
   for (std::size_t column = 0; column < header_.roles.size(); ++column) {
@@ -304,7 +301,6 @@ Observations empty_observations(const Measurement& m, const Expectation& e) {
   return obs;
 }
 
-/// The next line; with stated columns, the next line that contains all of them.
 Expected<std::string_view> header_line(Lines& lines, const StatedColumns& stated) {
   std::string_view line;
   std::optional<Error> error;
@@ -365,7 +361,6 @@ bool has_spatial_name(std::string_view line) {
   return false;
 }
 
-/// Reads positions of an axis, or distances along a diagonal.
 Expected<Observations> read_runs(const ReadInput& input) {
   NONIO_TRY(const auto expectation, expectation_of(input));
   NONIO_TRY(const auto stated, StatedColumns::of(input.options.texts(columns_option)));
@@ -387,7 +382,6 @@ Expected<Observations> read_runs(const ReadInput& input) {
   return obs;
 }
 
-/// Reads a diagonal. Error: a stop is outside of its ends.
 Expected<Observations> read_diagonal(const ReadInput& input) {
   const auto span = span_of(input.campaign, input.measurement);
   if (!span) return fail(span.error());
@@ -409,7 +403,6 @@ Expected<Observations> read_diagonal(const ReadInput& input) {
   return obs;
 }
 
-/// The reading function of each kind of measurement.
 struct Way {
   std::string_view kind;
   Expected<Observations> (*read)(const ReadInput&);

@@ -10,18 +10,16 @@ namespace nonio::csv {
 /// Whether the start of a file is CSV with at least one known column.
 bool recognises(std::string_view head);
 
-/// Whether this reader supports the kind of measurement.
 bool reads(std::string_view measurement_kind);
 
 /// Option that maps columns with other names, for readings of one axis or diagonal.
 inline constexpr std::string_view columns_option = "columns";
 Option columns_declared();
 
-/// The header row and the first rows as text.
 Expected<std::vector<std::vector<std::string>>> first_rows(std::string_view bytes,
                                                            std::size_t most);
 
-/// Reads a complete file. Error: invalid line or column; no partial result.
+/// Error: an invalid line or column; no partial result.
 Expected<Observations> read(const ReadInput& input);
 
 }  // namespace nonio::csv

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of methods that declare their columns.
 #include "nonio/sdk/method.h"
 #include "rows.h"
 #include "spatial.h"

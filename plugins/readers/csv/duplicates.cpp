@@ -52,7 +52,6 @@ Error contradiction(const Observations& obs, std::size_t first, std::size_t late
   return error;
 }
 
-/// Row indexes sorted by key, then by file order.
 std::vector<std::uint32_t> sorted_rows(const Observations& obs) {
   std::vector<std::uint32_t> rows(obs.size());
   std::iota(rows.begin(), rows.end(), 0U);
@@ -63,7 +62,6 @@ std::vector<std::uint32_t> sorted_rows(const Observations& obs) {
   return rows;
 }
 
-/// Number of distinct keys of `not_taken` that do not occur in `rows`.
 std::uint64_t count_missing(const Observations& obs, const std::vector<std::uint32_t>& rows,
                             std::vector<Key>& not_taken) {
   std::sort(not_taken.begin(), not_taken.end());
@@ -103,7 +101,7 @@ Expected<void> settle_duplicates(Observations& obs, std::vector<Key>& not_taken)
   std::vector<char> kept(obs.size(), 1);
   std::uint64_t dropped = 0;
   std::uint32_t first_dropped = 0;
-  std::optional<std::pair<std::size_t, std::size_t>> worst;  // rows of a contradiction
+  std::optional<std::pair<std::size_t, std::size_t>> worst;
   for (std::size_t i = 1, first = 0; i < rows.size(); ++i) {
     if (!(key_of(obs, rows[i]) == key_of(obs, rows[first]))) {
       first = i;

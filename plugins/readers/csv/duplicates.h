@@ -22,8 +22,8 @@ struct Key {
   bool operator==(const Key& other) const { return tie() == other.tie(); }
 };
 
-/// Detects cheaply that no key occurs twice: within each pass (run, direction) all targets are
-/// increasing or decreasing. Sorting is then not needed.
+/// Detects that no key occurs twice without sorting: within each pass (run, direction) the targets
+/// are strictly monotonic.
 class PassOrder {
  public:
   void see(const Key& key);
@@ -32,10 +32,10 @@ class PassOrder {
  private:
   struct Pass {
     double last = 0.0;
-    int sense = 0;  ///< +1 rising, -1 falling; 0: one target so far
+    int sense = 0;  ///< +1 ascending, -1 descending, 0 after a single target
   };
   bool unique_ = true;
-  std::uint64_t current_ = 0;  ///< number of the pass; 0: none yet
+  std::uint64_t current_ = 0;  ///< number of the pass; 0 before the first one
   Pass* pass_ = nullptr;
   std::unordered_map<std::uint64_t, Pass> passes_;
 };

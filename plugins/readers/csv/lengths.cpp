@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Lengths measured by a machine with its probe, and points on a sphere.
 #include <cmath>
 #include <map>
@@ -12,7 +11,7 @@ namespace nonio::csv {
 
 namespace {
 
-/// One line per test and position (E0 1, E0 2, ..., EL 1); run: repetition.
+/// One line per test and position (E0 1, E0 2, ..., EL 1); the run is the number of the repetition.
 Expected<Observations> read_errors(const ReadInput& input, const Table& table) {
   Observations obs = begin(input.measurement, table);
   obs.axes = {{"length", false, {}, {}}};

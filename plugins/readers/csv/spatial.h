@@ -6,11 +6,9 @@
 
 #include "nonio/sdk/plugin.h"
 
-/// Readers of measurements with several axes: diagonals, step diagonals, ball centers, and the
-/// general table.
+/// Readers of measurements with several axes.
 namespace nonio::csv {
 
-/// The line of a diagonal: from one corner to another.
 struct Span {
   struct Side {
     std::string axis;
@@ -21,12 +19,11 @@ struct Span {
   double length = 0.0;      ///< m
 };
 
-/// A count as evidence of a finding.
 inline nonio::Number count(const char* name, std::uint64_t n) {
   return {name, static_cast<double>(n), Quantity::count};
 }
 
-/// From `from` and `to` of the manifest. Error: they do not define a line of linear axes.
+/// Error: `from` and `to` of the manifest do not define a line of linear axes.
 Expected<Span> span_of(const Campaign& campaign, const Measurement& measurement);
 
 /// Converts distances along a span (in axes[0]) to positions of its axes.
@@ -42,7 +39,6 @@ Expected<Observations> read_spindle(const ReadInput& input);
 Expected<Observations> read_thermal(const ReadInput& input);
 Expected<Observations> read_tool_centre(const ReadInput& input);
 Expected<Observations> read_general(const ReadInput& input);
-/// Reads the columns declared by the method of the measurement.
 Expected<Observations> read_declared(const ReadInput& input);
 
 /// Column names that only these kinds have, to recognize files.

@@ -11,7 +11,6 @@
 namespace nonio::csv {
 namespace {
 
-/// Rows of one pass over a step diagonal, by step.
 using Pass = std::map<std::uint32_t, std::size_t>;
 
 struct Corner {

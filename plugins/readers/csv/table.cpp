@@ -20,7 +20,6 @@ bool is_letter(char c) {
          c == '-' || c == '.';
 }
 
-/// Whether a pattern such as "*_c" matches a name such as "t4_c".
 bool fits(std::string_view pattern, std::string_view name) {
   if (!pattern.starts_with('*')) return pattern == name;
   return name.size() >= pattern.size() && name.size() <= 64 && name.ends_with(pattern.substr(1)) &&
@@ -66,7 +65,6 @@ class TableReader {
     return error;
   }
 
-  /// The separator with the most known names in the header row.
   char separator_of(std::string_view row) const {
     char best = ',';
     std::ptrdiff_t most = -1;
@@ -209,7 +207,7 @@ class TableReader {
     return std::nullopt;
   }
 
-  /// Refuses mixed decimal marks, because 1.234 in a file with decimal commas may mean 1234.
+  /// Mixed decimal marks are refused, because 1.234 in a file with decimal commas may mean 1234.
   std::optional<Error> mixed_marks(std::size_t i, DecimalMark mark) {
     const bool point = mark == DecimalMark::point;
     std::uint64_t& first = point ? first_point_ : first_comma_;
@@ -223,13 +221,13 @@ class TableReader {
 
   const std::vector<ColumnSpec>& columns_;
   std::deque<ColumnSpec> found_;
-  std::vector<const ColumnSpec*> own_;  ///< per column of the file, in `found_`
+  std::vector<const ColumnSpec*> own_;
   std::vector<std::vector<double>*> numbers_;
   std::vector<std::vector<std::string>*> words_;
   std::vector<std::string_view> fields_;
   char separator_ = ',';
   std::uint64_t line_ = 0;
-  std::uint64_t first_point_ = 0, first_comma_ = 0;  ///< first line with each decimal mark; 0: none
+  std::uint64_t first_point_ = 0, first_comma_ = 0;  ///< first line with each decimal mark, or 0
   Table table_;
 };
 

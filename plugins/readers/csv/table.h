@@ -12,24 +12,23 @@
 
 namespace nonio::csv {
 
-/// A column that a file may have. A name "*_c" matches all other columns with this ending; the
-/// table contains them by their own names.
+/// A column that a file may have. A name "*_c" matches all other columns with this ending.
 struct ColumnSpec {
   enum class Kind : std::uint8_t {
-    number,  ///< reading; NaN if missing
+    number,  ///< NaN if missing
     place,   ///< mandatory number: coordinate or angle
     whole,   ///< 1, 2, ...
     sign,    ///< + or -
-    motion,  ///< + or -; blank: no motion of the axis
+    motion,  ///< + or -, or blank if the axis did not move
     word,
   };
   std::string name;
   Kind kind = Kind::number;
   bool required = false;
-  std::vector<std::string> words{};  ///< allowed values of a word; empty: any
+  std::vector<std::string> words{};  ///< allowed values of a word; any if empty
 };
 
-/// A short file by columns: numbers in units of the file, signs as +1, -1 and 0.
+/// Columns of a short file: numbers in units of the file, signs as +1, -1 and 0.
 struct Table {
   std::vector<std::uint32_t> line;
   std::map<std::string, std::vector<double>, std::less<>> numbers;
@@ -37,14 +36,13 @@ struct Table {
   std::uint64_t empty_rows = 0;
 
   std::size_t size() const { return line.size(); }
-  /// nullptr if the file does not contain it.
   const std::vector<double>* column(std::string_view name) const {
     const auto found = numbers.find(name);
     return found == numbers.end() ? nullptr : &found->second;
   }
 };
 
-/// Reads a complete file. Error: invalid line or column.
+/// Error: an invalid line or column.
 Expected<Table> read_table(std::string_view bytes, const std::vector<ColumnSpec>& columns);
 
 }  // namespace nonio::csv

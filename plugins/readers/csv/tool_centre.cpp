@@ -12,7 +12,7 @@ namespace nonio::csv {
 namespace {
 
 /// Axis of right-handed rotation of the positions with increasing angle, from neighbors less than
-/// half a turn apart; nullopt if they do not rotate.
+/// half a revolution apart; nullopt if they do not rotate.
 std::optional<Sense> turned_about(const std::vector<std::pair<double, Sense>>& places) {
   auto sorted = places;
   std::sort(sorted.begin(), sorted.end());
@@ -105,7 +105,6 @@ class ToolCentreRows {
       }
     return false;
   }
-  /// Number of a sweep, from run and direction (if stated).
   int run(std::size_t row) const {
     const auto *runs = table_.column("run"), *directions = table_.column("direction");
     return 2 * static_cast<int>(runs == nullptr ? 1.0 : (*runs)[row]) +
@@ -131,7 +130,7 @@ class ToolCentreRows {
     put_common(obs_, table_, row);
   }
 
-  /// The deviation of the tool is commanded minus found position.
+  /// The deviation is the commanded minus the measured position.
   Expected<void> put_probe(std::size_t row) {
     const Sense at = place(row),
                 found{number("dx_um", row), number("dy_um", row), number("dz_um", row)};

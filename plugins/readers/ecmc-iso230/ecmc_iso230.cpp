@@ -22,13 +22,12 @@ struct Value {
 };
 struct Contents {
   std::string unit = "mm";
-  std::map<std::uint32_t, Value> targets;  ///< by position
-  /// by direction (forward +1, backward -1), cycle and position
+  std::map<std::uint32_t, Value> targets;
+  /// By direction (forward +1, backward -1), cycle and position.
   std::map<std::tuple<int, std::uint32_t, std::uint32_t>, Value> readings;
   std::optional<std::uint32_t> cycles, positions;
 };
 
-/// Parts of a line such as "REF_DATA_FWD[3,1]=24.9".
 struct Assignment {
   std::string_view name, index, value;
 };
@@ -60,7 +59,7 @@ class Parser {
             at_line(lines.number(), "expected NAME=VALUE or a comment, found " + shown(line)));
       if (auto ok = take(*a, lines.number()); !ok) return fail(ok.error());
     }
-    // The tools end every line, and a truncated number would not be detected otherwise.
+    // The tools end every line; a truncated number would not be detected otherwise.
     if (!bytes.ends_with('\n'))
       return fail(at_line(lines.number(),
                           "expected an end of the last line, found none; was the file cut?"));
@@ -122,7 +121,6 @@ class Parser {
   Contents out_;
 };
 
-/// Error if a target is missing, or a position in one of the passes.
 Expected<void> whole(const Contents& c) {
   const auto n = static_cast<std::uint32_t>(c.targets.size());
   if (n < 2) return fail("expected two targets or more (TGT_DATA), found " + std::to_string(n));
@@ -170,8 +168,8 @@ Expected<double> unit_of_file(const Contents& c, bool rotary) {
               " for this axis, found " + shown(c.unit));
 }
 
-/// Adds a note about the line. If the tools subtracted it, the deviations have no slope and offset
-/// over the reference within the rounding of nine decimals.
+/// Adds a note about the fitted line. If the tools subtracted it, slope and offset of the
+/// deviations over the reference are 0 within the rounding of nine decimals.
 void add_line_note(Observations& obs, const Axis& axis) {
   const auto& target = obs.axes[0].position;
   std::vector<double> reference = target;

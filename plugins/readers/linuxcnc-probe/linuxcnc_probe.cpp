@@ -18,25 +18,25 @@ using namespace readers;
 
 namespace {
 
-constexpr std::size_t columns = 9;  // X Y Z A B C U V W
+constexpr std::size_t columns = 9;
 constexpr double per_deg = 1.0 / deg_per_rad;
 constexpr std::string_view rotary_letters = "ABC";
 
 using Angles = std::array<double, 3>;  // of A, B and C, deg
 
 struct Touch {
-  std::array<double, 3> at{};  ///< m
+  std::array<double, 3> at{};
   Angles angle{};
   std::uint64_t line = 0;
 };
 
-/// Data from the options that the log does not contain.
 struct Wish {
   double unit = 0.0;               ///< SI value of one unit of the log, m
   std::size_t axis = 0;            ///< index of the measured axis in A, B, C
-  std::size_t touches = 0;         ///< per center; 0: until the angle changes
+  std::size_t touches = 0;         ///< touches per center; if 0, a center ends when the angle
+                                   ///< changes
   double same_angle = 0.0;         ///< deg
-  std::optional<double> radius{};  ///< stated radius of the ball, m; nullopt: fitted
+  std::optional<double> radius{};  ///< stated radius of the ball, m; fitted if absent
   double limit = 0.0;              ///< largest accepted residual of a touch, m
 };
 
@@ -94,7 +94,6 @@ bool same_angles(const Angles& a, const Angles& b, double within) {
   return true;
 }
 
-/// Text such as "0.000000 deg", or "B 30.00000, C 0.000000 deg" for several axes.
 std::string words_of(const Angles& angles, const Wish& wish, const std::vector<std::size_t>& also) {
   std::string text;
   for (const std::size_t k : also)
@@ -103,7 +102,6 @@ std::string words_of(const Angles& angles, const Wish& wish, const std::vector<s
   return text + short_text(angles[wish.axis], 7) + " deg";
 }
 
-/// Indexes of the other rotary axes that turned in the log.
 Expected<std::vector<std::size_t>> also_turned(const std::vector<Touch>& touches, const Wish& wish,
                                                const Campaign& campaign) {
   std::vector<std::size_t> also;
@@ -126,7 +124,6 @@ Expected<std::vector<std::size_t>> also_turned(const std::vector<Touch>& touches
   return also;
 }
 
-/// Groups the touches of each center: the stated number, or until a rotary axis moves.
 Expected<std::vector<Group>> groups_of(const std::vector<Touch>& touches, const Wish& wish,
                                        const std::vector<std::size_t>& also) {
   std::vector<Group> groups;
@@ -189,7 +186,6 @@ Observations begin(const Measurement& m, const std::vector<std::size_t>& also) {
   return obs;
 }
 
-/// Adds a note with the scatter of a touch, pooled over all centers.
 void note_spheres(const std::vector<Centre>& centres, double s, int dof, Observations& obs) {
   std::uint64_t touches = 0;
   double largest = 0.0, radius = 0.0;
@@ -210,7 +206,7 @@ void note_spheres(const std::vector<Centre>& centres, double s, int dof, Observa
 
 void put(const std::vector<Centre>& centres, const Wish& wish, const std::vector<std::size_t>& also,
          double s, Observations& obs) {
-  std::map<std::array<std::int64_t, 3>, std::uint32_t> visits;  // number of stops at each position
+  std::map<std::array<std::int64_t, 3>, std::uint32_t> visits;
   for (const Centre& c : centres) {
     const Angles& angle = c.group->front().angle;
     std::array<std::int64_t, 3> place{};
@@ -263,13 +259,12 @@ Expected<Observations> read(const ReadInput& input) {
   return obs;
 }
 
-/// Whether the first lines have nine numbers each.
 bool recognises(std::string_view head) {
   Lines lines(head);
   std::string_view line;
   int seen = 0;
   while (seen < 3 && lines.next(line)) {
-    if (lines.offset() == head.size() && seen > 0) break;  // the last line may be truncated
+    if (lines.offset() == head.size() && seen > 0) break;
     const auto fields = by_blanks(line);
     if (fields.empty()) continue;
     if (fields.size() != columns) return false;

@@ -38,7 +38,7 @@ constexpr std::array<std::pair<const char*, Role>, 8> roles = {{{"ignore", Role:
 
 struct Map : TableMap {
   std::vector<Role> columns;
-  std::string heading;  ///< text before a target above the rows; empty: target column
+  std::string heading;  ///< text before a target above the rows; empty with a target column
   bool has(Role role) const {
     return std::find(columns.begin(), columns.end(), role) != columns.end();
   }
@@ -101,7 +101,7 @@ Expected<Map> map_of(const Settings& options, bool rotary) {
 struct Row {
   std::uint32_t cycle = 0, pos = 0;
   Way way = Way::none;
-  double target = 0.0, value = 0.0;  ///< in units of the file
+  double target = 0.0, value = 0.0;
   std::uint64_t line = 0;
 };
 
@@ -124,7 +124,7 @@ class TableReader {
       if (auto error = not_text(line)) return fail(at_line(number, error->message));
       if (table != table_) {
         table_ = table, visits_.clear();
-        if (map_.heading.empty()) runs_before_ = runs_;  // otherwise each target has a table
+        if (map_.heading.empty()) runs_before_ = runs_;
       }
       if (auto ok = row(line, number, map_.tables[table].way); !ok) return fail(ok.error());
     }
@@ -173,8 +173,6 @@ class TableReader {
     rows_.push_back(row);
   }
 
-  /// Reads the target from a line such as "## Target position 15 mm, both directions", after the
-  /// text of the option.
   bool take_heading(std::string_view line) {
     const std::size_t at = map_.heading.empty() ? line.npos : line.find(map_.heading);
     if (at == line.npos) return false;
@@ -211,7 +209,7 @@ class TableReader {
     return {};
   }
 
-  /// Error if one number has two targets, because the column mapping is then wrong.
+  /// If one number has two targets, the column mapping is wrong.
   Expected<void> same_target(const Row& row) {
     if (row.pos == 0) return {};
     const auto [known, fresh] = by_pos_.try_emplace(row.pos, row);
@@ -228,14 +226,13 @@ class TableReader {
   Numbers numbers_;
   std::map<std::uint32_t, Row> by_pos_;
   std::vector<Row> rows_;
-  std::size_t table_ = 0;                                   ///< number of the last row's table
-  std::map<Way, std::uint32_t> runs_{}, runs_before_{};     ///< per direction
-  std::map<std::pair<Way, double>, std::uint32_t> visits_;  ///< in this table
-  std::optional<double> heading_target_{};                  ///< target of the last heading
-  double plus_ = 0.0, minus_ = 0.0;                         ///< values of the current row
+  std::size_t table_ = 0;
+  std::map<Way, std::uint32_t> runs_{}, runs_before_{};
+  std::map<std::pair<Way, double>, std::uint32_t> visits_;
+  std::optional<double> heading_target_{};
+  double plus_ = 0.0, minus_ = 0.0;
 };
 
-/// Direction of the targets in the first forward run, +1 or -1; 0 if unknown.
 int listed_in(const std::vector<Row>& rows) {
   const auto first =
       std::find_if(rows.begin(), rows.end(), [](const Row& r) { return r.way == Way::forward; });

@@ -17,7 +17,7 @@ const std::map<std::string, double, std::less<>>& value_units() {
   return units;
 }
 
-/// Units confirmed by the user, because no specification of the format is known. Error: not stated.
+/// The user must state the units, because no specification of the format is known.
 Expected<Units> confirmed(const Settings& options, bool rotary) {
   const auto unit = value_units().find(options.text("unit"));
   if (unit == value_units().end())

@@ -5,7 +5,7 @@
 
 namespace nonio::renishaw {
 
-/// Reads angular measurements (.rta) if the user confirms their unit and sign.
+/// Reads angular measurements (.rta) if the user states their unit and sign.
 Reader rta_reader();
 
 }  // namespace nonio::renishaw

@@ -12,7 +12,6 @@ using namespace readers;
 
 namespace {
 
-/// Air parameters of the file.
 struct Air {
   double temperature = 0.0;  ///< degC
   double pressure = 0.0;     ///< Pa
@@ -49,7 +48,7 @@ double mean_material(const Environment& e, bool at_end) {
 }
 
 /// Whether the deviations are corrected to 20 degC: 1 yes, -1 no, 0 not determinable (also for
-/// NaN). Env factor = (half wavelength in air)(1 - alpha (T - 20)) if they are.
+/// NaN). If they are, env factor = (half wavelength in air)(1 - alpha (T - 20)).
 int normalised(const Environment& e, bool at_end) {
   const auto at = [&](const Environment::Pair& p) { return at_end ? p.end : p.start; };
   const Air air{at(e.air), 1e3 * at(e.pressure), at(e.humidity)};
@@ -64,7 +63,7 @@ int normalised(const Environment& e, bool at_end) {
   return with && !without ? 1 : without && !with ? -1 : 0;
 }
 
-/// Sets the first and last element; the file has no values between them.
+/// The file contains no values between both ends.
 void put_ends(std::vector<double>& column, std::size_t n, double start, double end) {
   if (!std::isfinite(start) || !std::isfinite(end) || n < 2) return;
   column.assign(n, std::numeric_limits<double>::quiet_NaN());
@@ -91,8 +90,8 @@ void add_environment(const Environment& e, const Axis& axis, Observations& obs) 
     obs.notes.push_back(
         {at_start > 0 ? "renishaw.normalised" : "renishaw.not-normalised", {alpha}});
   if (!axis.expansion) return;
-  // Tables differ by less for one material. A coefficient of 0, or one that was not applied, does
-  // not affect the deviations.
+  // 1/K. Published coefficients of one material differ by less than `other_material`. A coefficient
+  // of 0, or one that was not applied, does not affect the deviations.
   constexpr double other_material = 1e-6, same = 0.05e-6;
   const double apart = std::fabs(*axis.expansion - alpha.value);
   const Number stated{"manifest", *axis.expansion, Quantity::expansion};

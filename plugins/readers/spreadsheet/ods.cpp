@@ -12,7 +12,6 @@ namespace {
 
 constexpr std::string_view type_of_ods = "application/vnd.oasis.opendocument.spreadsheet";
 
-/// Converts "PT08H30M00S" to "08:30:00".
 std::string duration_text(const std::string& iso) {
   double hours = 0.0;
   std::size_t i = 0;

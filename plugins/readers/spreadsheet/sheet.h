@@ -27,16 +27,15 @@ class Sheet {
   std::size_t cells_ = 0;
 };
 
-/// Text of a number of days since 1899-12-30: a date, or without `has_day` a duration.
+/// `days` since 1899-12-30; without `has_day`, a duration.
 std::string date_text(double days, bool has_day);
 
-/// The sheets of a workbook, in file order.
 struct Book {
   std::vector<Sheet> sheets;
 };
 
 bool is_ods(std::string_view archive);
-/// Each reads up to `most_rows` rows per sheet.
+/// `most_rows` is per sheet.
 Expected<Book> read_xlsx(std::string_view archive, std::size_t most_rows = all_rows);
 Expected<Book> read_ods(std::string_view archive, std::size_t most_rows = all_rows);
 

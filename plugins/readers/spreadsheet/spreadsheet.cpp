@@ -15,15 +15,15 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-/// The text of a cell without line breaks, which are frequent in column names.
+/// Line breaks are frequent in column names.
 std::string in_one_line(std::string cell) {
   for (char& c : cell)
     if (c == '\t' || c == '\n' || c == '\r') c = ' ';
   return cell;
 }
 
-/// A row with tabs and at least `width` fields, because a sheet omits blank cells at the end of a
-/// row.
+/// Fields are separated by tabs. There are at least `width`, because a sheet omits blank cells at
+/// the end of a row.
 std::string line_of(const Row& row, std::size_t width = 0) {
   std::string out;
   for (std::size_t k = 0; k < std::max(row.size(), width); ++k) {
@@ -39,13 +39,12 @@ bool is_blank(const Row& row) {
   });
 }
 
-/// Known column names that begin a table: of csv, the method, or the option.
+/// Known column names: of csv, the method, or the option.
 struct Wanted {
   const Method* method = nullptr;
   csv::StatedColumns stated{};
 };
 
-/// Whether a row contains known column names.
 bool is_header(const Row& row, const Wanted& wanted) {
   if (is_blank(row)) return false;
   if (!wanted.stated.empty()) {
@@ -64,7 +63,7 @@ bool is_header(const Row& row, const Wanted& wanted) {
 
 struct Table {
   const Sheet* sheet = nullptr;
-  std::size_t first = 0, after = 0;  ///< row indexes; first: header; after: end
+  std::size_t first = 0, after = 0;
 };
 
 Table table_of(const Sheet& sheet, const Wanted& wanted) {
@@ -83,7 +82,6 @@ std::string names_of(const std::vector<Sheet>& sheets) {
   return out;
 }
 
-/// The table of the sheet in option `sheet`, or of the only sheet with readings.
 Expected<Table> chosen(const Book& book, const ReadInput& input) {
   const std::string wanted = input.options.text("sheet");
   NONIO_TRY(auto stated, csv::StatedColumns::of(input.options.texts(csv::columns_option)));
@@ -114,12 +112,11 @@ Expected<Table> chosen(const Book& book, const ReadInput& input) {
 }  // namespace
 
 Expected<std::vector<Row>> first_rows(std::string_view bytes, std::size_t most) {
-  // maximum number of title rows
   constexpr std::size_t titles = 200;
   const auto book =
       is_ods(bytes) ? read_ods(bytes, titles + most) : read_xlsx(bytes, titles + most);
   if (!book) return fail(book.error());
-  // The longest sheet from its fullest row on, because titles precede it.
+  // Titles precede the table, so the preview begins at the fullest row of the longest sheet.
   const auto longest = std::max_element(
       book->sheets.begin(), book->sheets.end(),
       [](const Sheet& a, const Sheet& b) { return a.rows().size() < b.rows().size(); });
@@ -143,7 +140,7 @@ Expected<Observations> read(const ReadInput& input) {
   if (!book) return fail(book.error());
   NONIO_TRY(const Table table, chosen(*book, input));
   const auto& rows = table.sheet->rows();
-  std::string text;  // one line per row of the sheet
+  std::string text;
   std::size_t width = rows[table.first].size();
   // Columns at the end may have no names.
   if (!input.options.texts(csv::columns_option).empty())

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Office Open XML, ECMA-376 part 1, 18.2 (workbook), 18.3 (worksheet), 18.4 (shared strings), 18.8 (styles).
+// Office Open XML, ECMA-376 part 1, 18.2 (workbook), 18.3 (worksheet), 18.4 (shared strings), 18.8
+// (styles).
 #include <cstdlib>
 #include <map>
 #include <set>
@@ -38,7 +39,6 @@ Expected<std::vector<Listed>> listed_sheets(std::string_view archive, bool& from
   return out;
 }
 
-/// File name of each sheet by its relationship id.
 Expected<std::map<std::string, std::string>> targets(std::string_view archive) {
   NONIO_TRY(const auto xml, needed(archive, "xl/_rels/workbook.xml.rels"));
   std::map<std::string, std::string> out;
@@ -75,7 +75,6 @@ Expected<std::vector<std::string>> shared_strings(std::string_view archive) {
 
 enum class Shown { number, date, duration };
 
-/// What a number format displays, by its date letters outside of quotes and brackets.
 Shown shown_by(const std::string& format) {
   bool quoted = false, bracketed = false, day = false, time = false;
   for (std::size_t i = 0; i < format.size(); ++i) {
@@ -107,7 +106,6 @@ Shown shown_by(int id, const std::map<int, std::string>& own) {
   return Shown::number;
 }
 
-/// What each cell style displays.
 Expected<std::vector<Shown>> styles(std::string_view archive) {
   std::vector<Shown> out;
   NONIO_TRY(const auto xml, member(archive, "xl/styles.xml"));
@@ -128,7 +126,6 @@ Expected<std::vector<Shown>> styles(std::string_view archive) {
   return out;
 }
 
-/// Row 11 and column 54 from "BC12" (both from 0); false if invalid.
 bool place_of(const std::string& reference, std::size_t& row, std::size_t& column) {
   std::size_t i = 0, letters = 0, number = 0;
   for (; i < reference.size() && reference[i] >= 'A' && reference[i] <= 'Z' && i < 4; ++i)
@@ -150,7 +147,6 @@ struct Common {
 class SheetReader {
  public:
   SheetReader(Sheet& sheet, const Common& common) : sheet_(sheet), common_(common) {}
-  /// Current row, from 1.
   std::size_t row() const { return row_; }
 
   Expected<void> take(const Node& node) {

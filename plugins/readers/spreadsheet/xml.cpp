@@ -11,7 +11,7 @@ namespace nonio::spreadsheet {
 
 namespace {
 
-constexpr std::size_t piece = 1 << 20;  // bytes per call of the parser
+constexpr std::size_t piece = 1 << 20;
 
 std::string_view without_prefix(std::string_view name) {
   const std::size_t colon = name.rfind(':');

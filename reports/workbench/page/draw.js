@@ -240,7 +240,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
   function left_out() {
     const xs = shown.map((i) => place[i]);
     const frame = frame_of(8, xs, {lanes: true});
-    dots(frame, shown, xs, shown.map((i) => data.left_out[i]));
+    dots(frame, shown, xs, shown.map((i) => (data.left_out ? data.left_out[i] : NaN)));
     return frame;
   }
 

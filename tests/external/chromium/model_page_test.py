@@ -13,16 +13,35 @@ from xml.etree import ElementTree
 from browser import SKIPPED, Browser, complaints, program
 
 
-def rms_without(data, effects):
-    """Fitted again without one effect, if the page has that; else their parts come back, less a zero."""
+def fit_without(data, effects):
+    """RMS and largest residual: of the whole model, fitted again without one effect if the page has that; else
+    the parts of the effects come back, less a zero."""
     weight = data["weight"]
-    if len(effects) == 1 and data["effects"][effects[0]]["without"]:
-        return data["effects"][effects[0]]["without"]["rms"]
+    fitted = data if not effects else data["effects"][effects[0]]["without"] if len(effects) == 1 else None
+    if fitted:
+        return fitted["rms"], fitted["largest"]
     residual = [r + sum(data["effects"][e]["says"][i] for e in effects) for i, r in enumerate(data["residual"])]
     if effects:
         shift = sum(w * (r - o) for w, r, o in zip(weight, residual, data["residual"]))
         residual = [r - shift / sum(weight) for r in residual]
-    return math.sqrt(sum(w * r * r for w, r in zip(weight, residual)) / sum(weight))
+    rms = math.sqrt(sum(w * r * r for w, r in zip(weight, residual)) / sum(weight))
+    return rms, max((r for w, r in zip(weight, residual) if w > 0), key=abs)
+
+
+def check_numbers(browser, data, effects, where):
+    """All numbers that are visible are of the fit that is drawn."""
+    printed = lambda v: f"{v:.2f}".replace("-", "\u2212").replace(".", "," if data["language"] in ("de", "it") else ".")
+    rms, largest = fit_without(data, effects)
+    visible = browser.value("document.body.innerText")
+    sentence = browser.value("document.getElementById('rms').innerText")
+    assert printed(rms) in sentence, f"{where}: wanted {printed(rms)}, found {sentence}"
+    before, after = data["words"]["largest"].split("{value}")[0], data["words"]["rms_now"].split("{rms}")[0]
+    found = re.findall(re.escape(before) + "(\\S+)", visible)
+    assert found and set(found) == {printed(largest)}, f"{where}: wanted {printed(largest)}, found {found}"
+    assert visible.count(after) == 1, where
+    shown = browser.value("[...document.querySelectorAll('.whole')].filter((e) => e.getClientRects().length > 0).length")
+    assert (shown == 0) == bool(effects), f"{where}: {shown} parts of the whole model with {effects} removed"
+    assert (data["words"]["of_whole"] in sentence) == bool(effects), sentence
 
 
 def check(browser, page, widths):
@@ -39,17 +58,17 @@ def check(browser, page, widths):
         browser.width(width)
         wide = browser.value("document.documentElement.scrollWidth")
         assert wide <= width, f"{where} at {width}: the page is {wide} wide"
-    comma = str.replace if data["language"] in ("de", "it") else lambda text, a, b: text
     shown = lambda: browser.value("document.getElementById('rms').textContent")
-    wanted = comma(f"{rms_without(data, []):.2f}", ".", ",")
-    assert wanted in shown(), f"{where}: wanted {wanted}, found {shown()}"
+    check_numbers(browser, data, [], where)
+    cross_validated = lambda: browser.value("(document.querySelector('#picture-8 svg') || {}).innerHTML")
     # Of many readings a click takes its time: the first and the last effect there.
     effects = range(len(data["effects"]))
     for effect in sorted({effects[0], effects[-1]}) if "many" in where and effects else effects:
         box = f"document.querySelectorAll('#effects input')[{effect}]"
+        before = cross_validated()
         browser.value(f"{box}.click()")
-        wanted = comma(f"{rms_without(data, [effect]):.2f}", ".", ",")
-        assert wanted in shown(), f"{where}: wanted {wanted}, found {shown()}"
+        check_numbers(browser, data, [effect], where)
+        assert data["left_out"] is None or cross_validated() != before, f"{where}: cross-validation is of the whole model"
         refitted = data["effects"][effect]["without"] is not None
         said = data["words"]["without" if refitted else "not_refitted"].split("{")[0]
         assert said in shown(), f"{where}: wanted {said}, found {shown()}"
@@ -58,9 +77,8 @@ def check(browser, page, widths):
     if len(data["effects"]) > 1 and "many" not in where:
         for effect in (0, 1):
             browser.value(f"document.querySelectorAll('#effects input')[{effect}].click()")
-        wanted = comma(f"{rms_without(data, [0, 1]):.2f}", ".", ",")
-        said = data["words"]["not_refitted"].split("{")[0]
-        assert wanted in shown() and said in shown(), f"{where}: wanted {wanted} {said}, found {shown()}"
+        check_numbers(browser, data, [0, 1], where)
+        assert data["words"]["not_refitted"].split("{")[0] in shown(), f"{where}: found {shown()}"
         for effect in (0, 1):
             browser.value(f"document.querySelectorAll('#effects input')[{effect}].click()")
     bad = complaints(browser, lambda url: "/model-" in url)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The store of results is updated by each run: the same rows as when made from nothing, however a run ends."""
+import json
 import os
 import shutil
 import sqlite3
@@ -90,6 +91,8 @@ class HistoryTest(NightTest):
         self.assertIn("events.toml:4", done.stderr)
         self.assertIn("crsh", done.stderr)
         self.assertIn("not in the history", (self.out / "summary.txt").read_text())
+        line, = (x for x in json.loads(subprocess.run([NONIO, "status", "--actions", "--json", self.out], capture_output=True).stdout)["lines"] if x["id"] == "worklist.history")
+        self.assertIn("events.toml:4", json.dumps(line))
         self.assertEqual(self.results("b")["status"], self.results("a")["status"])
         self.assertEqual(self.rows(), before)
         (self.site / "events.toml").unlink()

@@ -70,6 +70,9 @@ class SiteParts(NightTest):
                       "acknowledged.toml": 'format = 1\n[[acknowledged]]\ndate = 2026-10-01\nfinding = "reversal.constant"\n'
                                            'machine = "S-1"\nuntil = 2027-01-01\nby = "B"\nwhy = "nut is ordered"\n',
                       "forgotten.toml": 'format = 1\n[[forgotten]]\ndate = 2026-10-01\ncampaign = "old"\nby = "B"\nwhy = "machine was sold"\n',
+                      "causes/own.toml": 'format = 1\n[[cause]]\nname = "own"\ntitle = { en = "Own cause" }\naxis = "linear"\nexpression = "j*run"\n'
+                                         'parameters = [{ name = "j", unit = "um" }]\nis = "Counts are lost."\nsize = "1 um"\nappearance = "Stairs"\n'
+                                         'similar = "none"\nremedy = "Clean it"\nprior = "rare"\n',
                       "templates/words/en/own.toml": '[a]\nb = "own words"\nc = "more own words"\n'}
         for i in range(MACHINES):
             asset, serial = f"S-{i}", f"m{i}"

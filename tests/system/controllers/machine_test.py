@@ -247,6 +247,16 @@ class WhatWasOn(MachineTest):
         self.assertNotIn("table.active-not-stated", self.findings("fanuc"))
         self.assertTrue([n for n in self.written() if n.startswith("fanuc")])
 
+    def test_what_was_measured_after_an_adjustment_needs_a_statement(self):
+        """Its table would replace the one that was loaded meanwhile."""
+        self.record(["Z"])
+        for stated, refused in (('adjustment = "after"\n', True), ('compensation = "on"\n', True), ('adjustment = "before"\n', False),
+                                ('adjustment = "after"\ncompensation = "off"\n', False)):
+            with self.subTest(stated=stated):
+                self.measured("fanuc", machine='asset = "S-1"\n', of_axis='active_table = "none"\nactive_backlash_mm = "none"\n', of_measurement=stated)
+                self.assertEqual("table.active-contradicted" in self.findings("fanuc"), refused)
+                self.assertEqual(bool([n for n in self.written() if n.startswith("fanuc")]), not refused)
+
     def test_backlash_that_was_on_is_the_beginning_of_the_new_value(self):
         self.record(["X", "Y", "Z"])
         self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0,

@@ -99,6 +99,16 @@ class CampaignsOfASite(LiveTest):
             self.assertEqual("0.3", known["instruments"][0]["values"]["instrument.U_fixed_um"], "of the newest campaign")
             self.assertEqual(("0", "600", "12"), tuple(known["machines"][0]["values"]["machine.axes.X." + k] for k in ("from", "to", "tolerance.A")))
 
+    def test_a_former_name_of_a_machine_is_no_machine(self):
+        with self.serve("--edit") as s:
+            self.create(s)
+            other = self.create(s, values={"machine.serial": "O417"})
+            s.until("/api/machines", lambda a: len(a["machines"]) == 2, "two machines")
+            name = {m["serial"]: m["machine"] for m in s.get("/api/machines")["machines"]}
+            (self.site / "site.toml").write_text(f'[laboratory]\nname = "Sample"\n[[alias]]\nname = "{name["O417"]}"\nasset = "{name["0417"]}"\nwhy = "read wrong"\n')
+            s.until("/api/machines", lambda a: [m["machine"] for m in a["machines"]] == [name["0417"]], "one machine")
+            self.assertTrue(other)
+
     def test_lists_are_searched_filtered_and_paged(self):
         r = random.Random(SEED)
         for n in range(60):

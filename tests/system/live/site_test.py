@@ -2,8 +2,10 @@
 """`nonio serve SITE`: the worklist, entries, certificates, runs, and the workbench of each campaign."""
 import fcntl
 import json
+import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import time
 import urllib.parse
@@ -13,6 +15,16 @@ import unittest
 from live import LiveTest, NONIO, ROOT, SAMPLES, Server, Stream, json_of, nonio
 
 DATE = "2026-11-23"
+
+
+def processes_that_make_pages(out):
+    for process in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            arguments = (process / "cmdline").read_bytes().split(b"\0")
+        except OSError:
+            continue
+        if b"--page=-" in arguments and os.fsencode(out) in arguments:
+            yield int(process.name)
 
 
 class SiteStream(Stream):
@@ -58,6 +70,26 @@ class Sites(LiveTest):
             self.assertEqual(s.request("GET", "/site/index.html", token=False)[0], 403)
             self.assertEqual(s.request("GET", "/", token=False)[0], 200)
 
+    def test_pages_of_machines_come_from_one_process_which_may_end(self):
+        self.night()
+        with Server(self.small, "--out", self.out) as s:
+            page = "machines/" + next((self.out / "machines").glob("*.html")).name
+            same = (self.out / page).read_bytes()
+
+            def served():
+                self.assertEqual(s.request("GET", f"/site/{page}")[2], same)
+                return list(processes_that_make_pages(self.out))
+            first, = served()
+            self.assertEqual(served(), [first])
+            os.kill(first, signal.SIGKILL)
+            served()
+            second, = served()
+            self.assertNotEqual(first, second)
+        deadline = time.monotonic() + 30
+        while left := list(processes_that_make_pages(self.out)):
+            self.assertLess(time.monotonic(), deadline, left)
+            time.sleep(0.1)
+
     def test_metrics_of_the_last_run_for_programs_with_the_token(self):
         with Server(self.small, "--out", self.out) as s:
             self.assertEqual(s.request("GET", "/metrics")[0], 503)  # no run yet
@@ -78,7 +110,7 @@ class Sites(LiveTest):
             else:
                 print("promtool is not installed: its check is skipped", flush=True)
         with Server(self.small) as s:
-            self.assertIn("--out", s.get("/metrics", expect=409)["error"])
+            self.assertEqual(s.get("/metrics", expect=409)["id"], "no_out")
 
     def test_without_an_output_folder_it_says_so(self):
         with Server(self.small) as s:
@@ -164,7 +196,7 @@ class Sites(LiveTest):
             stream = SiteStream(s)
             events = stream.events()
             s.post("/api/ack", {"finding": line["id"], "machine": line["machine"], "until": "2099-01-01", "by": "B. Sample", "why": "nut is ordered"})
-            self.assertEqual(next(e for e in events if e[1] == "morning")[2]["version"], s.get("/api/site/state")["version"])
+            self.assertEqual(next(e for e in events if e[1] == "worklist")[2]["version"], s.get("/api/site/state")["version"])
             now = state()
             self.assertEqual((now["state"], now["by"], now["until"], now["why"]), ("known", "B. Sample", "2099-01-01", "nut is ordered"))
             page = s.request("GET", "/site/index.html")[2].decode()
@@ -173,7 +205,7 @@ class Sites(LiveTest):
             self.assertNotIn("nut is ordered", (self.out / "index.html").read_text(), "the night's own page is the night's")
             # On a terminal; the page hears of it too.
             nonio("machine", "ack", self.small, "--withdraw", "--finding", line["id"], "--machine", line["machine"], "--by", "B. Sample")
-            next(e for e in events if e[1] == "morning")
+            next(e for e in events if e[1] == "worklist")
             self.assertEqual(state()["state"], "new")
             stream.close()
 
@@ -200,7 +232,7 @@ class Sites(LiveTest):
             self.assertEqual((state["run"]["state"], state["run"]["done"], state["run"]["to_do"]), ("done", 2, 2))
             self.assertTrue((self.out / "02-constant-reversal/results.json").exists())
             self.assertEqual(s.get("/api/site")["schema"], "nonio-morning/1")
-            next(e for e in events if e[1] == "morning")
+            next(e for e in events if e[1] == "worklist")
             stream.close()
 
     def test_one_campaign_is_run_again(self):
@@ -324,6 +356,21 @@ class Certificates(LiveTest):
             drafts = s.get("/api/drafts")["drafts"]
             self.assertEqual([d.get("replaces") for d in drafts], ["S-0001"])
             self.assertEqual(len(json_of("certificates", self.lab)["certificates"]), 1)
+
+            # The number in force is found as long as its successor is a draft, and no longer after its withdrawal.
+            def listed(query="", found=1):
+                return s.until(f"/api/campaigns?{query}", lambda a: a["found"] == found, f"{query}: {found}")["campaigns"]
+            self.assertEqual([c["certificate"] for c in listed("search=S-0001")], ["S-0001"])
+            # A copied folder does not get what another one was given.
+            shutil.copytree(self.lab / "adjusted", self.lab / "copy")
+            copy = next(c for c in listed(found=2) if c["folder"] == "copy")
+            self.assertEqual((copy["state"], copy.get("certificate"), copy["files"]), ("failed", None, []))
+            self.assertIn("adjusted", copy["message"])
+            shutil.rmtree(self.lab / "copy")
+            nonio("certificate", "withdraw", self.lab, "S-0001", "--why", "wrong machine", "--by", "B. Sample")
+            listed("search=S-0001", found=0)
+            lines = s.until("/api/site", lambda a: all(x["id"] != "worklist.draft" for x in a["lines"]) or a, "worklist")["lines"]
+            self.assertEqual(sorted({x["id"] for x in lines if x["id"] == "worklist.draft"}), ["worklist.draft"] if s.get("/api/drafts")["drafts"] else [])
 
 
 if __name__ == "__main__":

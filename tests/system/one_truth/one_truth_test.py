@@ -70,6 +70,11 @@ def row_of(v):
         return None
     last = 1e-11 * max(abs(v["value"]), v["U"])
     either = {as_printed(v["value"] + d, v["U"])[0] for d in (-last, 0.0, last)}
+    if "tolerance" in v:  # more digits, until they show on which side of the limit the value is
+        def side(x):
+            return (abs(x) > v["tolerance"]) - (abs(x) < v["tolerance"])
+        either = {next(text for n in range(12) if side(float(text := f"{float(v['value']):.{n + len(one.partition('.')[2])}f}")) == side(v["value"]))
+                  if side(float(one)) != side(v["value"]) else one for one in either}
     either = sorted(re.sub(r"^-(?=[0.]*$)", "", text) for text in either)  # zero has no sign
     return re.compile(r"(?<![\d.\-])(?:%s)\s+%s(?![\d.])" % ("|".join(map(re.escape, either)), re.escape(as_printed(0.0, v["U"])[1])))
 

@@ -32,8 +32,13 @@ class Model(VerbTest):
         self.nonio("run", self.site, "--out", self.site / "out", "--quiet", expect=None)
         page = (self.site / "out" / "c" / "model-X.html").read_text()
         data = json.loads(page.split('id="data">')[1].split("</script>")[0])
+        whole = self.json_of("model", "compare", self.folder)["parts"][0]
+        self.assertAlmostEqual(data["rms"], whole["rms_um"], places=5)
+        self.assertAlmostEqual(data["largest"], whole["largest"]["residual_um"], places=5)
         for effect in data["effects"]:
             dropped = self.json_of("model", "drop", self.folder, effect["name"])["after"]
+            others = self.json_of("model", "compare", self.folder)["parts"][0]
+            self.assertAlmostEqual(effect["without"]["largest"], others["largest"]["residual_um"], places=5)
             self.json_of("model", "add", self.folder, effect["name"])
             self.assertAlmostEqual(effect["without"]["rms"], dropped["rms_um"], places=5)
             self.assertAlmostEqual(effect["without"]["cv_rms"], dropped["cv_rms_um"], places=5)

@@ -45,6 +45,19 @@ inline ModelFit made_model(const MadeModel& made = {}) {
     return sum;
   };
   const double s = 0.6 * um;
+  /// RMS and largest residual, as a fit states them
+  const auto put_numbers = [&](auto& of, bool several) {
+    double sum = 0.0, weights = 0.0;
+    of.largest = 0.0;
+    for (std::size_t i = 0; i < of.residual.size(); ++i) {
+      sum += of.weight[i] * of.residual[i] * of.residual[i];
+      weights += of.weight[i];
+      if (of.weight[i] > 0.0 && std::fabs(of.residual[i]) > std::fabs(of.largest))
+        of.largest = of.residual[i];
+    }
+    of.rms = std::sqrt(sum / weights);
+    if (several) of.cv_rms = 1.04 * of.rms;
+  };
   double time = 0, squares[4] = {0, 0, 0, 0};
   std::uint32_t line = 1;
   const auto readings = static_cast<std::size_t>(made.targets) *
@@ -98,16 +111,14 @@ inline ModelFit made_model(const MadeModel& made = {}) {
   f.correlation[1][0] = f.correlation[0][1] = -0.95;
   if (made.runs > 1) f.floor = 0.59 * um, f.floor_u = 0.03 * um;
   // Fitted again without the backlash, the drift would take some of it (made up: four fifths stay).
-  ModelFit::Without without{"backlash:" + axis, 0.0, {}, {}};
-  double left = 0.0;
+  put_numbers(f, made.runs > 1);
+  ModelFit::Without without{"backlash:" + axis, 0.0,           {},      0.0,       f.residual,
+                            f.weight,           f.cv_residual, f.floor, f.floor_u, f.suspects};
   for (std::size_t i = 0; i < f.size(); ++i) {
-    without.residual.push_back(f.residual[i] + 0.8 * f.effects[0].contribution[i]);
-    left += f.weight[i] * without.residual[i] * without.residual[i];
+    without.residual[i] += 0.8 * f.effects[0].contribution[i];
+    if (made.runs > 1) without.cv_residual[i] = 1.04 * without.residual[i];
   }
-  double weights = 0.0;
-  for (const double w : f.weight) weights += w;
-  without.rms = std::sqrt(left / weights);
-  if (made.runs > 1) without.cv_rms = 1.04 * without.rms;
+  put_numbers(without, made.runs > 1);
   f.without = {std::move(without)};
   Finding verdict;
   verdict.id = "model.nothing";

@@ -117,6 +117,8 @@ TEST_F(ModelHtml, HoldsTheFitWithoutAnEffectAndNoneWhereThereIsNone) {
   const std::string text = page(made_model());
   EXPECT_EQ(occurrences(text, "\"without\":{"), 1U);
   EXPECT_EQ(occurrences(text, "\"without\":null"), 2U);
+  for (const char* member : {"rms", "cv_rms", "floor", "left_out", "weight", "suspects"})
+    EXPECT_EQ(occurrences(text, std::string("\"") + member + "\":"), 2U) << member;
 }
 
 TEST_F(ModelHtml, TheSameBytesTwice) {

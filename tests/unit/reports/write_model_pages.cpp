@@ -18,6 +18,13 @@ int main(int argc, char** argv) {
   const auto write = [&](const char* name, const std::vector<ModelFit>& models) {
     Case c = simple_case();
     c.results.models = models;
+    for (const ModelFit& fit : models)
+      c.results.analyses.push_back(
+          {"model-fit",
+           "",
+           fit.measurements.front(),
+           {.values = {{"largest_residual", fit.largest, deviation_of(fit.angular)},
+                       {"redundancy", 1.0, Quantity::count}}}});
     for (const Output& output : plugins.outputs)
       for (const char* language : {"de", "en", "it"}) {
         Settings options = defaults(output.info);

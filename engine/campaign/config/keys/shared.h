@@ -6,8 +6,7 @@
 #include "campaign/config/checks.h"
 #include "campaign/config/formula_units.h"
 
-/// Declarations that the tables of several files share. They have a namespace of their own, because
-/// words such as `text` and `date` are also used elsewhere.
+/// A namespace of their own, because words such as `text` and `date` are used elsewhere too.
 namespace nonio::config::declared {
 
 using Words = std::string_view;
@@ -91,8 +90,7 @@ inline constexpr Choice decision_rules[] = {
     {"ilac-g8-simple", "simple acceptance"},
     {"ilac-g8-guarded", "guard band w = U"}};
 inline constexpr TextRule language = {.letters = "a-z", .shortest = 2, .longest = 2};
-/// Declares the texts of certificates for site.toml and campaign.toml; `to` is the path of the
-/// member that contains them.
+/// `to`: path of the member that contains the texts.
 template <auto... to>
 inline constexpr Key certificate_texts[] = {
     {"languages", into<to..., &CertificateTexts::languages>,

@@ -13,14 +13,14 @@
 namespace nonio::reading {
 namespace {
 
-/// Limits beyond which readings are not those of a machine tool, or are in another unit.
+/// Limits of readings of machine tools; others have another unit.
 struct Bounds {
-  double slope = 0.02;   ///< largest slope of the deviation over the travel, m/m or rad/rad
-  double share = 0.002;  ///< largest range as a share of the travel, for ranges above `size`
-  double size, most;     ///< range above which `share` applies, and largest allowed range, m or rad
-  double small_share = 0.05;  ///< largest share of a short travel, for ranges above `small_size`
+  double slope = 0.02;        ///< largest slope of the deviation over the travel, m/m or rad/rad
+  double share = 0.002;       ///< largest range divided by the travel, for ranges above `size`
+  double size, most;          ///< range above which `share` applies, and largest range, m or rad
+  double small_share = 0.05;  ///< largest range divided by a short travel, above `small_size`
   double small_size;          ///< range that is plausible on any short travel, m or rad
-  double scatter;             ///< largest standard deviation of repeated readings, m or rad
+  double scatter;             ///< largest standard deviation of readings, m or rad
   double least;               ///< smallest range over a travel of `least_travel`, m or rad
   double least_travel;
 };
@@ -38,7 +38,7 @@ constexpr Bounds of_angles{.size = 600 * arcsec,
                            .least = 0.02 * arcsec,
                            .least_travel = 0.1};
 constexpr double least_of_travel = 0.05, most_of_travel = 1.2;
-/// Smallest pitch of a screw, m; finer periods are those of a scale.
+/// Smallest pitch of a screw, m; shorter periods come from a scale.
 constexpr double least_pitch = 1e-3;
 
 bool along_one_axis(const Measurement& m) {
@@ -63,14 +63,12 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// The readings of one target and direction.
 struct Cell {
   double target = 0.0;
   std::vector<double> deviations;
 };
 
-/// Returns the coordinate along the line: the position of the only axis, or in space the distance
-/// from the first reading.
+/// Position of the only axis; in space, distance from the first reading.
 std::vector<double> along(const Observations& o) {
   if (o.axes.size() == 1) return o.axes.front().position;
   std::vector<double> out(o.size());
@@ -95,7 +93,6 @@ std::vector<Cell> cells_of(const Observations& o, const std::vector<double>& tar
   return out;
 }
 
-/// Reports deviations whose size, slope or scatter is not plausible.
 class Size {
  public:
   Size(const Campaign& campaign, const Measurement& m, const Observations& o)
@@ -125,7 +122,7 @@ class Size {
                             .evidence = {{"share", slope_, Quantity::ratio},
                                          {"range", range_, deviation_},
                                          {"travel", travel_, position_}}});
-    // A straightedge or mirror can be at any angle, so the slope is not checked.
+    // A straightedge or mirror can have any angle, so the slope is not checked.
     const double range = position ? range_ : range_of_rest_;
     const bool of_travel =
         same_unit() &&
@@ -158,8 +155,8 @@ class Size {
            .attention = true,
            .evidence = {{"readings", static_cast<double>(o_.size()), Quantity::count},
                         {"value", o_.deviation.front(), deviation_}}});
-    // In a straightness measurement the slope results from the set-up and is removed, and the
-    // stated U of the laser does not apply to straightness optics.
+    // The slope of a straightness measurement depends on the set-up, and the U of the laser does
+    // not include the straightness optics.
     const bool straightness = measurement_.kind == "straightness";
     if (straightness && range_of_rest_ < 0.4 * bounds_.least && scatter_ < 0.4 * bounds_.least &&
         travel_ >= bounds_.least_travel && means_.size() > 2)
@@ -180,7 +177,6 @@ class Size {
   }
 
  private:
-  /// Whether deviation and position have the same unit, so that their ratio has a meaning.
   bool same_unit() const { return o_.angular == o_.axes.front().rotary; }
 
   static double scatter(const std::vector<double>& values) {
@@ -208,9 +204,9 @@ class Size {
     range_of_rest_ = range_of(rest);
   }
 
-  /// Returns the expanded uncertainty of the instrument (k = 2, 0 if not stated), and the smallest
-  /// range of deviations that it can plausibly show. The length-dependent part has a smaller
-  /// weight, because it cancels if the axis was adjusted with the same instrument.
+  /// Returns U of the instrument (k = 2; 0 if not stated) and the smallest plausible range of
+  /// deviations. The length-dependent part of U has a smaller weight, because an adjustment with
+  /// the same instrument cancels this part.
   std::pair<double, double> uncertainty() const {
     constexpr double of_fixed = 0.5, of_length = 0.15;
     const Instrument& i = campaign_.instrument;
@@ -229,8 +225,7 @@ class Size {
   double travel_ = 0.0, slope_ = 0.0, range_ = 0.0, range_of_rest_ = 0.0, scatter_ = 0.0;
 };
 
-/// Returns each line of the observations separately, because each line of a step diagonal has a
-/// zero of its own.
+/// Each line of a step diagonal has a zero of its own.
 std::vector<Observations> lines_of(const Observations& o) {
   if (o.lines.size() < 2) return {o};
   std::vector<Observations> out(o.lines.size());
@@ -249,8 +244,6 @@ std::vector<Observations> lines_of(const Observations& o) {
   return out;
 }
 
-/// Returns the range of positions of a measurement along one axis; 0 if it does not contain the
-/// axis.
 double span_along(const Observations& o, const std::string& axis) {
   const auto* column = o.axis(axis);
   return column == nullptr ? 0.0 : range_of(column->position);
@@ -258,8 +251,6 @@ double span_along(const Observations& o, const std::string& axis) {
 
 bool near_ratio(double ratio, double wanted) { return std::fabs(ratio / wanted - 1.0) < 0.02; }
 
-/// Reports a range of the targets that contradicts the travel, the pitch or other measurements of
-/// the same axis.
 void implausible_span(const Campaign& campaign, const Measurement& m, const Observations& o,
                       const std::vector<Observations>& all, std::vector<Finding>& out) {
   const Axis* axis = campaign.machine.axis(m.axis);
@@ -275,8 +266,8 @@ void implausible_span(const Campaign& campaign, const Measurement& m, const Obse
                           .attention = true,
                           .evidence = {{"span", span, position}, {"other", widest, position}}});
   if (axis->travel || axis->rotary) {
-    // The travel is one turn if it is not stated, or if the table can turn further but was measured
-    // over no more than about one turn.
+    // Without a stated travel, or if no more than about one turn was measured, the travel is one
+    // turn.
     const double turn = 360.0 / deg_per_rad,
                  stated = axis->travel ? axis->travel->second - axis->travel->first : turn;
     const double travel =
@@ -296,7 +287,7 @@ void implausible_span(const Campaign& campaign, const Measurement& m, const Obse
          .evidence = {{"span", span, position}, {"pitch", *axis->screw_pitch, Quantity::length}}});
 }
 
-/// Reports targets outside the travel: travel and targets then refer to different zeros.
+/// Targets outside the travel show that travel and targets have different zeros.
 void beyond_travel(const Campaign& campaign, const Observations& o, std::vector<Finding>& out) {
   constexpr double spare_share = 0.02;
   for (const auto& column : o.axes) {
@@ -317,8 +308,8 @@ void beyond_travel(const Campaign& campaign, const Observations& o, std::vector<
   }
 }
 
-/// Reports a diagonal whose targets cover only a small part of its length, or the travel of one of
-/// its axes: then they are positions of that axis instead of distances along the diagonal.
+/// If the targets cover a small part of the diagonal, or the travel of one of its axes, they are
+/// positions of this axis.
 void short_diagonal(const Measurement& m, const Observations& o, std::vector<Finding>& out) {
   constexpr double nearly = 1e-3, shorter = 0.99;
   double square = 0.0;
@@ -343,8 +334,7 @@ void short_diagonal(const Measurement& m, const Observations& o, std::vector<Fin
                             .texts = {{"axis", axis}}});
 }
 
-/// Reports an analysis whose U is more than five times its largest value, because it shows nothing
-/// about the axis.
+/// A U above five times the largest value shows nothing about the axis.
 void uncertain(const std::vector<Results::Analysed>& analyses, const std::string& measurement,
                std::vector<Finding>& out) {
   constexpr double most = 5.0;
@@ -367,8 +357,6 @@ void uncertain(const std::vector<Results::Analysed>& analyses, const std::string
   }
 }
 
-/// Returns the findings about the readings of the measurement with this index. `all` contains the
-/// observations of all measurements of the campaign.
 std::vector<Finding> implausible_readings(const Campaign& campaign, std::size_t measurement,
                                           const std::vector<Observations>& all,
                                           const Passes& passes) {

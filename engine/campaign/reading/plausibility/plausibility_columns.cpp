@@ -9,7 +9,6 @@
 namespace nonio::reading {
 namespace {
 
-/// Mean and range of the values of a column; `known` is false if the column has no value.
 struct Climate {
   double mean = 0.0, range = 0.0;
   bool known = false;
@@ -28,7 +27,7 @@ Climate climate_of(const std::vector<double>& column) {
 }
 
 void implausible_air(const Observations& o, std::vector<Finding>& out) {
-  // Limits: temperatures in degC, humidity in %
+  // Temperatures in degC, humidity in %.
   constexpr double coldest = 5.0, hottest = 45.0, driest = 3.0;
   struct Column {
     const char* name;
@@ -63,13 +62,12 @@ void implausible_air(const Observations& o, std::vector<Finding>& out) {
   }
 }
 
-/// Reports times that contradict the stated dwell or feed, the distances moved, or the order of the
-/// rows.
+/// Compares times with the dwell, the feed, the distances, and the order of the rows.
 void implausible_times(const Measurement& m, const std::vector<Stroke>& strokes,
                        const Observations& o, std::vector<Finding>& out) {
   constexpr double slowest = 3600.0;  // longest plausible time for one reading, s
   constexpr double fastest = 5.0, fastest_angle = 600.0;  // largest plausible speeds, m/s and rad/s
-  std::vector<std::pair<double, double>> taken;           // time and position of each reading
+  std::vector<std::pair<double, double>> taken;
   const auto& axis = o.axes.front();
   for (std::size_t i = 0; i < o.time.size(); ++i)
     if (std::isfinite(o.time[i])) taken.emplace_back(o.time[i], axis.position[i]);
@@ -81,8 +79,7 @@ void implausible_times(const Measurement& m, const std::vector<Stroke>& strokes,
     way += std::fabs(taken[i].second - taken[i - 1].second);
   const double lasted = taken.back().first - taken.front().first;
   const double each = lasted / static_cast<double>(taken.size() - 1);
-  // The time per reading is shorter than the dwell at a target, or the motion is faster than the
-  // feed.
+  // Factors for times below the dwell, and speeds above the feed.
   constexpr double shorter = 0.9, faster = 1.1;
   if (lasted > 0.0 &&
       ((m.dwell && each < shorter * *m.dwell) || (m.feed && way > faster * *m.feed * lasted)))
@@ -114,8 +111,6 @@ void implausible_times(const Measurement& m, const std::vector<Stroke>& strokes,
                    .texts = {{"which", which}}});
 }
 
-/// Returns the centres of a ball in the order of the file, which contains a reading for each
-/// coordinate.
 std::vector<std::array<double, 3>> centres_of(const Observations& o) {
   std::vector<std::array<double, 3>> centres;
   for (std::size_t i = 0; i + 2 < o.size(); i += 3)
@@ -127,8 +122,8 @@ double apart(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/// Returns the unit normal of the plane through the first centre and the pair of other centres that
-/// span the largest area; 0 if all centres are on a line.
+/// Returns the normal of the plane through the first center and the two centers that span the
+/// largest area; 0 if all centers are collinear.
 std::array<double, 3> normal_of(const std::vector<std::array<double, 3>>& centres) {
   std::array<double, 3> best{};
   double size = 0.0;
@@ -155,7 +150,7 @@ void implausible_columns(const Measurement& m, const Passes& passes, const Obser
 }
 
 void implausible_centres(const Measurement& m, const Observations& o, std::vector<Finding>& out) {
-  constexpr double nearest = 0.04, farthest = 10.0;  // plausible distances between ball centres, m
+  constexpr double nearest = 0.04, farthest = 10.0;  // distances between ball centers, m
   constexpr std::size_t most = 200;
   auto centres = centres_of(o);
   if (centres.size() < 3) return;

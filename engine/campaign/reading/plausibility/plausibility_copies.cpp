@@ -12,9 +12,8 @@
 namespace nonio::reading {
 namespace {
 
-/// Finds passes that agree to the last digit. By chance, a reading agrees with probability q / (s
-/// sqrt(4 pi)), where q is the step of the digits and s the scatter of the other passes (at least
-/// the smallest scatter of any machine).
+/// Finds passes that agree to the last digit. A reading agrees by chance with probability q / (s
+/// sqrt(4 pi)); q: step of the digits, s: scatter of the other passes.
 class Copies {
  public:
   Copies(const Passes& passes, bool angular)
@@ -42,7 +41,7 @@ class Copies {
       const auto n = static_cast<double>(std::get<2>(what).size());
       const auto [low, high] =
           std::minmax_element(std::get<2>(what).begin(), std::get<2>(what).end());
-      if (*low == *high) continue;  // another finding reports equal readings
+      if (*low == *high) continue;
       const double least = scatter_known_ ? least_scatter_ / 3.0 : least_scatter_;
       const double one = step_ / (std::max(pair_scatter, least) * 3.5449);
       const auto pairs = static_cast<double>(strokes_.size() * strokes_.size()) / 2.0;
@@ -67,8 +66,8 @@ class Copies {
   static constexpr double um = 1e-6, arcsec = 1.0 / arcsec_per_rad;
   static constexpr std::size_t most_named = 6, next = 40, fewest = 4;
 
-  /// Returns how many of the common readings differ by `shift`, and how many different values they
-  /// have.
+  /// Returns the number of readings that differ by `shift`, and the number of their different
+  /// values.
   static std::pair<double, std::size_t> agreeing(const std::vector<std::pair<double, double>>& both,
                                                  double shift, double tolerance) {
     std::set<long long> values;
@@ -100,11 +99,10 @@ class Copies {
     return *middle;
   }
 
-  /// Returns the standard deviation of a reading from the differences between pairs of passes, as
-  /// the 40 % quantile over all pairs, which neither a misreading nor drift increases. It is not
-  /// larger than `scatter_`, and equals it with fewer than three pairs.
+  /// Returns the standard deviation of a reading from differences of passes: the 40 % quantile over
+  /// all pairs, which misreadings and drift do not increase; at most `scatter_`.
   double scatter_of_pairs() const {
-    // converts the median of a difference to the standard deviation of a reading
+    // Converts the median of a difference to the standard deviation of a reading.
     constexpr double sigma = 1.4826 / 1.4142;
     std::vector<double> all;
     for (std::size_t i = 0; i < strokes_.size(); ++i)
@@ -123,8 +121,7 @@ class Copies {
     return std::min(*calm, scatter_);
   }
 
-  /// Reports two passes in which more readings agree, unchanged or after a common shift, than
-  /// chance allows.
+  /// Finds two passes in which more readings agree than chance allows, also after a common shift.
   void in_part(double of_pairs, Quantity deviation, std::vector<Finding>& out) const {
     constexpr double chance = 1e-7, most_likely = 0.3;
     if (step_ <= 0.0 || !scatter_known_) return;
@@ -146,7 +143,6 @@ class Copies {
         for (const auto& [a, b] : both) apart.push_back(b - a);
         for (const double shift : {0.0, middle_of(apart)}) {
           const auto [m, values] = agreeing(both, shift, tolerance);
-          // One reading agrees by definition, because it set the shift.
           const bool shifted = shift != 0.0;
           if (values < 3 || m < 4.0 ||
               pairs * (shifted ? n * likely(n - 1.0, m - 1.0) : likely(n, m)) > chance)
@@ -163,8 +159,7 @@ class Copies {
       }
   }
 
-  /// Whether every pass equals all others of its direction, although the digits are fine enough to
-  /// show scatter.
+  /// Whether all passes are equal, although the digits are fine enough to show scatter.
   bool nothing_scatters() const {
     std::map<std::pair<std::uint32_t, int>, const Stroke*> first;
     std::size_t repeated = 0, readings = 0;
@@ -176,8 +171,7 @@ class Copies {
       readings += s.deviation.size();
     }
     if (repeated == 0 || step_ <= 0.0) return false;
-    // If the digits are coarser than the machine's scatter, readings repeat although they are not
-    // copies.
+    // Readings repeat without a copy if the digits are coarser than the scatter of the machine.
     constexpr double chance = 1e-7, least_of_range = 0.01;
     double low = 0.0, high = 0.0;
     bool any = false;
@@ -192,11 +186,9 @@ class Copies {
     return std::pow(one, static_cast<double>(readings)) < chance;
   }
 
-  /// Computes the scatter of readings at the same target and direction from passes that are not
-  /// copies. The shift of each pass is subtracted, because successive passes share their drift.
+  /// The shift of each pass is subtracted, because successive passes have a common drift.
   void scatter() {
-    std::map<std::tuple<std::uint32_t, int, double>, std::pair<double, double>>
-        cells;  // sum and count of the readings
+    std::map<std::tuple<std::uint32_t, int, double>, std::pair<double, double>> cells;
     for (const auto& one : groups_) {
       const Stroke& s = *one.second.front();
       for (std::size_t i = 0; i < s.target.size(); ++i) {
@@ -230,7 +222,6 @@ class Copies {
       groups_;
 };
 
-/// Whether these readings are so numerous and different that they cannot occur twice by chance.
 bool distinguishes(const std::vector<double>& readings, double step) {
   constexpr double chance = 1e-7;
   constexpr std::size_t fewest = 5;
@@ -240,11 +231,9 @@ bool distinguishes(const std::vector<double>& readings, double step) {
   return std::pow(step / (*high - *low), static_cast<double>(readings.size()) - 1.0) < chance;
 }
 
-/// A reading with its place: run, direction and target.
 using Place = std::tuple<std::uint32_t, int, double>;
-using Cells = std::vector<std::pair<Place, double>>;  // pairs of place and reading, sorted by place
+using Cells = std::vector<std::pair<Place, double>>;  // sorted by place
 
-/// Returns the readings of all strokes sorted by place; of repeated readings the last one.
 Cells cells_by_run(const std::vector<Stroke>& strokes) {
   Cells cells;
   for (const Stroke& s : strokes)
@@ -256,10 +245,9 @@ Cells cells_by_run(const std::vector<Stroke>& strokes) {
   return cells;
 }
 
-/// Returns the number of readings that both measurements have at the same run, direction and
-/// target; none if they are too few or chance explains them. The probability that two readings are
-/// equal is estimated, so that digits coarser than the machine's scatter cause no finding. Zeros
-/// are ignored, because instruments are zeroed at a target.
+/// Returns the number of equal readings at the same run, direction and target; nullopt if they are
+/// too few or chance explains them. Zeros are ignored, because instruments are set to zero at a
+/// target.
 std::optional<double> shared_readings(const Cells& one, const Cells& other) {
   constexpr double chance = 1e-7, of_all = 0.15;
   constexpr std::size_t fewest = 8, fewest_values = 6;
@@ -283,7 +271,7 @@ std::optional<double> shared_readings(const Cells& one, const Cells& other) {
   for (const auto& [value, count] : first)
     if (const auto there = second.find(value); there != second.end())
       pairs += count * there->second;
-  // The estimate leaves out the equal pairs at the same place, which may have a common cause.
+  // Equal pairs at the same place are left out, because they may have a common cause.
   const double likely = std::max(pairs - same, 1.0) / (n * n);
   const double p = std::exp(std::lgamma(n + 1.0) - std::lgamma(same + 1.0) -
                             std::lgamma(n - same + 1.0) + same * std::log(std::min(likely, 1.0)));
@@ -319,7 +307,6 @@ std::vector<Finding> passes_of_another_measurement(const Campaign& campaign,
                                                    const std::vector<Observations>& all,
                                                    const std::vector<Passes>& passes) {
   std::vector<Finding> out;
-  // Index of the first measurement with these readings
   std::map<std::vector<double>, std::size_t> seen;
   std::vector<Cells> cells(all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -5,8 +5,7 @@
 
 namespace nonio::reading {
 
-/// Compares the number of decimals of the last number with that of the same column in earlier
-/// lines. A file whose last line has a line end is not examined.
+/// Compares the decimals of the last number with those above. A complete last line is not examined.
 std::vector<Finding> implausible_end(std::string_view bytes, const std::string& file) {
   if (bytes.empty() || bytes.back() == '\n' || bytes.back() == '\r') return {};
   constexpr std::size_t window = 65536;

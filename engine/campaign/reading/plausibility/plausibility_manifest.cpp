@@ -11,8 +11,7 @@ namespace {
 
 constexpr double micrometre = 1e-6, arc_second = 1.0 / arcsec_per_rad;
 
-/// A stated value with the usual range of such values. A value of 0 is never reported. The bounds
-/// are inferred (docs/dev/wrong-inputs.md).
+/// Usual range of a stated value, inferred (docs/dev/wrong-inputs.md); 0 is never reported.
 struct Statement {
   std::string key;
   std::optional<double> value;
@@ -24,16 +23,15 @@ void axis_statements(const Axis& a, std::vector<Statement>& all) {
   const std::string key = "machine.axes." + a.name + ".";
   constexpr double mm = 1e-3, degree = 1.0 / deg_per_rad;
   all.push_back({key + "expansion_um_per_m_K", a.expansion, 3e-6, 3e-5, Quantity::expansion});
-  // The backlash value of a new table is based on the active one: an active value in um instead of
-  // mm would move a motor by millimeters.
+  // A new table contains this value: in um instead of mm, the value would move a motor by
+  // millimeters.
   if (a.rotary)
     all.push_back({key + "active_backlash_deg", a.active_backlash, -0.5 * degree, 0.5 * degree,
                    Quantity::angle});
   else
     all.push_back(
         {key + "active_backlash_mm", a.active_backlash, -1 * mm, 1 * mm, Quantity::length});
-  // A tolerance that is too small is noticed because nothing conforms; one that is too large is
-  // not.
+  // A tolerance that is too large is otherwise not noticed, because everything conforms.
   for (const auto& [name, tolerance] : a.tolerance)
     if (a.rotary)
       all.push_back({key + "tolerance_arcsec." + name, tolerance, 0.1 * arc_second,
@@ -43,8 +41,6 @@ void axis_statements(const Axis& a, std::vector<Statement>& all) {
                      Quantity::deviation});
 }
 
-/// Adds the tolerances of one measurement with their usual range: 0.1 to 600 arcsec, or 0.1 to 1000
-/// um, um/m or urad.
 void tolerance_statements(const Measurement& m, std::vector<Statement>& all) {
   for (const Tolerance& t : m.tolerances) {
     const bool angle = t.quantity == Quantity::angular_deviation;
@@ -54,7 +50,6 @@ void tolerance_statements(const Measurement& m, std::vector<Statement>& all) {
   }
 }
 
-/// Adds the test conditions that a certificate prints: dwell, over-travel and feed.
 void test_statements(const Campaign& c, const Measurement& m, std::vector<Statement>& all) {
   const std::string key = "measurement." + m.id + ".";
   const Axis* axis = c.machine.axis(m.axis);
@@ -68,7 +63,6 @@ void test_statements(const Campaign& c, const Measurement& m, std::vector<Statem
     all.push_back({key + "over_travel_mm", m.over_travel, 0.01 * mm, 500 * mm, Quantity::length});
   }
   if (!m.feed) return;
-  // Feed in the unit of the key, mm/min or deg/min
   const double feed = *m.feed * minute * (rotary ? deg_per_rad : 1e3);
   all.push_back({key + (rotary ? "feed_deg_per_min" : "feed_mm_per_min"), feed, 1.0,
                  rotary ? 720000.0 : 200000.0, Quantity::number});
@@ -110,8 +104,6 @@ std::vector<Statement> statements(const Campaign& c) {
   return all;
 }
 
-/// Reports positions of linear axes at rest, and ends of lines, that are outside of the machine's
-/// travel.
 void implausible_places(const Campaign& c, std::vector<Finding>& out) {
   for (const Measurement& m : c.measurements)
     for (const auto* places : {&m.at, &m.from, &m.to})
@@ -130,7 +122,6 @@ void implausible_places(const Campaign& c, std::vector<Finding>& out) {
       }
 }
 
-/// Returns a file name in small letters, without folders, up to its first blank or point.
 std::string short_name(std::string_view text) {
   const std::size_t folder = text.find_last_of('/');
   if (folder != text.npos) text.remove_prefix(folder + 1);
@@ -148,8 +139,8 @@ void push_name(std::string where, std::string found, std::string expected,
                            {"expected", std::move(expected)}}});
 }
 
-/// Reports two measurements whose files have each other's name, and a measurement on the master
-/// side of a gantry that has the name of the slave.
+/// Reports two measurements whose files have each other's name, or the master side of a gantry with
+/// the name of the slave.
 void exchanged_names(const Campaign& c, std::vector<Finding>& out) {
   const auto called = [](const Measurement& m, const std::string& file) {
     return file == short_name(m.id) || file == short_name(m.axis);
@@ -160,7 +151,6 @@ void exchanged_names(const Campaign& c, std::vector<Finding>& out) {
     for (std::size_t k = i + 1; k < c.measurements.size(); ++k) {
       const Measurement& other = c.measurements[k];
       const std::string its = short_name(other.file);
-      // a straightness measurement may be named after its lateral direction
       if (file != its && m.lateral.empty() && other.lateral.empty() && called(m, its) &&
           called(other, file) && !called(m, file) && !called(other, its))
         push_name(m.file, short_name(m.file), m.id, out);

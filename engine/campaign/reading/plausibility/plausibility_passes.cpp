@@ -10,9 +10,8 @@
 namespace nonio::reading {
 namespace {
 
-/// Reports strokes with rising targets and direction -, or with falling targets and direction +.
-/// Strokes whose rows are mixed with others are ignored. There is no finding if all strokes go one
-/// way (a file sorted by target), or if all targets were approached from one side.
+/// Rising targets contradict direction -, falling targets direction +. No finding if all strokes
+/// have the same order or all targets were approached from one side.
 void against_order(const std::vector<Stroke>& strokes, std::vector<Finding>& out) {
   bool up = false, down = false, plus = false, minus = false;
   std::size_t judged = 0;
@@ -32,14 +31,12 @@ void against_order(const std::vector<Stroke>& strokes, std::vector<Finding>& out
                  .texts = {{"which", name_of(*wrong.front())}}});
 }
 
-/// The reversal at each target of one run.
 struct Reversals {
   std::uint32_t run = 0;
   std::vector<double> target, value;
 };
 
-/// Returns the differences between both strokes at their common targets; of repeated readings the
-/// last one. Both strokes must be sorted by target.
+/// The strokes must be sorted by target. The last of repeated readings is used.
 Reversals reversals_between(const Stroke& up, const Stroke& down) {
   Reversals out{up.run, {}, {}};
   const auto is_last = [](const Stroke& s, std::size_t i) {
@@ -68,7 +65,7 @@ std::vector<Reversals> reversals_of(const std::vector<Stroke>& strokes) {
   return out;
 }
 
-/// Reports a run whose reversal is large and has the opposite sign of that of the other runs.
+/// Reports a run with a large reversal whose sign differs from that of the other runs.
 void swapped(const Passes& passes, Quantity deviation, std::vector<Finding>& out) {
   const auto all = reversals_of(passes.strokes);
   const double step = passes.step;
@@ -94,8 +91,6 @@ void swapped(const Passes& passes, Quantity deviation, std::vector<Finding>& out
     mean /= n;
     own_mean /= n;
     const double s = std::max(std::sqrt(freedom > 0.0 ? scatter / freedom : turned / n), step);
-    // The run is reported if it agrees with the others after its sign is changed as well as they
-    // agree with each other.
     if (step <= 0.0 || kept < 25.0 * turned || turned / n > 9.0 * s * s ||
         std::fabs(mean) < 5.0 * s / std::sqrt(n))
       continue;
@@ -108,7 +103,7 @@ void swapped(const Passes& passes, Quantity deviation, std::vector<Finding>& out
   }
 }
 
-/// Returns the standard deviation about the median, without the two readings farthest from it.
+/// Standard deviation about the median, without the two readings farthest from the median.
 double size_of(const Stroke& s) {
   std::vector<double> values = s.deviation;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -139,7 +134,7 @@ void another_size(const Passes& passes, Quantity deviation, std::vector<Finding>
   for (const auto& [size, s] : sizes) {
     const double larger = std::max(size, others), smaller = std::min(size, others);
     if (larger < 10.0 * step || larger < ratio * smaller) continue;
-    // probability that so many readings without a curve of their own scatter so little by chance
+    // Probability that so many readings scatter so little by chance.
     const auto freedom = static_cast<double>(s->deviation.size()) - 3.0;
     if (std::pow(smaller / larger, freedom) * static_cast<double>(sizes.size()) > chance) continue;
     return out.push_back({.id = "plausibility.pass-of-another-size",

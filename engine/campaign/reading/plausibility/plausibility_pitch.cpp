@@ -13,8 +13,7 @@ namespace {
 constexpr double mm_per_inch = 25.4, most_in_inch = 2.0;
 // A stated pitch of `most_in_inch` or more is assumed to be in mm.
 
-/// Returns the share (0 to 1) of the sum of squares about a line that a wave of this period
-/// explains.
+/// Share of a wave in the sum of squares about a line, 0 to 1.
 double share_of_wave(const std::vector<double>& at, const std::vector<double>& values,
                      double period) {
   std::vector<double> c, s;
@@ -43,7 +42,7 @@ void implausible_pitch(const Campaign& c, std::vector<Finding>& out) {
   const auto near = [](double a, double b) { return std::fabs(a / b - 1.0) < nearly; };
   for (const Axis& axis : c.machine.axes) {
     if (!axis.screw_pitch || axis.rotary) continue;
-    const double pitch = 1e3 * *axis.screw_pitch;  // pitch as it is stated in the manifest, mm
+    const double pitch = 1e3 * *axis.screw_pitch;  // mm
     if (pitch <= 0.0 || pitch >= most_in_inch) continue;
     const double decade = std::pow(10.0, std::floor(std::log10(pitch)) - 1.0);
     const double two_digits = decade * std::round(pitch / decade);
@@ -64,15 +63,13 @@ void implausible_pitch(const Campaign& c, std::vector<Finding>& out) {
   }
 }
 
-/// Reports readings with a period of 25.4 times the pitch, if the targets are dense enough to show
-/// it.
+/// Searches a period of 25.4 times the pitch if the targets are dense enough.
 void period_against_pitch(const Axis& axis, const Observations& o, std::vector<Finding>& out) {
   constexpr std::size_t fewest_targets = 12, waves = 3;
   constexpr double chance = 1e-7, least_share = 0.3, of_finer = 0.25;
   if (!axis.screw_pitch || axis.rotary || o.axes.size() != 1) return;
   const double pitch = *axis.screw_pitch, period = mm_per_inch * pitch;
   if (pitch <= 0.0 || 1e3 * pitch >= most_in_inch) return;
-  // Sum and count of the deviations at each target
   std::map<double, std::pair<double, double>> cells;
   for (std::size_t i = 0; i < o.size(); ++i) {
     auto& cell = cells[o.axes.front().position[i]];
@@ -90,7 +87,7 @@ void period_against_pitch(const Axis& axis, const Observations& o, std::vector<F
     return;
   take_line_out(at, values);
   const double share = share_of_wave(at, values, period);
-  // In noise alone a wave explains more than this share with probability (1 - share)^((n - 4) / 2).
+  // Probability that a wave explains more than this share of noise alone.
   const double p =
       std::pow(1.0 - std::min(share, 1.0), (static_cast<double>(at.size()) - 4.0) / 2.0);
   if (share < least_share || p > chance || share_of_wave(at, values, pitch) > of_finer * share)

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds a pass whose readings were copied one row too high or too low.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,15 +9,13 @@
 namespace nonio::reading {
 namespace {
 
-/// Mean of the other passes of a direction at each target of one pass, and the variance of a
-/// reading about that mean.
+/// Mean of the other passes, and variance of a reading about this mean.
 struct OtherPasses {
-  std::vector<double> mean;  ///< mean at each target; NaN if fewer than two others have this target
+  std::vector<double> mean;  ///< NaN if fewer than two other passes have the target
   double variance = 0.0;
 };
 
 using MeansByTarget = std::map<double, RunningMean>;
-// The means at each target, by line and direction.
 using MeansByDirection = std::map<std::pair<std::uint32_t, int>, MeansByTarget>;
 
 MeansByDirection means_of(const std::vector<Stroke>& strokes) {
@@ -30,8 +27,7 @@ MeansByDirection means_of(const std::vector<Stroke>& strokes) {
   return means;
 }
 
-/// Returns mean and variance of the other passes. `all` contains the means over all passes of the
-/// direction, including `own`.
+/// `all`: means including `own`.
 OtherPasses other_passes_of(const Stroke& own, const MeansByTarget& all) {
   OtherPasses out;
   double squares = 0.0, freedom = 0.0, count = 0.0, places = 0.0;
@@ -50,9 +46,8 @@ OtherPasses other_passes_of(const Stroke& own, const MeansByTarget& all) {
   return out;
 }
 
-/// Returns two variances of a pass about the others, after subtraction of its zero: one with the
-/// rows as they are listed, and one with each reading assigned to the target `by` rows further.
-/// Both use only the rows that exist in both cases; `used` receives their number.
+/// Returns variances about the others, without the zero of the pass: as listed, and with each
+/// reading assigned to the target `by` rows further. Both use the same `used` rows.
 std::pair<double, double> variances(const Stroke& own, const OtherPasses& others, int by,
                                     std::size_t& used) {
   std::vector<double> listed, moved;
@@ -85,8 +80,6 @@ void shifted_rows(const Passes& passes, Quantity deviation, std::vector<Finding>
     for (const int by : {1, -1}) {
       std::size_t used = 0;
       const auto [listed, moved] = variances(own, others, by, used);
-      // The pass is reported only if it contradicts the others as listed and agrees with them when
-      // it is moved by a row.
       if (used < fewest || !(listed > 2.0 * others.variance) || !(moved < 2.0 * others.variance))
         continue;
       const double ratio = listed / std::max(moved, 1e-3 * others.variance);

@@ -9,7 +9,6 @@
 namespace nonio::reading {
 namespace {
 
-/// Returns the rows in their order in the file.
 std::vector<std::size_t> order_in_file(const Observations& o) {
   std::vector<std::size_t> order(o.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -20,8 +19,6 @@ std::vector<std::size_t> order_in_file(const Observations& o) {
   return order;
 }
 
-/// Returns the rows in the order of measurement: by time if every row has a time, otherwise as in
-/// the file.
 std::vector<std::size_t> order_in_time(const Observations& o) {
   auto order = order_in_file(o);
   const auto known = [](double t) { return std::isfinite(t); };
@@ -91,7 +88,7 @@ std::vector<Stroke> strokes_of(const Observations& o) {
     s.sense = sense_of_targets(s.target);
     count_backwards(s);
     s.as_taken = s.deviation;
-    // From here on the readings are sorted by target, so that a copy is found in either direction.
+    // Sorting by target finds copies in either direction.
     std::vector<std::pair<double, double>> rows;
     for (std::size_t i = 0; i < s.target.size(); ++i)
       rows.emplace_back(s.target[i], s.deviation[i]);
@@ -122,7 +119,7 @@ double step_of(const std::vector<Stroke>& strokes) {
     const double d = all[i] - all[i - 1];
     if (d > 1e-12 && (step == 0.0 || d < step)) step = d;
   }
-  // A few readings may all differ by much: then the number of decimals gives the resolution.
+  // With few readings, the number of decimals determines the resolution.
   constexpr double finest = 1e-10;
   for (double grid = 1e-6; grid > finest; grid /= 10.0)
     if (std::all_of(all.begin(), all.end(),

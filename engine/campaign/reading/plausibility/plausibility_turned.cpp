@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Finds a pass, or all passes of a direction, written with the other sign or in reverse order.
-//   one pass      agrees with the others of its direction only after it is turned. The comparison
-//                 is made without the line of each pass (which drift changes), and then without
-//                 the mean of each only (a pitch error is mostly a line), with the scatter of both
-//                 directions.
-//   a direction   u is half of the reversal, v the mean of both directions, both without the
-//                 shapes that elastic wind-up of a drive gives the reversal. In a correct file v
-//                 contains the pitch error. A wrong sign exchanges u and v; reverse order
-//                 exchanges their odd parts. So u must exceed the scatter and three times v (its
-//                 odd part 2.2 times that of v), whichever of the shapes is subtracted.
-// If the directions are opposed only with these shapes, wind-up may be the cause, and the finding
-// is information.
+// Finds passes and directions with the other sign or in reverse order.
+// A pass must agree with the others of its direction only after it is turned. All passes are
+// compared first without their lines (drift changes lines), then without their means only (a pitch
+// error is mostly a line).
+// For a direction, u is half of the reversal and v the mean of both directions, both without the
+// shapes that elastic wind-up of a drive gives the reversal. A correct v contains the pitch error.
+// A wrong sign exchanges u and v; reverse order exchanges their odd parts. u must exceed the
+// scatter and three times v (the odd part 2.2 times that of v), whichever of the shapes is
+// subtracted. If the directions are opposed only with these shapes, wind-up may be the cause, and
+// the finding is information.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -36,11 +34,9 @@ class Curve {
       cell.squares += weight * s.deviation[i] * s.deviation[i];
     }
   }
-  /// Computes the sums over all targets. Call it after all passes were added.
   void sum_up() { all_ = sums(); }
 
-  /// Returns the means without the pass `s`, at its targets. Depth and scatter still include all
-  /// targets.
+  /// Means without this pass. Depth and scatter still include all targets.
   Curve without(const Stroke& s) const {
     Curve own;
     for (const double target : s.target) own.cells_[target] = cells_.at(target);
@@ -64,12 +60,11 @@ class Curve {
     if (at == cells_.end()) return std::nullopt;
     return at->second.sum / at->second.count;
   }
-  /// Returns the mean number of readings per target.
   double depth() const {
     const Sums all = sums();
     return all.cells == 0.0 ? 1.0 : all.count / all.cells;
   }
-  /// Returns the sum of squares about the means, and its degrees of freedom.
+  /// Returns the sum of squares about the means, and the degrees of freedom.
   std::pair<double, double> scatter() const {
     const Sums all = sums();
     return {all.squares, all.freedom};
@@ -96,15 +91,14 @@ class Curve {
   }
 
   std::map<double, Cell> cells_;
-  Sums elsewhere_;  ///< sums over targets that are not in `cells_`
+  Sums elsewhere_;
   Sums all_;
 };
 
-/// How a curve must be turned to agree with another: not at all, in its order, or in its sign.
 enum class Turned { not_at_all, order, sign };
 
-/// Sums of squares of the difference between two curves: unchanged, in reverse order, with the
-/// other sign.
+/// Sums of squares of the difference of two curves: unchanged, in reverse order, with the other
+/// sign.
 struct Likeness {
   double same = 0.0, order = 0.0, sign = 0.0;
 };
@@ -120,7 +114,6 @@ Likeness likeness(const std::vector<double>& a, const std::vector<double>& b,
   return out;
 }
 
-/// A sum of squares about means, with its degrees of freedom.
 struct Scatter {
   double squares = 0.0, freedom = 0.0;
   void take(const std::pair<double, double>& one) { squares += one.first, freedom += one.second; }
@@ -132,7 +125,6 @@ void take_mean_out(std::vector<double>& values) {
   for (double& v : values) v -= mean;
 }
 
-/// The values of two curves at their common targets.
 struct Pair {
   std::vector<double> at, a, b;
 };
@@ -149,9 +141,7 @@ Pair in_common(const Curve& one, const Curve& other) {
   return p;
 }
 
-/// Returns how the first curve must be turned to agree with the second. If `with_line`, the line of
-/// each curve is subtracted first, otherwise only its mean. `noise` is the variance of the
-/// difference at a target.
+/// `with_line`: subtract lines, not only means. `noise`: variance of the difference at a target.
 Turned turned_as(Pair p, double noise, bool with_line) {
   std::vector<double> from_the_end(p.a.rbegin(), p.a.rend());
   const auto bare = [&](std::vector<double>& v) {
@@ -159,8 +149,8 @@ Turned turned_as(Pair p, double noise, bool with_line) {
   };
   bare(p.a), bare(p.b), bare(from_the_end);
   const Likeness whole = likeness(p.a, p.b, from_the_end);
-  // An error of only the first reading of each pass (stick-slip) appears at both ends, so the
-  // comparison is repeated without the ends.
+  // Stick-slip at the first reading of each pass affects both ends, so the comparison is repeated
+  // without the ends.
   const auto n = static_cast<double>(p.at.size());
   const auto inner = [](std::vector<double>& v) { v.erase(v.begin()), v.pop_back(); };
   inner(p.at), inner(p.a), inner(p.b), inner(from_the_end);
@@ -171,16 +161,14 @@ Turned turned_as(Pair p, double noise, bool with_line) {
            whole.same > 20.0 * noise * n && within.same > 3.0 * sum_within;
   };
   const bool order = fits(whole.order, within.order), sign = fits(whole.sign, within.sign);
-  // A line in reverse order also has the other sign; the better fit is taken.
   if (order && !(sign && whole.sign < whole.order)) return Turned::order;
   return sign ? Turned::sign : Turned::not_at_all;
 }
 
 constexpr std::size_t fewest_compared = 7;
 
-/// Returns how `one` must be turned to agree with `other`. `scatter` is that of readings about the
-/// mean of their target and direction. If `without_line_only`, the curves are compared only without
-/// their lines.
+/// `scatter`: about the mean of target and direction. `without_line_only`: curves are compared only
+/// without their lines.
 Turned turned(const Curve& one, const Curve& other, const Scatter& scatter, double step,
               bool without_line_only) {
   const Pair pair = in_common(one, other);
@@ -199,8 +187,6 @@ void push_turned(Turned how, const std::string& which, std::vector<Finding>& out
                  .texts = {{"which", which}}});
 }
 
-/// Subtracts from the values their projection on these shapes, each of which is first made
-/// orthogonal to those before it.
 std::vector<double> without(std::vector<double> values, std::vector<std::vector<double>> shapes) {
   const auto product = [](const std::vector<double>& x, const std::vector<double>& y) {
     double sum = 0.0;
@@ -227,9 +213,8 @@ std::vector<double> without(std::vector<double> values, std::vector<std::vector<
 
 using Shapes = std::vector<std::vector<double>>;
 
-/// Returns the shapes of the reversal along the axis that elastic wind-up of a drive causes: of a
-/// screw held at one end (a line) or at both ends (a parabola), of a load that turns with the table
-/// or returns once along the travel (a wave).
+/// Shapes of elastic wind-up: a line (screw held at one end), a parabola (held at both ends), or a
+/// wave (load that turns with the table or returns once along the travel).
 std::vector<Shapes> elastic_shapes(const std::vector<double>& at, bool rotary) {
   const double length = at.back() - at.front();
   Shapes powers(3), wave(3);
@@ -243,8 +228,8 @@ std::vector<Shapes> elastic_shapes(const std::vector<double>& at, bool rotary) {
   return {powers, wave};
 }
 
-/// Returns the odd part of the values about the middle of the targets, with one value per pair of
-/// targets and the same variance as the values.
+/// Odd part about the middle of the targets, one value per pair of targets, with the variance of
+/// `values`.
 std::vector<double> odd(const std::vector<double>& values) {
   std::vector<double> out;
   for (std::size_t i = 0; i < values.size() / 2; ++i)
@@ -258,15 +243,15 @@ double square_sum(const std::vector<double>& values) {
   return sum;
 }
 
-/// Returns how all passes of direction - must be turned to agree with those of direction +.
+/// Returns how direction - must be turned to agree with direction +.
 Turned turned_direction(const Curve& minus, const Curve& plus, const Scatter& scatter, double step,
                         bool rotary) {
-  constexpr double least_travel = 1e-3;  // smallest range of the targets that is examined, m
+  constexpr double least_travel = 1e-3;  // smallest range of targets, m
   constexpr double ratio = 9.0, ratio_of_odd = 5.0, chance = 1e-5;
   const Pair p = in_common(minus, plus);
   const std::size_t n = p.at.size();
   if (n < fewest_compared || scatter.freedom <= 0.0) return Turned::not_at_all;
-  // Targets within a small travel are chosen to show the reversal, not the pitch error.
+  // Targets within a small travel show the reversal, not the pitch error.
   if (!rotary && !(p.at.back() - p.at.front() > least_travel)) return Turned::not_at_all;
   const double s = std::max(std::sqrt(scatter.squares / scatter.freedom), step);
   const double variance = s * s * (1.0 / minus.depth() + 1.0 / plus.depth()) / 4.0;
@@ -292,8 +277,7 @@ Turned turned_direction(const Curve& minus, const Curve& plus, const Scatter& sc
   return sign ? Turned::sign : Turned::not_at_all;
 }
 
-/// Returns the means of all passes of the direction of `own` except `own`. It is used for
-/// directions with two passes.
+/// Requires exactly two passes.
 Curve the_other(const Stroke& own, const std::vector<Stroke>& strokes) {
   Curve other;
   for (const Stroke& s : strokes)
@@ -301,8 +285,8 @@ Curve the_other(const Stroke& own, const std::vector<Stroke>& strokes) {
   return other;
 }
 
-/// Whether `own` differs more than `other` from the curve of the opposite direction, where both are
-/// passes of one direction that contradict each other.
+/// Whether `own` differs more from the opposite direction than `other`, a pass of the same
+/// direction.
 bool the_farther(const Curve& own, const Curve& other, const Curve& opposite) {
   const auto apart = [&](const Curve& one) {
     Pair p = in_common(one, opposite);
@@ -314,8 +298,7 @@ bool the_farther(const Curve& own, const Curve& other, const Curve& opposite) {
   return apart(own) >= apart(other);
 }
 
-/// Whether the curves of both directions are opposed including their slopes. If both have the same
-/// slope, they were not turned by mistake.
+/// Whether the curves are opposed including slopes. Curves with equal slopes were not turned.
 bool opposed(const Pair& p, Turned how, double noise) {
   const auto n = static_cast<double>(p.a.size());
   double sum = 0.0, squares = 0.0;
@@ -340,8 +323,8 @@ void turned_passes(const Passes& passes, bool rotary, std::vector<Finding>& out)
     const Curve others = by_direction[own.direction].without(own);
     Scatter scatter;
     scatter.take(others.scatter());
-    // The scatter of the other direction is added only if these passes are too few, because the
-    // pass of the same run in the other direction may be wrong too.
+    // The scatter of the other direction, in which the same run may be wrong too, is added only if
+    // these passes are too few.
     if (scatter.freedom < static_cast<double>(fewest_compared))
       for (const auto& [direction, curve] : by_direction)
         if (direction != own.direction) scatter.take(curve.scatter());

@@ -12,17 +12,15 @@
 namespace nonio::reading {
 namespace {
 
-/// Readings by run and target, for targets that every run contains: the mean of both directions,
-/// and their difference.
 struct Grid {
-  std::vector<std::uint32_t> runs;        ///< runs in the order in which they were begun
-  std::vector<double> targets;            ///< targets in ascending order, m or rad
+  std::vector<std::uint32_t> runs;        ///< in the order of measurement
+  std::vector<double> targets;            ///< ascending, m or rad
   std::vector<std::vector<double>> mean;  ///< mean of both directions, [run][target]
-  /// Difference of the directions, [run][target]; empty with one direction.
+  /// [run][target]; empty with one direction
   std::vector<std::vector<double>> reversal;
 };
 
-/// Returns the last reading of a pass at each of these targets. The pass must contain every target.
+/// Returns the last reading at each target. All targets must occur.
 std::vector<double> values_at(const Stroke& s, const std::vector<double>& targets) {
   std::vector<double> out;
   out.reserve(targets.size());
@@ -72,7 +70,6 @@ double square_mean(const std::vector<double>& values) {
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
-/// Mean of some runs at each target, and the sum of squares about it.
 struct Group {
   std::vector<double> mean;
   double squares = 0.0, freedom = 0.0;
@@ -85,16 +82,15 @@ struct Group {
     for (std::size_t r = from; r < to; ++r)
       for (std::size_t i = 0; i < mean.size(); ++i)
         squares += (curves[r][i] - mean[i]) * (curves[r][i] - mean[i]);
-    // Each run has two degrees of freedom fewer, because its line is subtracted.
+    // Without the line of each run, which reduces the degrees of freedom by two.
     freedom = (n - 1.0) * (static_cast<double>(mean.size()) - 2.0);
   }
 };
 
-/// Factor that lowers limits for running sums, because these differ from a direct computation by up
-/// to 1e-6 of their value. A finding is computed again directly.
+/// Factor for limits of running sums, whose errors reach 1e-6. Findings are computed directly.
 constexpr double nearly = 1.0 - 1e-6;
 
-/// Returns the sums of squares of the first k curves about their mean, for k = 0, 1, 2, ...
+/// Returns the sum of squares of the first k curves about their mean, for k = 0, 1, 2, ...
 template <class Iterator>
 std::vector<double> growing_squares(Iterator from, Iterator to) {
   std::vector<double> out{0.0};
@@ -108,7 +104,6 @@ std::vector<double> growing_squares(Iterator from, Iterator to) {
   return out;
 }
 
-/// Tests for every division of the curves into two groups whether they may be two different curves.
 class Parted {
  public:
   explicit Parted(const std::vector<std::vector<double>>& curves)
@@ -119,11 +114,10 @@ class Parted {
     for (const auto& curve : curves) add(curve, all_);
   }
 
-  /// Moves curves[k - 1] to the first group; call it for k = 1, 2, ... in this order.
+  /// Must be called for k = 1, 2, ... with curves[k - 1].
   void take(const std::vector<double>& curve) { add(curve, first_), ++taken_; }
 
-  /// Whether the two groups may be different curves. The curves in `skipped` are between the groups
-  /// and belong to neither.
+  /// `skipped`: curves that belong to neither group.
   bool may_be_two(std::span<const std::vector<double>> skipped, double least_scatter,
                   double squares, double of_curve) const {
     const std::size_t behind = before_.size() - 1 - taken_ - skipped.size();
@@ -151,11 +145,9 @@ class Parted {
   std::size_t taken_ = 0;
 };
 
-/// Reports the first run from which on the curve differs: the runs before it agree with each other,
-/// and so do those from it on, but the two groups do not. A straight line in each curve is ignored.
-/// A gradual change is not reported, because the runs of a group then differ too: for even
-/// steps the squared distance of the groups is at most 18 times the variance in them, less than
-/// `squares`.
+/// Reports the first run from which on the curve, without its line, differs. The runs of each group
+/// must agree with each other. A gradual change is not reported: with even steps, the squared
+/// distance of the groups is at most 18 times the variance in them, less than `squares`.
 void two_curves(const Grid& grid, double step, Quantity deviation, std::vector<Finding>& out) {
   constexpr std::size_t fewest_targets = 6, fewest_runs = 4;
   constexpr double squares = 25.0, of_curve = 0.1;
@@ -163,7 +155,7 @@ void two_curves(const Grid& grid, double step, Quantity deviation, std::vector<F
   std::vector<std::vector<double>> curves = grid.mean;
   for (auto& curve : curves) take_line_out(grid.targets, curve);
   const std::size_t n = curves.size();
-  // a run whose rows are from both curves belongs to neither group
+  // A run whose rows are from both curves belongs to neither group.
   for (const std::size_t gap : {0U, 1U}) {
     Parted parted(curves);
     parted.take(curves.front());
@@ -189,7 +181,6 @@ void two_curves(const Grid& grid, double step, Quantity deviation, std::vector<F
   }
 }
 
-/// Returns the sum of squares of the values from..to (exclusive) about their mean.
 double about_mean(const std::vector<double>& values, std::size_t from, std::size_t to) {
   double mean = 0.0, sum = 0.0;
   for (std::size_t i = from; i < to; ++i) mean += values[i] / static_cast<double>(to - from);
@@ -203,7 +194,6 @@ double mean_of(const std::vector<double>& values, std::size_t from, std::size_t 
   return mean;
 }
 
-/// Returns the jump of the curve between two targets in excess of the slopes on both sides.
 double jump(const Grid& grid, const std::vector<double>& curve, std::size_t at) {
   const auto slope = [&](std::size_t i) {
     return (curve[i] - curve[i - 1]) / (grid.targets[i] - grid.targets[i - 1]);
@@ -219,8 +209,8 @@ std::vector<double> largest_so_far(Iterator from, Iterator to) {
   return out;
 }
 
-/// Reports a target from which on the reversal has another constant value, and where the curve
-/// jumps more than anywhere else.
+/// Reports a target from which on the reversal has another constant value, with the largest jump of
+/// the curve.
 void two_reversals(const Grid& grid, double step, Quantity deviation, std::vector<Finding>& out) {
   constexpr std::size_t fewest_side = 3, fewest_targets = 8, fewest_runs = 3;
   constexpr double sigmas = 8.0, of_reversal = 0.15, jumps = 2.5, line = 3.0;
@@ -245,7 +235,7 @@ void two_reversals(const Grid& grid, double step, Quantity deviation, std::vecto
   const auto up_to = largest_so_far(jumping.begin(), jumping.end());
   const auto from_end = largest_so_far(jumping.rbegin(), jumping.rend());
   for (std::size_t at = fewest_side; at + fewest_side <= n; ++at) {
-    // Tested first, because it excludes nearly all targets without a sum over the others.
+    // This test excludes nearly all targets without a sum over the others.
     const double elsewhere = std::max(up_to[at - 2], from_end[n - at - 3]);
     if (jumping[at] < jumps * elsewhere) continue;
     const double before = mean_of(reversal, 0, at), behind = mean_of(reversal, at, n);

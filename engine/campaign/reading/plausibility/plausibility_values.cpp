@@ -19,9 +19,8 @@ double middle_value(std::vector<double> values) {
   return *middle;
 }
 
-/// Mean of the other passes of a direction at the targets of one pass, and the scatter of their
-/// readings about it after subtraction of a shift of each pass. `mean` is empty if fewer than two
-/// passes have the same targets.
+/// Mean of the other passes, and scatter without the shift of each pass. `mean` is empty if fewer
+/// than two passes have the same targets.
 struct Others {
   std::vector<double> mean;
   double count = 0.0, scatter = 0.0;
@@ -52,8 +51,7 @@ Others others_of(const Stroke& own, const std::vector<Stroke>& strokes) {
   return others;
 }
 
-/// Sums over all passes of a direction with the same targets, from which the mean and scatter of
-/// all but one of them are computed approximately.
+/// Computes mean and scatter of all passes but one approximately from sums.
 class Alike {
  public:
   void add(const Stroke& s) {
@@ -61,10 +59,8 @@ class Alike {
     for (std::size_t i = 0; i < mean_.size(); ++i) mean_[i].add(s.deviation[i]);
   }
 
-  /// Adds the squares of a pass. Call it after all passes were added.
   void add_scatter(const Stroke& s) { squares_ += squares_of(s); }
 
-  /// Whether each reading of `own` may equal the mean of the other passes within `tolerance`.
   bool may_be_mean(const Stroke& own, double tolerance) const {
     if (count() < 3.0) return false;
     for (std::size_t i = 0; i < mean_.size(); ++i)
@@ -73,7 +69,6 @@ class Alike {
     return true;
   }
 
-  /// Returns the scatter of the other passes, as Others::scatter.
   double scatter_without(const Stroke& own) const {
     const double others = count() - 1.0, free = static_cast<double>(mean_.size()) - 1.0;
     const double squares = squares_ - squares_of(own) * (1.0 + 1.0 / others);
@@ -83,7 +78,6 @@ class Alike {
   double count() const { return mean_.front().count; }
 
  private:
-  /// Returns the sum of squares of a pass about the means, after subtraction of its shift.
   double squares_of(const Stroke& s) const {
     double sum = 0.0, squares = 0.0;
     for (std::size_t i = 0; i < mean_.size(); ++i) {
@@ -106,9 +100,8 @@ ByTargets alike_of(const std::vector<Stroke>& strokes) {
   return alike;
 }
 
-/// Reports a pass that equals the mean of all others of its direction in every digit, such as the
-/// last block of a spreadsheet. By chance a reading equals the mean with probability step / (s
-/// sqrt(2 pi (1 + 1/k))), where s is the scatter of the k other passes.
+/// Reports a pass that equals the mean of all others of its direction in every digit. By chance, a
+/// reading does so with probability step / (s sqrt(2 pi (1 + 1/k))); s: scatter of the k others.
 void pass_of_means(const std::vector<Stroke>& strokes, double step, Quantity deviation,
                    std::vector<Finding>& out) {
   constexpr double chance = 1e-7, at_most = 1.0 + 1e-6;
@@ -122,7 +115,6 @@ void pass_of_means(const std::vector<Stroke>& strokes, double step, Quantity dev
   for (const Stroke& own : strokes) {
     const std::size_t n = own.target.size();
     if (n < fewest) continue;
-    // computed directly only if the sums do not exclude such a pass
     const Alike& all = alike.at({own.line, own.direction, own.target});
     if (!all.may_be_mean(own, at_most * 0.51 * step) ||
         by_chance(at_most * all.scatter_without(own), all.count() - 1.0, n) > chance)
@@ -143,8 +135,8 @@ void pass_of_means(const std::vector<Stroke>& strokes, double step, Quantity dev
   }
 }
 
-/// Reports a value that occurs at several targets, far from the other readings of these targets,
-/// such as 0 or 999 in place of a missing reading.
+/// Reports a value at several targets that differs from their other readings, such as 999 for a
+/// missing reading.
 void marks(const std::vector<Stroke>& strokes, double step, Quantity deviation,
            std::vector<Finding>& out) {
   constexpr double sigmas = 10.0, steps = 5.0, mostly = 0.8;
@@ -162,7 +154,7 @@ void marks(const std::vector<Stroke>& strokes, double step, Quantity deviation,
   if (apart.empty()) return;
   constexpr double of_normal = 1.4826;  // factor from the median of |x| to the standard deviation
   const double far = std::max(sigmas * of_normal * middle_value(apart), steps * step);
-  std::map<double, std::set<double>> targets;  // targets at which each value occurs
+  std::map<double, std::set<double>> targets;
   std::map<double, double> outside, all;
   for (const auto& [at, values] : cells) {
     if (values.size() < fewest) continue;
@@ -185,17 +177,16 @@ void marks(const std::vector<Stroke>& strokes, double step, Quantity deviation,
   }
 }
 
-/// Reports a reading whose distance from the median of its target (of all readings, if the target
-/// has fewer than three) is more than 0.3 mm or 600 arcsec and more than 30 times the range of the
-/// readings. The range excludes a tenth of the readings at each end. A table of means would contain
-/// a tenth of that error or more.
+/// Reports a reading that differs from the median of its target (of all readings, if the target has
+/// fewer than three) by more than 0.3 mm or 600 arcsec and 30 times the range of the readings
+/// without a tenth at each end. A table of means would contain a tenth of this error or more.
 void far_off(const Observations& o, std::vector<Finding>& out) {
   constexpr double ranges = 30.0, length = 300e-6, angle = 600.0 / arcsec_per_rad;
   constexpr std::size_t fewest_readings = 8, fewest_here = 3;
   if (o.size() < fewest_readings) return;
   std::vector<double> all = o.deviation;
   std::sort(all.begin(), all.end());
-  // Number of readings at each end that may be misreadings
+  // Readings at each end that may be misreadings.
   const std::size_t tail = all.size() / 10;
   const double range = all[all.size() - 1 - tail] - all[tail], middle = all[all.size() / 2];
   const auto& axis = o.axes.front();
@@ -222,8 +213,8 @@ void far_off(const Observations& o, std::vector<Finding>& out) {
   }
 }
 
-/// Reports exchanged targets: passes in which one pair of adjacent targets contradicts the
-/// direction of all other steps, if the pair is the same in all such passes.
+/// Reports passes in which one pair of adjacent targets, the same in each, contradicts the
+/// direction.
 void targets_against_order(const std::vector<Stroke>& strokes, Quantity position,
                            std::vector<Finding>& out) {
   constexpr std::size_t fewest_targets = 5, fewest_passes = 3;

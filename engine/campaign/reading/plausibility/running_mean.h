@@ -5,8 +5,8 @@
 
 namespace nonio::reading {
 
-/// Mean of values and the sum of squares about it. A value can be removed again, so that a pass is
-/// compared with all others in a time that does not depend on their number.
+/// Mean from which values can be removed, for comparison of each pass with all others in linear
+/// time.
 struct RunningMean {
   double count = 0.0, mean = 0.0, squares = 0.0;
 
@@ -17,7 +17,6 @@ struct RunningMean {
     squares += off * (value - mean);
   }
 
-  /// Returns the mean and squares without a value that was added.
   RunningMean without(double value) const {
     constexpr double rounding = 1e-12;
     if (count < 1.5) return {};

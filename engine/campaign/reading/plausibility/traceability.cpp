@@ -6,9 +6,8 @@
 namespace nonio::reading {
 namespace {
 
-/// An instrument or sensor, as a finding names it.
 struct Calibrated {
-  std::string key;  ///< name in findings: "instrument", "sensor pressure"
+  std::string key;  ///< "instrument" or "sensor pressure"
   const std::string &serial, &calibrated, &valid_until;
 };
 
@@ -20,7 +19,7 @@ std::vector<Calibrated> all_of(const Campaign& c) {
   return all;
 }
 
-/// Returns the same day `years` later; days are texts YYYY-MM-DD, whose order is that of time.
+/// Days are texts YYYY-MM-DD.
 std::string later(const std::string& day, int years) {
   int year = 0;
   std::from_chars(day.data(), day.data() + 4, year);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // PTB's schema 3.3.0, including its order of elements. Template texts have a language; names,
 // symbols and texts of the manifest do not.
 #include "dcc.h"
@@ -17,8 +16,7 @@
 namespace nonio::dcc {
 namespace {
 
-/// Coverage probability of every U, for k = 2 and a normal distribution, as printed in
-/// certificates.
+/// Coverage probability of k = 2 with a normal distribution, as printed in certificates.
 constexpr const char* coverage_probability = "0.95";
 
 std::string number_text(double si, Quantity q) {
@@ -27,7 +25,6 @@ std::string number_text(double si, Quantity q) {
   return {buffer.data(), end.ptr};
 }
 
-/// The value and U rounded as printed; without U, the shortest exact number.
 RoundedResult result_text(double si, std::optional<double> U, Quantity q) {
   if (U)
     if (const auto rounded = rounded_result(printed(si, q), printed(*U, q))) return *rounded;
@@ -202,7 +199,7 @@ class Writer {
     xml_.close();
   }
 
-  /// Decisions with the text of the decision rule. Indeterminate decisions have no status.
+  /// Indeterminate decisions have no status.
   void statements() {
     if (about_.decided.empty() && about_.statements.empty()) return;
     xml_.open("dcc:statements");
@@ -362,12 +359,11 @@ class Writer {
     xml_.close();
   }
 
-  /// One column of a list; all columns have the same rows.
   struct Column {
     std::string name, ref_type;
     Quantity quantity;
     std::vector<double> values;
-    std::vector<double> U;  ///< one per value; empty: none
+    std::vector<double> U;
     double k = 2.0;
   };
 
@@ -410,7 +406,8 @@ class Writer {
     xml_.close();
   }
 
-  /// Complete columns share one list; a column with gaps gets a separate list of its existing rows.
+  /// Complete columns are in one list; a column with gaps gets a separate list of its existing
+  /// rows.
   void table(const PointTable& points) {
     std::vector<Column> whole;
     std::vector<std::vector<Column>> parts;
@@ -445,7 +442,6 @@ class Writer {
     return out;
   }
 
-  /// Writes a curve over an axis, with U at each position.
   void series(const Series& s) {
     if (about_.only_with_U && s.U.size() != s.value.size()) return;
     Column place{s.over, "basic_nominalValue", s.position_quantity, s.position, {}, 2.0};

@@ -11,7 +11,7 @@
 /// A Digital Calibration Certificate (PTB's schema 3.3.0) as XML, to be signed by the host.
 namespace nonio::dcc {
 
-/// One text in each language, ISO 639-1; a name or a symbol has no language ("").
+/// One text in each language, ISO 639-1; a name or a symbol has the language "".
 using Text = std::vector<std::pair<std::string, std::string>>;
 
 struct Statement {
@@ -19,14 +19,13 @@ struct Statement {
   Text says;
 };
 
-/// An influence quantity of a measurement: lowest and highest reading.
+/// Lowest and highest reading of an influence quantity.
 struct Condition {
   std::string ref_type, unit;  ///< refType, and unit in D-SI
   Text name;
-  std::string low, high;  ///< numbers, as printed
+  std::string low, high;  ///< as printed
 };
 
-/// A statement of conformity as text.
 struct Decided {
   Text name;       ///< the requirement: "A, X: limit 12 um"
   Text says;       ///< the result: "conforms"
@@ -43,11 +42,11 @@ struct Words {
 };
 
 struct About {
-  std::string number;                  ///< number of the certificate
-  std::vector<std::string> languages;  ///< languages of the certificate, ISO 639-1
+  std::string number;
+  std::vector<std::string> languages;  ///< ISO 639-1
   std::string location;                ///< place of calibration: "customer", as in the schema
   std::string software, release;       ///< name and version of the program
-  /// Omit values without U, as in the printed certificate.
+  /// Whether values without U are omitted, as in the printed certificate.
   bool only_with_U = false;
   std::map<std::string, Words> words{};           ///< keys are "plugin of measurement"
   std::map<std::string, Text> meaning{};          ///< meaning of values and curves, by name
@@ -56,20 +55,19 @@ struct About {
   Text register_name{};                           ///< name of the register's identity
   Text released{};                                ///< how it was approved, if no person did
   std::vector<Statement> statements{};
-  Text rule{};         ///< decision rule
-  std::string norm{};  ///< name of the standard of the rule
+  Text rule{};
+  std::string norm{};  ///< standard of the decision rule
   std::vector<Decided> decided{};
 };
 
-/// Returns the name of an evaluation in a DCC, by which `nonio certificate verify` finds it:
-/// "iso230-2 of X".
+/// Name of an evaluation in a DCC, by which `nonio certificate verify` finds it: "iso230-2 of X".
 std::string name_of(const Results::Analysed&);
 
 /// Returns the XML. The input must contain what the schema requires: laboratory, customer, item,
 /// dates, at least one result.
 std::string write(const OutputInput&, const About&);
 
-/// Whether the text is a country code of ISO 3166-1: "IT".
+/// ISO 3166-1, such as "IT".
 bool is_country(std::string_view);
 
 }  // namespace nonio::dcc

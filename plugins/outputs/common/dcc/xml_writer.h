@@ -11,13 +11,13 @@
 
 namespace nonio::dcc {
 
-/// Writes XML sequentially, elements indented by one blank per level. Text is escaped, and
-/// characters that XML does not allow are omitted.
+/// Writes XML sequentially, indented by one blank per level. Text is escaped, and characters that
+/// XML does not allow are omitted.
 class XmlWriter {
  public:
   XmlWriter() : out_("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n") {}
 
-  /// Attributes without a value are omitted.
+  /// Attributes with an empty value are omitted.
   using Attributes = std::initializer_list<std::pair<std::string_view, std::string_view>>;
 
   void open(std::string_view name, Attributes attributes = {}) {

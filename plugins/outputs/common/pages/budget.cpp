@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// The uncertainty budget of a measurement: inputs and their contributions to each result.
 #include <algorithm>
 #include <cmath>
 
@@ -14,13 +12,12 @@ using namespace reports;
 
 namespace {
 
-/// U with two significant digits; "0" unless u > 0.
 std::string small(const Source& source, double u, Quantity q) {
   if (!(u > 0.0)) return "0";
   return printed_result(u, u, q, source.language()).U;
 }
 
-/// Unit for short uncertainties: that of deviations; for a pure number, 10^-6.
+/// The unit of deviations; for a pure number, 10^-6.
 struct ShortUnit {
   Quantity quantity;
   double factor = 1.0;
@@ -41,7 +38,7 @@ std::string part(const Source& source, double u, double whole, const ShortUnit& 
   return small(source, unit.factor * u, unit.quantity);
 }
 
-/// The source in words for customers, without repetition: "data of the machine", not
+/// In words for customers, without repetition: "data of the machine", not
 /// "machine.axes.X.expansion_um_per_m_K".
 std::string source_text(const Source& source, const Contribution& c) {
   const Wording& w = source.words;
@@ -57,7 +54,7 @@ std::string source_text(const Source& source, const Contribution& c) {
     else if (is_key && dot != part.npos)
       part = w.get_or("budget.source_of." + part.substr(0, dot), w.get("budget.source_of.options"));
     else if (is_key)
-      continue;  // other keys are omitted
+      continue;
     if (std::find(parts.begin(), parts.end(), part) == parts.end()) parts.push_back(part);
   }
   std::string all;
@@ -103,7 +100,6 @@ Table inputs(const Source& source, const Results::Analysed& a, const Uncertainty
   return table;
 }
 
-/// A table row; results with equal uncertainties share it: "A, A↑, A↓".
 struct Row {
   std::string names;
   const UncertaintyBudget::Result* result;

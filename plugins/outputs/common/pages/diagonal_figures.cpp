@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Figures of diagonals before and after a compensation, of a line in both states, and of the plane
 // with exaggerated errors.
 #include <algorithm>
@@ -69,7 +68,7 @@ Plot diagonals_plot(const Source& source, const Diagonals& d) {
          {std::pair{before->D1, style.plus}, {before->D2, style.minus}})
       plot.curves.push_back(curve_of(*before->target, *column, pale(colour), Dash::dotted,
                                      column->name + ", " + earlier.measurement));
-    break;  // the first set is the original state
+    break;
   }
   plot.curves.push_back(curve_of(*d.target, *d.D1, style.plus, Dash::solid, "D1"));
   plot.curves.push_back(curve_of(*d.target, *d.D2, style.minus, Dash::dashed, "D2"));
@@ -78,7 +77,6 @@ Plot diagonals_plot(const Source& source, const Diagonals& d) {
   return plot;
 }
 
-/// A column of step diagonals at whole steps, with its style.
 struct DrawnPass {
   const PointTable::Column* column;
   Colour colour;
@@ -100,7 +98,7 @@ std::vector<DrawnPass> passes_of(const Source& source, const Results::Analysed& 
   return out;
 }
 
-/// The step diagonals of a volume at whole steps; those before the compensation are pale.
+/// Step diagonals before the compensation are pale.
 std::optional<Plot> steps_plot(const Source& source, const Results::Analysed& a) {
   const PointTable::Column* target = a.evaluation.points.column("target");
   const auto passes = passes_of(source, a);
@@ -120,7 +118,7 @@ std::optional<Plot> steps_plot(const Source& source, const Results::Analysed& a)
     for (const DrawnPass& pass : drawn)
       plot.curves.push_back(curve_of(*before, *pass.column, pale(pass.colour), Dash::dotted,
                                      pass.column->name + ", " + earlier.measurement));
-    break;  // the first set is the original state
+    break;
   }
   for (const DrawnPass& pass : passes) {
     plot.curves.push_back(
@@ -136,7 +134,6 @@ const Series* series_of(const Evaluation& e, std::string_view name) {
   return nullptr;
 }
 
-/// Grid lines of the plane with exaggerated errors.
 class Plane {
  public:
   Plane(const Series& f, const Series& g, double k) : f_(f), g_(g), k_(k) {

@@ -24,7 +24,6 @@ std::vector<double> in_print(const std::vector<double>& si, Quantity q) {
   return out;
 }
 
-/// Columns of the first analysis that contains all required ones.
 class Points {
  public:
   Points(const Measured& m, std::initializer_list<std::string_view> wanted) {
@@ -40,12 +39,10 @@ class Points {
     }
   }
   explicit operator bool() const { return table_ != nullptr; }
-  /// The column in printed units; empty if missing.
   std::vector<double> operator[](std::string_view name) const {
     const auto* c = table_ != nullptr ? table_->column(name) : nullptr;
     return c != nullptr ? in_print(c->values, c->quantity) : std::vector<double>();
   }
-  /// Whether this analysis has a result with this name; figures only show such results.
   bool result(std::string_view name) const {
     return values_ != nullptr && std::any_of(values_->begin(), values_->end(),
                                              [&](const Value& v) { return v.name == name; });
@@ -67,7 +64,7 @@ std::vector<double> combine(const std::vector<double>& a, const std::vector<doub
   return out;
 }
 
-/// Title of a plot; the variant "_own" without a standard's name if its plan was not followed.
+/// Uses the variant "_own" without a standard's name if its plan was not followed.
 std::string title_of(const Source& source, const Measured& m, const std::string& key,
                      Wording::Places places = {}) {
   const bool named =
@@ -88,7 +85,6 @@ bool along_diagonal(const Measured& m) {
   return m.measurement.kind == "diagonal" && m.observations.axes.size() > 1;
 }
 
-/// The axis of the measurement; for a diagonal, that of its first column.
 std::string axis_of(const Measured& m) {
   const auto& axes = m.observations.axes;
   return m.measurement.axis.empty() && !axes.empty() ? axes.front().axis : m.measurement.axis;
@@ -109,7 +105,6 @@ Plot empty_plot(const Source& source, const Measured& m, std::string title) {
   return plot;
 }
 
-/// Adds the range of some lines as a dimension of the figure.
 void add_span(Plot& plot, const char* name, std::initializer_list<std::vector<double>> lines) {
   double low = INFINITY, high = -INFINITY;
   for (const auto& line : lines)
@@ -133,7 +128,6 @@ Curve mean_curve(const Source& source, std::vector<double> x, std::vector<double
 
 using Run = std::vector<std::pair<double, double>>;
 
-/// Readings by direction and run, sorted by position; along a diagonal from its start.
 std::map<std::pair<bool, std::uint32_t>, Run> runs_of(const Measured& m) {
   std::map<std::pair<bool, std::uint32_t>, Run> runs;
   const Observations& o = m.observations;
@@ -156,8 +150,8 @@ std::map<std::pair<bool, std::uint32_t>, Run> runs_of(const Measured& m) {
   return runs;
 }
 
-/// Draws bands instead of lines for very many runs, because single lines would merge and make the
-/// file several megabytes large.
+/// Bands instead of lines for very many runs: single lines would merge and make the file several
+/// megabytes large.
 void add_ranges(const Source& source, const Measured& m, Plot& plot) {
   std::map<std::pair<bool, double>, std::pair<double, double>> ranges;
   for (const auto& [key, run] : runs_of(m))
@@ -182,8 +176,7 @@ void add_ranges(const Source& source, const Measured& m, Plot& plot) {
   }
 }
 
-/// Color of a run, from dark to light, so that a drift is visible as an order, also with color
-/// blindness and in grayscale.
+/// Colors from dark to light show a drift as an order, also with color blindness and in grayscale.
 Colour colour_of_run(std::size_t place, std::size_t count) {
   constexpr Colour scale[] = {{0.27F, 0.00F, 0.33F},
                               {0.23F, 0.32F, 0.55F},
@@ -241,7 +234,7 @@ std::optional<Plot> runs_plot(const Source& source, const Measured& m) {
   return plot;
 }
 
-/// The coverage factor of the edition from R+ = 2 k s+; 0 if there is no scatter.
+/// Coverage factor of the edition from R+ = 2 k s+; 0 without scatter.
 double coverage_factor(const Points& points) {
   for (const auto& [R, s] : {std::pair("R+", "s+"), std::pair("R-", "s-")}) {
     const auto range = points[R], scatter = points[s];
@@ -372,7 +365,6 @@ void series_plots(const Source& source, const Measured& m, std::vector<Plot>& pl
   for (const auto* a : m.analyses)
     for (const Series& s : a->evaluation.series) {
       if (source.certificate && s.U.size() != s.value.size()) continue;
-      // The name "line 1", as in the table.
       const bool numbered = s.name.starts_with("line_");
       const std::string name =
           numbered ? source.words.get("column.line") + " " + s.name.substr(5) : symbol(s.name);
@@ -426,7 +418,7 @@ void add_plots(const Source& source, const Measured& m, Blocks& blocks) {
   if (m.measurement.kind == "circle") return add_path(source, m, blocks);
   if (is_heat(m.measurement)) return add_heat(source, m, blocks);
   std::vector<Plot> plots;
-  const bool circle = m.measurement.kind == "ball-centres";  // has coordinates, not deviations
+  const bool circle = m.measurement.kind == "ball-centres";
   const auto add = [&](std::optional<Plot> plot) {
     if (plot) plots.push_back(std::move(*plot));
   };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Figures of thermal tests over time with temperatures, spindle error motions on polar rings, and
-// length errors between their limits.
+// Figures of thermal tests over time with temperatures, of spindle error motions in polar plots,
+// and of length errors between their limits.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -25,7 +24,6 @@ const Results::Analysed* heat_of(const Measured& m) {
   return nullptr;
 }
 
-/// Sets color and dash of curve `number` in a figure.
 void style_of(const Source& source, std::size_t number, Curve& c) {
   const Style& s = source.look.style;
   const Colour colours[] = {s.plus, s.minus, s.accent, s.muted};
@@ -35,7 +33,6 @@ void style_of(const Source& source, std::size_t number, Curve& c) {
   c.width = 1.1;
 }
 
-/// Maximum number of points of a curve; each is a reading.
 constexpr std::size_t most_points = 1500;
 
 Plot over_time(const Source& source, const char* title, const std::string& y_title) {
@@ -53,7 +50,6 @@ double first_time(const Observations& o) {
   return first;
 }
 
-/// Change of each sensor, or of each target and direction, since its first reading.
 Plot changes(const Source& source, const Measured& m) {
   const Observations& o = m.observations;
   Plot plot =
@@ -89,7 +85,6 @@ Plot changes(const Source& source, const Measured& m) {
   return plot;
 }
 
-/// Curves over time: growth and its fit, added to `into` if their unit is that of deviations.
 std::optional<Plot> fits(const Source& source, const Results::Analysed& a, Plot* into) {
   Plot own = over_time(
       source, "plot.growth",
@@ -142,7 +137,6 @@ std::optional<Plot> temperatures_plot(const Source& source, const Observations& 
   return plot;
 }
 
-/// All turns of a sensor about the center used by the analysis, and the synchronous motion.
 Plot motion(const Source& source, const Measured& m, const Series& sync) {
   const Observations& o = m.observations;
   const std::string name = sync.name.substr(sync.name.find('_') + 1);
@@ -160,7 +154,7 @@ Plot motion(const Source& source, const Measured& m, const Series& sync) {
       points.emplace_back(t, r);
     }
     mid /= n, a /= n, b /= n;
-    if (name == "Z") a = b = 0.0;  // axial motion once per turn is an error
+    if (name == "Z") a = b = 0.0;  // axial motion once per revolution is an error
     for (auto& [t, r] : points) {
       r -= mid + a * std::cos(t) + b * std::sin(t);
       largest = std::max(largest, std::fabs(r));
@@ -202,7 +196,6 @@ std::vector<Plot> motions(const Source& source, const Measured& m) {
   return out;
 }
 
-/// Length errors over length, between their limits.
 std::optional<Plot> lengths_plot(const Source& source, const Measured& m) {
   const Observations& o = m.observations;
   const PointTable& points = heat_of(m)->evaluation.points;

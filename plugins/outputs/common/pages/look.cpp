@@ -18,9 +18,8 @@ std::string joined(const Names& names) {
   return out;
 }
 
-constexpr std::size_t longest_address = 200;  // limit for a QR code readable from paper
+constexpr std::size_t longest_address = 200;  // limit for a QR code that can be read from paper
 
-/// Reads the keys of one file and stores the first error.
 class Keys {
  public:
   Keys(const Settings& settings, std::string file) : settings_(settings), file_(std::move(file)) {}
@@ -35,7 +34,7 @@ class Keys {
     return settings_.has(key) ? text(key) : std::string();
   }
 
-  /// An https URL to which a fragment can be added; empty if not given.
+  /// An https URL to which a fragment can be added; empty if the key is missing.
   std::string address_if_given(const char* key) {
     const std::string address = text_if_given(key);
     constexpr std::string_view also = "-._~:/?[]@!$&'()*+,;=%";
@@ -88,7 +87,6 @@ class Keys {
     return {part(16), part(8), part(0)};
   }
 
-  /// Call after all keys were read. Returns the first error, or an error for an unknown key.
   Expected<void> done() const {
     if (!error_.message.empty()) return fail(error_);
     for (const auto& [key, value] : settings_.values)

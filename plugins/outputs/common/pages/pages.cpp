@@ -55,7 +55,6 @@ std::string instrument_U(const Source& source) {
   return text;
 }
 
-/// Removes separators of empty parts of a line: "worn-screw · " becomes "worn-screw".
 std::string without_gaps(std::string line) {
   constexpr std::string_view between = " · ";
   const std::string twice = std::string(between) + std::string(between);
@@ -67,8 +66,8 @@ std::string without_gaps(std::string line) {
 
 namespace {
 
-/// Findings, warnings first. The same id from two analyses is listed once; several findings of one
-/// analysis with the same id are kept.
+/// Warnings first. The same id from two analyses is listed once; several findings of one analysis
+/// with the same id are kept.
 std::vector<const Finding*> findings_of(const std::vector<const Results::Analysed*>& analyses) {
   std::vector<const Finding*> out;
   for (const auto* analysed : analyses) {
@@ -86,7 +85,6 @@ std::vector<const Finding*> findings_of(const std::vector<const Results::Analyse
   return out;
 }
 
-/// Text such as " Material 19.8 to 20.3 °C."; empty without readings.
 std::string temperatures(const Source& source, const char* key, const std::vector<double>& values) {
   double low = 1e9, high = -1e9;
   for (const double v : values)
@@ -98,7 +96,6 @@ std::string temperatures(const Source& source, const char* key, const std::vecto
   return " " + source.words.get(key, {{"from", text(low)}, {"to", text(high)}});
 }
 
-/// Text such as " Evaluated: 8 of 9 targets."; empty if none was omitted.
 std::string evaluated(const Source& source, const Measured& m) {
   double targets = 0, left_out = 0;
   for (const Results::Analysed* a : m.analyses) {
@@ -120,7 +117,6 @@ std::string evaluated(const Source& source, const Measured& m) {
 
 }  // namespace
 
-/// First and second axis of a circle, such as "XY".
 std::string plane_of(const Measurement& m) {
   std::string first, second;
   for (const auto& [axis, from] : m.from) {
@@ -130,7 +126,6 @@ std::string plane_of(const Measurement& m) {
   return first + second;
 }
 
-/// Description of a circular test.
 std::string circle_test(const Source& source, const Measured& m) {
   const Observations& o = m.observations;
   bool plus = false, minus = false;
@@ -224,7 +219,6 @@ std::vector<double> along_line(const Measured& m) {
   return along;
 }
 
-/// Description of the test as the readings show it.
 std::string test_of(const Source& source, const Measured& m) {
   const Observations& o = m.observations;
   if (o.size() == 0 || (o.axes.empty() && !is_heat(m.measurement)))
@@ -360,7 +354,6 @@ Expected<void> check_texts(const Campaign& c, const Fonts& fonts) {
 }
 
 namespace {
-/// The set of placeholders "{name}" of a text.
 std::set<std::string> places_of(const std::string& text) {
   std::set<std::string> out;
   for (std::size_t open = text.find('{'); open != std::string::npos;
@@ -370,7 +363,6 @@ std::set<std::string> places_of(const std::string& text) {
   return out;
 }
 
-/// Compares one file of a language with the same file in English.
 void check_file(const Settings& words, const Settings& english, const Fonts& fonts,
                 const std::string& file, std::vector<Error>& errors) {
   for (const auto& [key, value] : english.values)

@@ -9,11 +9,10 @@
 #include "nonio/reports/wording.h"
 #include "nonio/sdk/plugin.h"
 
-/// Tables and figures of a measurement, shared by the documents about a campaign. Compiled into
+/// Tables and figures of a measurement, for all documents about a campaign. They are compiled into
 /// each plugin. Blocks are in one language.
 namespace nonio::pages {
 
-/// Input of a document.
 struct Source {
   const OutputInput& in;
   const Look& look;
@@ -28,7 +27,7 @@ struct Source {
 
 using Blocks = std::vector<reports::Block>;
 
-/// One measurement with its analyses and findings.
+/// A measurement with its analyses and findings.
 struct Measured {
   const Measurement& measurement;
   const Observations& observations;
@@ -38,19 +37,19 @@ struct Measured {
 };
 std::vector<Measured> measured(const OutputInput&);
 
-/// Returns a symbol as the standards print it: "A+" becomes "A↑".
+/// Converts to the symbol of the standard: "A+" becomes "A↑".
 std::string symbol(std::string_view name);
 
-/// Returns the symbol of a rule's value: "A" of "iso-1988:A".
+/// "A" for the value "iso-1988:A" of a rule.
 std::string without_rule(const std::string& name);
-/// Returns the meaning of a value as text, including the measurement or axis that its name contains
-/// ("distance_C"). Empty if there is no text.
+/// Explanation of a result in the language of the document, such as that of "distance_C" with the
+/// axis C. Empty if there is no text.
 std::string meaning_of(const Source& source, const std::string& name);
 
 /// Formats a stated number, tolerance or uncertainty as short as possible: "20", not "20.00".
 std::string plain_number(const Source&, double si, Quantity);
 
-/// Returns U of the instrument's certificate: "0.1 µm + 0.5 µm/m · L".
+/// U of the instrument's certificate: "0.1 µm + 0.5 µm/m · L".
 std::string instrument_U(const Source&);
 
 /// Removes separators of empty parts of a line: "worn-screw · " becomes "worn-screw".
@@ -62,76 +61,67 @@ inline bool over_one_position(const Measurement& m) {
 }
 
 std::string heading_of(const Source&, const Measured&);
-/// Returns a description of the test from the readings.
 std::string test_of(const Source&, const Measured&);
-/// Returns the positions of the targets; for a diagonal the distance from its start.
+/// Positions of the readings; for a diagonal the distance from its start.
 std::vector<double> along_line(const Measured&);
-/// Returns the title of an analysis, without the name of a standard whose test plan was not
-/// followed.
+/// Title without the name of a standard whose test plan was not followed.
 std::string analysis_title(const Source&, const Results::Analysed&);
-/// Whether the findings state that the test followed the plan of the standard. For an axis that the
-/// standard requires to be measured in two tests (the whole travel, and a part of it more often),
-/// the other test may be another measurement.
+/// Whether the test followed the plan of the standard. For an axis that the standard requires to be
+/// measured in two tests (the whole travel, and a part of it more often), the other test may be
+/// another measurement.
 bool follows_plan(const OutputInput&, const Results::Analysed&);
 const Conformity* conformity_of(const OutputInput&, const Results::Analysed&,
                                 const std::string& name);
 std::string decision_text(const Source&, Decision);
-/// Returns a sentence for each limit of the manifest without a result: axes that were not measured,
+/// One sentence for each limit of the manifest without a result: axes that were not measured,
 /// results that a test does not give.
 std::vector<std::string> undecided(const Source&);
-/// Returns the decision rule as text, with its risk.
+/// The decision rule of the campaign with its risk.
 std::string rule_text(const Source&);
 
 void add_results(const Source&, const Measured&, Blocks&);
 void add_targets(const Source&, const Measured&, Blocks&);
 void add_plots(const Source&, const Measured&, Blocks&);
-/// Returns the main figure of a measurement: its readings by run, its circle or its volume.
+/// The main figure of a measurement: its readings by run, its circle or its volume.
 std::optional<reports::Plot> readings_plot(const Source&, const Measured&);
-/// Returns the heading of expanded uncertainties with one coverage factor: "U (k = 2)".
+/// Heading of expanded uncertainties with one coverage factor: "U (k = 2)".
 std::string U_heading(const Source&, double k);
-/// Returns text about the results for which the laboratory's smallest uncertainty (CMC) replaces
-/// that of the budget; empty if there are none.
+/// Results for which the laboratory's smallest uncertainty (CMC) replaces that of the budget; empty
+/// if there are none.
 std::string cmc_text(const Source&, const Results::Analysed&);
-/// Adds the uncertainty budget, which results.json contains as well.
 void add_budget(const Source&, const Measured&, Blocks&);
 
 /// Checks the texts of manifest and site before they become parts of sentences. The error names the
 /// key, so that the host can add its line.
 Expected<void> check_texts(const Campaign&, const reports::Fonts&);
 
-/// Returns the errors in templates/<name>*.toml, and in the texts of every language that has
-/// words/<language>/<name>.toml, compared with English: keys, placeholders, characters that the
-/// fonts do not contain.
+/// Errors in templates/<name>*.toml, and in words/<language>/<name>.toml of every language compared
+/// with English: keys, placeholders, characters that the fonts do not contain.
 std::vector<Error> check_templates(const Templates&, const std::string& name,
                                    Expected<Look> (*look_of)(const Templates&, const std::string&));
 
-/// Adds a plot of one line before and after an adjustment, with the prediction and its U.
+/// One line before and after an adjustment, with the prediction and its U.
 void add_before_after(const Source&, const Measured&, std::vector<reports::Plot>&);
-/// Adds plots of the diagonals before and after, and of their plane with exaggerated errors.
+/// The diagonals before and after, and their plane with exaggerated errors.
 void add_diagonals(const Source&, const Measured&, std::vector<reports::Plot>&);
-/// Adds a plot of the volume of step diagonals, or of a map, as a wire frame with exaggerated
-/// errors.
+/// The volume of step diagonals, or of an error map, as a wire frame with exaggerated errors.
 void add_volume(const Source&, const Measured&, std::vector<reports::Plot>&);
-/// Returns the factor by which errors are exaggerated: 1, 2 or 5 times a power of ten, at most `v`
-/// > 0.
+/// Rounds a factor of exaggeration down to 1, 2 or 5 times a power of ten; `v` > 0.
 double round_factor(double v);
-/// Adds a plot of the circle of ball centers with exaggerated residuals, and one of the residuals
-/// over the angle.
+/// The circle of ball centers with exaggerated residuals, and the residuals over the angle.
 void add_circle(const Source&, const Measured&, std::vector<reports::Plot>&);
-/// Adds plots of the residuals of two rotary axes as one chain, over the angle of each.
+/// Residuals of two rotary axes as one chain, over the angle of each.
 void add_chain(const Source&, const Measured&, std::vector<reports::Plot>&);
-/// `path_plot` returns a polar plot of a circular test; `add_path` adds it together with the
-/// causes, sorted by size.
+/// `path_plot` is a polar plot of a circular test; `add_path` adds it together with the causes,
+/// sorted by size.
 std::optional<reports::Plot> path_plot(const Source&, const Measured&);
 void add_path(const Source&, const Measured&, Blocks&);
-/// `rings` returns an empty polar plot: the mean is four divisions from the center, and curves are
-/// at most three divisions from it. `division_of` returns that division for deviations of up to
-/// `largest`.
+/// `rings` is an empty polar plot: the mean is four divisions from the center, and curves are at
+/// most three divisions from it. `division_of` is that division for deviations of up to `largest`.
 reports::Plot rings(const Source&, std::string title, std::string caption);
 double division_of(double largest);
 std::string division_text(const Source&, double division);
-/// Whether a measurement is a thermal, spindle or length test, which has figures of its own:
-/// changes over time, error motions in polar plots, errors between their limits.
+/// Whether a measurement is a thermal, spindle or length test, which has its own figures.
 inline bool is_heat(const Measurement& m) {
   return m.kind == "thermal" || m.kind == "spindle" || m.kind == "lengths";
 }

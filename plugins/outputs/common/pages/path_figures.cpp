@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// Polar plot of a circular test: radial deviations of both directions, enlarged, about the
+// Polar plot of a circular test: enlarged radial deviations of both directions about the
 // least-squares center; and a chart of the causes by their individual effect.
 #include <algorithm>
 #include <cmath>
@@ -20,17 +19,16 @@ namespace {
 
 constexpr double per_um = 1e6;
 
-/// One run in one direction: (angle in the plane in rad, deviation in um about center and mean
-/// radius).
+/// A run in one direction: angle in the plane, rad, and deviation from center and mean radius, um.
 struct Path {
   bool plus = true;
   std::vector<std::pair<double, double>> points;
 };
 
 struct Paths {
-  std::string first, second;  ///< axes
+  std::string first, second;
   std::vector<Path> all;
-  double largest = 0.0;  ///< um
+  double largest = 0.0;
 };
 
 const Results::Analysed* analysis_of(const Measured& m) {
@@ -165,7 +163,7 @@ const Number* number_of(const Finding& f, std::string_view name) {
   return it == f.evidence.end() ? nullptr : &*it;
 }
 
-/// Label of a cause. A certificate may have two languages, so it uses the symbols of its table.
+/// A certificate may have two languages, so it uses the symbols of its table.
 std::string label_of(const Source& source, const Finding& f, std::string_view cause) {
   if (!source.certificate)
     return source.words.get("cause." + std::string(cause), {{"axis", text_of(f, "axis")}});
@@ -173,7 +171,6 @@ std::string label_of(const Source& source, const Finding& f, std::string_view ca
   return symbol(name.empty() ? "spike_" + text_of(f, "axis") : name);
 }
 
-/// The significant causes, the largest first.
 std::optional<BarChart> causes(const Source& source, const Results::Analysed& a) {
   constexpr std::string_view prefix = "circle.";
   std::vector<std::pair<double, BarChart::Row>> rows;

@@ -13,8 +13,6 @@ bool has(const Results::Analysed& a, std::string_view id) {
                      [&](const Finding& f) { return f.id == id; });
 }
 
-/// Whether the test departs from the plan of the standard. The second test of a long axis is
-/// checked by `has_short_test`.
 bool departs(const Results::Analysed& a) {
   const auto& findings = a.evaluation.findings;
   return std::any_of(findings.begin(), findings.end(), [](const Finding& f) {
@@ -29,8 +27,6 @@ const Measurement* measurement_of(const OutputInput& in, const Results::Analysed
   return nullptr;
 }
 
-/// Whether a separate measurement is the second test of a long axis: a part of its travel with more
-/// runs.
 bool has_short_test(const OutputInput& in, const Results::Analysed& whole) {
   const Measurement* m = measurement_of(in, whole);
   if (m == nullptr) return false;

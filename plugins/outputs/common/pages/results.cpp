@@ -47,7 +47,6 @@ std::string tolerance_text(const Source& source, const Conformity* c) {
   return c == nullptr ? "" : plain_number(source, c->tolerance, c->quantity);
 }
 
-/// Columns that a table of values needs or has room for.
 struct Shape {
   bool meaning = false, U = false, k = false, repeatability = false;
   bool decision = false, own_units = false;
@@ -91,9 +90,10 @@ Block value_table(const Source& source, const Results::Analysed& a) {
   if (shape.decision) column("results.decision", false, false);
   for (const Value& v : a.evaluation.values) {
     if (left_out(source, v)) continue;
-    const Printed shown =
-        printed_result(v.value, v.U ? v.U : v.repeatability, v.quantity, source.language());
     const Conformity* c = conformity_of(source.in, a, v.name);
+    const Printed shown =
+        printed_result(v.value, v.U ? v.U : v.repeatability, v.quantity, source.language(),
+                       c == nullptr ? std::nullopt : std::optional(c->tolerance));
     std::vector<Table::Cell> row = {{symbol(v.name), true}};
     if (shape.meaning) row.push_back({meaning_of(source, v.name)});
     row.push_back({shown.value});
@@ -192,7 +192,6 @@ std::vector<std::string> undecided(const Source& source) {
              !(source.certificate && k.reason == "no-uncertainty");
     });
   };
-  // Values printed with another measurement that uses this one, such as worst-line.
   const auto is_held_with = [&](const std::string& measurement, const std::string& name) {
     const auto& all = source.in.results.analyses;
     return std::any_of(all.begin(), all.end(), [&](const Results::Analysed& a) {
@@ -238,7 +237,6 @@ std::vector<std::string> undecided(const Source& source) {
 
 namespace {
 
-/// Adds the tables of several rules. Values without a rule (slopes) are in a table below them.
 void add_by_rules(const Source& source, const Results::Analysed& a, Blocks& blocks) {
   add_rule_tables(source, a, blocks);
   Results::Analysed rest = a;
@@ -254,11 +252,9 @@ void add_by_rules(const Source& source, const Results::Analysed& a, Blocks& bloc
 
 }  // namespace
 
-/// Adds two tables side by side. With tolerances and decisions the tables have the full width.
 void add_results(const Source& source, const Measured& m, Blocks& blocks) {
   std::vector<Blocks> parts;
   Blocks rules;
-  // The column of meanings in two languages needs the full width.
   const bool wide = source.certificate && source.in.campaign.certificate.languages.size() > 1;
   bool decisions = wide, second_decides = false;
   for (const auto* a : m.analyses) {
@@ -294,13 +290,11 @@ void add_results(const Source& source, const Measured& m, Blocks& blocks) {
 
 namespace {
 
-/// Columns of several analyses with equal targets, for one table.
 struct Joined {
   const PointTable* base;
   std::vector<const PointTable::Column*> columns;
 };
 
-/// Whether a certificate omits the points of the analysis because no value has a U.
 bool without_values(const Source& source, const Results::Analysed& a) {
   const auto& values = a.evaluation.values;
   return source.certificate && std::all_of(values.begin(), values.end(),
@@ -327,14 +321,12 @@ std::vector<Joined> joined_points(const Source& source, const Measured& m) {
   return out;
 }
 
-/// Whether the direction was not measured: no finite values, and counts of 0.
 bool all_missing(const PointTable::Column& c) {
   const bool count = c.quantity == Quantity::count;
   return std::none_of(c.values.begin(), c.values.end(),
                       [&](double v) { return std::isfinite(v) && !(count && v == 0); });
 }
 
-/// The number of approaches if equal in all cells; otherwise nullopt.
 std::optional<double> common_count(const Joined& joined) {
   std::optional<double> n;
   for (const auto* c : joined.columns) {
@@ -351,7 +343,6 @@ std::optional<double> common_count(const Joined& joined) {
 
 namespace {
 
-/// The cells of a column, with U in the last one if a certificate requires it.
 std::vector<std::string> cells_of(const Source& source, const PointTable::Column& c, bool target,
                                   std::size_t rows) {
   const int decimals = target                          ? decimals_for(c.values, c.quantity, 4)
@@ -380,7 +371,6 @@ std::string U_heading(const Source& source, double k) {
 
 namespace {
 
-/// Curves over the same positions, for one table.
 using SideBySide = std::vector<const Series*>;
 
 std::vector<SideBySide> curves_of(const Source& source, const Measured& m) {
@@ -404,7 +394,7 @@ std::vector<SideBySide> curves_of(const Source& source, const Measured& m) {
 /// Value and U ("–" without U), and whether U is missing. Both texts are empty if the value is not
 /// finite, or if a certificate requires U for a nonzero value.
 std::pair<Printed, bool> at_place(const Source& source, const Series& s, std::size_t i) {
-  constexpr double nothing = 1e-12;  // m or rad
+  constexpr double nothing = 1e-12;
   if (!std::isfinite(s.value[i])) return {{"", ""}, false};
   const std::optional<double> U =
       i < s.U.size() && std::isfinite(s.U[i]) ? std::optional(s.U[i]) : std::nullopt;
@@ -415,7 +405,6 @@ std::pair<Printed, bool> at_place(const Source& source, const Series& s, std::si
   return {std::move(shown), none};
 }
 
-/// Adds a curve table; a long one with a single curve is split into two halves side by side.
 void add_curve_table(Table table, const std::string& field, Blocks& blocks) {
   constexpr std::size_t narrow = 3, few = 12, most = 80;
   const std::size_t n = table.rows.size();
@@ -431,7 +420,6 @@ void add_curve_table(Table table, const std::string& field, Blocks& blocks) {
   blocks.push_back({Columns{{{{std::move(table), field}}, {{std::move(second), field}}}}, field});
 }
 
-/// Adds tables of curves that are not in a target table, with U.
 void add_curves(const Source& source, const Measured& m, Blocks& blocks) {
   const Wording& w = source.words;
   bool by_definition = false;

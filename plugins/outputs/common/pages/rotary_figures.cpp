@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Figures of ball centers of a rotary axis: their circle with exaggerated residuals, and the
 // residuals over the angle.
 #include <algorithm>
@@ -19,11 +18,10 @@ using Curve = Plot::Curve;
 namespace {
 
 struct Centres {
-  std::vector<double> angle, radial, axial;  ///< rad, m
+  std::vector<double> angle, radial, axial;
   double radius = 0.0;
 };
 
-/// The centers from the first analysis that contains them; empty if none does.
 Centres centres_of(const Measured& m) {
   for (const auto* a : m.analyses) {
     const PointTable& p = a->evaluation.points;
@@ -38,7 +36,6 @@ Centres centres_of(const Measured& m) {
   return {};
 }
 
-/// Factor (at least 1) that makes the largest residual about a quarter of the radius.
 double exaggeration(const Centres& c) {
   double largest = 0.0;
   for (const double r : c.radial) largest = std::max(largest, std::fabs(r));
@@ -113,7 +110,6 @@ Plot residuals(const Source& source, const Measured& m, const Centres& c, double
   return plot;
 }
 
-/// Residuals of a chain over the angle of one axis, one curve per coordinate.
 Plot chain_residuals(const Source& source, const PointTable& p, const std::string& axis,
                      double height) {
   const Style& style = source.look.style;

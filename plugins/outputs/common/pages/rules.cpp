@@ -21,7 +21,6 @@ struct Named {
   const Value* value;
 };
 
-/// One rule, or several rules with equal values.
 struct RuleColumn {
   std::vector<std::string> titles;
   std::vector<Named> values;
@@ -40,7 +39,6 @@ struct RuleColumn {
   }
 };
 
-/// Columns with equal symbols, or with a subset of the table's symbols.
 struct RuleTable {
   std::vector<std::string> symbols;
   std::vector<RuleColumn> columns;
@@ -58,7 +56,6 @@ std::vector<std::string> symbols_of(const RuleColumn& c) {
   return out;
 }
 
-/// One column per rule, in the order of the option `rules`.
 std::vector<RuleColumn> columns_of(const Source& source, const Results::Analysed& a) {
   std::vector<RuleColumn> out;
   for (const auto& [name, title] : rules_of(a)->texts) {
@@ -95,7 +92,7 @@ std::vector<RuleTable> tables_of(std::vector<RuleColumn> columns) {
   return out;
 }
 
-/// The titles, separated by commas, with no-break spaces within each title.
+/// No-break spaces keep each title on one line.
 std::string titles_in_line(const std::vector<std::string>& titles) {
   std::string out;
   for (const std::string& title : titles) {
@@ -109,7 +106,6 @@ std::string titles_in_line(const std::vector<std::string>& titles) {
   return out;
 }
 
-/// The table of the columns [first, last).
 Table table_of(const Source& source, const RuleTable& t, std::size_t first, std::size_t last) {
   const Wording& w = source.words;
   Table table;
@@ -139,7 +135,6 @@ Table table_of(const Source& source, const RuleTable& t, std::size_t first, std:
   return table;
 }
 
-/// Decisions on values of a rule. A certificate has them in a separate part.
 void add_decisions(const Source& source, const Results::Analysed& a, Blocks& blocks) {
   const Wording& w = source.words;
   Table table;
@@ -150,19 +145,19 @@ void add_decisions(const Source& source, const Results::Analysed& a, Blocks& blo
   for (const Value& v : a.evaluation.values) {
     const Conformity* c = conformity_of(source.in, a, v.name);
     if (c == nullptr) continue;
-    table.rows.push_back({{symbol(v.name), true},
-                          {printed_result(v.value, v.U, v.quantity, source.language()).value},
-                          {plain_number(source, c->tolerance, c->quantity)},
-                          {unit_text(c->quantity)},
-                          {decision_text(source, c->decision), true,
-                           c->decision == Decision::conforms           ? Level::good
-                           : c->decision == Decision::does_not_conform ? Level::failed
-                                                                       : Level::attention}});
+    table.rows.push_back(
+        {{symbol(v.name), true},
+         {printed_result(v.value, v.U, v.quantity, source.language(), c->tolerance).value},
+         {plain_number(source, c->tolerance, c->quantity)},
+         {unit_text(c->quantity)},
+         {decision_text(source, c->decision), true,
+          c->decision == Decision::conforms           ? Level::good
+          : c->decision == Decision::does_not_conform ? Level::failed
+                                                      : Level::attention}});
   }
   if (!table.rows.empty()) blocks.push_back({std::move(table), "decisions on rules"});
 }
 
-/// Whether the note states how reliable a formula is.
 bool is_sureness(const Remark& note) {
   return note.id == "rules.known" || note.id.ends_with("inferred");
 }
@@ -199,10 +194,9 @@ void add_rule_notes(const Source& source, const Results::Analysed& a, Blocks& bl
   const std::string field = "results of " + a.plugin + ", measurement " + a.measurement;
   if (!source.certificate) add_decisions(source, a, blocks);
   std::vector<std::string> paragraphs;
-  bool differ = false;  // reasons for differences share one paragraph
+  bool differ = false;
   for (const Remark& note : a.evaluation.notes) {
-    if (note.id == "rules.evaluated" || (source.certificate && is_sureness(note)))
-      continue;  // stated by the table or the method
+    if (note.id == "rules.evaluated" || (source.certificate && is_sureness(note))) continue;
     const std::string text = rule_note(source, note);
     const bool reason = note.id.starts_with("rules.differ");
     if (reason && std::exchange(differ, true))

@@ -6,14 +6,12 @@
 
 #include "pages.h"
 
-/// Values of several rules of one measurement, named "rule:symbol".
 namespace nonio::pages {
 
-/// Returns the note that names the rules and their titles; null if the values belong to one method.
+/// The note with names and titles of the rules; null if the values belong to one method.
 const Remark* rules_of(const Results::Analysed&);
 
-/// Adds a table with one column per rule and one row per symbol; rules with equal values share a
-/// column.
+/// One column per rule and one row per symbol; rules with equal values have a common column.
 void add_rule_tables(const Source&, const Results::Analysed&, Blocks&);
 /// Adds the decisions, a description of each rule, and the reasons why their values differ.
 void add_rule_notes(const Source&, const Results::Analysed&, Blocks&);

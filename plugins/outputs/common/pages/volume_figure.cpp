@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
 // Wire frame of the volume, nominal and with exaggerated errors, from the curves of step diagonals
 // or from an error map on a grid.
 #include <algorithm>
@@ -19,7 +18,7 @@ using Curve = Plot::Curve;
 namespace {
 
 using Vector = std::array<double, 3>;
-using Place = std::array<std::size_t, 3>;  ///< indices into the positions of X, Y, Z
+using Place = std::array<std::size_t, 3>;
 
 class Volume {
  public:
@@ -41,19 +40,17 @@ class Volume {
     if (!known()) take_map(e);
   }
 
-  /// Whether there is a map, or curves of all axes and the three squareness errors.
   bool known() const {
     if (mapped()) return true;
     return C0Y_ && B0Z_ && A0Z_ && std::all_of(axes_.begin(), axes_.end(), [](const auto& a) {
              return !a.position.empty();
            });
   }
-  /// Whether the errors are from a map, relative to the center of the volume.
+  /// A map is relative to the center of the volume.
   bool mapped() const { return !map_[0].empty(); }
   const std::string& name(std::size_t axis) const { return axes_[axis].name; }
   std::size_t last(std::size_t axis) const { return axes_[axis].position.size() - 1; }
   double position(std::size_t axis, std::size_t i) const { return axes_[axis].position[i]; }
-  /// Names of positioning errors without a known scale, which are not drawn.
   std::string left_out() const {
     std::string out;
     for (std::size_t k = 0; k < 3 && !mapped(); ++k)
@@ -65,8 +62,8 @@ class Volume {
   Vector nominal(const Place& p) const {
     return {position(0, p[0]), position(1, p[1]), position(2, p[2])};
   }
-  /// Error of the tool at a node relative to the corner (ISO 230-1: C0Y turns +Y towards -X, B0Z +Z
-  /// towards +X, A0Z +Z towards -Y), m.
+  /// Error of the tool at a node relative to the corner, m (ISO 230-1: C0Y rotates +Y towards -X,
+  /// B0Z +Z towards +X, A0Z +Z towards -Y).
   Vector error(const Place& p) const {
     Vector e{};
     if (mapped()) {
@@ -93,7 +90,7 @@ class Volume {
   static std::size_t coordinate(const std::string& name, std::size_t letter) {
     return name.size() > letter ? std::string_view("XYZ").find(name[letter]) : 3;
   }
-  /// Reads rows X Y Z e_x e_y e_z of all grid nodes; X varies slowest, Z fastest.
+  /// Rows X Y Z e_x e_y e_z of all grid nodes; X varies slowest, Z fastest.
   void take_map(const Evaluation& e) {
     static constexpr std::array<const char*, 3> places{"X", "Y", "Z"}, errors{"e_x", "e_y", "e_z"};
     std::array<std::vector<double>, 3> nodes;
@@ -129,7 +126,6 @@ std::pair<double, double> seen(const Vector& p) {
       (p[1] * std::cos(turn) - p[0] * std::sin(turn)) * std::sin(above) + p[2] * std::cos(above)};
 }
 
-/// The largest error at the nodes of a grid in the volume, and its node.
 struct Largest {
   double size = 0.0;
   Place at{};
@@ -137,7 +133,7 @@ struct Largest {
 
 Largest largest(const Volume& v) {
   std::size_t parts = 8;
-  if (v.mapped()) parts = std::max({parts, v.last(0), v.last(1), v.last(2)});  // every node
+  if (v.mapped()) parts = std::max({parts, v.last(0), v.last(1), v.last(2)});
   Largest most;
   for (std::size_t i = 0; i <= parts; ++i)
     for (std::size_t j = 0; j <= parts; ++j)
@@ -166,7 +162,6 @@ bool drawn(Wires what, std::size_t axis, const Place& half) {
   return middle == 0 && (in_front > 0) == (what == Wires::seen);
 }
 
-/// Lines along each axis at both ends and in the middle of the other two axes.
 std::vector<Curve> wires(const Volume& v, double factor, Wires what, Colour colour, double width) {
   std::vector<Curve> out;
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -197,7 +192,6 @@ std::string millimetres(const Source& source, double si) {
                         source.language());
 }
 
-/// Names of the axes at the middle of visible edges.
 std::vector<Plot::Label> edge_labels(const Volume& v) {
   std::vector<Plot::Label> labels;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -209,7 +203,6 @@ std::vector<Plot::Label> edge_labels(const Volume& v) {
   return labels;
 }
 
-/// Text such as "X 0 – 800, Y 0 – 600, Z 0 – 600 mm."
 std::string extent(const Source& source, const Volume& v) {
   std::string out;
   for (std::size_t axis = 0; axis < 3; ++axis)

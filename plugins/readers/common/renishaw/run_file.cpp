@@ -19,8 +19,8 @@ constexpr std::size_t user_lines = 7;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 struct Block {
-  std::uint64_t line = 0;       ///< line number of the block name
-  std::vector<FileLine> lines;  ///< nonblank lines
+  std::uint64_t line = 0;
+  std::vector<FileLine> lines;
 };
 using Blocks = std::map<std::string, Block, std::less<>>;
 
@@ -49,7 +49,7 @@ std::string_view block_name(std::string_view line) {
   return std::all_of(line.begin(), line.end(), allowed) ? line : std::string_view{};
 }
 
-/// The file type in HEADER. Only this is read first, because some types contain binary data.
+/// Read first, because some file types contain binary data.
 std::string_view type_of(std::string_view head) {
   Lines lines(head);
   std::string_view line;

@@ -11,13 +11,12 @@
 
 namespace nonio::renishaw {
 
-/// A line of the file, without its end.
 struct FileLine {
   std::uint64_t number = 0;
   std::string_view text;
 };
 
-/// The record ENVIRONMENT: values at the start and at the end, NaN if missing.
+/// Values at the start and at the end; NaN if missing.
 struct Environment {
   struct Pair {
     double start, end;
@@ -29,15 +28,15 @@ struct Environment {
   std::string_view times;        ///< bytes as in the file
 };
 
-/// The content of a file with runs over targets, in its own units.
+/// Runs over targets, in units of the file.
 struct RunFile {
   struct Row {
     std::uint32_t run = 0, target = 0;  ///< counted from 1
-    double value = 0.0;                 ///< NaN: not taken
+    double value = 0.0;                 ///< NaN if missing
     std::uint64_t line = 0;
   };
   std::string type, owner, version;
-  std::vector<double> targets;  ///< targets in the order of the file
+  std::vector<double> targets;  ///< in the order of the file
   std::vector<std::int64_t> flags;
   std::vector<FileLine> user;  ///< the seven lines of USER-TEXT, whose keys depend on the language
   std::uint32_t run_count = 0;
@@ -48,7 +47,7 @@ struct RunFile {
 /// Whether a file begins with HEADER:: and states this type ("rtl"), in upper or lower case.
 bool is_type(std::string_view head, std::string_view type);
 
-/// Parses a whole file. The error states what is wrong, and its line.
+/// An error states the line.
 Expected<RunFile> parse_run_file(std::string_view bytes, std::string_view type,
                                  std::string_view owner);
 

@@ -14,12 +14,11 @@ using namespace readers;
 
 namespace {
 
-/// The rows of one run in file order.
 struct Pass {
   std::vector<const RunFile::Row*> rows;
   std::int8_t direction = 0;
-  bool taken = false;  ///< whether at least one value was taken
-  bool zero = true;    ///< whether all values are 0
+  bool taken = false;
+  bool zero = true;
 };
 
 Expected<std::vector<Pass>> passes_of(const RunFile& file) {
@@ -42,7 +41,7 @@ Expected<std::vector<Pass>> passes_of(const RunFile& file) {
   return passes;
 }
 
-/// Whether runs alternate in direction; false if all have one direction. Error: other sequences.
+/// False if all runs have one direction. Error: they neither alternate nor have one direction.
 Expected<bool> bidirectional(const std::vector<Pass>& passes) {
   bool same = true, alternate = true;
   for (std::size_t i = 1; i < passes.size(); ++i) {
@@ -56,7 +55,7 @@ Expected<bool> bidirectional(const std::vector<Pass>& passes) {
 
 Remark run_note(const char* id, std::size_t run) { return {id, {counted("run", run)}}; }
 
-/// The date in "2014-10-08 10:53:29"; nullopt for other formats, because 10/02 is ambiguous.
+/// Parses "2014-10-08 10:53:29"; nullopt for other formats, because 10/02 is ambiguous.
 std::optional<std::chrono::sys_days> day_of(std::string_view text) {
   int part[3] = {};
   constexpr std::size_t at[] = {0, 5, 8}, digits[] = {4, 2, 2};
@@ -146,7 +145,8 @@ Expected<void> add_runs(const RunFile& file, const Units& units, Runs& runs) {
       if (auto ok = runs.add(reading); !ok) return ok;
     }
   }
-  // 0: alternating, 1: one direction. Only a warning, because few files with this flag are known.
+  // The flag is 0 for alternating directions, 1 for one direction. A contradiction is only a
+  // warning, because few files with this flag are known.
   if (file.flags.size() > 1 && passes->size() > 1 && (file.flags[1] == 0) != both)
     notes.push_back({"renishaw.flag-disagrees"});
   return {};

@@ -11,14 +11,13 @@ struct Units {
   double target = 1e-3, value = 1e-6;
 };
 
-/// Adds the runs as readings of one axis, and remarks for the user. The direction of a run is that
-/// in which its rows pass the targets.
+/// Adds readings of one axis, and remarks. The direction of a run is that in which its rows pass
+/// the targets.
 Expected<void> add_runs(const RunFile& file, const Units& units, readers::Runs& runs);
 
-/// Adds the operator's free text. Error: it names another axis than the manifest.
+/// Adds the operator's free text as a note. Error: it names another axis than the manifest.
 Expected<void> add_user_text(const RunFile& file, const ReadInput& input, Observations& obs);
 
-/// Returns the option for the code page that both readers have.
 Option code_page_option();
 
 }  // namespace nonio::renishaw

@@ -23,7 +23,7 @@ const Poco::TextEncoding* encoding_of(std::string_view code_page) {
   return nullptr;
 }
 
-/// Character of a byte; nullopt if the code page has none (Poco returns U+FFFE or a control).
+/// nullopt if the code page lacks the byte (Poco returns U+FFFE or a control character).
 std::optional<std::uint32_t> character(const Poco::TextEncoding& encoding, unsigned char byte) {
   const auto c = static_cast<std::uint32_t>(encoding.convert(&byte));
   if (c >= 0xFFFE || (c >= 0x80 && c < 0xA0)) return std::nullopt;
@@ -44,7 +44,7 @@ std::optional<std::string> decoded(std::string_view bytes, std::string_view code
   if (encoding == nullptr && !is_utf8(bytes)) return std::nullopt;
   for (const char c : bytes) {
     const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7F) continue;  // control characters are not printable
+    if (byte < 0x20 || byte == 0x7F) continue;
     if (byte < 0x80 || encoding == nullptr) {
       out += c;
       continue;

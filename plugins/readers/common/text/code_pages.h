@@ -6,15 +6,14 @@
 #include <string_view>
 #include <vector>
 
-/// Decoding of free text of instruments, which is in the code page of the computer that wrote it;
-/// no file declares it.
+/// Decodes free text of instruments, which is in the code page of the computer that wrote it; no
+/// file declares the code page.
 namespace nonio::readers {
 
-/// Returns the names of the code pages that `decoded` supports.
 const std::vector<std::string>& code_pages();
 
-/// Converts text to UTF-8, trimmed and without control characters; nothing if the bytes are not
-/// valid in that code page.
+/// Converts to UTF-8, trimmed and without control characters; none if the bytes are not valid in
+/// that code page.
 std::optional<std::string> decoded(std::string_view bytes, std::string_view code_page);
 
 }  // namespace nonio::readers

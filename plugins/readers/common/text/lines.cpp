@@ -25,7 +25,7 @@ std::size_t Lines::offset() const { return std::min(offset_, bytes_.size()); }
 
 namespace {
 
-/// Whether the first cell is #N/A of a spreadsheet, which is not a comment.
+/// #N/A of a spreadsheet is not a comment.
 bool begins_with_missing(std::string_view line) {
   const std::size_t end = line.find_first_of(",;\t");
   return end != std::string_view::npos && missing_in_spreadsheet(line.substr(0, end));

@@ -11,16 +11,16 @@ namespace nonio::readers {
 
 inline constexpr std::size_t longest_line = 65536;
 
-/// Iterates over the lines of a file, without LF or CRLF; a CR at the very end of the file counts
-/// as CRLF.
+/// Iterates over the lines of a file, without LF or CRLF; a CR at the end of the file is treated as
+/// CRLF.
 class Lines {
  public:
   explicit Lines(std::string_view bytes);
   bool next(std::string_view& line);
-  /// line number of the last line returned, from 1
+  /// Line number of the last returned line, from 1.
   std::uint64_t number() const { return number_; }
   std::size_t offset() const;
-  /// Returns the separator that a first line "sep=;" states, if there is one.
+  /// Separator according to a first line "sep=;".
   std::optional<char> separator() const;
 
  private:
@@ -32,15 +32,14 @@ class Lines {
 enum class Content { nothing, comment, fields };
 Content content_of(std::string_view line);
 
-/// Returns an error if the line contains characters that a text file must not contain. Rows of
-/// numbers need no such check, because their fields would not be numbers. Comments are not
-/// interpreted and may be in any code page.
+/// Error: characters that a text file must not contain. Rows of numbers need no such check, because
+/// their fields would not be numbers. Comments are not interpreted and may be in any code page.
 std::optional<Error> not_text(std::string_view line, bool comment = false);
 
-/// Returns the separator that Excel states in a first line "sep=;"; nothing for any other line.
+/// Separator according to Excel's first line "sep=;"; none for any other line.
 std::optional<char> stated_separator(std::string_view line);
 
-/// Returns an error if a first line "sep=;" and the header row disagree.
+/// Error: a first line "sep=;" and the header row disagree.
 std::optional<Error> other_separator(std::optional<char> stated, char found);
 
 /// Reads the next line with fields, ignoring a first line "sep=;"; false at the end of the file, or

@@ -12,7 +12,7 @@
 #include "nonio/sdk/error.h"
 
 /// A document as data: blocks from top to bottom, and their style. Texts are UTF-8 in NFC. `field`
-/// states the source of a text, for messages about unprintable text. Lengths in pt.
+/// is the source of a text, for messages about unprintable text. Lengths in pt.
 namespace nonio::reports {
 
 struct Colour {
@@ -44,17 +44,18 @@ enum class Level : std::uint8_t { good, attention, failed, info };
 
 struct Heading {
   std::string text;
-  int level = 1;  ///< 0: title of the document, 1: with a rule, 2: of a table or list
+  int level = 1;  ///< 0 for the document title, 1 for a heading with a rule, 2 for that of a table
+                  ///< or list
 };
 
 struct Paragraph {
   enum class Look : std::uint8_t { body, bold, small, muted };
   std::string text;
   Look look = Look::body;
-  bool with_next = false;  ///< kept on one page with the next block
+  bool with_next = false;  ///< whether it is kept on one page with the next block
 };
 
-/// Labels with values; rows with an empty value are omitted.
+/// Rows with an empty value are omitted.
 struct Grid {
   struct Row {
     std::string label, value, field;
@@ -82,7 +83,7 @@ struct Table {
 struct Plot {
   struct Curve {
     enum class Kind : std::uint8_t { line, band, bars, points };
-    Kind kind = Kind::line;  ///< points: overlapping ones are omitted, except extremes
+    Kind kind = Kind::line;  ///< not all of many overlapping points are drawn, but all extremes
     std::vector<double> x, y;
     std::vector<double> y2{};  ///< other side of a band; bars extend from y to y2
     Colour colour{};
@@ -90,12 +91,11 @@ struct Plot {
     Dash dash = Dash::solid;
     Marker marker = Marker::none;
     double marker_size = 2.2;
-    std::string legend{};  ///< text in the legend; empty: no entry
-    /// On a page in a browser: tooltip and link of each point; a single title applies to the whole
-    /// curve.
+    std::string legend{};  ///< entry in the legend; none if empty
+    /// On a web page: tooltip and link of each point; a single title applies to the whole curve.
     std::vector<std::string> titles{}, links{};
   };
-  /// A band over the full width, behind everything else.
+  /// A band over the full width in the background.
   struct Belt {
     double from, to;
     Colour colour{};
@@ -115,7 +115,7 @@ struct Plot {
     double at;
     std::string text, title;
   };
-  /// A label at a position, offset away from the center.
+  /// A label with an offset away from the center.
   struct Label {
     double x, y;
     std::string text;
@@ -128,22 +128,24 @@ struct Plot {
   std::vector<Belt> belts{};
   std::vector<Limit> limits{};
   std::vector<Event> events{};
-  std::optional<std::pair<double, double>> range{};    ///< of the vertical axis; nullopt: from data
-  std::optional<std::pair<double, double>> x_range{};  ///< as `range`, for the other axis
+  std::optional<std::pair<double, double>> range{};    ///< of the vertical axis; determined from
+                                                       ///< the data if absent
+  std::optional<std::pair<double, double>> x_range{};  ///< of the horizontal axis; determined from
+                                                       ///< the data if absent
   /// Ticks of a horizontal axis with texts (days, names).
   std::vector<std::pair<double, std::string>> ticks{};
-  bool degrees = false;  ///< horizontal angle axis with ticks at fractions of a turn
+  bool degrees = false;  ///< horizontal angle axis with ticks at fractions of a revolution
   bool whole = false;    ///< horizontal axis with whole-number ticks
   /// Names of lanes of width 1 on the horizontal axis, from 0.
   std::vector<std::string> lanes{};
   bool zero_line = true;
   bool same_scale = false;   ///< equal scales of both axes
-  bool scales = true;        ///< false: only the figure, with x_title as caption
+  bool scales = true;        ///< whether axes are drawn; otherwise x_title becomes the caption
   bool only_legend = false;  ///< common legend of the following plots, without title and figure
-  double height = 0;         ///< including title and legend; 0: default of the style
+  double height = 0;         ///< including title and legend; default of the style if 0
   double top = 0;            ///< minimum height of title and legend, to align plots
   double number_room = 0;    ///< minimum width of the numbers on the left, to align plots
-  std::string empty_text{};  ///< text shown if there is nothing to draw
+  std::string empty_text{};  ///< shown if there is nothing to draw
 };
 
 /// Horizontal bars on a scale from 0, one or more per row, and a reference line.
@@ -153,8 +155,8 @@ struct BarChart {
     Colour colour{};
   };
   struct Bar {
-    double value = 0.0;  ///< in printed units; not finite: no bar
-    std::string text;    ///< text next to the bar
+    double value = 0.0;  ///< in printed units; no bar is drawn if it is not finite
+    std::string text;
   };
   struct Row {
     std::string label;
@@ -171,13 +173,11 @@ struct BarChart {
   std::optional<Line> line{};
 };
 
-/// Important information: severity, title, statement, advice.
 struct Note {
   Level level = Level::info;
   std::string title, says, advice;
 };
 
-/// The status of the document, shown first.
 struct Status {
   Level level = Level::good;
   std::string text;
@@ -192,14 +192,14 @@ struct Image {
   double align = 0;    ///< 0 left, 0.5 center, 1 right
 };
 
-/// A QR code (ISO/IEC 18004) of a short text, with a caption.
+/// A QR code (ISO/IEC 18004) with a caption.
 struct Code {
   std::string text;     ///< up to 500 bytes
   std::string caption;  ///< may be empty
   double size = 62;     ///< side length including the quiet zone
 };
 
-/// The frame of the electronic signature, at most one. The page contains its position
+/// The frame of the electronic signature, at most one. Its position is stored in the page
 /// (`pdf::signature_key`) for the signing program.
 struct SignatureBox {
   std::string title;
@@ -209,15 +209,14 @@ struct Spacer {
   double height = 6;
 };
 
-/// The next block begins on a new page.
 struct PageBreak {};
 
 struct Block;
 
-/// Parts side by side; if too high for a page, below each other.
+/// Parts side by side or, if too high for a page, below each other.
 struct Columns {
   std::vector<std::vector<Block>> parts;
-  std::vector<double> shares{};  ///< fractions of the width; empty: equal
+  std::vector<double> shares{};  ///< fractions of the width; equal if empty
 };
 
 struct Block {
@@ -234,8 +233,8 @@ struct Document {
   std::string foot;  ///< footer of every page
   std::string page_of = "{page}/{pages}";
   std::string mark{};  ///< diagonal text over every page: DRAFT
-  /// An ICC profile of sRGB for archiving; colors, XMP properties and an identifier are then
-  /// stored. Empty: none.
+  /// ICC profile of sRGB for archiving; colors, XMP properties and an identifier are then stored.
+  /// May be empty.
   std::string profile{};
   Style style;
   std::vector<Block> blocks;
@@ -246,7 +245,7 @@ struct Document {
 /// Available height for blocks on one page.
 double page_room(const Style&);
 
-/// The PDF; equal documents and fonts give equal bytes.
+/// Equal documents and fonts give equal bytes.
 Expected<std::string> pdf_bytes(const Document&, const Fonts&);
 
 }  // namespace nonio::reports

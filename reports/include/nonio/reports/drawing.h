@@ -6,7 +6,6 @@
 
 #include "nonio/reports/document.h"
 
-/// Plots for web pages, drawn by the code that is used for documents.
 namespace nonio::reports {
 
 /// A color that is a property of the page style, so that a dark mode can change it: {colour,

@@ -14,13 +14,13 @@
 namespace nonio::reports {
 
 /// A TrueType font, reduced to required characters, with the parsed and compressed data that all
-/// documents share.
+/// documents use.
 struct Font {
-  std::string name;                    ///< file name, for messages and the PDF
-  std::string bytes;                   ///< the font file
-  std::vector<std::uint16_t> glyphs;   ///< by character; 0: not in the font
+  std::string name;  ///< file name, for messages and the PDF
+  std::string bytes;
+  std::vector<std::uint16_t> glyphs;   ///< by character; 0 if the font lacks the character
   std::vector<std::uint16_t> advance;  ///< by glyph, 1/1000 of the font size
-  std::array<int, 4> box{};            ///< as the next three: 1/1000 of the font size
+  std::array<int, 4> box{};            ///< box and the next three members: 1/1000 of the font size
   int ascent = 0, descent = 0, cap_height = 0;
   int units = 1000;  ///< outline units per em
 
@@ -43,10 +43,10 @@ struct FontFile {
   std::string_view bytes, name;
 };
 
-/// Parses a font without setting `with_common` and `with_all`.
+/// Does not set `with_common` and `with_all`.
 Expected<Font> parse_font(FontFile);
 
-/// The fonts of a document, cached in the process. The result depends only on the bytes.
+/// Cached in the process. The result depends only on the bytes.
 Expected<std::shared_ptr<const Fonts>> shared_fonts(FontFile regular, FontFile bold,
                                                     FontFile wide = {});
 

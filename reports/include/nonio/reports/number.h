@@ -13,15 +13,17 @@ namespace nonio::reports {
 /// A result as printed, without unit.
 struct Printed {
   std::string value;
-  std::string U;  ///< expanded uncertainty; empty: none
+  std::string U;  ///< empty if there is no uncertainty
 };
 
-/// U with two significant digits and the value to the same digit. Without U the value is rounded to
-/// 0.001 of its unit, a time to 0.1 s. Arguments in SI. Values that are not finite print as a dash,
-/// and from 1e9 on with an exponent.
-Printed printed_result(double value, std::optional<double> U, Quantity, std::string_view language);
+/// Rounds U to two significant digits and the value to the same digit. Without U the value is
+/// rounded to 0.001 of its unit, a time to 0.1 s. Arguments in SI. Values that are not finite print
+/// as a dash, and from 1e9 on with an exponent. With a tolerance limit of its magnitude, the value
+/// has as many digits as show on which side of the limit it is.
+Printed printed_result(double value, std::optional<double> U, Quantity, std::string_view language,
+                       std::optional<double> limit = {});
 
-/// With this number of decimals, in the printed unit.
+/// Returns the number without its printed unit.
 std::string printed_number(double si, Quantity, int decimals, std::string_view language);
 
 /// Number of decimals (at most `most`) that represent all values exactly, for target columns.

@@ -12,7 +12,6 @@
 
 #include "nonio/reports/wording.h"
 
-/// Web pages from templates/pages.
 namespace nonio::reports {
 
 /// Markup that is inserted unchanged; all other text is escaped.
@@ -38,10 +37,10 @@ class View {
 };
 
 using PageFiles = std::map<std::string, std::string_view, std::less<>>;
-/// Files of templates/pages in the program, by names such as "site/index".
+/// Embedded files of templates/pages, by names such as "site/index".
 const PageFiles& page_files();
 
-/// The page `name` with its values:
+/// Returns the page `name` with its values:
 ///
 ///     {{name}}              a value, escaped; one that is missing is an error
 ///     {{words.KEY}}         a word in the language of the page
@@ -49,7 +48,7 @@ const PageFiles& page_files();
 ///     {{^name}}...{{/name}} where the list or the value is empty or missing
 ///     {{>name}}             another file, with the same values
 ///
-/// Within a list a name that its view lacks is that of the view around it.
+/// Within a list, a name that its view does not contain is looked up in the surrounding view.
 Expected<std::string> page_text(const std::string& name, const View&, const Wording&,
                                 const PageFiles& = page_files());
 

@@ -9,28 +9,28 @@
 
 namespace nonio::reports {
 
-/// Name of a followed quantity, such as "Scale" or "Straightness Z, bow"; its symbol if it has no
-/// text. `site`: texts of site.toml.
+/// Name of a followed quantity, such as "Scale" or "Straightness Z, bow", otherwise its symbol.
+/// `site` contains the texts of site.toml.
 std::string followed_quantity(const Wording& site, const std::string& quantity);
 
-/// Whether the quantity is the logarithm of a scatter ("ln_s", "straightness:Z.ln_s"; s in um or
-/// arcsec). Users see the scatter, and its changes as factors.
+/// True for "ln_s" and "straightness:Z.ln_s" (s in um or arcsec). Users see the scatter, and its
+/// changes as factors.
 bool is_log_of_scatter(const std::string& quantity);
 
-/// Text such as "0.48 (0.35 to 0.66)", in um or arcsec, for k = 2; `u` is that of the logarithm.
+/// "0.48 (0.35 to 0.66)", in um or arcsec, for k = 2; `u` is that of the logarithm.
 std::string scatter_text(const Wording& site, double log_of_scatter, double u);
-/// Text such as "1.37": exp(difference of logarithms).
+/// "1.37": exp(difference of logarithms).
 std::string factor_text(const Wording& site, double difference);
-/// Text such as "a factor of 1.37 (1.22 to 1.53)", for k = 2.
+/// "a factor of 1.37 (1.22 to 1.53)", for k = 2.
 std::string factor_text(const Wording& site, double difference, double u);
 
 /// Formats the values of one followed quantity, U with k = 2. Arguments are SI, or logarithms of a
 /// scatter.
 class FollowedNumbers {
  public:
-  /// `of_angles`: deviations along the axis are angles.
+  /// `of_angles` is true if deviations along the axis are angles.
   FollowedNumbers(const std::string& quantity, Quantity unit, bool of_angles, const Wording& site);
-  /// `of_machine`: all series of this machine.
+  /// `of_machine` contains all series of this machine.
   FollowedNumbers(const HistorySeries& series, const std::vector<HistorySeries>& of_machine,
                   const Wording& site);
 
@@ -54,7 +54,7 @@ class FollowedNumbers {
   const Wording& site_;
 };
 
-/// Text such as "crash: tool hit the vice", with the kind of event in the language of `site`.
+/// "crash: tool hit the vice", with the kind of event in the language of `site`.
 std::string event_text(const Wording& site, const std::string& event);
 
 }  // namespace nonio::reports

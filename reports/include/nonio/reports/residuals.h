@@ -11,7 +11,6 @@
 /// Texts and numbers of the figure of readings and model, and of the nine figures of residuals. SI.
 namespace nonio::reports {
 
-/// The figures in their fixed order.
 enum class ResidualPlot {
   position,
   reversal,
@@ -24,12 +23,12 @@ enum class ResidualPlot {
   left_out
 };
 
-/// Texts of a figure; `none`: the reason if there is nothing to draw, otherwise empty.
+/// `none` is the reason if there is nothing to draw, otherwise empty.
 struct PictureWords {
   std::string title, x, y, says, none;
   std::string time_unit{};  ///< for the figure over time: s, min or h
   double x_per_si = 1.0;    ///< factor from SI to the printed x
-  bool degrees = false;     ///< x is an angle within a turn
+  bool degrees = false;     ///< x is an angle within a revolution
 };
 /// Texts of templates/words/<language>/pictures.toml.
 std::array<PictureWords, 9> picture_words(const ModelFit&, const Wording&);
@@ -46,10 +45,9 @@ struct Pass {
 };
 std::vector<Pass> passes_of(const ModelFit&);
 
-/// Period for the phase figure: screw pitch, tooth, or turn; 0: not known.
+/// Period for the phase figure: screw pitch, tooth, or revolution; 0 if not known.
 double period_of(const ModelFit&);
 
-/// Coordinates of a curve or of points.
 struct Trace {
   std::vector<double> x, y;
 };
@@ -57,7 +55,6 @@ struct Trace {
 /// Whether the reading has weight, so that it is not a suspected misreading.
 bool counts(const ModelFit&, std::size_t row);
 
-/// Mean residual at each target in one direction.
 Trace mean_by_target(const ModelFit&, int direction);
 /// The part of the fit for one measurement, because positions of several lines must not be mixed.
 ModelFit of_measurement(const ModelFit&, std::uint32_t measurement);
@@ -74,7 +71,7 @@ bool in_space(const ModelFit&);
 
 /// Lines in space side by side, each in a lane of width 1 on the horizontal axis.
 struct Lanes {
-  std::vector<std::string> names;               ///< empty: a single line or axis
+  std::vector<std::string> names;               ///< empty with a single line or axis
   std::vector<std::pair<double, double>> ends;  ///< first and last position of each lane, SI
   /// Horizontal position: lane number plus relative position in the lane, with margins.
   double at(std::size_t line, double place) const;
@@ -84,13 +81,13 @@ Lanes lanes_of(const ModelFit&);
 /// Mean residual in up to 12 equal intervals of x with at least three readings.
 Trace mean_by_part(const ModelFit&, const std::vector<double>& x);
 
-/// Mean residual of each run.
 Trace mean_by_run(const ModelFit&);
 
 /// Difference of the mean residuals in + and - direction at targets with both.
 struct Reversal {
   Trace values;
-  std::vector<double> spread;  ///< its standard deviation for unit standard deviation of a reading
+  std::vector<double> spread;  ///< standard deviation of the difference for unit standard deviation
+                               ///< of a reading
 };
 Reversal reversal_of(const ModelFit&);
 
@@ -98,7 +95,7 @@ Reversal reversal_of(const ModelFit&);
 std::vector<double> phase_of(const ModelFit&, double period);
 
 /// Sorted residuals over normal quantiles at (i - 1/2)/n; for many readings, all outer and some
-/// inner points. `row`: index of each reading.
+/// inner points. `row` is the index of each reading.
 struct Normal {
   Trace values;
   std::vector<std::size_t> row;

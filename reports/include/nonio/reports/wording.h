@@ -22,9 +22,9 @@ class Wording {
 
   const std::string& language() const { return language_; }
   std::string get(std::string_view key) const;
-  /// The text with `{name}` replaced.
+  /// Replaces each placeholder `{name}` by its value in `places`.
   std::string get(std::string_view key, Places places) const;
-  /// The text, or `otherwise` if it is missing, for names made by other plugins.
+  /// `otherwise` is used if the text is missing, for names made by other plugins.
   std::string get_or(std::string_view key, std::string otherwise) const;
 
   Expected<void> complete() const;
@@ -32,7 +32,7 @@ class Wording {
  private:
   const std::string* find(std::string_view key) const;
   std::vector<const Settings*> settings_;
-  std::string language_, file_;  ///< of the last file, named in messages
+  std::string language_, file_;  ///< of the last file, for messages
   std::string absent_;           ///< name of the first missing file
   mutable std::string complaint_;
 };

@@ -9,25 +9,20 @@
 
 #include "nonio/model/measurements.h"
 
-/// Comparison of a model with the measurements: how well it fits, and where it does not.
 namespace nonio::model {
 
-/// Standard deviation of repeated readings of one target in one direction: that of the residuals of
-/// the fit, after the mean of each target and direction and the terms of a whole pass (zero, slope
-/// and curvature) are subtracted. At least digit/sqrt(12), the scatter that a coarse display can
-/// hide. For a course it is estimated from the second differences of the residuals.
+/// Standard deviation of repeated readings of one target in one direction: of the residuals without
+/// the mean of each target and direction and the terms of a whole pass (zero, slope, curvature). At
+/// least digit/sqrt(12); for a course from second differences of the residuals.
 struct NoiseFloor {
   double s = 0.0;  ///< standard deviation, m or rad
-  /// standard uncertainty of s: s / sqrt(2 dof), combined with the contribution of an uncertain
-  /// correlation of adjacent readings
-  double u = 0.0;
-  double dof = 0.0;  ///< degrees of freedom
+  double u = 0.0;  ///< standard uncertainty of s, including an uncertain correlation of readings
+  double dof = 0.0;
 };
 
-/// F-test of the model against the cell means; absent if the repeats have fewer than 3 degrees of
-/// freedom, or if dof1 < 1. e are the weighted residuals of a fit of redundancy dof1 + r, r is the
-/// number of degrees of freedom of the repeated readings, s is their standard deviation, and dof2
-/// is the number of degrees of freedom of s.
+/// F-test of the model against the cell means, with the weighted residuals e of a fit of redundancy
+/// dof1 + r, the r degrees of freedom of repeated readings, and their standard deviation s of dof2
+/// degrees of freedom. Absent if r < 3 or dof1 < 1.
 ///
 ///     F = (sum e^2 - r s^2)/(dof1 s^2)      F >= 0
 struct LackOfFit {
@@ -56,38 +51,32 @@ struct Where {
   bool operator==(const Where&) const = default;
 };
 
-/// Returns the name: "direction", "screw-phase", for a product "direction x time".
+/// For example "direction", "screw-phase", or for a product "direction x time".
 std::string to_text(const Where& where);
 
 /// A structure that remains in the residuals, by the factor with which it varies.
 struct Place {
   Where where;
-  /// share of the residual sum of squares; for `Comparison::places` minus the share expected from
-  /// noise
+  /// share of the residual sum of squares; in `Comparison::places` minus that expected from noise
   double share = 0.0;
-  /// p-value of an F-test, or of a t-test of one target or run if it is smaller; corrected for the
-  /// number of places tested
+  /// p-value of an F-test, or of a t-test of one target or run; corrected for the number of places
   double p = 1.0;
-  double rms = 0.0;  ///< rms of this structure, m or rad
-  /// Main position of the structure: a target (m or rad), the number of a run, or an instant (s);
-  /// none without a main position.
+  double rms = 0.0;
+  /// Main position, if any: a target (m or rad), the number of a run, or an instant (s).
   std::optional<double> at{};
   Quantity at_quantity = Quantity::number;
-  /// in space: name of the line along which the position is counted; for the factor `channel`: name
-  /// of the channel
+  /// in space: name of the line of this position; for `channel`: name of the channel
   std::string line{};
-  bool together = false;  ///< for two factors: whether `share` includes the effect of each factor
-                          ///< alone
+  /// for two factors: whether `share` includes the effect of each factor alone
+  bool together = false;
 };
 
-/// A reading that contradicts other readings; it is kept, with weight 0, until the user excludes
-/// it.
+/// A reading that contradicts other readings; its weight is 0 until the user excludes it.
 struct Suspect {
-  std::size_t row = 0;  ///< row in the part's table
+  std::size_t row = 0;
   double residual = 0.0;
-  double t = 0.0;  ///< studentized residual
-  /// smallest error of this reading that would be detected, m or rad
-  double minimal_detectable = 0.0;
+  double t = 0.0;                   ///< studentized residual
+  double minimal_detectable = 0.0;  ///< smallest detectable error of this reading, m or rad
 };
 
 struct Comparison {
@@ -95,8 +84,7 @@ struct Comparison {
   /// residual with the largest absolute value, with its sign, m or rad; suspect readings excluded
   double largest = 0.0;
   std::size_t largest_row = 0;
-  /// RMS of cross-validation over runs or, for a course, blocks of time, m or rad; absent if no run
-  /// could be predicted
+  /// RMS of cross-validation over runs, or over blocks of time for a course, m or rad
   std::optional<double> cv_rms{};
   /// residual of each reading when its run is predicted from the others, m or rad; NaN if they do
   /// not determine it; empty with one run and for a course
@@ -115,9 +103,8 @@ struct Comparison {
 /// A model does not fit in a place whose p is below this value; docs/dev/constants.md, M1.
 inline constexpr double place_p = 0.01;
 
-/// Properties of the readings that do not depend on a model: which readings repeat each other,
-/// which are suspect, and the correlation of their noise. They are computed once if many models are
-/// compared with the same readings.
+/// Properties of the readings that do not depend on a model: repeats, suspects, and correlation of
+/// the noise. They are computed once if many models are compared with the same readings.
 class Groundwork {
  public:
   /// Only the set-up terms of `model` are used.
@@ -131,13 +118,11 @@ class Groundwork {
   std::unique_ptr<const Found> found_;
 };
 
-/// Function that `compare` calls for a long table when the fit is complete, before places are
-/// tested.
+/// Called by `compare` for a long table after the fit, before places are tested.
 using Fitted = std::function<void(const Comparison&)>;
 
-/// Fits a model and compares it with the readings. An error if there are no readings, or if `fit`
-/// fails, for example because the readings do not separate some parameters. `known`: the groundwork
-/// of this part, if it already exists. `fitted`: called for a long table only.
+/// Errors: no readings, or those of `fit`. `known`: the groundwork of this part, if it exists.
+/// `fitted`: called for a long table only.
 Expected<Comparison> compare(const Part& part, const std::vector<Term>& model,
                              const Groundwork* known = nullptr, const Fitted& fitted = {});
 

@@ -10,9 +10,7 @@
 
 #include "nonio/model/comparison.h"
 
-/// Explanation of the measurements by a model: how well it fits, where it does not, and which
-/// effect is missing. docs/model.md describes the statistics. All values are SI; the texts for the
-/// user are in templates/words.
+/// docs/model.md describes the statistics. All values are SI; the texts are in templates/words.
 namespace nonio::model {
 
 /// Number of blocks of time into which a course is divided for cross-validation.
@@ -31,46 +29,40 @@ struct Candidate {
   double rms = 0.0;  ///< rms of the residuals with the effect added to the model, m or rad
   std::optional<double> cv_rms{};
   double p = 1.0;  ///< probability that noise alone gives such a candidate anywhere in this search
-  /// 2 ln of the evidence for the effect, by which candidates are ranked; <= 0: no evidence. If
-  /// there is evidence both alone and within the best set, it is `alone` (for a course the larger
-  /// one), so that an effect that leaves smaller residuals comes first.
+  /// 2 ln of the evidence, by which candidates are ranked; <= 0: no evidence. With evidence both
+  /// alone and within the best set, it is `alone` (for a course the larger one).
   double score = 0.0;
   double alone = 0.0;  ///< 2 ln of the evidence as the only addition to the model
-  /// 2 ln of the evidence that is lost without this member of the best set, or that another effect
-  /// gains when it is added to the best set or replaces a member
+  /// 2 ln of the evidence that the best set loses without this member, or gains if this effect is
+  /// added or replaces a member
   double within = 0.0;
   std::vector<Parameter> parameters;
   std::vector<std::string> aliases;  ///< effects that these readings do not separate from this one
-  /// RMS of the smallest effect that would be detected with probability 0.9, m or rad; NaN for a
-  /// displacement over time (Part::Kind::course).
+  /// RMS of the smallest effect that is detected with probability 0.9, m or rad; NaN for a course.
   double minimal_detectable = 0.0;
-  /// Mean ratio of found to true size for an effect near the limit of detection, which is found
-  /// only if noise enlarges it. 1 if there is no such bias.
+  /// Mean ratio of found to true size near the limit of detection; 1 without bias.
   double bias = 1.0;
   std::vector<std::uint32_t> rows{};  ///< rows of the part's table that are the reason `why`
-  /// Names of the descriptions of position that were in the model when the evidence for the effect
-  /// was found; empty: the evidence was found with the model alone.
+  /// Descriptions of position in the model with which the evidence was found; empty if there was
+  /// none.
   std::vector<std::string> with_descriptions{};
 };
 
-/// Returns effects that concern a part but are not identifiable from its readings, as candidates
-/// that are not visible, with the reason. Effects that give no reason, nuisances and descriptions
-/// are omitted.
+/// Effects that concern a part but are not identifiable from its readings, with the reason.
+/// Nuisances, descriptions and effects that give no reason are omitted.
 std::vector<Candidate> not_applying(const Part& part, const std::vector<Effect>& effects);
 
-/// Returns the rows of the table whose temperature is interpolated in time.
 std::vector<std::uint32_t> interpolated_temperatures(const Part& part);
 
 /// A further measurement that would separate the effects of an alias group.
 struct Plan {
   /// kind of measurement: "another-run", "run-after-a-pause", "other-targets", ...
   std::string id;
-  std::size_t readings = 0;  ///< number of planned readings
-  double power = 0.0;        ///< distance of the two explanations in standard deviations
-  std::string one, other;    ///< names of the two effects
-  std::string of{};          ///< axes of the plan, or what is measured ("EYX"), in space
-  /// Duration at the pace of the present readings, including the pause before the measurement, s;
-  /// none if the present readings have no times, and for other parts than an axis.
+  std::size_t readings = 0;
+  double power = 0.0;      ///< distance of the two explanations in standard deviations
+  std::string one, other;  ///< names of the two effects
+  std::string of{};        ///< axes of the plan, or what is measured ("EYX"), in space
+  /// Duration including the pause before the measurement, s; only for an axis with times.
   std::optional<double> duration{};
 };
 
@@ -86,7 +78,7 @@ struct Foresight {
     double now = 0.0, then = 0.0;
   };
   std::string id;  ///< kind of measurement as in Plan: "another-run", "another-run-reversed", ...
-  std::size_t readings = 0;  ///< number of planned readings
+  std::size_t readings = 0;
   std::vector<Factor> parameters;
   std::vector<Evidence> evidence;
 };
@@ -94,9 +86,8 @@ struct Foresight {
 struct Verdict {
   enum class Kind { missing, nothing, unknown, unrepeatable };
   Kind kind = Kind::nothing;
-  std::string effect;  ///< for `missing`: the missing effect
-  /// share of simulated noise samples whose verdict is not `nothing`; for a course the significance
-  /// level of the search
+  std::string effect;
+  /// share of noise samples with a verdict other than `nothing`; for a course a significance level
   double false_alarms = 0.0;
   std::size_t trials = 0;       ///< number of simulated noise samples
   double suspects_share = 0.0;  ///< share of the readings that are suspect
@@ -104,11 +95,10 @@ struct Verdict {
   bool below_scatter = false;
 };
 
-/// A description that is added to the model together with the significant effects and earlier
-/// descriptions. It states the shape of the residuals, not their cause.
+/// Shape of the residuals that significant effects and earlier descriptions leave, not their cause.
 struct Description {
   enum class What { value_at_targets, reversal_at_targets, course };
-  Term term;         ///< the description with the shapes found
+  Term term;
   double rms = 0.0;  ///< rms of the residuals with the description in the model, m or rad
   What what = What::course;
   /// Smallest and largest value minus the mean (for reversals: the values themselves), and the
@@ -126,13 +116,11 @@ struct Statement {
   /// total drift or mean reversal, and its standard uncertainty, m or rad
   double value = 0.0, u = 0.0;
   double low = 0.0, high = 0.0;  ///< smallest and largest reversal of a target, m or rad
-  /// p-value; for reversals that of the least significant target, corrected for the number of
-  /// targets
+  /// p-value; for reversals that of the least significant target, corrected for their number
   double p = 1.0;
 };
 
-/// Contribution of recorded channels to the model of a displacement over time and to its best
-/// explanation.
+/// Contribution of recorded channels to the explanation of a displacement over time.
 struct Sensors {
   struct One {
     std::string channel;
@@ -144,61 +132,53 @@ struct Sensors {
   std::vector<std::string> smallest;
   /// RMS of cross-validation with all channels, and with the smallest set, m
   double rms = 0.0, rms_smallest = 0.0;
-  /// A speed or load that acts through a part without a temperature sensor, and its time constant,
-  /// s.
+  /// A speed or load that acts through a part without a temperature sensor; its time constant, s.
   std::string unseen{};
   double unseen_tau = 0.0;
-  /// The gain with the largest relative uncertainty u/|gain|: its effect, u/|gain|, the duration of
-  /// this test, and the duration of an equally varied test that would reduce u/|gain| to 0.1, s.
+  /// Effect of the gain with the largest u/|gain|; this ratio; duration of this test, and of an
+  /// equally varied test that would reduce the ratio to 0.1, s.
   std::string weakest{};
   double relative_u = 0.0, measured = 0.0, wanted = 0.0;
 };
 
 struct Explanation {
   Comparison comparison;
-  std::vector<Candidate> candidates;  ///< effects that can be added to the model, largest evidence
-                                      ///< first
+  /// effects that can be added to the model, largest evidence first
+  std::vector<Candidate> candidates;
   std::vector<std::string> together;  ///< effects that the best explanation adds to the model
-  /// for the verdict `missing`: whether the best explanation leaves no significant structure and no
-  /// lack of fit; false for other verdicts and for a course
+  /// for `missing`: whether the best explanation leaves no significant structure or lack of fit
   bool explains_all = false;
   double best_rms = 0.0;  ///< rms of the residuals of the best explanation, m or rad
-  /// Effects that are significant whatever causes the residuals: those of `together`, and then, if
-  /// the verdict is `unknown`, those that were found with descriptions in the model.
+  /// Effects that are significant whatever causes the residuals: those of `together` and, for
+  /// `unknown`, those found with descriptions in the model.
   std::vector<std::string> certain;
   /// Pairs of effects of `together` that cancel each other, so that neither is demonstrated.
   std::vector<std::pair<std::string, std::string>> cancelling;
-  /// Position on the axis, m, of the fixed point of a single growth that is equivalent to the
-  /// growth and drift in `together`.
+  /// Fixed point, m, of a single growth that is equivalent to the growth and drift in `together`.
   std::optional<double> one_growth{};
-  /// if the verdict is `unknown`: rms of the residuals with the significant effects in the model;
-  /// for a course the same as `best_rms`; m or rad
+  /// for `unknown`: rms with the significant effects, m or rad; for a course `best_rms`
   double significant_rms = 0.0;
   /// if the verdict is `unknown`: descriptions of the residuals that the significant effects leave
   std::vector<Description> descriptions;
-  /// if the verdict on an axis is `unknown`: statements that are true for any error that repeats at
-  /// each target
+  /// for `unknown` on an axis: statements that are true for any error that repeats at each target
   std::vector<Statement> statements;
   /// places of the structure in the residuals of the model; for `unknown` the smallest set of
   /// places that contains it or, if none does, the places of the best explanation
   std::vector<Place> fails;
-  /// at most three measurements that would separate the verdict's effect from its aliases, or two
-  /// effects that cancel each other
+  /// at most three measurements that would separate aliases, or two effects that cancel each other
   std::vector<Plan> plans;
-  /// owner of effects that are not in the catalogue but are referenced by terms
+  /// owner of effects that are not in the catalog but are referenced by terms
   std::shared_ptr<const void> keeps{};
-  /// contribution of the recorded channels, for a course with effects of channels in its model or
-  /// in its best explanation
+  /// for a course with effects of channels in its model or in its best explanation
   std::optional<Sensors> sensors{};
   Verdict verdict;
 };
 
-/// Returns the terms that could replace an effect of the best explanation: an effect that differs
-/// between repeats cannot replace one that is the same in all of them, nor the reverse.
+/// Terms that could replace an effect of the best explanation. An effect that differs between
+/// repeats cannot replace one that is the same in all of them, nor the reverse.
 std::vector<Term> replacing(const Part& part, const Explanation& e, std::vector<Term> terms);
 
-/// Searches the effects that the model lacks, and gives a verdict. `seed`: for the simulated noise
-/// that determines the false-alarm rate; `known`: as in `compare`.
+/// `seed`: for the simulated noise that determines the false-alarm rate; `known`: as in `compare`.
 Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
                               const std::vector<Term>& catalogue, std::uint64_t seed = 1,
                               const Groundwork* known = nullptr);

@@ -13,16 +13,14 @@
 
 namespace nonio::model {
 
-/// A grouping of lines, for effects whose values differ between groups: by "adjustment" into
-/// "before" and "after".
+/// Groups of lines for effects with several values, such as "before" and "after" by "adjustment".
 struct Grouping {
-  std::string by;                    ///< property: "adjustment", "state", "side", "measurement"
-  std::vector<std::string> name;     ///< name of each group
+  std::string by;  ///< property: "adjustment", "state", "side", "measurement"
+  std::vector<std::string> name;
   std::vector<std::uint32_t> group;  ///< group of each line
 };
 
-/// An effect of one axis, or an instance of an effect in space (`axis` then contains only its
-/// name).
+/// An effect of one axis, or an instance of an effect in space, whose `axis` is only a name.
 struct Term {
   const Effect* effect = nullptr;
   Axis axis;
@@ -35,24 +33,19 @@ struct Term {
     double value = 0.0, u = 0.0;
   };
   std::optional<Stated> stated{};
-  /// If set, the linear parameters exist once per group, in the order of the groups; null: they are
-  /// the same for all lines.
+  /// If set, the linear parameters exist once per group; null: they are the same for all lines.
   std::shared_ptr<const Grouping> grouping{};
-  /// Whether the parameters are differences: one for each group except the first, in addition to
-  /// the same effect without groups.
+  /// Whether parameters are differences from the first group, added to an effect without groups.
   bool differences = false;
   /// 2 ln of the prior odds against the effect: rare causes need more evidence.
   double price = 0.0;
-  /// Whether the parameters are given. They are then not unknowns, and the prediction of the term
-  /// is subtracted from the readings.
+  /// Whether the parameters are given: their prediction is subtracted from the readings.
   bool held = false;
-  /// Whether the effect belongs to a large library. It is then a candidate only within the best
-  /// set, or as a replacement of an effect of this set.
+  /// For effects of a large library: candidates only within the best set or as replacements in it.
   bool library = false;
 
-  /// Returns the name without groups: "backlash:X".
   std::string of_all() const { return effect->info.name + ":" + axis.name; }
-  /// Returns the full name: "backlash:X", "backlash:X@adjustment".
+  /// For example "backlash:X", with groups "backlash:X@adjustment".
   std::string name() const { return grouping ? of_all() + "@" + grouping->by : of_all(); }
 };
 
@@ -61,24 +54,21 @@ struct Parameter {
   std::string name;    ///< symbol: "b"
   double value = 0.0;
   /// standard uncertainty; NaN if it cannot be determined, and for a shape that is not fitted
-  /// (discrete values, or its usual value)
   double u = 0.0;
   Quantity quantity = Quantity::number;
   bool shape = false;
-  std::string group{};  ///< group of a grouped term: "before"; it is also the end of `name`
+  std::string group{};  ///< group of a grouped term, such as "before"
   bool held = false;    ///< whether the value is given and not fitted; u is then 0
 };
 
 /// Correlation of the noise of the readings, as estimated from their repeats and their order.
 struct Noise {
-  /// How the zero of a line varies.
   enum class Zero {
     steady,
     walks,    ///< random walk from reading to reading
     of_run,   ///< random zero of each run
     of_pass,  ///< random zero of each pass (run in one direction)
   };
-  /// A range of targets with a different scatter.
   struct Stretch {
     double from = 0.0, to = 0.0;  ///< the range, m or rad
     double inside = 1.0;          ///< standard deviation inside, relative to the mean one
@@ -91,56 +81,47 @@ struct Noise {
   double u_neighbours = 0.0;  ///< standard uncertainty of `in_repeats`, if it is used
   double neighbours = 0.0;    ///< correlation of adjacent readings used for u of a fit
   Zero zero = Zero::steady;
-  /// standard deviation of a zero, or of a step of the random walk, relative to that of a reading;
-  /// it affects only u
+  /// size of a zero, or of a step of the random walk, relative to s; it affects only u
   double zero_size = 0.0;
   double zero_found = 0.0;  ///< most likely value of `zero_size`
   bool zero_open = false;   ///< whether the readings do not bound the size of the zero from above
-  double digit = 0.0;       ///< step of the last digit of the readings, m or rad; 0: none was found
+  double digit = 0.0;  ///< step of the last digit of the readings, m or rad; 0 if none was found
   std::optional<Stretch> stretch{};
   std::vector<double> rough{};  ///< standard deviation of each reading relative to s; empty: 1
-  std::vector<std::uint32_t> pass{};  ///< index of the pass (run in one direction on a line) of
-                                      ///< each reading
+  std::vector<std::uint32_t> pass{};  ///< index of the pass of each reading
   bool independent() const { return !(neighbours > 0.0) && zero == Zero::steady; }
 };
 
 struct Fit {
-  std::vector<Term> terms;            ///< terms of the model, with the shapes that were found
-  std::vector<Parameter> parameters;  ///< parameters of the terms, in their order: of each term the
-                                      ///< linear ones, then the shapes
+  std::vector<Term> terms;
+  std::vector<Parameter> parameters;             ///< of each term the linear ones, then the shapes
   std::vector<std::vector<double>> correlation;  ///< correlation matrix of `parameters`
-  std::vector<double> zero;                      ///< zero of each line, m or rad
-  std::vector<double> residual;                  ///< residual of each reading, m or rad
+  std::vector<double> zero;
+  std::vector<double> residual;
   std::vector<double> weight;             ///< weight of each reading, 0..1: small if it is suspect
   std::vector<std::vector<double>> part;  ///< prediction of each term for each reading, m or rad
   /// For each term: number of columns of a curve that these readings do not separate from earlier
-  /// terms (the odd part of a second straightness on two diagonals). Their effect is assigned to
-  /// those terms.
+  /// terms, to which their effect is assigned.
   std::vector<std::size_t> lost{};
   double rms = 0.0;  ///< rms of the weighted residuals, m or rad
   double s = 0.0;    ///< standard deviation of a reading, from residuals and redundancy, m or rad
-  /// standard deviation of a reading without the contribution of the zeros of `noise`, m or rad
-  double s_noise = 0.0;
-  std::size_t redundancy = 0;  ///< number of readings minus number of unknowns
+  double s_noise = 0.0;        ///< as s, without the contribution of the zeros of `noise`
+  std::size_t redundancy = 0;  ///< number of readings minus unknowns
   Noise noise{};               ///< noise used for the weights and u
 };
 
-/// Fits the terms by weighted least squares: deviation = zero of its line + sum of columns *
-/// parameters + e, by QR with pivoting on columns of unit length. Shapes that are not given are
-/// searched on their grids, one after the other (at most four rounds), and continuous ones then
-/// between grid values; their uncertainty is that of the linearized problem. `weight` (0..1 per
-/// reading, or empty) is for suspect readings. An error if there are too few readings, or with the
-/// names of parameters that the readings do not separate. If repeats show correlated noise, all
-/// rows are whitened first (generalized least squares); the scatter `rough` is contained in the
-/// weights; a random zero, and a correlation that only the residuals show, affect only u.
-/// `thin`: means of adjacent readings of a long table, if they already exist. Source: GUM-6:2020 9
-/// for the covariance.
+/// Weighted least squares: deviation = zero of its line + sum of columns * parameters + e, by QR
+/// with pivoting. Shapes that are not given are searched on their grids (at most four rounds),
+/// continuous ones then between grid values; their u is that of the linearized problem. `weight`:
+/// 0..1 per reading, or empty. Errors: too few readings, or the names of parameters that the
+/// readings do not separate. If repeats show correlated noise, all rows are whitened (generalized
+/// least squares); a random zero, and a correlation only in the residuals, affect only u. `thin`:
+/// existing means of adjacent readings of a long table. Source: GUM-6:2020 9 (covariance).
 Expected<Fit> fit(const Observations& observations, std::vector<Term> terms,
                   std::vector<double> weight = {}, const Noise& noise = {},
                   const Observations* thin = nullptr);
 
-/// Returns the prediction for each reading, m or rad, of a term that has one parameter with the
-/// value `value`, SI.
+/// Prediction for each reading, m or rad, of a term that has one parameter with this value, SI.
 Expected<std::vector<double>> said_by(const Observations& observations, const Term& term,
                                       double value);
 

@@ -8,17 +8,15 @@
 
 #include "nonio/model/explain.h"
 
-/// Joint search for missing effects over the same part of several campaigns. Every line has its own
-/// zero and every campaign its own noise; an effect has one value, one value before and one after a
-/// date, or a value in each campaign.
+/// Joint search for missing effects in the same part of several campaigns. Every line has its own
+/// zero, and every campaign its own noise.
 namespace nonio::model {
 
 /// The part of one campaign; members are sorted by date.
 struct Member {
   std::string campaign;
   const Part* part = nullptr;
-  std::vector<Term> model;      ///< terms of the model, fitted with separate values for this
-                                ///< campaign
+  std::vector<Term> model;      ///< fitted with separate values for this campaign
   std::vector<Term> catalogue;  ///< terms that are searched
 };
 
@@ -32,14 +30,12 @@ struct JointEffect {
   std::string effect;  ///< name of the effect: "backlash:X"
   Holds holds = Holds::shared;
   std::size_t after = 0;  ///< for `changed`: index of the first campaign with the second value
-  /// Parameters with standard uncertainties: one list for `shared`, two for `changed`, one per
-  /// campaign for `own` (empty if its readings do not determine the effect). Only the first list
-  /// contains the shapes.
+  /// One list for `shared`, two for `changed`, one per campaign for `own` (empty if its readings do
+  /// not determine the effect). Only the first list contains the shapes.
   std::vector<std::vector<Parameter>> groups{};
   double evidence = 0.0;  ///< decrease of -2 ln likelihood minus the cost of parameters and names
   double p = 1.0;         ///< p-value of the effect; for named effects corrected for the search
-  /// rms of the residuals with this effect added to the models, for a named effect with all named
-  /// effects added, m or rad
+  /// rms with this effect added to the models, for a named effect with all named effects, m or rad
   double rms = 0.0;
   double size = 0.0;  ///< rms of the part of the readings that this effect explains, m or rad
   /// effects that explain the readings equally well in its place
@@ -53,8 +49,7 @@ struct JointPlan {
 };
 
 struct JointExplanation {
-  /// For each campaign: RMS with its model, RMS with the named effects in addition, noise floor. m
-  /// or rad.
+  /// RMS with its model, RMS with the named effects in addition, noise floor; m or rad.
   struct Campaign {
     std::size_t readings = 0;
     double rms = 0.0, rms_after = 0.0;
@@ -62,14 +57,11 @@ struct JointExplanation {
   };
   std::vector<Campaign> campaigns;
   std::vector<JointEffect> candidates;  ///< each as the only addition, the best first
-  std::vector<JointEffect> effects;     ///< named, that is, significant effects, in the order in
-                                        ///< which they were found
-  /// For each named effect with aliases: of the plans for at most eight campaigns, the one with
-  /// enough power and the fewest readings, otherwise the one with the largest power. The power is
-  /// computed with the readings of one campaign alone, so it is a lower limit.
+  std::vector<JointEffect> effects;  ///< significant effects, in the order in which they were found
+  /// For each named effect with aliases, of plans for at most eight campaigns: the one with enough
+  /// power and the fewest readings, otherwise the one with the largest power.
   std::vector<JointPlan> plans{};
-  /// RMS with the models, with the named effects in addition, and of the noise; all readings, m or
-  /// rad
+  /// All readings: RMS with the models, with the named effects in addition, of the noise; m or rad
   double rms = 0.0, rms_after = 0.0, noise = 0.0;
   Verdict::Kind verdict = Verdict::Kind::nothing;
   bool explains_all = true;  ///< whether the named effects leave only noise
@@ -77,12 +69,11 @@ struct JointExplanation {
   double trials = 1.0;       ///< number of independent tests that the search is equivalent to
 };
 
-/// Explains the readings of all members together by least squares; each reading is weighted by the
-/// noise floor of its campaign or, if this has fewer than 8 degrees of freedom, by the residuals of
-/// its model. An error if there are fewer than two members, or if the readings of a member do not
-/// scatter or do not determine its model. Evidence and p-values are determined as in `explain`: the
-/// signs of stretches and of whole passes of the residuals are flipped, 200 times in all. Source:
-/// docs/dev/model-evidence.md, several campaigns.
+/// Least squares over all members; each reading is weighted by the noise floor of its campaign or,
+/// if this has fewer than 8 degrees of freedom, by the residuals of its model. Errors: fewer than
+/// two members, or readings of a member that do not scatter or do not determine its model. For
+/// p-values, the signs of stretches and of whole passes of the residuals are flipped, 200 times in
+/// all. Source: docs/dev/model-evidence.md, several campaigns.
 Expected<JointExplanation> explain_together(const std::vector<Member>& members, std::uint64_t seed);
 
 }  // namespace nonio::model

@@ -8,34 +8,30 @@
 
 namespace nonio::model {
 
-/// A fitted model applied to readings that were not used in the fit; only the zero may be fitted
-/// anew.
+/// A fitted model applied to readings that were not used in the fit.
 struct Prediction {
   std::vector<double> error;  ///< reading minus prediction, m or rad
   std::vector<double> u;      ///< standard uncertainty of each prediction, m or rad
-  double rms = 0.0;           ///< rms of `error`, m or rad
+  double rms = 0.0;
   double sd = 0.0;      ///< standard deviation of the readings, m or rad: the error without a model
   double inside = 0.0;  ///< share of the readings with |error| <= 2 u
-  /// for a course: time, s, of the first reading of the first window (a twentieth of the readings,
-  /// at least 10) in which the RMS of error/u exceeds 2; none if there is no such window
+  /// for a course: time, s, of the first window of a twentieth of the readings (at least 10) in
+  /// which the RMS of error/u exceeds 2
   std::optional<double> fails_from{};
-  /// whether an axis leaves the range of the fit by more than 2 % of it, or a channel by more than
-  /// 10 %
+  /// whether an axis leaves the range of the fit by more than 2 % of it, or a channel by 10 %
   bool outside = false;
 };
 
-/// Predicts a displacement over time. `seen`: the part that the terms are fitted to; `unseen`: the
-/// same displacement at another time; `zero_kept`: the zero is that of the fit, not a new unknown.
-/// The uncertainty combines the scatter that the terms leave in `seen`, the uncertainties of the
-/// parameters and, if `zero_kept`, that of the zero (docs/model.md, "Heat and time").
+/// `unseen`: the same displacement at another time; `zero_kept`: the zero is that of the fit, not a
+/// new unknown. u combines the scatter that the terms leave in `seen`, the parameters and, if
+/// `zero_kept`, the zero (docs/model.md, "Heat and time").
 Expected<Prediction> predict(const Part& seen, const std::vector<Term>& model, const Part& unseen,
                              bool zero_kept);
 
-/// Predicts readings of an axis or of lines in space. The zeros of the lines and the nuisances
-/// `set_up` of the unseen readings are new unknowns. The uncertainty contains the parameters, the
-/// new unknowns and one reading, from the residuals of the fit. An error if an axis of the seen
-/// part is missing in the unseen part, if one part has lengths and the other angles, or if the seen
-/// readings do not determine the model.
+/// Predicts readings of an axis or of lines in space. The zeros of the unseen lines and the
+/// parameters of the effects `set_up` are new unknowns. u combines the parameters, the new unknowns
+/// and one reading. Errors: the parts have different axes or no lines, one has lengths and the
+/// other angles, or the seen readings do not determine the model or leave no degree of freedom.
 Expected<Prediction> predict_places(const Part& seen, const std::vector<Term>& model,
                                     const Part& unseen, const std::vector<Term>& set_up);
 

@@ -8,8 +8,8 @@ struct libdeflate_compressor;
 
 namespace nonio::pdf {
 
-/// Compresses bytes to the zlib format, at a level from 1 (fastest) to 12 (smallest result). The
-/// result is empty if there is not enough memory.
+/// Compresses to the zlib format, at a level from 1 (fastest) to 12 (smallest result). The result
+/// is empty if there is not enough memory.
 class Deflater {
  public:
   explicit Deflater(int level);
@@ -23,14 +23,13 @@ class Deflater {
 };
 inline std::string deflated(std::string_view bytes, int level) { return Deflater(level)(bytes); }
 
-/// Returns the SHA-256 digest of the bytes, 32 bytes.
+/// Returns the 32 bytes of the digest, not hexadecimal digits.
 std::string sha256(std::string_view bytes);
 
 void append_int(std::string& out, long long value);
 
-/// Appends a number to `out` as an operand of a PDF, with at most two decimals, and then the
-/// character `after`. Values beyond +-30000 are replaced by this limit, because PDF readers limit
-/// them too; NaN is replaced by 30000.
+/// Appends a PDF operand with at most two decimals, followed by the character `after`. Values are
+/// limited to +-30000, as by PDF readers; NaN becomes 30000.
 void append_real(std::string& out, double value, char after);
 
 }  // namespace nonio::pdf

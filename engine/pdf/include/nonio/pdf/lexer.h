@@ -14,7 +14,7 @@ namespace nonio::pdf {
 class Lexer {
  public:
   Lexer(std::string_view bytes, std::size_t at) : bytes_(bytes), at_(at) {}
-  /// `budget`: number of values that may still be read; several lexers can share it.
+  /// `budget` is the number of values that may still be read; several lexers can share it.
   Lexer(std::string_view bytes, std::size_t at, std::size_t& budget)
       : bytes_(bytes), at_(at), budget_(&budget) {}
 
@@ -22,10 +22,9 @@ class Lexer {
   void skip(std::size_t n) { at_ += n; }
   void skip_space();
   bool take(std::string_view word);
-  /// Reads a number of 1 to `most` digits without superfluous leading zeros; returns false if there
-  /// is no such number.
+  /// Reads 1 to `most` digits without superfluous leading zeros; false if there is no such number.
   bool take_number(std::size_t& number, std::size_t most);
-  /// Reads a number of exactly `count` digits; returns false if there are fewer.
+  /// Reads exactly `count` digits; false if there are fewer.
   bool take_digits(std::size_t& number, std::size_t count);
   Expected<Value> value();
 

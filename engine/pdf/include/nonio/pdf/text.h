@@ -7,13 +7,12 @@
 
 #include "nonio/sdk/error.h"
 
-/// Converts text, names and times to the forms that a PDF uses, and back.
 namespace nonio::pdf {
 
-/// A point in time, in seconds since 1970-01-01 00:00 UTC.
+/// Seconds since 1970-01-01 00:00 UTC.
 using Time = std::int64_t;
 
-/// Date and time of day, UTC.
+/// A date and time of day in UTC.
 struct Calendar {
   int year;
   unsigned month, day;
@@ -21,26 +20,24 @@ struct Calendar {
 };
 Calendar calendar(Time time);
 
-/// Returns the time as a PDF states it: "(D:20261121150007Z)".
+/// Returns "(D:20261121150007Z)".
 std::string date_text(Time time);
-/// Returns the time that a text in the form of `date_text` states. Error: the text has another
-/// form, or this time does not exist.
+/// Inverse of `date_text`. Error: the text has another form, or this time does not exist.
 Expected<Time> time_in(std::string_view text);
 
-/// Converts UTF-8 to UTF-16 with a byte-order mark. Error: the text is not UTF-8.
+/// The result has a byte-order mark. Error: the text is not UTF-8.
 Expected<std::string> utf16(std::string_view text);
-/// Converts UTF-16 with a byte-order mark to UTF-8. Error: the text is not UTF-16 with this mark,
-/// or it contains control characters.
+/// Error: the text is not UTF-16 with a byte-order mark, or it contains control characters.
 Expected<std::string> utf8(std::string_view text);
 
-/// Returns the bytes as a PDF string in lower-case hexadecimal digits: "<0af3>".
+/// Returns a PDF string in lower-case hexadecimal digits: "<0af3>".
 std::string hexadecimal(std::string_view bytes);
-/// Returns a reference to the object with this number: "12 0 R".
+/// Returns "12 0 R".
 std::string reference(std::size_t number);
-/// Returns the name of an attachment in characters that every PDF reader shows: letters, digits,
-/// space and - _ . /. Every other byte is replaced by "_".
+/// Replaces every byte by "_" that is not a letter, digit, space or one of - _ . /, because not
+/// every PDF reader shows other characters.
 std::string plain_name(std::string_view name);
-/// Returns text from an untrusted file for a message: in quotes, and cut off after 200 bytes.
+/// For text from an untrusted file in a message; it is cut off after 200 bytes.
 std::string quoted(std::string_view text);
 
 }  // namespace nonio::pdf

@@ -9,30 +9,29 @@
 #include "nonio/sdk/error.h"
 
 /// Incremental updates of a signed file. An update adds revocation data, or a time stamp over all
-/// bytes before it, or both (EN 319 142-1, levels B-LT and B-LTA), and always has the form that
-/// `Updater` writes. To check an update of a file, it is written again and compared byte by byte,
-/// so that it cannot contain anything else.
+/// preceding bytes, or both (EN 319 142-1, levels B-LT and B-LTA). To check an update of a file, it
+/// is written again by `Updater` and compared byte by byte, so that it cannot contain anything
+/// else.
 namespace nonio::pdf {
 
-/// Revocation data in DER, as in the document security store of a PDF: certificates, OCSP responses
-/// (`answers`) and revocation lists (`lists`).
+/// Revocation data in DER of a PDF's document security store: certificates, OCSP responses
+/// (`answers`) and certificate revocation lists (`lists`).
 struct Store {
   std::vector<std::string> certificates, answers, lists;
   bool empty() const { return certificates.empty() && answers.empty() && lists.empty(); }
 };
 
-/// An incremental update, which was read from a file or is to be appended to it.
 struct Update {
-  Store store;  ///< revocation data that this update adds
+  Store store;
   bool has_stamp = false;
-  /// Bytes of the update. `write` sets the space for the time stamp to zeros.
+  /// In the result of `write`, the space for the time stamp contains zeros.
   std::string bytes;
-  /// Positions in the file, bytes: the "<" of the time stamp, and the byte after its ">".
+  /// Positions of the "<" of the time stamp and of the byte after its ">" in the file.
   std::size_t gap = 0, after = 0;
 };
 
 inline constexpr std::size_t most_updates = 20, most_stored = 100;
-/// Largest size of all updates of a file together, bytes.
+/// Largest total size of the updates of a file, bytes.
 inline constexpr std::size_t most_update_bytes = 10'000'000;
 
 /// Returns the positions in bytes at which the signed file and each of its updates end; the last
@@ -40,14 +39,13 @@ inline constexpr std::size_t most_update_bytes = 10'000'000;
 /// If they do not divide the file, it is one part; at most `most_updates` updates are separated.
 std::vector<std::size_t> ends_of_parts(std::string_view bytes);
 
-/// Writes or reads the updates of one signed file, one after the other.
+/// Writes or reads the successive updates of one signed file.
 class Updater {
  public:
-  /// Returns the updater of a file, which must outlive it. Error: the file does not have the form
-  /// that `reserve` writes.
+  /// The file must outlive the updater. Error: it does not have the form that `reserve` writes.
   static Expected<Updater> of(const File& signed_file);
 
-  /// Returns the next update, to be appended to the file: it adds `more` to the stored revocation
+  /// Returns the next update, to be appended to the file. It adds `more` to the stored revocation
   /// data and, if `has_stamp`, space for a time stamp. Error: there is nothing to add, or more than
   /// `most_stored` items would be stored.
   Expected<Update> write(const Store& more, bool has_stamp);
@@ -66,11 +64,11 @@ class Updater {
 
   const File* file_;
   std::size_t catalogue_ = 0, page_ = 0;
-  /// Positions, bytes: the end of the file so far, which is the start of the next update, and the
-  /// last cross-reference table.
+  /// Positions of the end of the file so far and of the last cross-reference table, bytes.
   std::size_t end_ = 0, last_table_ = 0;
-  std::size_t size_ = 0;   ///< smallest unused object number
-  std::size_t store_ = 0;  ///< number of the object that lists all revocation data; 0: none
+  std::size_t size_ = 0;  ///< smallest unused object number
+  /// Number of the object that lists all revocation data; 0 without such data.
+  std::size_t store_ = 0;
   std::vector<std::size_t> certificates_, answers_, lists_, fields_;
 };
 

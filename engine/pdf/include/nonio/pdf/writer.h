@@ -9,8 +9,7 @@
 
 #include "nonio/sdk/error.h"
 
-/// Writes a new PDF from pages whose content streams already exist. Only this part of Nonio uses
-/// libharu.
+/// Writes a new PDF from existing content streams of its pages.
 namespace nonio::pdf {
 
 /// The subset of a font that a document embeds. A glyph has the same number in all subsets of its
@@ -24,50 +23,49 @@ struct EmbeddedFont {
 };
 
 struct Font {
-  /// Font data, which must outlive the call of `write`. Only that of /F3 may be null: the document
-  /// then does not have this font.
+  /// Must outlive the call of `write`. Null is allowed only for /F3, which the document then lacks.
   const EmbeddedFont* embedded = nullptr;
-  /// Bounding box of all glyphs (left, bottom, right, top), then ascent, descent and height of
-  /// capital letters, all in 1/1000 of the font size.
+  /// Bounding box of all glyphs (left, bottom, right, top), ascent, descent and height of capital
+  /// letters, in 1/1000 of the font size.
   std::array<int, 4> box{};
   int ascent = 0, descent = 0, cap_height = 0;
   int stem = 80;  ///< thickness of vertical strokes, 1/1000 of the font size
 };
 
-/// An image from a PNG or JPEG file in the form that documents embed. It is prepared once, and then
-/// copied to each document.
+/// An image from a PNG or JPEG file in the form that documents embed; it is prepared once for all
+/// documents.
 struct Picture {
   unsigned width = 0, height = 0;  ///< pixels
-  /// whether pixels have one gray value instead of red, green and blue; 8 bits each
+  /// Whether a pixel is one gray value instead of red, green and blue, 8 bits each.
   bool grey = false;
-  bool jpeg = false;  ///< whether `colours` is a JPEG file; else compressed rows
+  bool jpeg = false;  ///< whether `colours` is a JPEG file, otherwise compressed rows
   std::string colours;
   /// Compressed rows of 8-bit opacity values; empty if the whole image is opaque.
   std::string opacity;
 };
 
-/// The frame in which a signature is shown: index of the page, from 0, and edges in pt. The frame
-/// is written to the dictionary of the page (`signature_key`), where `reserve` finds it.
+/// Frame of a visible signature: index of the page, and edges in pt. It is written to the
+/// dictionary of the page (`signature_key`) for `reserve`.
 struct SignaturePlace {
   std::size_t page = 0;
   double left = 0.0, low = 0.0, right = 0.0, high = 0.0;
 };
-/// Key in the dictionary of a page for the frame of the signature, [left low right high] in pt.
+/// Key of a page's dictionary: the frame of the signature, [left low right high] in pt.
 inline constexpr const char* signature_key = "NonioSignature";
 
-/// The content of a new PDF. `pages` are content streams: in them, fonts are /F1 (regular), /F2
-/// (bold) and /F3 (wide) with glyph numbers of two bytes, pictures are /P0, /P1, ..., and /G1 is
-/// the graphics state for translucent areas.
+/// `pages` are content streams in which fonts are /F1 (regular), /F2 (bold) and /F3 (wide) with
+/// glyph numbers of two bytes, pictures are /P0, /P1, ..., and /G1 is the graphics state for
+/// translucent areas.
 struct NewFile {
   std::string title, author, subject, language;
-  std::string date;  ///< date of creation, YYYY-MM-DD; empty: not stated
+  std::string date;  ///< date of creation, YYYY-MM-DD; empty if not stated
   double width = 0.0, height = 0.0;
   double see_through = 1.0;  ///< opacity of areas drawn with /G1, 0 to 1
   std::array<Font, 3> fonts{};
   std::vector<std::shared_ptr<const Picture>> pictures;
   std::vector<std::string> pages;
   /// ICC profile of sRGB, for a PDF that is to be archived. If it is not empty, the PDF contains
-  /// the profile, the properties of the document as XMP, and an identifier.
+  /// the profile, the document properties as XMP, and an identifier.
   std::string profile{};
   std::optional<SignaturePlace> signature{};
 };

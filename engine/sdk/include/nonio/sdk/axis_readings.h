@@ -13,8 +13,8 @@
 #include "nonio/sdk/plugin.h"
 
 /// Quantities of the readings of one axis, from which effects compute their columns. theta is the
-/// commanded position, [a, b] the measured stretch, and i runs over the readings that moved the
-/// axis:
+/// commanded position, [a, b] the measured range, and i an index of the readings for which the axis
+/// was moved:
 ///
 ///     length   L = b - a                        m, rad
 ///     middle   m = (a + b) / 2                  m, rad
@@ -31,72 +31,66 @@
 /// The signs of deviations are defined in docs/conventions.md.
 namespace nonio {
 
-/// The readings of one axis. Each vector, except `interpolated`, has observations.size() entries
-/// and is 0 in rows in which the axis did not move.
+/// The readings of one axis. Each vector except `interpolated` has observations.size() entries; an
+/// entry is 0 if the axis was not moved.
 struct AxisReadings {
-  std::vector<char> moved;    ///< 1 where the axis moved
-  std::vector<double> p;      ///< position from the middle of the measured stretch, m or rad
-  std::vector<double> theta;  ///< position as commanded, m or rad
-  std::vector<double> d;      ///< direction of approach: +1, -1
+  std::vector<char> moved;    ///< 1 if the axis was moved
+  std::vector<double> p;      ///< position relative to the middle of the measured range, m or rad
+  std::vector<double> theta;  ///< commanded position, m or rad
+  std::vector<double> d;      ///< direction of approach: +1 or -1
   std::vector<double> t;      ///< time since the first reading of its line, s
-  /// material temperature minus its mean, K; 0 everywhere if it was not measured
+  /// Material temperature minus its mean, K; 0 if it was not measured.
   std::vector<double> K;
-  double length = 0.0;    ///< length of the measured stretch, m or rad
-  double duration = 0.0;  ///< time from first to last reading of the longest line, s
-  /// Whether `t` comes from measured times. If false, `t` counts the readings of a line in the
-  /// order of the rows (one reading is one second); if that order is not known either, `t` is 0
-  /// everywhere.
+  double length = 0.0;    ///< length of the measured range, m or rad
+  double duration = 0.0;  ///< longest time from the first to the last reading of a line, s
+  /// Whether `t` is from measured times. Otherwise `t` is the index of the reading within its line
+  /// (one reading is one second), or 0 if the order of the readings is not known.
   bool timed = false;
-  double middle = 0.0;  ///< commanded position of the middle of the measured stretch, m or rad
-  /// Whether every reading has a material temperature. In the rows `interpolated` it is
-  /// interpolated linearly in time between neighboring readings; at the ends of a line it is the
-  /// nearest one.
+  double middle = 0.0;  ///< commanded position of the middle of the measured range, m or rad
+  /// Whether every reading has a material temperature, either measured or interpolated linearly in
+  /// time; at the ends of a line the nearest temperature is used.
   bool temperature = false;
   std::vector<std::uint32_t> interpolated;  ///< rows with an interpolated temperature
 };
 
 namespace detail {
 
-/// `fill_times` fills `t`, `timed` and `duration`; `fill_temperatures` fills `K`, `temperature` and
-/// `interpolated`. A gap of temperatures is interpolated if it lasts at most a quarter of its line.
-/// At the ends of a line, the nearest temperature is used if it is at most an eighth of the line
-/// away. Otherwise `temperature` is false, and also if a line with gaps has fewer than three
-/// temperatures.
+/// `fill_times` sets `t`, `timed` and `duration`; `fill_temperatures` sets `K`, `temperature` and
+/// `interpolated`. A gap of temperatures may last a quarter of its line, and the nearest
+/// temperature at an end of a line may be an eighth of the line away. `temperature` is false if a
+/// gap is longer, or if a line with gaps has fewer than three temperatures.
 void fill_times(const Observations& o, AxisReadings& r);
 void fill_temperatures(const Observations& o, AxisReadings& r);
 
 }  // namespace detail
 
-/// Returns the readings of one axis. Error: the readings do not move this axis, or do not state the
-/// direction of approach. Positions must be finite; times and temperatures may be NaN.
+/// Positions must be finite; times and temperatures may be NaN. Error: the readings do not move
+/// this axis, or do not state the direction of approach.
 Expected<AxisReadings> readings_of(const Observations& o, const Axis& axis);
 
-/// Returns whether some positions were reached from below and some from above.
+/// Whether positions were approached from below and from above.
 bool from_both_directions(const AxisReadings& r);
 
-/// Returns candidate positions of the fixed point of a screw or scale, in m from the middle of the
-/// measured stretch (rad for a rotary axis): for a linear axis, the position that the manifest
-/// states, if any. Otherwise it returns only the middle for a rotary axis or for readings of
-/// several axes, and for a single linear axis seven positions up to 1.5 times the length of the
-/// stretch from its middle. Empty if the readings do not move the axis.
+/// Returns candidate positions of the fixed point of a screw or scale, m or rad from the middle of
+/// the measured range. One position if the manifest states it; the middle for a rotary axis or for
+/// readings of several axes; otherwise seven positions up to 1.5 times the length of the range from
+/// its middle. Empty if the readings do not move the axis.
 std::vector<double> fixed_points(const Observations& o, const Axis& axis);
 
 Effect::Shape fixed_point_shape();
 
-/// Returns the reason "no-order" if the readings do not state their order in time, else an empty
-/// id. For effects that depend on time.
+/// Returns "no-order" if the order of the readings in time is not known, otherwise an empty id.
 WhyNot no_order(const Observations& o, const Axis& axis);
 
-/// Returns the reason "one-direction" if all positions were approached from one side, else an empty
-/// id. For effects that need both directions.
+/// Returns "one-direction" if all positions were approached from one side, otherwise an empty id.
 WhyNot one_direction(const Observations& o, const Axis& axis);
 
-/// Returns the distinct measured positions, ascending, relative to the middle of the stretch, m or
-/// rad. Positions closer than 1e-9 of the length are one target.
+/// Returns the distinct positions in ascending order, relative to the middle of the measured range,
+/// m or rad. Positions closer than 1e-9 of its length are one target.
 std::vector<double> targets_of(const AxisReadings& r);
 
-/// Computes one column for each function in `values`, called as value(readings, row) for the rows
-/// in which the axis moved; other rows are 0. Error: `readings_of` returns an error.
+/// Each function value(readings, row) gives one column; it is called for rows in which the axis was
+/// moved, and other rows are 0. Error: that of `readings_of`.
 template <class... Values>
 Expected<Effect::Columns> columns_of(const Observations& o, const Axis& axis, Values... values) {
   const auto r = readings_of(o, axis);

@@ -11,18 +11,18 @@
 
 #include "nonio/sdk/plugin.h"
 
-/// Options that describe a table whose format is not known: units, sign, separator, and the lines
-/// of its rows. None of these is guessed.
+/// Options for a table of unknown format: units, sign, separator and lines of the rows. None of
+/// these is guessed.
 namespace nonio {
 
-/// Returns an error about an option: "option unit: expected ..., found ...".
+/// Adds the prefix "option unit: " for the option `unit`.
 inline Error of_option(std::string_view option, std::string message) {
   Error error{"option " + std::string(option) + ": " + std::move(message)};
   error.key = option;
   return error;
 }
 
-/// Direction of travel of the rows. `plus` is toward larger coordinates; `forward` is the order in
+/// Direction of travel of the rows: `plus` is toward larger coordinates, `forward` the order in
 /// which the targets are listed.
 enum class Way : std::uint8_t { none, plus, minus, forward, reverse };
 
@@ -33,8 +33,8 @@ inline Way direction_of_word(std::string_view word) {
   return word == "reverse" || word == "backward" ? Way::reverse : Way::none;
 }
 
-/// Returns the direction of approach, +1 or -1; `listed` is +1 if the targets are listed in rising
-/// order, -1 if in falling order. `way` must not be `none`.
+/// Returns +1 or -1; `listed` is +1 if the targets are listed in ascending order, otherwise -1.
+/// `way` must not be `none`.
 inline std::int8_t direction_of(Way way, int listed) {
   const int sign = way == Way::plus      ? 1
                    : way == Way::minus   ? -1
@@ -43,8 +43,8 @@ inline std::int8_t direction_of(Way way, int listed) {
   return static_cast<std::int8_t>(sign);
 }
 
-/// Returns the SI value of one unit of length in m, or of one unit of angle in rad if `angle`;
-/// nothing if the name is not a unit.
+/// Returns the SI value of one unit of length (m), or of angle (rad) if `angle`; std::nullopt if
+/// the name is not a unit.
 inline std::optional<double> unit_named(std::string_view name, bool angle) {
   constexpr std::pair<std::string_view, double> lengths[] = {
       {"inch", 0.0254}, {"m", 1.0}, {"mm", 1e-3}, {"nm", 1e-9}, {"um", 1e-6}};
@@ -61,8 +61,8 @@ constexpr const char* units_known(bool angle) {
   return angle ? "arcsec, deg, mrad, rad, urad" : "inch, m, mm, nm, um";
 }
 
-/// Returns the character of a separator's name; ' ' means any number of blanks and tabs. Nothing if
-/// the name is unknown.
+/// Returns ' ' for "blank", which means one or more blanks or tabs, and std::nullopt if the name is
+/// unknown.
 inline std::optional<char> separator_named(std::string_view name) {
   if (name == "tab") return '\t';
   if (name == "blank") return ' ';
@@ -70,14 +70,14 @@ inline std::optional<char> separator_named(std::string_view name) {
   return std::nullopt;
 }
 
-/// The lines of a file that form one table, counted from 1; last = 0: to the end of the file.
+/// The lines of a table, counted from 1; last = 0 is the end of the file.
 struct RowRange {
   std::uint64_t first = 1, last = 0;
-  Way way = Way::none;  ///< direction of travel of all its rows
+  Way way = Way::none;  ///< direction of travel of all rows
 };
 
-/// Parses a range of lines: "12-36 forward", "41- reverse" (to the end of the file), "5-9". Nothing
-/// if the text is malformed.
+/// Parses "12-36 forward", "41- reverse" (to the end of the file) or "5-9"; std::nullopt if the
+/// text is malformed.
 inline std::optional<RowRange> row_range_of(std::string_view text) {
   RowRange range;
   const std::size_t blank = text.find(' ');
@@ -99,17 +99,15 @@ inline std::optional<RowRange> row_range_of(std::string_view text) {
   return range;
 }
 
-/// The parsed options of `table_map_options`.
 struct TableMap {
   char separator = ' ';
-  double target_unit = 0.0, value_unit = 0.0;  ///< SI value of 1 in the file: m or rad
+  double target_unit = 0.0, value_unit = 0.0;  ///< SI value of 1 in the file, m or rad
   bool positions = false;  ///< whether the values are actual positions instead of deviations
   double sign = 1.0;       ///< sign of the deviations: +1 or -1
-  double factor = 1.0, offset = 0.0;  ///< value = factor * number in SI + offset; offset in SI
-  std::vector<RowRange> tables;       ///< lines of each table, in the order of the file; at least
-                                      ///< one range
+  double factor = 1.0, offset = 0.0;  ///< value = factor * number in SI + offset, SI
+  std::vector<RowRange> tables;       ///< at least one range, in the order of the file
 
-  /// Returns the deviation, SI, of a number as in the file, at a target in SI.
+  /// Converts a number of the file to a deviation in SI; `target` is in SI.
   double deviation(double read, double target) const {
     const double value = factor * read * value_unit + offset;
     return positions ? value - target : sign * value;
@@ -157,9 +155,9 @@ inline std::vector<Option> table_map_options() {
        "all of it: \"12-36 forward\", \"41-65 reverse\" (or +, -)."}};
 }
 
-/// Returns the lines of each table, from the options `tables`, or `first_line` and `last_line`.
-/// Error: a range is malformed, `last_line` is before `first_line`, both forms are used, or the
-/// tables overlap or are not in the order of the file.
+/// Uses the option `tables`, or `first_line` and `last_line`. Error: a range is malformed,
+/// `last_line` is before `first_line`, both forms are used, or tables overlap or are not in the
+/// order of the file.
 inline Expected<std::vector<RowRange>> tables_of(const Settings& options) {
   std::vector<RowRange> tables;
   const RowRange all{static_cast<std::uint64_t>(options.integer("first_line", 1)),
@@ -186,7 +184,7 @@ inline Expected<std::vector<RowRange>> tables_of(const Settings& options) {
   return tables;
 }
 
-/// Parses the options of `table_map_options`. The error names the option that is empty or invalid.
+/// An error names the option that is empty or invalid.
 inline Expected<TableMap> table_map_of(const Settings& options, bool rotary) {
   TableMap map;
   for (const auto& [name, unit] :

@@ -14,9 +14,8 @@
 #include "nonio/sdk/results.h"
 #include "nonio/sdk/settings.h"
 
-/// What a controller plugin declares about the tables of its control, and how the control applies
-/// them. With e = actual - nominal and c = what the control adds to a position, a table is correct
-/// if c = -e.
+/// Declaration of the tables of a control and of their application. With e = actual - nominal and c
+/// = the value that the control adds to a position, a table is correct if c = -e.
 namespace nonio {
 
 /// Format of the tables of one control. A unit is the SI value (m, rad) of 1 in the file; a step is
@@ -26,7 +25,7 @@ struct ControlTable {
   enum class Sign { error, correction };               ///< entries are +e, or -e
   enum class Entry { absolute, increment, position };  ///< position: nominal plus the value
   enum class Grid { even, listed };
-  /// Position at which the entry must be 0. `free`: none is required (the compensation is 0 at the
+  /// Position at which the entry must be 0. `free`: not prescribed (the compensation is 0 at the
   /// reference point nevertheless). `reference`: the reference point, at any position. `first`: the
   /// first point, which is the zero of the axis, from which the control counts its points.
   enum class Zero { free, reference, first };
@@ -34,17 +33,18 @@ struct ControlTable {
     double linear = 1e-3, rotary = std::numbers::pi / 180.0;
     double of(bool is_rotary) const { return is_rotary ? rotary : linear; }
   };
-  /// Source of a statement: the maker's manual or source code; a run of the control itself; a
-  /// conclusion from these; general knowledge of the field.
+  /// Source of a fact: the maker's manual or source code; a run of the control itself; a conclusion
+  /// from these; general knowledge of the field.
   enum class Confidence { documented, run, inferred, unsure };
   struct Fact {
-    /// name of the property, "sign"; if it is not documented, tables have a note <plugin>.<id>
+    /// Name of the property, such as "sign". If it is not documented, tables have a note
+    /// <plugin>.<id>.
     std::string id;
     Confidence confidence = Confidence::documented;
-    std::string description;  ///< one English sentence that states the fact
+    std::string description;  ///< one English sentence
   };
 
-  std::string name;  ///< name of the format as its maker gives it: "kw.ssfk"
+  std::string name;  ///< the maker's name of the format: "kw.ssfk"
   Sign sign = Sign::error;
   Entry entry = Entry::absolute;
   Grid grid = Grid::even;
@@ -53,51 +53,50 @@ struct ControlTable {
   Scale value_unit{}, value_step{1e-9, std::numbers::pi / 180e6};
   std::size_t points = 0;  ///< largest number of points of one table
   double largest = 0.0;    ///< largest absolute value of an entry, in file units
-  /// range of one increment, in steps
+  /// Range of one increment, in steps.
   std::optional<std::pair<std::int64_t, std::int64_t>> increment{};
-  bool rotary = true;          ///< whether the control supports tables of rotary axes
-  bool bidirectional = false;  ///< whether it supports a separate table for each direction
-  /// whether it supports compensation of one axis by the position of another
+  bool rotary = true;          ///< whether tables of rotary axes are supported
+  bool bidirectional = false;  ///< whether each direction may have its own table
+  /// Whether one axis can be compensated by the position of another.
   bool straightness = false;
   bool squareness = false;
-  /// whether it supports tables over the positions of several axes, or all errors in one file
+  /// Whether a table may depend on several axes, or one file may contain all errors.
   bool volumetric = false;
   bool runs_gcode = true;  ///< whether the control runs part programs in G-code
-  /// name of the control's parameter for the backlash value; empty: it has none with these tables
+  /// The control's parameter for the backlash value; empty if these tables have none.
   std::string backlash;
   std::vector<Fact> facts{};
 };
 
-/// A table as its control applies it: c, which the control adds to the position of `output`. All
-/// values are SI. `validate_table` (math/loaded_table.h) defines which tables are valid.
+/// A table as its control applies it: c, which is added to the position of `output`. All values are
+/// SI. `validate_table` (math/loaded_table.h) defines which tables are valid.
 struct LoadedTable {
   enum class Outside { holds, zero, repeats, continues };
-  std::string output;  ///< compensated axis; the name in the file if the axis is not known
+  std::string output;  ///< compensated axis, or its name in the file if the axis is not known
   std::vector<std::string> input;             ///< one or two axes whose positions select the value
   std::vector<std::vector<double>> position;  ///< grid positions of each input, ascending, m or rad
-  /// c for motion toward plus, at the grid points, m or rad; for two inputs the last one varies
-  /// fastest
+  /// c for motion toward plus at the grid points, m or rad; of two inputs, the last one varies
+  /// fastest.
   std::vector<double> plus;
-  std::vector<double> minus;  ///< c for motion toward minus, m or rad; empty: as `plus`
+  std::vector<double> minus;  ///< c for motion toward minus, m or rad; equal to `plus` if empty
   Outside outside = Outside::holds;
-  /// backlash value that the file sets, m or rad; lost motion is positive
+  /// Backlash value that the file sets, m or rad; lost motion is positive.
   std::optional<double> backlash{};
-  bool rotary = false;  ///< whether the output axis is rotary
+  bool rotary = false;
 };
 
-/// The files of one table, and what is known about the machine: the axes of the campaign, and their
-/// numbers in the options, identify the axes in the files.
+/// The files of one table. The campaign's axes and their numbers in the options identify the axes
+/// in the files.
 struct TableInput {
   const std::vector<Artifact>& files;
   const Campaign& campaign;
   const Settings& options;
 };
 
-/// Input of `Controller::merge`: a control's backup, and the files of a new table.
 struct MergeInput {
-  /// the backup as it was saved: all files that contain tables
+  /// All files of the control's backup that contain tables.
   const std::vector<Artifact>& backup;
-  const std::vector<Artifact>& table;  ///< the files of this axis, as `Controller::write` made them
+  const std::vector<Artifact>& table;  ///< files of this axis by `Controller::write`
   const std::string& axis;
   const Campaign& campaign;
   const Settings& options;

@@ -7,7 +7,7 @@
 
 namespace nonio {
 
-/// Units as `unit_of` prints them, and as D-SI writes them (PTB's D-SI 2.2: names of siunitx).
+/// Units as `unit_of` prints them and in D-SI notation (PTB's D-SI 2.2: names of siunitx).
 inline constexpr std::array<std::pair<std::string_view, std::string_view>, 23> dsi_units = {{
     {"", "\\one"},
     {"mm", "\\milli\\metre"},
@@ -34,7 +34,7 @@ inline constexpr std::array<std::pair<std::string_view, std::string_view>, 23> d
     {"arcsec/(deg reading)", "\\arcsecond\\per\\degree"},
 }};
 
-/// Returns the D-SI name of a printed unit; empty if there is none.
+/// Empty if there is no D-SI name.
 constexpr std::string_view dsi_of(std::string_view unit) {
   for (const auto& [ours, theirs] : dsi_units)
     if (ours == unit) return theirs;

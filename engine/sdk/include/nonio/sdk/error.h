@@ -8,16 +8,16 @@
 
 namespace nonio {
 
-/// An error, in words for the user: what was expected, what was found. Each function adds the part
-/// of the location (file, line, column) that is available to it, from the innermost outward.
+/// An error message for the user. Each function adds the part of the location (file, line, column)
+/// that is available to it.
 struct Error {
   std::string message;
-  /// path of the file, relative to the campaign's directory; empty if the error is not in a file
+  /// Path relative to the campaign's folder; empty if the error is not in a file.
   std::string file{};
-  std::uint64_t line = 0;  ///< line of the file, 1-based; 0 if the error is not in a line
-  std::string column{};    ///< name of the column, empty if none
-  /// The plugin option (`axes`) or manifest key (`campaign.customer`) that caused the error; the
-  /// host adds its file and line. Empty if none.
+  std::uint64_t line = 0;  ///< 1-based; 0 if the error is not in a line
+  std::string column{};
+  /// The plugin option (`axes`) or manifest key (`campaign.customer`) that caused the error,
+  /// otherwise empty; the host adds its file and line.
   std::string key{};
 };
 

@@ -16,19 +16,17 @@
 #include "nonio/sdk/powers_of_10.h"
 #include "nonio/sdk/text.h"
 
-/// Basic functions of readers of text files: split lines into fields, parse numbers, quote text in
-/// messages.
 namespace nonio::readers {
 
 enum class DecimalMark : std::uint8_t { none, point, comma };
 
 struct Field {
   enum class Kind : std::uint8_t {
-    taken,  ///< a finite number below 1e19 in absolute value
-    /// blank, nan, n/a, #N/A (#N/D, #NV), "over range" and similar texts, infinite, or at least
-    /// 1e19 in absolute value
+    taken,  ///< a finite number with an absolute value below 1e19
+    /// Blank, nan, n/a, #N/A (#N/D, #NV), "over range" and similar texts, infinite, or an absolute
+    /// value of at least 1e19.
     not_taken,
-    bad,  ///< any other text
+    bad,
   };
   Kind kind = Kind::bad;
   DecimalMark mark = DecimalMark::none;
@@ -46,7 +44,7 @@ bool missing_in_spreadsheet(std::string_view text);
 
 namespace detail {
 
-/// Numbers of at least this size mark a reading that the instrument did not take.
+/// Numbers of at least this absolute value denote a missing reading.
 inline constexpr double sentinel = 1e19;
 
 inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -66,7 +64,7 @@ inline bool means_not_taken(std::string_view text) {
   return false;
 }
 
-/// A parsed decimal number: value = digits * 10^exponent.
+/// value = digits * 10^exponent
 struct Decimal {
   bool negative = false;
   std::uint64_t digits = 0;  ///< invalid if there are more than 19 digits
@@ -75,14 +73,14 @@ struct Decimal {
   DecimalMark mark = DecimalMark::none;
 };
 
-/// Appends the digits at `p` to `digits`; returns the end of the digits.
+/// Returns the end of the digits.
 inline const char* take_digits(const char* p, const char* end, std::uint64_t& digits) {
   for (; p != end && is_digit(*p); ++p) digits = digits * 10 + static_cast<std::uint64_t>(*p - '0');
   return p;
 }
 
-/// Parses an exponent [eE][+-]digits at `p`, which must extend to the end, and adds it to
-/// `d.exponent`. Returns true also if `p` is at the end, and false if any other text follows.
+/// Parses an exponent [eE][+-]digits, which must extend to `end`, and adds it to `d.exponent`. An
+/// empty text is accepted.
 inline bool take_exponent(const char* p, const char* end, Decimal& d) {
   if (p == end) return true;
   if (*p != 'e' && *p != 'E') return false;
@@ -115,9 +113,9 @@ inline bool parse_decimal(std::string_view text, bool comma_allowed, Decimal& d)
   return d.count > 0 && take_exponent(p, end, d);
 }
 
-/// Converts the text exactly with the standard library, for numbers whose digits or power of ten a
-/// double does not represent exactly. The text is known to be well formed. Returns infinity
-/// (without sign) if the number is too large for a double, and 0 if it is too small.
+/// Converts a well-formed text with the standard library, for numbers whose digits or power of ten
+/// a double does not represent exactly. Returns positive infinity if the number is too large for a
+/// double, and 0 if it is too small.
 inline double slow_value(std::string_view text, const Decimal& d) {
   std::string plain(text.front() == '+' ? text.substr(1) : text);
   std::replace(plain.begin(), plain.end(), ',', '.');
@@ -125,7 +123,8 @@ inline double slow_value(std::string_view text, const Decimal& d) {
   const auto [ptr, error] =
       std::from_chars(plain.data(), plain.data() + plain.size(), value, std::chars_format::general);
   if (error == std::errc{}) return value;
-  // Too large or too small for a double: the position of the first significant digit decides which.
+  // The position of the first significant digit determines whether the number is too large or too
+  // small.
   long zeros = 0;
   for (const char c : plain) {
     if (c >= '1' && c <= '9') break;
@@ -137,15 +136,14 @@ inline double slow_value(std::string_view text, const Decimal& d) {
 
 }  // namespace detail
 
-/// Whether the text is a spreadsheet's mark for a missing value: #N/A, in other languages #N/D,
-/// #NV.
+/// Whether the text is #N/A, or #N/D or #NV in other languages.
 inline bool missing_in_spreadsheet(std::string_view text) {
   return detail::same_word(text, "#n/a") || detail::same_word(text, "#n/d") ||
          detail::same_word(text, "#nv");
 }
 
-/// Parses a decimal number: sign, digits, one decimal mark, exponent; no thousands separator, no
-/// hexadecimal, no text after it. The value is the double nearest to the text.
+/// Syntax: sign, digits, one decimal mark, exponent; no thousands separator, no hexadecimal, no
+/// further text. The value is the double nearest to the text.
 inline Field parse_number(std::string_view text, bool comma_allowed) {
   detail::Decimal d;
   if (!detail::parse_decimal(text, comma_allowed, d)) {
@@ -153,7 +151,7 @@ inline Field parse_number(std::string_view text, bool comma_allowed) {
     return {kind, DecimalMark::none, 0.0};
   }
   double value = 0.0;
-  // Both factors are exact in a double, so the one operation rounds once (W. D. Clinger, How to
+  // Both factors are exact in a double, so the operation rounds only once (W. D. Clinger, How to
   // read floating point numbers accurately, PLDI 1990).
   constexpr std::uint64_t exact = 1ULL << 53U;
   if (d.count <= 19 && d.digits <= exact && d.exponent >= -22 && d.exponent <= 22) {
@@ -166,10 +164,10 @@ inline Field parse_number(std::string_view text, bool comma_allowed) {
   }
   const auto kind =
       std::fabs(value) < detail::sentinel ? Field::Kind::taken : Field::Kind::not_taken;
-  return {kind, d.mark, value + 0.0};  // + 0.0 converts -0.0 to 0.0
+  return {kind, d.mark, value + 0.0};  // converts -0.0 to 0.0
 }
 
-/// Parses a number of a run, 1 to 4294967295, digits only; 0 if the text is anything else.
+/// Accepts 1 to 4294967295, digits only; 0 for any other text.
 inline std::uint32_t parse_run(std::string_view text) {
   std::uint64_t run = 0;
   if (text.empty()) return 0;
@@ -183,8 +181,8 @@ inline std::uint32_t parse_run(std::string_view text) {
 
 namespace detail {
 
-/// Extracts the quoted field whose quote opens at `open`; returns the position after it, or npos if
-/// it is malformed.
+/// Extracts the quoted field that begins at `open`; returns the position after it, or npos if it is
+/// malformed.
 inline std::size_t quoted_end(std::string_view line, std::size_t open, char separator,
                               std::string_view& field) {
   std::size_t close = line.find('"', open + 1);
@@ -199,9 +197,8 @@ inline std::size_t quoted_end(std::string_view line, std::size_t open, char sepa
 
 }  // namespace detail
 
-/// Splits a line; fields come trimmed and without the quotes around them, and doubled quotes within
-/// them remain doubled. False if a quoted field is not terminated on this line, or if text follows
-/// a closing quote.
+/// Splits a line into trimmed fields without the enclosing quotes; doubled quotes remain doubled.
+/// False if a quoted field is not terminated on this line, or if text follows a closing quote.
 inline bool split(std::string_view line, char separator, std::vector<std::string_view>& fields) {
   fields.clear();
   const char* const end = line.data() + line.size();
@@ -223,13 +220,12 @@ inline bool split(std::string_view line, char separator, std::vector<std::string
   }
 }
 
-/// Quotes text of a file for a message: shortened to 40 bytes; control characters, and bytes that
-/// are not UTF-8, are written as \xHH.
+/// Quotes text for a message, with at most 40 bytes of it; control characters, and bytes that are
+/// not UTF-8, become \xHH.
 inline std::string shown(std::string_view text) {
   constexpr std::size_t most = 40;
   constexpr std::string_view hex = "0123456789ABCDEF";
   std::string_view part = text.substr(0, most);
-  // Do not cut within a UTF-8 character.
   while (part.size() < text.size() && !part.empty() &&
          (static_cast<unsigned char>(text[part.size()]) & 0xC0U) == 0x80)
     part.remove_suffix(1);
@@ -237,7 +233,6 @@ inline std::string shown(std::string_view text) {
   std::string out = "\"";
   for (std::size_t i = 0; i < part.size(); ++i) {
     const auto byte = static_cast<unsigned char>(part[i]);
-    // U+0080..U+009F are control characters too.
     const bool control = byte == 0xC2 && readable && static_cast<unsigned char>(part[i + 1]) < 0xA0;
     if ((byte >= 0x20 && byte < 0x7F) || (byte >= 0x80 && readable && !control)) {
       out += part[i];
@@ -254,7 +249,7 @@ inline std::string shown(std::string_view text) {
   return out + (part.size() < text.size() ? "...\"" : "\"");
 }
 
-/// Returns the Levenshtein distance: the least number of bytes to replace, insert or delete.
+/// The Levenshtein distance in bytes.
 inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -270,15 +265,15 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// Returns the element of `names` with the smallest edit distance to the first 24 bytes of `name`;
-/// the first such element if there are several. `names` must not be empty.
+/// Returns the first of the names with the smallest edit distance to the first 24 bytes of `name`.
+/// `names` must not be empty.
 inline std::string_view nearest(std::string_view name, const std::vector<std::string_view>& names) {
-  name = name.substr(0, 24);  // longer than any column name
+  name = name.substr(0, 24);
   std::string_view best = names.front();
   std::size_t least = edit_distance(name, best);
   for (const std::string_view candidate : names) {
     const std::size_t a = name.size(), b = candidate.size();
-    // the distance is at least the difference of the lengths
+    // The distance is at least the difference of the lengths.
     if ((a > b ? a - b : b - a) >= least) continue;
     const std::size_t distance = edit_distance(name, candidate);
     if (distance >= least) continue;
@@ -292,9 +287,8 @@ inline std::string_view nearest(std::string_view name, const std::vector<std::st
 
 namespace nonio {
 
-/// Writes text as a field of a CSV file: quoted if RFC 4180 requires it. A spreadsheet interprets
-/// text that starts with one of = + - @ (or with a tab or CR before it) as a formula; a leading
-/// apostrophe prevents this.
+/// Formats a field of a CSV file, quoted if RFC 4180 requires it. A leading apostrophe prevents a
+/// spreadsheet from interpreting text that starts with = + - @, tab or CR as a formula.
 inline std::string csv_text(std::string_view words) {
   std::string field(words);
   if (!field.empty() && std::string_view("=+-@\t\r").find(field.front()) != std::string_view::npos)

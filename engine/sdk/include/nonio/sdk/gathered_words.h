@@ -6,8 +6,8 @@
 namespace nonio {
 
 /// Collects the texts that `words` (format.h) looks up most often (findings, notes, terms) from all
-/// files of a language into one table, so that `words` searches one table instead of twenty. Texts
-/// of earlier files have priority. It is called after the templates are read, and changes no text.
+/// files of a language into one table, so that `words` searches one table instead of twenty. If
+/// files have the same key, the first file has priority. To be called after the templates are read.
 void gather_words(Templates& templates);
 
 }  // namespace nonio

@@ -10,8 +10,7 @@
 
 namespace nonio {
 
-/// Returns the text as a JSON string (RFC 8259), in quotes. A byte that is not UTF-8 becomes
-/// U+FFFD.
+/// Returns a quoted JSON string (RFC 8259). A byte that is not UTF-8 becomes U+FFFD.
 inline std::string json_text(std::string_view text) {
   constexpr std::string_view hex = "0123456789abcdef", plain = "\"\\\b\f\n\r\t",
                              escaped = "\"\\bfnrt";
@@ -38,7 +37,7 @@ inline std::string json_text(std::string_view text) {
   return out + '"';
 }
 
-/// Returns the shortest JSON number that parses to the same double; null if it is not finite.
+/// Returns the shortest number that parses to the same double; null if it is not finite.
 inline std::string json_number(double value) {
   if (!std::isfinite(value)) return "null";
   std::string out;

@@ -10,13 +10,13 @@
 
 namespace nonio {
 
-/// Writes JSON (RFC 8259) to a text. Bytes that are not UTF-8 become replacement characters; a
-/// number that is not finite becomes null.
+/// Writes JSON (RFC 8259). Bytes that are not UTF-8 become replacement characters; a number that is
+/// not finite becomes null.
 class JsonWriter {
  public:
-  /// lines: one line per value, indented by one blank per level, so that two files can be compared
-  /// line by line. one_line: everything on one line. in_script: one line that may be embedded in a
-  /// <script> of a page, because no text in it can end the element.
+  /// lines: one value per line, indented by one blank per level, for comparison line by line.
+  /// in_script: one line that may be embedded in a <script> of a page, because no text in it can
+  /// end the element.
   enum class Layout { lines, one_line, in_script };
   explicit JsonWriter(Layout layout = Layout::lines) : layout_(layout) {}
 
@@ -34,15 +34,14 @@ class JsonWriter {
   void value(bool yes);
   void value(const std::vector<std::string>& texts);
   void null() { item("null"); }
-  void raw(std::string_view json) { item(json); }  ///< writes a value that is already JSON
+  void raw(std::string_view json) { item(json); }  ///< `json` must be valid JSON
   template <class T>
   void member(std::string_view name, const T& of) {
     key(name);
     value(of);
   }
 
-  /// Writes a member `name` whose value is an array. `put` is called for each item and writes one
-  /// element of the array.
+  /// Writes an array member; `put` writes one element for each item.
   template <class Items, class Put>
   void list(std::string_view name, const Items& items, const Put& put) {
     key(name);
@@ -50,8 +49,8 @@ class JsonWriter {
     for (const auto& item : items) put(item);
     end_array();
   }
-  /// Writes a member `name` whose value is an array of objects. `put` is called for each item and
-  /// writes the members of its object.
+  /// Writes a member that is an array of objects; `put` writes the members of one object for each
+  /// item.
   template <class Items, class Put>
   void objects(std::string_view name, const Items& items, const Put& put) {
     list(name, items, [&](const auto& item) {
@@ -61,7 +60,7 @@ class JsonWriter {
     });
   }
 
-  /// Returns the written text, and clears it; with Layout::lines it ends with a newline.
+  /// Returns and clears the written text; with Layout::lines it ends with a newline.
   std::string take();
 
  private:

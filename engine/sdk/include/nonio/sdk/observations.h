@@ -47,6 +47,9 @@ struct Observations {
     std::string body{};
     /// False if the size of the body is unknown, because its temperature is unknown.
     bool body_size_known = true;
+    /// As stated: position of the zero of the body, m, and rotation about Z, rad.
+    std::array<double, 3> body_origin{};
+    double body_turned = 0.0;
   };
 
   /// A quantity recorded in addition to the deviations: a temperature, a speed, a load. It has its

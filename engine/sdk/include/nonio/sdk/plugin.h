@@ -17,29 +17,29 @@
 #include "nonio/sdk/units.h"
 
 /// A plugin is a shared library with one exported symbol. It registers objects of the six types
-/// below, whose functions are pure: they depend only on their arguments. Only the host accesses
-/// disk, clock, log, locale, threads, processes and configuration.
+/// below, whose functions are pure: they depend only on their arguments. Only the host uses disk,
+/// clock, log, locale, threads, processes and configuration.
 ///
 ///     NONIO_PLUGIN(registry) { registry.add(nonio::Analysis{...}); }
 namespace nonio {
 
 struct HistorySoFar;
 
-/// One option of a plugin, or one key that a method adds to [[measurement]]. The host checks the
-/// type, the range and the choices, and fills in the default.
+/// An option of a plugin, or a key that a method adds to [[measurement]]. The host checks type,
+/// range and choices, and sets the default.
 struct Option {
   std::string name;
-  Setting default_value;  ///< used if the option is not stated; its type is that of the option
-  std::string unit;       ///< unit of a number; empty if it has none
-  std::string help;       ///< one sentence that describes the option
-  std::vector<std::string> choices{};  ///< allowed values of a text option; empty: any
-  /// For a number: the allowed range, ends included. For a text that a method declares, `max`
-  /// limits its length in bytes.
+  Setting default_value;  ///< value if the option is not stated; determines the type of the option
+  std::string unit;
+  std::string help;                    ///< one sentence
+  std::vector<std::string> choices{};  ///< allowed values; any value if empty
+  /// Allowed range of a number, ends included. For a text that a method declares, `max` limits its
+  /// length in bytes.
   std::optional<double> min{}, max{};
 
-  // The members below apply to keys that a method declares.
+  // For keys that a method declares: whether the key must be stated.
   bool required = false;
-  /// text of the message if the key is missing, such as "the plane of the circle, \"XY\""
+  /// Message if the key is missing, such as "the plane of the circle, \"XY\"".
   std::string missing{};
   std::string expected{};   ///< message if the value is invalid: "expected a length above 0"
   std::string forbidden{};  ///< characters that a text must not contain
@@ -53,7 +53,6 @@ inline Option at_least(double min, Option o) {
   o.min = min;
   return o;
 }
-/// Sets the allowed range, both ends included.
 inline Option within(double min, double max, Option o) {
   o.max = max;
   return at_least(min, std::move(o));
@@ -72,43 +71,41 @@ struct Info {
 struct Method;
 
 struct ReadInput {
-  std::string_view bytes;  ///< the whole file
+  std::string_view bytes;
   const Campaign& campaign;
   const Measurement& measurement;
   const Settings& options;
-  /// Optional. The reader calls it with the offset before which it no longer needs the bytes, so
-  /// that a file of a gigabyte is not kept in memory together with its readings.
+  /// Optional. To be called with the offset before which the bytes are no longer needed, so that a
+  /// file of a gigabyte is not in memory together with its readings.
   std::function<void(std::size_t)> done_with{};
   /// The method of the measurement; null if no plugin with this method is loaded.
   const Method* method = nullptr;
 };
 
-/// Converts the bytes of a file to observations.
+/// Converts a file to observations.
 struct Reader {
   Info info;
-  /// Returns whether the first bytes of a file match the format of this reader.
+  /// Whether the first bytes of a file match the format.
   bool (*recognises)(std::string_view head) = nullptr;
-  /// Returns whether the reader supports measurements of this kind.
   bool (*reads)(std::string_view measurement_kind) = nullptr;
   Expected<Observations> (*read)(const ReadInput&) = nullptr;
   /// Whether the reader also reads the columns that a method declares (`ReadInput::method`), for
   /// any kind.
   bool reads_columns = false;
-  /// Optional: returns at most `most` rows of a table as text, starting with the names of its
-  /// columns, for a person who assigns the columns (option `columns`).
+  /// Optional: returns at most `most` rows of a table as text, starting with the column names, for
+  /// a person who assigns the columns (option `columns`).
   Expected<std::vector<std::vector<std::string>>> (*first_rows)(std::string_view bytes,
                                                                 std::size_t most) = nullptr;
 };
 
-/// The readings of a file, by the columns that a method declares. Values are SI, and NaN if a field
+/// The readings of a file in the columns that a method declares. Values are SI, and NaN if a field
 /// is blank. A direction is +1 or -1, or 0 if it is blank.
 struct Readings {
-  /// keys are `Method::Column::name`
+  /// Keys are `Method::Column::name`.
   std::map<std::string, std::vector<double>, std::less<>> columns;
   std::vector<std::uint32_t> source_line;  ///< line of the file for each reading, 1-based
 
   std::size_t size() const { return source_line.size(); }
-  /// Returns the column; null if the file does not contain it.
   const std::vector<double>* column(std::string_view name) const {
     const auto found = columns.find(name);
     return found == columns.end() ? nullptr : &found->second;
@@ -124,20 +121,20 @@ struct MethodInput {
 struct SimulationInput {
   const Campaign& campaign;
   const Measurement& measurement;
-  /// observations that `observe` must return for the simulated readings
+  /// Observations that `observe` must return for the simulated readings.
   const Observations& observations;
 };
 
-/// A measuring method: the keys that it adds to [[measurement]], the columns of its files, and the
-/// conversion of their readings to observations. The functions in sdk/method.h apply it.
+/// A measuring method: its keys of [[measurement]], the columns of its files, and the conversion of
+/// readings to observations. The functions in sdk/method.h apply it.
 struct Method {
   struct Column {
-    /// How observations use the column if the method has no function `observe`.
+    /// Use of the column in observations if the method has no function `observe`.
     enum class Role {
-      none,      ///< used only by the method's own `observe`
+      none,      ///< only for the method's own `observe`
       position,  ///< commanded position of the measurement's axis
       deviation,
-      run,        ///< number of the run, an integer from 1
+      run,        ///< an integer from 1
       direction,  ///< direction of approach, + or -
       time,
       material,
@@ -145,92 +142,89 @@ struct Method {
       pressure,
       humidity,
     };
-    std::string name;  ///< name without unit: `target` of quantity length is `target_mm` in a file
+    std::string name;  ///< without unit: `target` of quantity length is `target_mm` in a file
     Quantity quantity = Quantity::number;
     Role role = Role::none;
-    std::string help;      ///< one sentence that describes the column
-    bool required = true;  ///< if false, a file may omit the column, and its fields may be blank
+    std::string help;
+    bool required = true;  ///< if false, the column may be missing and its fields may be blank
   };
-  /// `name` is the `kind` of [[measurement]]. `options` are the keys that the method adds to those
-  /// of all methods. The host copies the keys `axis`, `lateral`, `from` and `to` to the members of
+  /// `name` is the `kind` of [[measurement]]. `options` are the keys that the method adds to the
+  /// common ones. The host copies the keys `axis`, `lateral`, `from` and `to` to the members of
   /// `Measurement` with these names.
   Info info;
-  /// Optional: the kind of measurement, such as "axis", to which the observations are equivalent.
-  /// All analyses, checks, tables and histories of that kind then apply. Empty: a kind of its own.
+  /// Optional: the kind of measurement, such as "axis", to which the observations are equivalent,
+  /// so that all analyses, checks, tables and histories of that kind apply.
   std::string observed_as{};
-  /// Motion during the measurement, for a method whose `observed_as` is empty.
+  /// For a method whose `observed_as` is empty.
   Measurement::Motion motion = Measurement::Motion::targets;
-  /// columns of its files; if empty, its files are read by readers made for this method
+  /// If empty, the files are read by readers for this method.
   std::vector<Column> columns{};
-  /// Optional: converts readings to observations. Without this function, the roles of the columns
-  /// determine the observations (`observe` in sdk/method.h).
+  /// Optional: converts readings to observations. Without it, the roles of the columns determine
+  /// the observations (`observe` in sdk/method.h).
   Expected<Observations> (*observe)(const MethodInput&) = nullptr;
-  /// Optional, required with `observe`: converts observations back to readings, for `nonio
-  /// simulate` and `nonio plugin check`.
+  /// Required with `observe`: the inverse conversion, for `nonio simulate` and `nonio plugin
+  /// check`.
   Expected<Readings> (*simulate)(const SimulationInput&) = nullptr;
 };
 
-/// Reason why an effect is no candidate for these readings. `id` is the name of its text,
-/// "unseen.<id>", and is empty if the effect does not concern this axis. `rows` are the readings
-/// that cause it.
+/// Reason why an effect is no candidate for these readings, with the readings that cause it. The
+/// text is "unseen.<id>"; `id` is empty if the effect does not concern this axis.
 struct WhyNot {
   std::string id;
   std::vector<std::uint32_t> rows{};
 };
 
-/// One physical cause of deviations. It converts observations to one column for each linear
-/// parameter. Rows in which the axis did not move are 0 (`readings_of` in sdk/axis_readings.h
-/// returns the inputs of a column).
+/// A physical cause of deviations, with one column for each linear parameter. Rows in which the
+/// axis did not move are 0 (`readings_of` in sdk/axis_readings.h returns the inputs of a column).
 struct Effect {
   using Columns = std::vector<std::vector<double>>;
   struct Parameter {
     std::string name;
     std::string help;
     Quantity quantity = Quantity::number;
-    Quantity rotary = quantity;  ///< quantity for a rotary axis
+    Quantity rotary = quantity;
   };
   /// A nonlinear parameter that is searched: a period, a time constant, an instant, a number of
   /// knots.
   struct Shape {
     Parameter parameter;
-    /// Returns the values to try, ascending, in SI: one value if it is known (a period in the
-    /// manifest), none if the readings do not identify the parameter.
+    /// Returns the values to be tested, ascending, SI: one value if it is known (a period in the
+    /// manifest), no value if the readings do not identify the parameter.
     std::function<std::vector<double>(const Observations&, const Axis&)> grid;
-    bool continuous = true;  ///< whether the best value may be between values of the grid
-    /// Default value, such as a fixed point in the middle of the stretch. Unlike other values of
-    /// the grid, it needs no evidence from the readings.
+    bool continuous = true;  ///< whether the best value may be between grid values
+    /// Default value, such as a fixed point in the middle of the measured range. Unlike other grid
+    /// values, it requires no evidence from the readings.
     std::optional<double> usual{};
   };
   Info info;                      ///< name: the kind without the axis, such as "backlash"
-  std::vector<Parameter> linear;  ///< for a curve: one parameter that describes all of its columns
+  std::vector<Parameter> linear;  ///< for a curve: one parameter for all columns
   std::vector<Shape> shapes;
-  /// whether the effect is a smooth curve; its first shape is then the number of its columns
+  /// Whether the effect is a smooth curve; its first shape is then the number of columns.
   bool curve = false;
-  bool compensable = false;  ///< whether a table in the controller can compensate it
+  bool compensable = false;  ///< whether a table of the control can compensate it
   std::function<bool(const Observations&, const Axis&)> applies;
-  /// Returns columns of length observations.size(), in the unit of the deviation divided by that of
+  /// Returns columns with one entry per reading, in the unit of the deviation divided by that of
   /// the parameter.
   std::function<Expected<Columns>(const Observations&, const Axis&,
                                   const std::vector<double>& shape)>
       columns;
   /// For an effect in space: returns the possible instances in these readings, such as "EYX"
-  /// (straightness), "XY" (squareness) or a line. The Axis passed to the other functions then has
-  /// only this name, and the columns are the deviation as sensed (`Observations::sense_of`). If
-  /// empty, the effect exists once per axis, its columns are the error along the axis, and the
-  /// engine computes the component along the direction of sensing.
+  /// (straightness), "XY" (squareness) or a line. The Axis passed to the other functions then
+  /// contains only this name, and the columns are the sensed deviation (`Observations::sense_of`).
+  /// Without this function, the effect exists once per axis, its columns are the error along the
+  /// axis, and the engine computes the component along the direction of sensing.
   std::function<std::vector<std::string>(const Observations&)> instances{};
-  /// Whether the effect is an unknown of the set-up, such as the orientation of a mirror. It is
-  /// part of every model to which it applies, and never a candidate.
+  /// Whether the effect is an unknown of the setup, such as the orientation of a mirror. It is part
+  /// of every model to which it applies, and never a candidate.
   bool is_nuisance = false;
   /// Whether the effect is a curve that describes the residual without a cause ("a reversal for
   /// each target"). It is never a candidate, but is offered if no effect explains the residual. In
-  /// a model with other effects it describes only what they do not.
+  /// a model with other effects it describes only the remainder.
   bool description = false;
-  /// Whether its instances are recorded channels (`Observations::channels`). It can occur in
-  /// displacements over time, in which no other effect occurs, and in axis tests with recorded
-  /// channels.
+  /// Whether its instances are recorded channels (`Observations::channels`). It is the only kind of
+  /// effect in displacements over time, and is also used in axis tests with recorded channels.
   bool of_channels = false;
-  /// Optional: returns the reason why the effect does not apply.
+  /// Optional: the reason why the effect is no candidate for these readings.
   std::function<WhyNot(const Observations&, const Axis&)> why_not{};
 };
 
@@ -240,10 +234,9 @@ struct AnalysisInput {
   const Observations& observations;
   const Settings& options;
   /// One entry for each measurement, in the order of the manifest; empty if its file could not be
-  /// read. An analysis that uses other measurements lists their ids in Evaluation::uses.
+  /// read. The analysis lists the ids of other measurements that it uses in Evaluation::uses.
   const std::vector<Observations>* all = nullptr;
-  /// The table format of the machine's control, as its plugin declares it; null if no plugin of
-  /// that name is loaded.
+  /// Table format of the machine's control; null if its plugin is not loaded.
   const ControlTable* control = nullptr;
 };
 
@@ -255,17 +248,16 @@ struct CampaignInput {
   const Settings& options;
 };
 
-/// Computes results from observations.
 struct Analysis {
   Info info;
   bool (*applies)(const Campaign&, const Measurement&) = nullptr;
   Expected<Evaluation> (*analyse)(const AnalysisInput&) = nullptr;
-  /// Replaces `applies` and `analyse`: called once for the campaign as a whole (a plan needs no
+  /// Replaces `applies` and `analyse`: called once for the whole campaign (a plan needs no
   /// measurement).
   Expected<Evaluation> (*analyse_campaign)(const CampaignInput&) = nullptr;
-  /// Whether the analysis states which of its values the history follows over the years
-  /// (`Value::followed`). If not, the history follows each value whose uncertainty is in the
-  /// budget, as "<plugin>:<value>" of the measurement's axis.
+  /// Whether the analysis states which values the history follows (`Value::followed`). Otherwise
+  /// the history follows each value whose uncertainty is in the budget, as "<plugin>:<value>" of
+  /// the measurement's axis.
   bool states_followed = false;
 };
 
@@ -283,31 +275,31 @@ struct OutputInput {
   const HistorySoFar* history = nullptr;
 };
 
-/// Writes documents from results. It runs after the tables of all controllers are written, and
-/// finds their predictions in `results.outputs`.
+/// Writes documents from results. Runs after the tables of all controllers are written, whose
+/// predictions are in `results.outputs`.
 struct Output {
   /// Requirements of a document that is issued under a number and does not change afterwards.
   struct Certificate {
-    /// Returns the keys of everything that is missing. If nothing is, `write` is called for a draft
+    /// Returns the keys of all missing data. If nothing is missing, `write` is called for a draft
     /// (Issue::is_draft), and every page of its PDF must state that it is a draft. After a person
     /// has approved it, the host assigns a number and calls `write` again; the same data are never
     /// issued twice.
     std::vector<std::string> (*missing_requirements)(const OutputInput&) = nullptr;
   };
-  /// Purpose by which the program finds the output that writes a document of this kind.
+  /// Purpose by which the program finds the output for a document of this kind.
   enum class Role { other, report, model_page, sheet_of_stops };
   Info info;
   bool (*applies)(const Campaign&) = nullptr;
   Expected<OutputResult> (*write)(const OutputInput&) = nullptr;
-  /// Optional: called once per run, before any campaign, to load what all documents share (fonts).
-  /// It must not change the result of `write`.
+  /// Optional: called once per run, before any campaign, to load what all documents have in common
+  /// (fonts). It must not change the result of `write`.
   void (*prepare)(const Templates&) = nullptr;
-  /// Optional: returns the errors in the templates and words that this output uses.
+  /// Optional: errors in the templates and words that this output uses.
   std::vector<Error> (*check_templates)(const Templates&) = nullptr;
-  /// absent if the document is not issued under a number
+  /// std::nullopt if the document is not issued under a number.
   std::optional<Certificate> certificate{};
-  /// Optional: returns whether the document shows the machine's history with these options. The
-  /// document is then written again when the history changes.
+  /// Optional: whether the document contains the machine's history with these options; it is then
+  /// written again when the history changes.
   bool (*wants_history)(const Settings&) = nullptr;
   Role role = Role::other;
 };
@@ -324,26 +316,23 @@ struct ControllerInput {
   const std::vector<Observations>* measured = nullptr;
 };
 
-/// Writes the tables of one control from readings and results, and parses them. `[run] outputs`
-/// lists it among the outputs, so no output may have the same name.
+/// Writes and parses the tables of one control. `[run] outputs` lists it among the outputs, so no
+/// output may have the same name.
 struct Controller {
-  /// If the controller has an option `axes` of tables, the host fills in the known values of each
-  /// axis of the machine: number, reference_mm, from_mm, to_mm, resolution_um, largest_um,
-  /// slope_um_per_m, and the same for rotary axes (_deg, _arcsec, slope_arcsec_per_deg). Values
-  /// that the control does not use are ignored.
+  /// If there is an option `axes` of tables, the host adds the known values of each axis of the
+  /// machine: number, reference_mm, from_mm, to_mm, resolution_um, largest_um, slope_um_per_m, and
+  /// the same for rotary axes (_deg, _arcsec, slope_arcsec_per_deg).
   Info info;
   ControlTable table;
   bool (*applies)(const Campaign&) = nullptr;
   Expected<OutputResult> (*write)(const ControllerInput&) = nullptr;
-  /// Parses files of the control, and returns the tables as the control applies them.
+  /// Returns the tables in these files as the control applies them.
   Expected<std::vector<LoadedTable>> (*parse)(const TableInput&) = nullptr;
-  /// Optional: replaces the present table of this axis in the files of the backup, and keeps all
-  /// other bytes. Returns only files that changed. Error: the replacement would change another
-  /// axis.
+  /// Optional: replaces the present table of this axis in the files of the backup, keeps all other
+  /// bytes, and returns only files that changed. Error: the replacement would change another axis.
   Expected<std::vector<Artifact>> (*merge)(const MergeInput&) = nullptr;
 };
 
-/// Interface that the host passes to a plugin's registration function.
 class Registry {
  public:
   virtual void add(Method) = 0;
@@ -357,7 +346,6 @@ class Registry {
   ~Registry() = default;
 };
 
-/// The version of this interface, defined only here.
 #define NONIO_SDK_VERSION 18
 
 #define NONIO_STRING_(x) #x
@@ -381,7 +369,7 @@ class Registry {
 #define NONIO_DEBUG "plain containers"
 #endif
 
-/// Properties of the build that must match between host and plugin before the plugin is called.
+/// Properties of the build that must be equal in host and plugin.
 #define NONIO_ABI_TAG                                                                \
   "nonio-sdk " NONIO_STRING(NONIO_SDK_VERSION) "; " NONIO_COMPILER "; " NONIO_STDLIB \
                                                "; " NONIO_DEBUG
@@ -403,7 +391,7 @@ struct PluginEntry {
   static void nonio_plugin_library(nonio::Registry& registry)
 
 /// Begins the function that registers plugins. Nonio's own plugins of one kind form one library:
-/// each has a namespace of its own, and the entry of the library calls the functions of all
+/// each has its own namespace, and the entry of the library calls the functions of all
 /// (plugins/CMakeLists.txt).
 #ifdef NONIO_BUILT_IN
 #define NONIO_PLUGIN(registry) void nonio_plugin_of_library(nonio::Registry& registry)

@@ -11,17 +11,17 @@
 
 namespace nonio {
 
-/// Tables of numbers by their names: `[options.fanuc.axes.X] number = 1` is {"X": {"number": 1}}.
+/// `[options.fanuc.axes.X] number = 1` is {"X": {"number": 1}}.
 using NumberTable = std::map<std::string, double, std::less<>>;
 using NumberTables = std::map<std::string, NumberTable, std::less<>>;
 
 using Setting = std::variant<bool, std::int64_t, double, std::string, std::vector<double>,
                              std::vector<std::string>, NumberTables, NumberTable>;
 
-/// Named values: the options of one plugin, or one file of templates/ with its tables flattened
+/// The options of one plugin, or one file of templates/ with its tables flattened
 /// ("finding.drift.parallel.advice"). If the name is absent or has another type, an accessor
-/// returns `otherwise`, or an empty value if it has no such parameter; `number` also accepts an
-/// integer. The options that a plugin receives are complete and have the declared types.
+/// returns `otherwise` or an empty value; `number` also accepts an integer. The options that a
+/// plugin receives are complete and have the declared types.
 class Settings {
  public:
   std::map<std::string, Setting, std::less<>> values;
@@ -62,8 +62,8 @@ class Settings {
   }
 };
 
-/// The files of templates/, read by the host: `*.toml` as settings under their path without the
-/// extension ("words/en"), all others (logo, fonts) as bytes under the whole path.
+/// The files of templates/: `*.toml` as settings under their path without the extension
+/// ("words/en"), all others (logo, fonts) as bytes under the whole path.
 struct Templates {
   std::map<std::string, Settings, std::less<>> tables;
   std::map<std::string, std::string, std::less<>> files;

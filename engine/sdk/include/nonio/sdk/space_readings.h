@@ -16,7 +16,7 @@
 
 /// Quantities of readings in space, from which effects compute their columns. An effect defines the
 /// error vector e of the tool point at (x, y, z), in m from the corner of the measured volume; a
-/// reading senses n . e, with n the unit vector of its line, so that a column is
+/// reading senses n . e, where n is the unit vector of its line. A column is
 ///
 ///     column_i = sum over k of n_k(i) de_k/dparameter (x_i, y_i, z_i)
 ///
@@ -31,29 +31,33 @@ namespace nonio {
 /// Positions of the tool point relative to the corner, which is the lowest measured position of
 /// each axis.
 struct SpaceReadings {
-  /// x, y, z of each reading from the corner of the measured volume, m; NaN if the position of the
-  /// axis is not stated. A coordinate that no axis has is empty. k is 0, 1, 2 for x, y, z.
+  /// Coordinates k = 0, 1, 2 (x, y, z) of each reading from the corner, m; NaN if the position of
+  /// the axis is not stated, and empty if no axis has the coordinate.
   std::array<std::vector<double>, 3> r;
   std::array<double, 3> length{};  ///< size of the measured volume along x, y, z, m
 
   bool moves(std::size_t k) const { return length[k] > 0.0; }
-  /// Returns coordinate k of reading i from the corner, m: 0 if it is not stated.
+  /// Coordinate k of reading i from the corner, m; 0 if it is not stated.
   double lever(std::size_t k, std::size_t i) const {
     return r[k].empty() || !std::isfinite(r[k][i]) ? 0.0 : r[k][i];
   }
 };
 
-/// Returns the positions relative to the corner, computed from the commanded positions of the
-/// readings; NaN for a coordinate that is not stated.
+/// The positions are the commanded ones, with NaN for a coordinate that is not stated.
 SpaceReadings space_of(const Observations& o);
 
-/// Returns whether the readings are the centers of a ball that turns with a rotary axis: they are
-/// lengths, measured over an angle.
+/// Returns the readings of bodies with positions and directions of sensing in the frame of each
+/// body, and no position for all other readings. Of the coordinates, X and Y must be stated.
+/// std::nullopt if all bodies have the same rotation about Z (docs/conventions.md), because their
+/// own errors are then not separable from those of the machine.
+std::optional<Observations> in_bodies(const Observations& o);
+
+/// Whether the readings are centers of a ball on a rotary axis: lengths, measured over an angle.
 bool of_ball_centres(const Observations& o);
 
-/// Returns whether coordinate k varies within a line whose readings sense direction `error`. If it
-/// does not, the zero of each line absorbs everything that depends on k. If `away` is set, only
-/// readings whose coordinate `*away` is above that of the corner are considered.
+/// Whether coordinate k varies within a line whose readings sense direction `error`. Otherwise the
+/// zero of each line is not separable from errors that depend on k. If `away` is set, only readings
+/// whose coordinate `*away` is above that of the corner are considered.
 bool varies_where_sensed(const Observations& o, const SpaceReadings& s, std::size_t k,
                          std::size_t error, std::optional<std::size_t> away = std::nullopt);
 
@@ -61,9 +65,8 @@ bool varies_where_sensed(const Observations& o, const SpaceReadings& s, std::siz
 /// closer than 1e-9 of the length are one.
 std::vector<double> places_of(const SpaceReadings& s, std::size_t k);
 
-/// Returns numbers of knots to try for a smooth curve: from 3 to at most 10, with at least two
-/// places for each free value, so that the curve cannot follow single places. Empty for fewer than
-/// 8 places.
+/// Returns numbers of knots for a smooth curve: from 3 to at most 10, with at least two places per
+/// free value, so that the curve cannot follow single places. Empty for fewer than 8 places.
 std::vector<double> knots_over(const std::vector<double>& places);
 
 /// The readings of one line in space. Readings for which other coordinates are stated than for the
@@ -72,10 +75,10 @@ struct SpaceLine {
   using Vector = std::array<double, 3>;
   std::vector<std::size_t> rows;
   std::vector<Vector> way;  ///< vector from the first row to each row, m
-  /// direction of sensing of the first row; longest vector in `way`, m
+  /// Direction of sensing of the first row, and longest vector in `way`, m.
   Vector sense{}, farthest{};
   double length = 0.0;  ///< length of `farthest`, m
-  /// whether all points are on one straight line, up to the rounding of files
+  /// Whether all points are on one straight line, apart from the rounding of files.
   bool straight = true;
 
   static double dot(const Vector& a, const Vector& b) {
@@ -84,17 +87,17 @@ struct SpaceLine {
   static Vector cross(const Vector& a, const Vector& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   }
-  /// Returns whether the line is a step diagonal: it moves both perpendicular to the direction of
-  /// sensing (along the flat mirror) and along it.
+  /// Whether the line is a step diagonal: it moves both along the direction of sensing and
+  /// perpendicular to it (along the flat mirror).
   bool is_stepwise() const { return !straight && std::fabs(dot(farthest, sense)) > 0.5 * length; }
 };
 
-/// Returns the line with index `line` into Observations::lines.
+/// `line` is an index into Observations::lines.
 SpaceLine space_line(const Observations& o, const SpaceReadings& s, std::size_t line);
 
 std::vector<double> finite_or_zero(std::vector<double> x);
 
-/// Convert a coordinate index to its letter, and a letter to its index (3 if it is no coordinate).
+/// The index is 3 if the letter is no coordinate.
 inline char letter_of(std::size_t k) { return "XYZ"[k]; }
 inline std::size_t coordinate_of(char letter) {
   return coordinate_of(std::string_view(&letter, 1));

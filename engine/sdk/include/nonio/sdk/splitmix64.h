@@ -24,7 +24,7 @@ class SplitMix64 {
     return number;
   }
 
-  /// Returns a uniform number in [0, 1), from the upper 53 bits.
+  /// Uniform in [0, 1), from the upper 53 bits.
   constexpr double uniform() { return static_cast<double>((*this)() >> 11U) * 0x1p-53; }
 
  private:

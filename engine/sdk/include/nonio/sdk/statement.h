@@ -6,11 +6,10 @@
 
 namespace nonio {
 
-/// Returns whether `text` (UTF-8), such as a name, number or reason, contains an ASCII letter or
-/// digit, or a character outside of ASCII that is not punctuation. False for "", "  ", "-", "—" and
-/// "?".
+/// Whether `text` (UTF-8) contains an ASCII letter or digit, or a character outside of ASCII that
+/// is not punctuation. False for "", "  ", "-", "—" and "?".
 inline bool has_content(std::string_view text) {
-  // Punctuation: Latin-1 A0 to BF, general punctuation, minus, CJK punctuation, full-width hyphen.
+  // Latin-1 A0 to BF, general punctuation, minus, CJK punctuation, full-width hyphen.
   const auto is_mark = [](std::string_view c) {
     return c[0] == '\xC2' || c.starts_with("\xE2\x80") || c.starts_with("\xE2\x81") ||
            c == "\xE2\x88\x92" || c.starts_with("\xE3\x80") || c.starts_with("\xEF\xBC\x8D");

@@ -9,18 +9,17 @@
 
 #include "nonio/sdk/error.h"
 
-/// Conversion of the text of files: UTF-8, and the encodings that Windows writes instead.
+/// Conversion of the text of files: UTF-8, and the encodings that Windows uses instead.
 namespace nonio {
 
-inline constexpr std::string_view utf8_mark = "\xEF\xBB\xBF";  ///< byte-order mark
+inline constexpr std::string_view utf8_mark = "\xEF\xBB\xBF";
 
-/// Returns the text without its leading byte-order mark.
 inline std::string_view without_mark(std::string_view text) {
   if (text.starts_with(utf8_mark)) text.remove_prefix(utf8_mark.size());
   return text;
 }
 
-/// Returns whether the bytes are well-formed UTF-8 (RFC 3629).
+/// RFC 3629.
 inline bool is_utf8(std::string_view text) {
   const auto at = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   for (std::size_t i = 0; i < text.size();) {
@@ -64,8 +63,8 @@ inline void append_utf8(std::string& out, std::uint32_t c) {
 /// Position of a text in XML or HTML: between tags, or in a quoted attribute.
 enum class Markup { element, attribute };
 
-/// Escapes text for XML and HTML; control characters below U+0020, except tab and line feed, are
-/// omitted. Quotes are escaped only in an attribute.
+/// Control characters below U+0020, except tab and line feed, are omitted. Quotes are escaped only
+/// in an attribute.
 inline std::string escaped_markup(std::string_view text, Markup where = Markup::element) {
   std::string out;
   for (const char c : text) {
@@ -85,8 +84,8 @@ inline std::string escaped_markup(std::string_view text, Markup where = Markup::
   return out;
 }
 
-/// Converts text with the byte-order mark of UTF-16 (Excel's "Unicode text") to UTF-8; nothing if
-/// it has no such mark. The error, with its line, states that the bytes are not UTF-16.
+/// Converts UTF-16 text with a byte-order mark (Excel's "Unicode text") to UTF-8; std::nullopt
+/// without such a mark. An error, with its line, if the bytes are not valid UTF-16.
 inline Expected<std::optional<std::string>> utf8_of_utf16(std::string_view bytes) {
   const bool little = bytes.starts_with("\xFF\xFE"), big = bytes.starts_with("\xFE\xFF");
   if (!little && !big) return std::nullopt;

@@ -6,13 +6,13 @@
 
 namespace nonio {
 
-/// The kind of a number. Inside the program every number is SI (m, rad, s; temperatures in degC); a
-/// formatter multiplies by `unit_of(q).per_si` and prints `unit_of(q).symbol`. Factors are exact (1
-/// um = 1e-6 m, 1 h = 3600 s) except for 180/pi, which is rounded once.
+/// The kind of a number. All numbers are SI (m, rad, s; temperatures in degC); a formatter
+/// multiplies by `unit_of(q).per_si` and prints `unit_of(q).symbol`. Factors are exact (1 um = 1e-6
+/// m, 1 h = 3600 s) except for 180/pi, which is rounded once.
 enum class Quantity {
   number,                  ///< dimensionless
-  count,                   ///< dimensionless, integral
-  ratio,                   ///< dimensionless, printed as it is (0.83)
+  count,                   ///< dimensionless integer
+  ratio,                   ///< dimensionless, printed without conversion (0.83)
   probability,             ///< dimensionless
   length,                  ///< position, travel: m, printed in mm
   deviation,               ///< deviation of a position: m, printed in um
@@ -30,18 +30,18 @@ enum class Quantity {
   growth,                  ///< expansion rate: 1/s, printed in um/(m h)
   angular_growth,          ///< expansion rate of an angle: 1/s, printed in arcsec/(deg h)
   angular_expansion,       ///< 1/K, printed in arcsec/(deg K)
-  // If times were not measured, the number of the reading replaces the time.
-  readings,                    ///< number of readings in place of a time
+  // The index of a reading replaces the time if times were not measured.
+  readings,                    ///< number of readings instead of a time
   deviation_per_reading,       ///< m, printed in um/reading
   angle_per_reading,           ///< rad, printed in arcsec/reading
   growth_per_reading,          ///< m/m, printed in um/(m reading)
   angular_growth_per_reading,  ///< rad/rad, printed in arcsec/(deg reading)
-  // Quantities of a zero point that drifts with temperature.
+  // Drift of a zero point with temperature.
   deviation_per_kelvin,  ///< m/K, printed in um/K
   angle_per_kelvin,      ///< rad/K, printed in arcsec/K
 };
 
-/// Returns the quantity that replaces `q` if time is counted in readings.
+/// Returns the quantity that replaces `q` if the index of a reading replaces the time.
 constexpr Quantity by_readings(Quantity q) {
   switch (q) {
     case Quantity::time:
@@ -60,7 +60,7 @@ constexpr Quantity by_readings(Quantity q) {
 }
 
 struct Unit {
-  std::string_view symbol;  ///< symbol as printed: "um"
+  std::string_view symbol;  ///< "um"
   std::string_view suffix;  ///< part of a JSON or column name: "_um"
   double per_si;            ///< printed value = SI value * per_si
 };
@@ -126,8 +126,7 @@ constexpr Unit unit_of(Quantity q) {
   return {"", "", 1.0};
 }
 
-/// Return the quantities of a linear or rotary axis: of a position, of a deviation, and of a slope
-/// (deviation per position).
+/// Quantities of a position, of a deviation, and of a slope (deviation per position).
 constexpr Quantity position_of(bool rotary) { return rotary ? Quantity::angle : Quantity::length; }
 constexpr Quantity deviation_of(bool rotary) {
   return rotary ? Quantity::angular_deviation : Quantity::deviation;

@@ -12,8 +12,8 @@
 #include "nonio/sdk/results.h"
 #include "nonio/sdk/settings.h"
 
-/// The pages of a laboratory: worklist and history of its machines. All values are inputs; nothing
-/// is computed here. Numbers are SI, dates "YYYY-MM-DD", uncertainties standard (k = 1), links
+/// The pages of a laboratory: worklist and history of its machines. All values are inputs; the
+/// pages compute nothing. Numbers are SI, dates "YYYY-MM-DD", uncertainties standard (k = 1), links
 /// relative to index.html.
 namespace nonio::reports {
 
@@ -36,14 +36,14 @@ struct WorkItem {
   std::string id;  ///< constant over runs, for `nonio machine ack`
   std::string machine, axis, quantity;
   std::string campaign, customer;
-  std::string measurement{};  ///< measurement of the value
+  std::string measurement{};
   std::optional<double> value{}, u{}, limit{};
   Quantity unit = Quantity::deviation;
-  Finding finding;      ///< its texts: says, advice
+  Finding finding;      ///< texts: says, advice
   std::string since{};  ///< date of the run or campaign of first occurrence
   std::string link{};
   std::string by{}, until{}, why{};      ///< person, end and reason of an acknowledgment
-  bool sure = true;                      ///< significant enough for an email
+  bool sure = true;                      ///< whether it is significant enough for an email
   std::vector<OpenValue> also{};         ///< other open values of the axis
   std::vector<std::string> campaigns{};  ///< all campaigns of a merged line
 };
@@ -65,16 +65,16 @@ struct ErrorCurve {
 
 /// Proposal for the next measurement; it changes nothing.
 struct IntervalProposal {
-  std::optional<int> months{};     ///< nullopt: refused, with the reason in `why`
-  std::string method{};            ///< staircase, control-chart, fleet; empty: not required
+  std::optional<int> months{};     ///< absent if refused, with the reason in `why`
+  std::string method{};            ///< staircase, control-chart or fleet; empty if not required
   std::string axis{}, quantity{};  ///< the deciding quantity, if it is a single one
-  Finding why{};                   ///< its text: says
+  Finding why{};                   ///< text: says
 };
 
-/// Comparison of a table with its prediction: per axis, the result that differs most.
+/// Comparison of a table with its prediction: for each axis, the result that differs most.
 struct TableKept {
   std::string axis, quantity;
-  std::string campaign, date;  ///< campaign and date of the as-left state
+  std::string campaign, date;  ///< of the as-left state
   Quantity unit = Quantity::deviation;
   double found = 0.0, promised = 0.0, left = 0.0;
   bool good = true;
@@ -100,8 +100,8 @@ struct MachineHistory {
   std::vector<ErrorCurve> curves;  ///< by date
   std::vector<TableLoaded> tables_loaded{};
   /// Campaign pairs between which a table may have been loaded, because `before_campaign` does not
-  /// state the active table; kind "unknown". `rms` 0: no table explains more than half of the
-  /// change.
+  /// state the active table. `kind` is "unknown"; `rms` is 0 if no table explains more than half of
+  /// the change.
   std::vector<TableLoaded> tables_unstated{};
   std::vector<TableKept> tables{};  ///< last one of each axis, if determinable
   std::string due{}, why_due{};     ///< date of next calibration; its stated interval, months
@@ -132,9 +132,10 @@ struct ModelComparison {
     double shortest = 0.0, longest = 0.0;
     bool rotary = false;
   };
-  std::optional<Travel> travel{};     ///< travel for quantities along an axis
+  std::optional<Travel> travel{};     ///< for quantities along an axis
   std::size_t count = 0;              ///< number of machines
-  double median = 0.0, spread = 0.0;  ///< of all machines; spread: robust standard deviation
+  double median = 0.0, spread = 0.0;  ///< of all machines; `spread` is the robust standard
+                                      ///< deviation
   struct Of {
     std::string machine;
     double value = 0.0, u = 0.0;
@@ -152,12 +153,11 @@ struct SiteHistory {
   std::vector<MonthOfMachine> months;
   std::vector<InstrumentUse> instruments;
   std::vector<ModelComparison> comparisons;
-  bool judged = true;      ///< some campaign states a limit
+  bool judged = true;      ///< whether some campaign states a limit
   std::size_t hidden = 0;  ///< lines excluded by the request
 };
 
-/// A text (says, advice) of a line in a language, including titles of findings and names of
-/// campaigns.
+/// A text (says, advice) of a line, including titles of findings and names of campaigns.
 std::string line_text(const Templates&, std::string_view language, const WorkItem&,
                       std::string_view part);
 
@@ -180,7 +180,7 @@ std::vector<std::string> drawn_first(const SiteHistory&);
 /// needed.
 Expected<std::vector<Artifact>> site_lists(const SiteHistory&, const Templates&,
                                            const std::string& language);
-/// The page of one machine with all its series and its lines of `site`.
+/// The page shows all series of the machine, and its lines of `site`.
 Expected<Artifact> machine_page_of(const SiteHistory& site, const MachineHistory&, const Templates&,
                                    const std::string& language);
 

@@ -22,7 +22,7 @@ struct Drawn {
   std::array<reports::PictureWords, 9> pictures;
 };
 
-/// Whether the part has circles, which have separate figures (page/polar.js).
+/// Circles have separate figures (page/polar.js).
 bool has_circles(const Campaign&, const ModelFit&);
 
 /// Names of the texts that page/chart.js uses.
@@ -36,13 +36,13 @@ inline constexpr std::size_t most_readings = 20000;
 struct Kept {
   std::vector<std::size_t> rows;
   std::vector<char> counted;
-  /// row of each reading in the files, if different; otherwise empty
+  /// Row of each reading in the files, if different; otherwise empty.
   std::vector<std::size_t> row_in_files{};
 };
 Kept kept_readings(const std::vector<double>& values, std::size_t most = most_readings);
 
-/// The data as JSON in printed units (um, mm; arcsec, deg). `titles`: include title and caption of
-/// each figure, which a stored page has in its HTML.
+/// The data as JSON in printed units (um, mm; arcsec, deg). With `titles`, the data include title
+/// and caption of each figure, which a stored page has in its HTML.
 std::string data_of(const Drawn& drawn, const Kept& kept, bool titles = true);
 
 }  // namespace nonio::workbench

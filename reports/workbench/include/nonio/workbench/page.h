@@ -8,10 +8,8 @@
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/settings.h"
 
-/// The page of `nonio serve`, as bytes.
 namespace nonio::workbench {
 
-/// The page of a campaign or of the site.
 enum class Shell { campaign, site };
 
 /// The HTML without data: language, texts and URLs of the other resources. Texts are in

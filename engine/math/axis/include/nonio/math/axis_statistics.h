@@ -7,16 +7,14 @@
 
 #include "nonio/math/axis_test.h"
 
-/// Statistics of the readings at each target, from which every rule of positioning is computed.
+/// Statistics of the readings at each target, m or rad, in the symbols of ISO 230-2:2014 clause 2.
 ///
 ///     xm_i+-  = sum_j x_ij/n                              m or rad, one direction
 ///     xm_i    = (xm_i+ + xm_i-)/2;  B_i = xm_i+ - xm_i-
 ///     s_i+-   = sqrt(sum_j (x_ij - xm_i)^2/(n - 1))
-///     low, high: smallest and largest x_ij;  first: x_ij of the earliest run
 ///
-/// Source: ISO 230-2:2014 clause 2 (symbols). Range: any test. No errors: a value that the readings
-/// do not determine is NaN (s with one reading; all values of a direction from which a target was
-/// not approached).
+/// NaN if the readings do not determine a value: s of a single reading, and mean, s, low, high and
+/// first of a direction without readings.
 namespace nonio::math {
 
 struct AxisStatistics {
@@ -24,22 +22,21 @@ struct AxisStatistics {
     std::size_t n = 0;
     double mean, s;
     double low, high;
-    double first;           ///< deviation in the earliest run
-    std::uint32_t run = 0;  ///< number of the earliest run
+    double first;  ///< deviation in the earliest run
+    std::uint32_t run = 0;
   };
   struct Target {
     double target;
     Side plus, minus;
-    double mean;  ///< mean of both directions, xm_i
-    double B;     ///< reversal, B_i = xm_i+ - xm_i-
+    double mean;
+    double B;
   };
   std::vector<Target> targets;  ///< sorted by position, ascending
 };
 
 AxisStatistics axis_statistics(const AxisTest&);
 
-/// Range, largest and smallest of the values passed to `put`; NaN without values, or if one of them
-/// is NaN.
+/// All results are NaN without values, or if one of the values is NaN.
 class Extent {
  public:
   void put(double value);

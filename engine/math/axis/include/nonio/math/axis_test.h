@@ -9,24 +9,19 @@
 
 namespace nonio::math {
 
-/// The readings of one axis, arranged by target and direction of approach. Targets are matched by
-/// value, never by index: one that was approached from one side only has readings on that side
-/// only.
-///
-/// x_ij = P_ij - P_i: deviation of approach j = 1..n at target i = 1..m, m or rad; + and -:
-/// direction of approach. Source: ISO 230-2 (docs/formulas.md). Range: any number of targets and
-/// readings, n may differ; deviations finite (sdk/check.h).
+/// Readings of one axis by target and direction of approach (ISO 230-2). Targets are matched by
+/// value, not by index. A target may have any number of readings, or none from one direction.
 class AxisTest {
  public:
   struct Reading {
-    double deviation;  ///< deviation x_ij, m or rad
+    double deviation;  ///< x_ij = P_ij - P_i of ISO 230-2, m or rad
     std::uint32_t run;
-    std::uint32_t row;  ///< row in the observations
+    std::uint32_t row;
     bool operator==(const Reading&) const = default;
   };
 
   bool rotary = false;
-  std::vector<double> targets;  ///< target positions, m or rad, strictly ascending
+  std::vector<double> targets;  ///< m or rad, strictly ascending
 
   std::span<const Reading> plus(std::size_t i) const { return part(2 * i); }
   std::span<const Reading> minus(std::size_t i) const { return part(2 * i + 1); }
@@ -35,23 +30,21 @@ class AxisTest {
   bool has_plus() const { return has_plus_; }
   bool has_minus() const { return has_minus_; }
   bool bidirectional() const { return has_plus_ && has_minus_; }
-  /// Returns whether every target has readings from every direction that occurs; false without
-  /// targets.
+  /// Whether every target has readings from each direction that occurs; false without targets.
   bool complete() const;
-  /// Return the smallest and the largest number of readings at one target from one direction, over
-  /// all directions that occur. The smallest is 0 if a target was not approached from one of them.
+  /// Smallest and largest number of readings at one target from one direction. The smallest is 0 if
+  /// a target lacks a direction that occurs at other targets.
   std::size_t least_approaches() const;
   std::size_t most_approaches() const;
-  /// Returns the distance from the first target to the last, m or rad.
+  /// Distance from the first target to the last, m or rad.
   double length() const { return targets.empty() ? 0.0 : targets.back() - targets.front(); }
 
-  /// Returns the test with these targets only (ascending indices, each below targets.size()).
+  /// `kept`: ascending indices, each below targets.size().
   AxisTest only(std::span<const std::size_t> kept) const;
 
-  /// Arranges observations by their first axis column; rows without a direction of approach or with
-  /// a position that is not finite are omitted. Readings at a target are in the order of their
-  /// runs. The test is empty, which is not an error, if there is no axis column or it has no
-  /// directions of approach.
+  /// Uses the first axis column. Rows without a direction of approach or with a position that is
+  /// not finite are omitted. Readings of a target are in the order of their runs. The test is
+  /// empty, without an error, if the column or its directions of approach are missing.
   static AxisTest arrange(const Observations&);
 
   bool operator==(const AxisTest&) const = default;
@@ -65,7 +58,7 @@ class AxisTest {
   bool has_plus_ = false, has_minus_ = false;
 };
 
-/// Returns the deviations of the readings, m or rad, in their order.
+/// Deviations in the order of the readings, m or rad.
 std::vector<double> deviations(std::span<const AxisTest::Reading>);
 
 }  // namespace nonio::math

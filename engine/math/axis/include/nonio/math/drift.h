@@ -6,7 +6,7 @@
 
 #include "nonio/math/axis_test.h"
 
-/// Drift of the readings over a test. At least one direction needs two passes.
+/// Drift of the readings over the runs of a test.
 ///
 ///     o_p, q_p offset and slope of pass p (m or rad; m/m): of its readings minus the mean of their
 ///              target and direction
@@ -15,29 +15,25 @@
 ///              another, + upwards and - downwards
 ///     b_i      (offset per run + slope per run (x_i - middle)) lag_i: contribution of drift to B_i
 ///
-/// Source: derived (docs/formulas.md). Range: any test; `known` is false if no direction has two
-/// passes, or with fewer than two targets (four for the slope). No errors.
+/// Source: derived (docs/dev/estimators.md). `known` is false if no direction has two passes, or
+/// with fewer than two targets (four for the slope).
 namespace nonio::math {
 
 struct Drift {
   struct Part {
     bool known = false;
     double per_run = 0.0, total = 0.0;  ///< change per run; total: from the first run to the last
-    /// standard uncertainty of per_run, the larger one of two: from the scatter of readings or of
-    /// passes
-    double u = 0.0;
+    double u = 0.0;  ///< standard uncertainty of per_run, from readings or passes: the larger one
     double p_scatter = 1.0;  ///< p-value of per_run, from the scatter within the passes
     double p_passes = 1.0;   ///< p-value of the slope of the line through the single passes
     double p_runs = 1.0;     ///< p-value of the slope through the runs; 1 for fewer than three runs
-    bool monotone = false;   ///< whether all changes from run to run have the same sign
-    /// whether both directions, fitted separately, drift with the same sign; true if only one
-    /// direction has a drift
-    bool agree = true;
+    bool monotone = false;
+    bool agree = true;  ///< false if the drifts of the two directions have opposite signs
   };
   Part offset, slope;
-  double scatter = 0.0;     ///< standard deviation of a reading within its pass
-  double middle = 0.0;      ///< position to which the offset of a pass refers
-  std::size_t runs = 0;     ///< number of runs with readings
+  double scatter = 0.0;  ///< standard deviation of a reading within its pass
+  double middle = 0.0;   ///< position to which the offset of a pass refers
+  std::size_t runs = 0;
   std::vector<double> lag;  ///< lag_i of each target, in runs; empty if measured from one direction
 
   /// Fraction of the variation of the reversal along the axis predicted by b_i that is observed,
@@ -49,12 +45,11 @@ struct Drift {
 };
 Drift estimate_drift(const AxisTest&);
 
-/// Possible contributions of drift and repetition to the results of a test, as far as the readings
-/// do not exclude them; expanded (k = 2), m or rad. The estimated drift is not subtracted from the
-/// results, so it is included in full.
+/// Contributions of drift and repetition to the results of a test that the readings do not exclude;
+/// expanded, m or rad. Results are not corrected for drift, so it is included in full.
 struct DriftShare {
-  double B = 0.0;       ///< contribution to the largest reversal B_i
-  double B_mean = 0.0;  ///< contribution to the mean reversal
+  double B = 0.0;  ///< contribution to the largest reversal B_i
+  double B_mean = 0.0;
   double s = 0.0;  ///< contribution to the largest standard deviation of a target and direction
 };
 DriftShare drift_share(const AxisTest&);

@@ -7,14 +7,12 @@
 #include <span>
 #include <vector>
 
-/// Motion of an axis over less than one turn of its screw: the periodic error of a dense run, and
-/// the errors of single small steps.
 namespace nonio::math {
 
-/// One pass in one direction.
+/// One pass in one direction: positions in the order of motion and their deviations, m or rad.
 struct Pass {
-  std::vector<double> position;   ///< positions in the order of motion, m or rad
-  std::vector<double> deviation;  ///< deviation at each position, m or rad
+  std::vector<double> position;
+  std::vector<double> deviation;
 };
 
 /// Periodic error over a declared period p, of passes in one direction:
@@ -23,22 +21,21 @@ struct Pass {
 ///     folded(j) = mean of d(x) - a_q - b_q x over the readings whose phase is j/n, j = 0..n-1
 ///     range = max folded - min folded;  c_k = sqrt(C_k^2 + S_k^2), peak to valley 2 c_k
 ///
-/// All passes are fitted together by least squares, so that no line absorbs a part of a wave. The
-/// uncertainty of c_k is that of white noise with a slow part, estimated from the residuals, which
-/// include higher harmonics. The uncertainty of the folded means is estimated from the scatter
-/// about them. Source: ASME B5.54 and the annex of ISO 230-2 on dense runs, as interpreted in
-/// docs/formulas.md. Range: every pass covers at least two periods, in steps of at most p/20.
+/// All passes are fitted together by least squares. The u of c_k results from white noise with a
+/// slow part in the residuals, the u of the folded means from the scatter about them. Source: ASME
+/// B5.54 and the annex of ISO 230-2 on dense runs, as interpreted in docs/dev/estimators.md. Every
+/// pass must cover two periods in steps of at most p/20.
 struct PeriodicError {
   enum class Answer { given, no_pass, too_short, too_coarse };
   struct Harmonic {
-    double amplitude = 0.0;  ///< amplitude c_k, m or rad
+    double amplitude = 0.0;  ///< c_k, m or rad
     /// phase, 0..2 pi rad: the first maximum is at the position phase p/(2 pi k)
     double phase = 0.0;
-    double u = 0.0;  ///< standard uncertainty of the amplitude
+    double u = 0.0;
   };
   Answer answer = Answer::no_pass;
-  double periods = 0.0;  ///< number of periods in the shortest pass
-  double step = 0.0;     ///< widest step of all passes, m or rad
+  double periods = 0.0;
+  double step = 0.0;  ///< widest step of all passes, m or rad
   std::array<Harmonic, 2> harmonics{};
   /// means over the readings of one phase, m or rad; phases without readings are omitted
   std::vector<double> folded;
@@ -50,25 +47,23 @@ struct PeriodicError {
 };
 PeriodicError periodic_error(std::span<const Pass>, double period);
 
-/// Single steps of one commanded size, in both directions. With x the commanded position and d the
-/// deviation of adjacent readings of one run in one direction:
+/// Single steps of one commanded size, in both directions. d is the deviation of adjacent readings
+/// of one run and direction:
 ///
 ///     step_j = d_(j+1) - d_j, in the direction of motion   deviation of the step, m
 ///     first  = deviation of the step in which the direction reverses: from the last target of one
 ///              direction to the first target of the other, if they are one step apart
 ///
-/// A step is not followed if the axis moves less than half of the commanded distance. The order of
-/// the readings is ignored, because those of a pass are sorted in its direction of motion. Source:
-/// laboratory method; the tests of the standards for small steps were not available
-/// (docs/formulas.md).
+/// A step is not followed if the axis moves less than half of the commanded distance. Source:
+/// laboratory method (docs/dev/estimators.md); the standards for small steps were not available.
 struct SmallSteps {
   enum class Answer { given, too_few, several_sizes };
   struct One {
     double error = 0.0;  ///< deviation of the step, m: positive if it is too long
-    bool first = false;  ///< whether it is the first step after a reversal
+    bool first = false;  ///< whether the step is the first one after a reversal
     std::uint32_t run = 0;
     double position = 0.0;        ///< position at the end of the step, m
-    int direction = 0;            ///< direction of motion: 1, -1
+    int direction = 0;            ///< direction of motion, 1 or -1
     double from = 0.0, to = 0.0;  ///< deviations at the start and at the end of the step, m
   };
   Answer answer = Answer::too_few;
@@ -78,20 +73,16 @@ struct SmallSteps {
   std::size_t largest = 0, least = 0;
   /// index of the smallest error among first steps after a reversal; steps.size() if there is none
   std::size_t least_first = 0;
-  /// number of steps that the axis did not follow, not including those directly after a reversal
-  std::size_t not_followed = 0;
-  /// standard deviation of a step about the mean of its repetitions, m; NaN if dof is 0
-  double s = 0.0;
-  /// degrees of freedom of s; 0: no step was repeated at the same place and direction
-  double dof = 0.0;
+  std::size_t not_followed = 0;  ///< without the steps directly after a reversal
+  double s = 0.0;    ///< standard deviation about the mean of equal steps, m; NaN if dof is 0
+  double dof = 0.0;  ///< degrees of freedom of s; 0 if no step was repeated
 };
 struct SteppedReading {
   double position = 0.0, deviation = 0.0;
   std::uint32_t run = 0;
   int direction = 0;
 };
-/// Evaluates steps from readings in any order. Several readings of one target, run and direction
-/// are averaged.
+/// Readings may be in any order; those of one target, run and direction are averaged.
 SmallSteps small_steps(std::span<const SteppedReading>);
 
 }  // namespace nonio::math

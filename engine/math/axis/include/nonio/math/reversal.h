@@ -8,13 +8,12 @@ namespace nonio::math {
 /// Classification of the reversal error of an axis by statistical tests.
 ///
 ///     B_i = xm_i+ - xm_i-                               m or rad; B_mean over the m targets
-///     F   = [sum (B_i - B_mean)^2/(m - 1)] / [s+^2/n+ + s-^2/n-]    does it vary?
-///     t   = B_mean/u(B_mean)                            does it exist?
+///     F   = [sum (B_i - B_mean)^2/(m - 1)] / [s+^2/n+ + s-^2/n-]    tests whether B_i varies
+///     t   = B_mean/u(B_mean)                            tests whether B_mean differs from 0
 ///
-/// Both at the 1 % level. u is estimated from the differences between runs, pooled with the scatter
-/// of single readings unless the runs scatter more. Sources: B_i of ISO 230-2; pooling of T. A.
-/// Bancroft, Biometrics 20 (1964) 427; the decisions are a laboratory method (docs/formulas.md,
-/// docs/dev/constants.md A3 to A5).
+/// Both tests use the 1 % level. u comes from the differences between runs, pooled with the scatter
+/// of single readings unless the runs scatter more (T. A. Bancroft, Biometrics 20 (1964) 427). The
+/// decisions are a laboratory method (docs/dev/estimators.md; docs/dev/constants.md, A3 to A5).
 struct Reversal {
   enum class Kind {
     unknown,      ///< a target lacks one direction, or one run does not allow a decision
@@ -26,14 +25,12 @@ struct Reversal {
   };
   Kind kind = Kind::unknown;
   double mean = 0.0;  ///< B_mean, m or rad, signed
-  /// standard uncertainty of `mean` from the scatter of the readings; with one run an upper bound,
-  /// from the spread of B_i
+  /// u of `mean` from the scatter of the readings; with one run an upper bound from that of B_i
   double u_mean = 0.0;
   double largest = 0.0;       ///< largest reversal, max |B_i|
   double largest_left = 0.0;  ///< max |B_i - B_mean|: remains after compensation by a single value
-  /// p-value of the F test whether the B_i differ more than the scatter explains
   double p_varies = 1.0;
-  double p_mean = 1.0;  ///< p-value of the t test whether B_mean differs from zero
+  double p_mean = 1.0;
 
   /// Sinusoids over the angle of a rotary axis. The amplitudes are NaN for a linear axis, or if the
   /// targets do not cover the turn.
@@ -44,9 +41,8 @@ struct Reversal {
   bool opposed = false, concordant = false;
 };
 
-/// Assesses the reversal. Range: both directions at every target, otherwise `kind` is unknown and
-/// the deviations (`mean`, `u_mean`, `largest`, `largest_left`) are NaN; sinusoids of rotary axes
-/// need 5 angles and no gap above 120 deg. No errors.
+/// Without both directions at every target, `kind` is unknown, and `mean`, `u_mean`, `largest` and
+/// `largest_left` are NaN. Sinusoids need 5 angles and no gap above 120 deg.
 Reversal assess_reversal(const AxisTest& test);
 
 }  // namespace nonio::math

@@ -13,29 +13,25 @@
 ///     rest             d_i = e_i - r(x_i)
 ///     straightness     W = max d_i - min d_i
 ///
-/// The three reference straight lines of ISO 230-1:2012, 3.4: mean minimum zone (the line with the
-/// smallest W), least squares (smallest sum d_i^2), end points (through the first and the last
-/// point). W of the minimum zone is never larger than W of the others. Sources: ISO 230-1 by its
-/// terms (the standard's text was not available, docs/formulas.md); the minimum zone is the best
-/// approximation by a straight line in the sense of Chebyshev: three points have the largest
-/// distance, on alternate sides.
+/// Reference lines of ISO 230-1:2012, 3.4: mean minimum zone (smallest W), least squares (smallest
+/// sum d_i^2), end points. The minimum zone is the best approximation in the sense of Chebyshev:
+/// three points have the largest distance, on alternate sides. The text of the standard was not
+/// available (docs/formulas.md).
 namespace nonio::math {
 
 enum class StraightLine { least_squares, minimum_zone, end_points };
 
 struct Straightness {
-  double a = 0.0;            ///< reference line at the first point, m
-  double b = 0.0;            ///< slope of the reference line, rad
-  std::vector<double> rest;  ///< deviations from the reference line, d_i, m
-  double width = 0.0;        ///< straightness W, m
-  /// Derivatives dW/de_i and db/de_i of the width and the slope by each deviation. They are valid
-  /// as long as the same points determine both.
+  double a = 0.0;  ///< reference line at the first point, m
+  double b = 0.0;  ///< slope of the reference line, rad
+  std::vector<double> rest;
+  double width = 0.0;
+  /// Derivatives dW/de_i and db/de_i, valid as long as the same points determine W and b.
   std::vector<double> width_by, slope_by;
 };
 
-/// Computes the straightness of the deviations `e` at the positions `x`, m. Error: fewer than three
-/// positions, another number of deviations, positions that do not ascend, or values that are not
-/// finite.
+/// `x` and `e` in m. Errors: fewer than three positions, another number of deviations, positions
+/// that do not ascend, values that are not finite.
 Expected<Straightness> straightness_about(StraightLine, std::span<const double> x,
                                           std::span<const double> e);
 

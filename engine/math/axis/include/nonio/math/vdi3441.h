@@ -35,10 +35,9 @@ struct VdiResult {
   double P_plus, P_minus, Pa_plus, Pa_minus, Ps_max_plus, Ps_max_minus;
 };
 
-/// Computes the values of VDI/DGQ 3441:1977. A value is NaN unless every target contributes to it;
-/// a value of one direction needs only the targets approached in it. `from_range` divides the range
-/// by d_n (n = 2..10; for other n the value is NaN). No errors. The text of the standard was not
-/// available: confidence M in docs/formulas.md.
+/// A value is NaN unless every target contributes to it; a value of one direction needs only the
+/// targets approached in it. `from_range` needs n = 2..10, otherwise the value is NaN. Source:
+/// VDI/DGQ 3441:1977 with confidence M (docs/formulas.md), because its text was not available.
 VdiResult evaluate_vdi3441(const AxisTest& test, StandardDeviation how);
 VdiResult evaluate_vdi3441(const AxisStatistics&, StandardDeviation how);
 

@@ -27,27 +27,24 @@
 ///     + (A1 sin q + A2 cos q) cos t, q = 2 pi R cos t/p   cyclic error of u (v: sin t)
 ///     + k R^2 cos^2 t sin t                               bow of u: e_v = k u^2 (v: sin^2 t cos t)
 ///
-/// Sources: ISO 230-4:2005 (names of G, G(b), F, D; H of 1996); the standards' texts were not
-/// available. The decomposition is derived (docs/formulas.md). Range: deviations much smaller than
-/// R.
+/// Sources: ISO 230-4:2005 (names of G, G(b), F, D; H of 1996), whose texts were not available; the
+/// decomposition is derived (docs/formulas.md) for deviations much smaller than R.
 namespace nonio::math {
 
 struct CircleReading {
   double angle = 0.0;      ///< angle t from the first axis, rad
   double deviation = 0.0;  ///< radial deviation r, m
-  int direction = 1;       ///< +1 counter-clockwise, -1 clockwise
+  int direction = 1;
   std::uint32_t run = 1;
 };
 
-/// Distances of the readings of a path from one center, m. The center is relative to the commanded
-/// one.
+/// Distances of the readings of a path, m, from a center that is relative to the commanded one.
 struct PathCircle {
   std::array<double, 2> centre{};
-  /// Mean distance from the center, minus R. For the least-squares circle, it is the deviation of
-  /// its radius.
+  /// Mean distance from the center, minus R: the radius deviation of the least-squares circle.
   double radius = 0.0;
   double inner = 0.0, outer = 0.0;  ///< smallest and largest distance from the center, minus R
-  std::size_t innermost = 0, outermost = 0;  ///< indices of the nearest and the farthest reading
+  std::size_t innermost = 0, outermost = 0;
   double width() const { return outer - inner; }
 };
 
@@ -59,9 +56,9 @@ PathCircle minimum_zone(std::span<const CircleReading>, double R);
 /// Returns the mean, smallest and largest distance of the path from a given center.
 PathCircle about(std::span<const CircleReading>, double R, std::array<double, 2> centre);
 
-/// Circular hysteresis H, m: largest difference between the radii of the two directions at one
-/// angle, and this angle, rad. `circular_hysteresis` returns nothing if no angle has radii of both
-/// directions. It interpolates between readings that are at most `step`, rad, apart.
+/// Circular hysteresis H, m: largest difference of the radii of the two directions at one angle,
+/// rad; `circular_hysteresis` returns std::nullopt without such an angle. Readings at most `step`,
+/// rad, apart are interpolated.
 struct Hysteresis {
   double H = 0.0, angle = 0.0;
 };
@@ -95,15 +92,13 @@ struct CircleModel {
   std::array<double, 2> centre{};          ///< center in machine coordinates, m
   std::array<double, 2> pitch{};           ///< pitches of the drives, m; 0: not known
   std::array<bool, cause_count> wanted{};  ///< causes to be fitted; set by `all_causes`
-  /// readings within this angle on both sides of a reversal are omitted, rad
-  double leave_out = 0.0;
+  double leave_out = 0.0;  ///< readings closer than this to a reversal are omitted, rad
   bool correlated = true;  ///< if false, noise at adjacent angles is treated as independent
-  /// Returns whether a reading at this angle is too close to a reversal for the fit.
+  /// Returns whether `angle`, rad, is within `leave_out` of a reversal.
   bool leaves_out(double angle) const;
 };
-/// Sets `wanted` to all causes except those that the readings cannot determine: zero change and
-/// servo mismatch unless `both_directions`, and the cyclic error of an axis whose pitch is not
-/// known.
+/// Sets `wanted` to all causes that the readings can determine: zero change and servo mismatch need
+/// both directions, and a cyclic error needs the pitch of its axis.
 void all_causes(CircleModel&, bool both_directions);
 
 /// Returns the radial deviation, m, for a cause of size 1: 1 m, 1 rad (squareness), or 1 m/m (scale
@@ -125,34 +120,28 @@ struct CauseFit {
     int direction = 1;
   };
   std::vector<Bin> bins;
-  double s = 0.0;  ///< standard deviation of the residual of a bin
-  /// standard deviation of the residual of a reading; a bin averages several
-  double s_reading = 0.0;
+  double s = 0.0;            ///< standard deviation of the residual of a bin
+  double s_reading = 0.0;    ///< standard deviation of the residual of a reading
   double correlation = 0.0;  ///< correlation of adjacent bins (1 deg apart)
-  /// effective degrees of freedom of every value; the smaller of those of the mean and of the half
-  /// difference of both directions
+  /// effective degrees of freedom: the smaller of those of mean and half difference
   double dof = 0.0;
   double covariance(Cause a, Cause b) const;
-  /// `radius_at` returns the radial deviation that the fitted causes predict, m, and `u_at` its
-  /// standard uncertainty.
+  /// Radial deviation that the fitted causes predict, and its standard uncertainty, m.
   double radius_at(const CircleModel&, double angle, int direction) const;
   double u_at(const CircleModel&, double angle, int direction) const;
-  /// covariance of causes, row by row; 0 for causes that are not wanted
-  std::vector<double> covariance_of{};
+  std::vector<double> covariance_of{};  ///< row by row; 0 for causes that are not fitted
 };
 
 /// Fits the causes by least squares weighted by the correlation of the residuals. The noise of the
-/// mean and that of the half difference of both directions are estimated separately, each as white
-/// noise plus a first-order autoregressive process (REML). If fewer than a third of the bins have
-/// readings of both directions, only the direction with more bins is fitted. Error: too few
-/// readings.
+/// mean and that of the half difference of both directions are estimated separately as white noise
+/// plus a first-order autoregressive process (REML). Only the direction with more bins is fitted if
+/// fewer than a third of the bins have both. Error: too few readings.
 Expected<CauseFit> fit_causes(std::span<const CircleReading>, const CircleModel&);
 
-/// Estimates the bias of extreme values of a path, such as the largest of many readings, which
-/// noise always increases. Simulated paths consist of the fit and its residuals, rotated by
-/// fractions of the turn in each direction and run (by the same angle, so that noise shared by both
-/// directions stays shared). Readings that are not in the fit keep their residual, reduced by the
-/// contribution of the noise, and noise is added to them.
+/// Bias of extreme values of a path, which noise always increases. Simulated paths are the fit with
+/// its residuals, rotated by the same fraction of the turn in each direction and run, so that noise
+/// shared by both directions stays shared. Readings outside of the fit keep their residual, reduced
+/// by the contribution of the noise, and noise is added to them.
 class CircleNoise {
  public:
   static constexpr std::size_t times = 36;
@@ -174,13 +163,12 @@ class CircleNoise {
     std::size_t first = 0, count = 0, place = 0;
   };
   std::vector<CircleReading> truth_;
-  std::vector<From> from_;  ///< where `residuals_` contains the residual of each reading
+  std::vector<From> from_;
   std::vector<double> residuals_;
 };
 
-/// A reversal spike: the largest residual between 0.5 deg before and 5 deg after a reversal, and
-/// its width at half height. `reversal_spikes` returns one for each reversal and direction that has
-/// readings at three or more angles in this range.
+/// A reversal spike: the largest residual from 0.5 deg before to 5 deg after a reversal. One for
+/// each reversal and direction that has readings at three or more angles in this range.
 struct Spike {
   double at = 0.0;  ///< angle of the reversal, rad
   int direction = 1;
@@ -191,9 +179,8 @@ struct Spike {
 std::vector<Spike> reversal_spikes(std::span<const CircleReading>, const CircleModel&,
                                    const CauseFit&);
 
-/// Fits the causes with a zone around reversals that is widened in steps of 1 deg from
-/// `model.leave_out` up to `most`, rad, as long as reversal spikes extend significantly beyond it
-/// and enough readings remain. Stores the zone in `model.leave_out`.
+/// Widens the zone around reversals, `model.leave_out`, in steps of 1 deg up to `most`, rad, as
+/// long as spikes extend significantly beyond the zone and enough readings remain.
 Expected<CauseFit> fit_causes_without_spikes(std::span<const CircleReading>, CircleModel& model,
                                              double most);
 

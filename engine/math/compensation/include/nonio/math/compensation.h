@@ -11,38 +11,32 @@
 #include "nonio/math/axis_test.h"
 #include "nonio/sdk/error.h"
 
-/// Functions shared by all controllers: the curve to be compensated, the grid, rounding to
-/// integers, and the deviations that remain after the control applies the table.
 namespace nonio::math {
 
 /// The deviation that a table should compensate, over position; m or rad. At target i, from the
 /// means xm_i+ and xm_i- (ISO 230-2): plus xm_i+, minus xm_i-, mean (xm_i+ + xm_i-)/2.
 struct ErrorCurve {
   std::vector<double> position;  ///< positions, strictly ascending
-  std::vector<double> mean;      ///< mean of both directions
-  /// mean of each direction; empty if it was not measured at every position
-  std::vector<double> plus, minus;
+  std::vector<double> mean;
+  std::vector<double> plus, minus;  ///< empty if not measured at every position
   /// number of targets omitted because they were approached from one of two directions only
   std::size_t left_out = 0;
 
   bool bidirectional() const { return !plus.empty() && !minus.empty(); }
-  /// Returns the mean of plus - minus over the positions; 0 if only one direction was measured.
+  /// Mean of plus - minus, m or rad; 0 if only one direction was measured.
   double mean_reversal() const;
 
-  /// Interpolates linearly between the points, and returns the end value outside. NaN without
-  /// points.
+  /// Interpolates linearly, and returns the end value outside of the points. NaN without points.
   static double at(const std::vector<double>& position, const std::vector<double>& value, double x);
 };
 
-/// Returns the curve over the targets that were approached from both directions, or over all if
-/// only one direction occurs: at a target with one side, half of the reversal would add a step to
-/// the mean.
+/// Returns the curve over the targets approached from both directions, or over all if only one
+/// occurs: a target with one side would add a step of half the reversal to the mean.
 ErrorCurve error_curve(const AxisTest& test);
 
-/// Returns the curve of a rotary axis folded into 0..2 pi with equal ends, if it covers the turn:
-/// it has at least three positions, is not longer than a turn, and the gap between its last and its
-/// first position is at most 1.5 times the largest gap between adjacent targets. Positions that
-/// coincide after folding are averaged.
+/// Folds the curve of a rotary axis into 0..2 pi with equal ends. std::nullopt unless it covers the
+/// turn: at least three positions, not longer than a turn, and an end gap of at most 1.5 times the
+/// largest other gap. Positions that coincide are averaged.
 std::optional<ErrorCurve> closed_turn(const ErrorCurve& curve);
 
 struct Grid {
@@ -52,27 +46,24 @@ struct Grid {
   double last() const { return points == 0 ? first : position(points - 1); }
 };
 
-/// The requirements of a control for equidistant points.
 struct GridRule {
   double unit = 1e-7;           ///< m or rad; first and step must be integer multiples of this unit
   std::size_t most = 200;       ///< largest number of points that the control accepts
   double step = 0.0;            ///< step requested by the user; 0: `choose_grid` chooses it
   std::optional<double> first;  ///< first point requested by the user; absent: start of the curve
-  /// position that must be a point of the grid (a reference position)
-  std::optional<double> anchor;
-  bool turn = false;          ///< whether the curve is a closed turn, which the step must divide
-  bool power_of_two = false;  ///< whether the step must be `unit` times a power of two
-  bool rotary = false;        ///< for error messages: deg instead of mm
-  std::string axis;           ///< for error messages: name of the axis
+  std::optional<double> anchor;  ///< position that must be a point of the grid
+  bool turn = false;             ///< whether the curve is a closed turn, which the step must divide
+  bool power_of_two = false;     ///< whether the step must be `unit` times a power of two
+  bool rotary = false;
+  std::string axis;
 };
 
-/// Returns the grid of the requested step. If no step is requested, it is the grid of the targets
-/// if they are evenly spaced; otherwise the coarsest grid that contains every position of the
-/// curve, unless its step is less than 1/8 of their mean distance; otherwise a grid of about half
-/// their smallest distance, on which the curve is interpolated. Errors name the axis: fewer than 2
-/// targets or points; a first point after the last target; a requested step that is not an integer
-/// multiple of `unit`, does not divide the turn or is not a power of two; more points than the
-/// control accepts, with a suggestion.
+/// Returns the grid of the requested step; without one, that of evenly spaced targets, otherwise
+/// the coarsest that contains every position of the curve with a step of at least 1/8 of their mean
+/// distance, otherwise one of about half their smallest distance, on which the curve is
+/// interpolated. Errors, with the axis: fewer than 2 targets or points; a first point after the
+/// last target; a requested step that is not an integer multiple of `unit`, does not divide the
+/// turn or is not a power of two; more points than the control accepts, with a suggestion.
 Expected<Grid> choose_grid(const std::vector<double>& position, const GridRule& rule);
 
 /// Rounds each value to an integer number of `unit` (half away from zero, to 12 digits: 2.5 um is a
@@ -82,11 +73,9 @@ std::vector<std::int64_t> quantised(std::span<const double> value, double unit);
 /// the sum of the increments within half a unit of the curve at every point.
 std::vector<std::int64_t> increments(std::span<const std::int64_t> absolute);
 
-/// Function that returns what a control adds to position `x` if it is approached in `direction`
-/// (+1, -1); m or rad.
+/// What a control adds to position `x` approached in `direction` (+1, -1); m or rad.
 using Correction = std::function<double(double x, int direction)>;
 
-/// Mean deviations at the positions of a curve, and their values according to ISO 230-2.
 struct MeanDeviations {
   std::vector<double> plus, minus;  ///< deviations by direction, m or rad; empty if not measured
   double E() const;                 ///< range of both directions, or of the single direction
@@ -95,9 +84,8 @@ struct MeanDeviations {
 };
 
 MeanDeviations before(const ErrorCurve& curve);
-/// Returns the deviations after compensation: actual - x = c(x) + e(x + c(x)), because the error is
-/// that at the position of the motor. e: curve, c: correction. Derived; checked by the controllers'
-/// tests (tests/unit/controllers).
+/// Returns actual - x = c(x) + e(x + c(x)), with the curve e and the correction c, because the
+/// error is that at the position of the motor.
 MeanDeviations after(const ErrorCurve& curve, const Correction& correction);
 
 }  // namespace nonio::math

@@ -11,7 +11,6 @@
 #include "nonio/math/compensation.h"
 #include "nonio/sdk/control.h"
 
-/// Effect of tables that a control has loaded.
 namespace nonio::math {
 
 /// Returns c(x): what the table adds at position `at` of its inputs, moving toward `direction`
@@ -19,9 +18,8 @@ namespace nonio::math {
 ///
 ///     c(x) = c_k + (c_(k+1) - c_k) (x - x_k)/(x_(k+1) - x_k)
 ///
-/// With two inputs, c is linear in each of them. Outside of the points, `LoadedTable::outside`
-/// applies. Source: the control's manual or code, with its confidence in
-/// plugins/controllers/*/README.md. Range: tables that `validate_table` accepts.
+/// With two inputs, c is linear in each of them; outside of the points, `LoadedTable::outside`
+/// applies. Source: manual or code of the control (plugins/controllers/*/README.md).
 double added(const LoadedTable& table, std::span<const double> at, int direction);
 
 /// Returns the sum that all tables add to `output` if the axes are at `at`; a table with an input
@@ -29,16 +27,14 @@ double added(const LoadedTable& table, std::span<const double> at, int direction
 double added(const std::vector<LoadedTable>& tables, std::string_view output,
              const std::map<std::string, double>& at, const std::map<std::string, int>& direction);
 
-/// Returns the correction of one axis as a function of its own position: the sum of the tables
-/// whose only input is this axis, plus half of the backlash value for motion in direction +, minus
-/// half of it for motion in direction -. `present`: backlash value in the control, which applies if
-/// no table sets one. Nothing if no such table exists.
+/// Correction of one axis: the sum of the tables whose only input is this axis, plus (direction +)
+/// or minus (-) half of the backlash value. `present`: backlash value in the control, if no table
+/// sets one. std::nullopt without such tables.
 std::optional<Correction> correction_of(const std::vector<LoadedTable>& tables,
                                         std::string_view axis, double present = 0.0);
 
-/// Checks that every input has positions, positions ascend, all numbers are finite, the number of
-/// values matches the points, and a table with one input that repeats has equal values at its ends.
-/// The error names the output of the table.
+/// Errors, with the output of the table: missing or descending positions, numbers that are not
+/// finite, another number of values than points, unequal ends of a repeating table with one input.
 Expected<void> validate_table(const LoadedTable& table);
 
 }  // namespace nonio::math

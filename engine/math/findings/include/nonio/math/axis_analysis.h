@@ -5,16 +5,12 @@
 #include "nonio/math/uncertainty.h"
 #include "nonio/sdk/plugin.h"
 
-/// Functions shared by the analyses of an axis (ISO 230-2, VDI/DGQ 3441): an option, the selection
-/// of the readings, the budget, and the findings that do not depend on the standard.
 namespace nonio::math {
 
-/// Returns the option `incomplete_targets`: how to treat targets that do not contribute to every
-/// value.
+/// How to treat targets that do not contribute to every value: 'refuse' or 'leave-out'.
 Option incomplete_targets_option();
 
-/// Input of an analysis: the readings that it evaluates, their budget and the findings common to
-/// all standards.
+/// The parts of an analysis that do not depend on the standard.
 struct AxisAnalysis {
   std::string axis;
   AxisTest test;
@@ -24,16 +20,14 @@ struct AxisAnalysis {
   Quantity deviation = Quantity::deviation, position = Quantity::length;
 };
 
-/// Prepares an analysis. Error: the readings are not those of the measured axis, have no direction
-/// of approach, or are angles for a linear axis or lengths for a rotary one.
+/// Errors: readings of another axis or unit (angles, lengths), or without a direction of approach.
 Expected<AxisAnalysis> begin_axis_analysis(const AnalysisInput&);
 
-/// Contributions to the uncertainty of a value: the whole budget, or only those that do not cancel
-/// in a difference.
+/// Contributions to the uncertainty of a value: all, or those that do not cancel in a difference.
 enum class Made { of_all, of_environment };
 
-/// Adds a value, with U if the budget is known and U is above 0. The contributions to U are then
-/// recorded in the budget. A value that is not finite is omitted.
+/// Omits a value that is not finite. Adds U, and its contributions to the budget of the evaluation,
+/// if the budget is known and U is above 0.
 void add_value(Evaluation&, const AxisAnalysis&, std::string name, double value, double U, Made);
 
 }  // namespace nonio::math

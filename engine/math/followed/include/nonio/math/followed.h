@@ -38,11 +38,10 @@
 /// includes r^|k - l| between the readings of a pass. G: sum of J_k over a pass, of J_k (x_k -
 /// middle) for slopes. v_s, v_d: variance of the offsets over the runs minus the contribution of
 /// single readings to it; not below 0. For the scale also, from the manifest: misalignment,
-/// temperature reading, and expansion if the file does not contain the temperature
-/// (docs/formulas.md). Contributions shared by campaigns are separate: the error of the
-/// instrument's length, and that of the expansion coefficient. Sources: JCGM 100:2008, 5.2;
-/// variance components by the analysis of variance (derived), checked by simulation
-/// (tests/unit/math/followed_test.cpp).
+/// temperature reading, and expansion if the file does not contain the temperature. Contributions
+/// shared by campaigns are separate: the error of the length of the instrument, and that of the
+/// expansion coefficient. Sources: JCGM 100:2008, 5.2; variance components by the analysis of
+/// variance (derived).
 namespace nonio::math {
 
 struct Followed {
@@ -58,26 +57,24 @@ struct Followed {
 /// A fit to values at targets, for a comparison with campaigns that have other targets: a
 /// polynomial P0 .. Pd in z, and the followed sinusoids.
 struct TargetFit {
-  /// Variance of the values about the fit minus the contribution of the readings: the unexplained
-  /// variation of the machine between targets. May be below 0 by chance; m^2 or rad^2.
+  /// Variance of the values about the fit minus the contribution of the readings, m^2 or rad^2; it
+  /// can be below 0 by chance.
   double beyond = 0.0;
-  double dof = 0.0;                 ///< degrees of freedom of `beyond`
+  double dof = 0.0;
   std::vector<double> residuals{};  ///< residual of the value at each target; m or rad
   /// Coefficients of P0 .. Pd. Empty for a rotary axis, whose quantities do not refer to its ends.
   std::vector<double> coefficients{};
   /// Covariance matrices of the coefficients, row by row: from the readings, and from independent
   /// values with variance 1 at the targets.
   std::vector<double> covariance{}, share{};
-  /// Coefficient of cos or sin of a sinusoid; its variance by the readings, and its variance if the
-  /// values at the targets are independent with variance 1 (`share`).
+  /// `variance`: by the readings; `share`: by independent values of variance 1 at the targets.
   struct Sinusoid {
     double value = 0.0, variance = 0.0, share = 0.0;
   };
   std::vector<Sinusoid> sinusoids{};
 };
 
-/// Additional data for a comparison with campaigns that have other targets. The quantities depend
-/// on the choice of targets, which adds the variance `share` times `beyond` of the fit.
+/// The choice of targets adds the variance `share` times `beyond` of the fit to each quantity.
 struct OtherTargets {
   /// For each quantity except ln_s: variance from the readings alone, and sum of the squared target
   /// weights t_i^2 (for B_mean used with `reversal`, for the others with `mean`).
@@ -89,17 +86,16 @@ struct FollowedAxis {
   std::vector<Followed> quantities;
   /// Covariance of the errors of quantities i and j (see `Followed::u`), at i * n + j; SI.
   std::vector<double> covariance;
-  /// Manifest keys that are not stated, so that `u` of scale lacks their contributions.
+  /// Manifest keys without a value, whose contributions are missing in `u` of scale.
   std::vector<std::string> not_stated;
   OtherTargets other_targets{};
 };
 
 enum class Across : bool { no, yes };  ///< yes: deviations across the axis, a straightness
 
-/// Computes the followed quantities. No errors: the result is empty if there are fewer than two
-/// complete runs or three targets, or if the readings do not scatter. Curves need five targets and
-/// sinusoids ten; quantities that the targets do not determine are left out. material: mean
-/// temperature of the machine during the test, degC, if the file contains it.
+/// The result is empty with fewer than two complete runs or three targets, or if the readings do
+/// not scatter. Curves need five targets and sinusoids ten. `material`: mean temperature of the
+/// machine during the test, degC, if the file contains it.
 FollowedAxis followed_quantities(const AxisTest&, const Campaign&, const std::string& axis,
                                  std::optional<double> material, Across = Across::no);
 

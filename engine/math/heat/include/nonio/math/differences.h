@@ -8,17 +8,14 @@
 #include "nonio/sdk/campaign.h"
 #include "nonio/sdk/results.h"
 
-/// Budgets of values that are differences of two readings of one stationary instrument: ranges over
-/// time or angle.
+/// Budgets of ranges over time or angle: differences of two readings of one stationary instrument.
 ///
-/// Errors of the instrument that both readings share cancel. U_fixed is treated as an error of its
-/// gain that reaches U_fixed at the largest deviation, so that it contributes to a value in
-/// proportion; for a beam, U_per_length is a change of its scale between both readings. Drift is
-/// the measurand itself. The form error of a ball, of full range r, changes a range by at most r: u
-/// = r/sqrt 3.
+/// Errors of the instrument that both readings share cancel. U_fixed is treated as a gain error
+/// that reaches U_fixed at the largest deviation; for a beam, U_per_length is a change of its scale
+/// between both readings. Drift is the measurand itself. The form error of a ball, of full range r,
+/// contributes u = r/sqrt 3.
 ///
-/// Source: JCGM 100:2008; which errors the readings share is a laboratory method
-/// (docs/uncertainty.md).
+/// Source: JCGM 100:2008; the shared errors are a laboratory method (docs/uncertainty.md).
 namespace nonio::math {
 
 struct Difference {
@@ -33,9 +30,8 @@ struct Difference {
   bool with_ball = false;       ///< whether the value contains the form error of the ball
 };
 
-/// Adds the values with U, the budget, and a finding about missing data. A value that contains the
-/// form error of a ball has only a repeatability if this error is not stated
-/// (instrument.sphere_um).
+/// Adds the values with U, the budget, and a finding about missing data. If instrument.sphere_um is
+/// not stated, values that contain a ball have only a repeatability.
 void put_differences(const Campaign&, const std::vector<Difference>&, Evaluation& out);
 
 }  // namespace nonio::math

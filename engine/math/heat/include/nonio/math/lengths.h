@@ -19,22 +19,20 @@
 ///     P = largest - smallest radial distance of the points from the center of the least-squares
 ///         sphere
 ///
-/// Decision (decision.h) for each error with its U(L), guard band g of the rule (ISO 14253-1:2017:
-/// 1.65 u): conforms if abs(E) <= MPE - g for all errors; does not conform if abs(E) > MPE + g for
-/// one; otherwise indeterminate. Each repeat is an error of its own: the scatter of repeats is part
-/// of E, not of U (ISO/TS 23165, from general knowledge).
+/// Decision (decision.h) over all errors with U(L) and guard band g: conforms if abs(E) <= MPE - g
+/// for all, does not conform if abs(E) > MPE + g for one. The scatter of repeats is part of E, not
+/// of U (ISO/TS 23165, from general knowledge).
 ///
 /// Edition 2001: for at most five lengths, one of the three repeats may be outside; each of these
 /// lengths is then measured ten more times (repeats 4 to 13), all of which must be inside.
 ///
-/// Symbols: E, L, MPE, U in m. Sources: ISO 10360-2:2001 and 2009 (names and procedure from public
-/// guides; the text was not available). Range: L > 0, all finite.
+/// Lengths in m. Sources: ISO 10360-2:2001 and 2009, from public guides (text not available).
 namespace nonio::math {
 
 struct LengthLimit {
   double A = 0.0;  ///< constant part of the limit, m
   double K = 0.0;  ///< in L/K: length for each m of error; 0: no such term
-  double B = 0.0;  ///< upper bound, m; 0: none
+  double B = 0.0;  ///< upper bound, m; 0 if there is none
   bool stated() const { return A > 0.0 || K > 0.0 || B > 0.0; }
   double at(double L) const;
 };
@@ -54,23 +52,21 @@ struct LengthAnswer {
   std::size_t to_repeat = 0;
 };
 
-/// Decides conformity of all errors. U: expanded uncertainty of each error, m; by_2001: allow five
-/// lengths with an error outside, as in the edition of 2001; rule: decision rule of the
-/// certificate.
+/// `U`: expanded uncertainty of each error, m. `by_2001`: up to five lengths may have an error
+/// outside. `rule`: decision rule of the certificate.
 LengthAnswer judge_lengths(const std::vector<LengthError>& all, const LengthLimit& limit,
                            const std::vector<double>& U, bool by_2001,
                            std::string_view rule = "iso14253-1");
 
 /// The largest range of the first three repeats of a length, m, and the indices of its smallest and
-/// largest error. `repeat_range` returns none if no length has two repeats.
+/// largest error. `repeat_range` returns std::nullopt if no length has two repeats.
 struct RepeatRange {
   double range = 0.0;
   std::size_t low = 0, high = 0;
 };
 std::optional<RepeatRange> repeat_range(const std::vector<LengthError>& all);
 
-/// Number of positions, lengths and repeats of a test, compared with the required seven, five and
-/// three.
+/// Numbers of positions, lengths and repeats; seven, five and three are required.
 struct LengthPlan {
   /// for lengths and repeats: smallest number at any position
   std::size_t positions = 0, lengths = 0, repeats = 0;
@@ -79,7 +75,7 @@ struct LengthPlan {
 LengthPlan length_plan(const std::vector<LengthError>& all);
 
 /// The least-squares sphere of points, by Gauss-Newton on the radial distances; lengths in m.
-/// `form_of_sphere` returns none for fewer than five points or points in a plane.
+/// `form_of_sphere` returns std::nullopt for fewer than five points or points in a plane.
 struct FormOfSphere {
   std::array<double, 3> centre{};
   double radius = 0.0, P = 0.0;

@@ -25,9 +25,8 @@
 /// K positions k 360/K while the sensor is at rest, and S is the mean of the readings T_k;
 /// components of the ball with K, 2K, ... waves per turn remain in S.
 ///
-/// Symbols: r, a, b in m, t in rad. Source: ISO 230-7, ASME B89.3.4 (names; definitions from
-/// general knowledge, the text was not available); Donaldson 1972; multi-step: Estler, Evans, Shao
-/// 1997.
+/// Lengths in m, t in rad. Sources: ISO 230-7, ASME B89.3.4 (definitions from general knowledge,
+/// the text was not available); Donaldson 1972; multi-step: Estler, Evans, Shao 1997.
 namespace nonio::math {
 
 /// Readings of one sensor over the spindle angle, in order: the angles ascend over all turns.
@@ -39,30 +38,27 @@ struct SpindleTrack {
 struct Turns {
   std::size_t n = 0, N = 0;
   std::vector<double> r;
-  /// whether r is interpolated, by a cubic through the four nearest readings
-  bool resampled = false;
+  bool resampled = false;  ///< interpolated, by a cubic through the four nearest readings
   double angle(std::size_t i) const;
 };
 
-/// Arranges readings by turns. None if there are fewer than two whole turns, fewer than 16 readings
-/// in a turn, or a gap of more than an eighth of a turn.
+/// Returns nothing for fewer than two whole turns, fewer than 16 readings in a turn, or a gap of
+/// more than an eighth of a turn.
 std::optional<Turns> turns_of(const SpindleTrack&);
 
 /// Returns r = X cos t + Y sin t, if t grows from X to Y; for `sense` -1, t grows from X to -Y, r =
-/// X cos t - Y sin t. Returns nothing if X and Y differ in the number of turns or of angles.
+/// X cos t - Y sin t. Returns std::nullopt if X and Y differ in the number of turns or of angles.
 std::optional<Turns> rotating(const Turns& X, const Turns& Y, int sense = 1);
 
 struct ErrorMotion {
   double mean = 0.0, a = 0.0, b = 0.0;
   double u_ab = 0.0;  ///< standard uncertainty of a and b, from the differences between turns
   double total = 0.0, synchronous = 0.0, asynchronous = 0.0;
-  std::vector<double> motion;     ///< mean over the turns at each angle, without m, a, b
-  std::size_t low = 0, high = 0;  ///< indices of the smallest and largest synchronous motion
+  std::vector<double> motion;  ///< mean over the turns at each angle, without m, a, b
+  std::size_t low = 0, high = 0;
   double s = 0.0;                 ///< standard deviation of the asynchronous motion at one angle
-  /// standard uncertainty of the mean at one angle; correlation between turns increases it
-  double u_mean = 0.0;
-  /// degrees of freedom of u_mean: effective number of turns minus 1, at least 1
-  double dof = 0.0;
+  double u_mean = 0.0;            ///< standard uncertainty of the mean at one angle
+  double dof = 0.0;               ///< effective number of turns minus 1, at least 1
   std::vector<double> with_once;  ///< synchronous motion with the once-per-turn part
   double synchronous_with_once = 0.0, total_with_once = 0.0;
   double fundamental() const;
@@ -70,17 +66,15 @@ struct ErrorMotion {
 };
 ErrorMotion error_motion(const Turns&);
 
-/// Separated errors of spindle and ball over one turn. Both inputs of `donaldson` must have the
-/// same number of angles.
+/// Both inputs of `donaldson` must have the same number of angles.
 struct Separated {
   std::vector<double> spindle, ball;
 };
 Separated donaldson(std::span<const double> T1, std::span<const double> T2);
-/// Separates the errors; T[k]: readings with the ball at position k 360/K.
+/// T[k]: readings with the ball turned by k 360 deg/K.
 Separated multi_step(std::span<const std::vector<double>> T);
 
-/// Returns the sense in which t grows, from the eccentricity of the ball, which X and Y measure a
-/// quarter of a turn apart:
+/// Returns the sense in which t grows, from the eccentricity that X and Y measure 90 deg apart:
 ///
 ///     f = |(aX + bY) + i (bX - aY)|/2     it turns from X to Y    a, b of r = a cos t + b sin t
 ///     g = |(aX - bY) + i (bX + aY)|/2     it turns from X to -Y

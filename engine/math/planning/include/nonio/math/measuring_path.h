@@ -7,8 +7,8 @@
 
 #include "nonio/sdk/error.h"
 
-/// Path of a measurement: the stops of the machine, their order, and the points of reversal, for
-/// the part program of any control. Lengths in m, angles in rad.
+/// Stops of the machine and points of reversal, in the order of a measurement, for the part program
+/// of any control. Lengths in m, angles in rad.
 namespace nonio::math {
 
 struct MeasuringMove {
@@ -20,28 +20,24 @@ struct MeasuringMove {
 struct MeasuringPath {
   std::string name;  ///< name of the path: "X", "D1", "PPP"
   std::vector<std::string> axes;
-  std::vector<bool> rotary;  ///< whether each axis is rotary
+  std::vector<bool> rotary;
   std::vector<MeasuringMove> moves;
 };
 
 struct MeasuringRequest {
   int runs = 5;
-  double dwell = 5.0;  ///< time at each target, s
-  /// distance of travel beyond both ends, m or rad, so that the end targets too are approached in
-  /// the direction of each pass
-  double over_travel = 0.0;
+  double dwell = 5.0;        ///< time at each target, s
+  double over_travel = 0.0;  ///< travel beyond both end targets, m or rad
   bool both_directions = true;
   double resolution = 1e-6;  ///< the over-travel is an integer multiple of `resolution`, m or rad
 };
 
-/// Targets of an axis test: P_i = first + (i - 1) p + r_i for `points` targets, with p the even
-/// interval. With `scatter`, r_i is random, uniform within +- min(period, 0.3 p), at the ends only
-/// inwards, because evenly spaced targets would not detect an error with the period of the screw or
-/// scale. All are multiples of `resolution` between first and last; the same seed gives the same
-/// targets on every computer. Each value of `among`, which must be in this range, replaces the
-/// nearest target. Source: ISO 230-2:2014, test plan; the 30 % for an unknown period is common
-/// practice. Range: points >= 2, last > first, resolution > 0. Error: the even interval p is not
-/// larger than twice the resolution.
+/// P_i = first + (i - 1) p + r_i for `points` targets with the even interval p. With `scatter`, r_i
+/// is uniform within +- min(period, 0.3 p), at the ends only inwards, because evenly spaced targets
+/// would not detect an error with the period of the screw or scale. Targets are multiples of
+/// `resolution`; the same seed gives the same targets on every computer. Each value of `among`,
+/// between first and last, replaces the nearest target. Source: ISO 230-2:2014, test plan; the 30 %
+/// is common practice. Error: p is not larger than twice the resolution.
 struct AxisTargets {
   double first = 0.0, last = 0.0;
   int points = 5;
@@ -53,24 +49,19 @@ struct AxisTargets {
 };
 Expected<std::vector<double>> axis_targets(const AxisTargets& wish);
 
-/// Returns the number of targets that ISO 230-2 requires for a linear axis: five per meter up to 2
-/// m and at least five, above 2 m one every 250 mm. length: m, above 0. Source: test plan of the
-/// standard (docs/formulas.md, confidence M).
+/// Returns the number of targets for a linear axis of `length`, m, according to ISO 230-2 (M): at
+/// least five and five per meter up to 2 m, one every 250 mm above.
 int axis_points(double length);
-/// Returns the number of targets that ISO 230-2 requires for a rotary axis: 3, 5, 8 for up to 90,
-/// 180, 360 deg; 8 per turn above. angle: rad.
+/// `angle` in rad: 3, 5, 8 targets for up to 90, 180, 360 deg, 8 per turn above (ISO 230-2).
 int rotary_points(double angle);
-/// Returns the angles that ISO 230-2 requires among the targets: 0, 90, 180, 270 deg in every turn
-/// of the range, rad.
+/// Angles that ISO 230-2 requires among the targets, rad: 0, 90, 180, 270 deg in every turn.
 std::vector<double> cardinal_angles(double first, double last);
 
-/// Returns the path of an axis test. Each run contains all targets upwards, and then downwards if
-/// both directions are requested.
+/// Each run contains all targets upwards, and then downwards if both directions are requested.
 MeasuringPath axis_path(const std::string& axis, bool rotary, const std::vector<double>& targets,
                         const MeasuringRequest& wish);
 
-/// Returns the path of two stops of an axis at which a person reads the instrument, both approached
-/// from the side of `start`.
+/// Two stops at which a person reads the instrument, both approached from the side of `start`.
 MeasuringPath probe_path(const std::string& axis, bool rotary, double start, double from, double to,
                          const MeasuringRequest& wish);
 

@@ -11,25 +11,17 @@
 #include "nonio/sdk/results.h"
 
 /// Plans stops for two axes and both diagonals of their rectangle such that the steps of all three
-/// are integer multiples of the control's resolution.
-///
-/// Euclid: every primitive Pythagorean triple is (m^2 - k^2, 2 m k, m^2 + k^2) with m > k > 0
-/// coprime and of opposite parity; both orders of the legs are plans. The legs are coprime, so the
-/// three steps are multiples of the resolution r exactly if step = q (a, b, c) r with q integer. If
-/// X and Y have resolutions (scale factors) of their own, r is the greatest common divisor of all,
-/// k = rx/r, ry/r, rd/r, and q is a multiple of each k / gcd(k, leg).
+/// are integer multiples of the control's resolution r. The legs of primitive Pythagorean triples
+/// are coprime, so that the steps are q (a, b, c) r with q integer; a resolution for each axis:
+/// docs/dev/estimators.md, Plans of diagonals.
 ///
 ///     U = travel - 2 over-travel    usable length of an axis, m
 ///     n = steps; n + 1 stops        n q a r <= Ux, n q b r <= Uy
 ///     length = n step               coverage = length / U, by axis
-///     Lx, Ly, L = lengths, c = Lx / L, s = Ly / L
 ///
-/// A scatter u of one reading of the diagonals gives the computed straightness the scatter
-///
-///     EXY = (D1 + D2) / (2 c)   u L / (2 Lx), and of the even part, zero at both ends, 0.61 u / c
-///     EYX = (D1 - D2) / (2 s)   u L / (2 Ly), likewise 0.61 u / s;   0.61 = sqrt(6) / 4
-///
-/// Source: Euclid, Elements X, 29 (lemma); the rest derived, checked against a brute-force search.
+/// With the measured lengths Lx, Ly and L (diagonal), c = Lx / L and s = Ly / L, a scatter u of one
+/// reading of the diagonals gives EXY the scatter u L / (2 Lx) and its even part 0.61 u / c; EYX u
+/// L / (2 Ly) and 0.61 u / s. Source: Euclid, Elements X, 29 (lemma); the rest derived.
 namespace nonio::math {
 
 struct Triple {
@@ -39,9 +31,8 @@ struct Triple {
 /// Returns all primitive triples with a < b and c <= `hypotenuse`, sorted by c, then a.
 std::vector<Triple> primitive_triples(std::int64_t hypotenuse);
 
-/// Preference for an even number of steps, which has a stop at mid-travel. Only then can every
-/// second stop along X form the third diagonal, to half of Y, which separates errors that two
-/// diagonals cannot separate.
+/// An even number of steps has a stop at mid-travel, and allows the third diagonal, to half of Y,
+/// which separates errors that two diagonals cannot separate.
 enum class EvenSteps : std::uint8_t {
   any,
   prefer,  ///< an odd plan ranks before an even one only if it covers 0.01 more of the worse axis
@@ -52,19 +43,18 @@ struct TripleRequest {
   double x = 0.0, y = 0.0;   ///< travel of each axis, m
   double over_travel = 0.0;  ///< reserve at each end of both axes, m
   double resolution = 1e-3;  ///< r, m; steps are integer multiples of r
-  /// Resolution of the steps of each axis, m; 0: `resolution`, which always applies to the
-  /// diagonal.
+  /// Resolution of each axis, m; 0: `resolution`, which always applies to the diagonal.
   double resolution_x = 0.0, resolution_y = 0.0;
   double largest_step = 0.0;  ///< largest step of either axis, m; 0: no limit
   std::int64_t max_points = 1500;
   /// periods of screw, rack or scale, m; no step may be a multiple of a period
   std::vector<double> pitch_x{}, pitch_y{};
-  /// Whether the sampling of ISO 230-2 is required: five targets per meter on an axis of up to 2 m,
-  /// otherwise at most 250 mm between targets.
+  /// Whether ISO 230-2 sampling is required: five targets per meter up to 2 m, above 2 m one every
+  /// 250 mm.
   bool density = false;
   EvenSteps even = EvenSteps::any;
   std::int64_t hypotenuse = 5000;
-  std::size_t count = 5;  ///< number of plans to return
+  std::size_t count = 5;
 };
 
 enum class TripleReason : std::uint8_t {
@@ -76,8 +66,7 @@ enum class TripleReason : std::uint8_t {
   small_numbers,  ///< smallest c among plans near the best
   next,           ///< next triple in the order of preference
 };
-/// A plan is near the best if it covers at least this fraction of the best plan's coverage of the
-/// worse axis.
+/// Share of the best coverage of the worse axis from which a plan is near the best:
 /// docs/dev/constants.md, A10.
 inline constexpr double near_best = 0.95;
 
@@ -118,7 +107,7 @@ struct TriplePlans {
   /// factor of 20) would allow a plan, or `travel` if no plan fits even without all limits. If only
   /// their combination excludes every plan, `together` contains all limits of the request.
   std::vector<TripleLimit> blocked_by, together;
-  std::int64_t tried = 0;  ///< number of plans that were examined
+  std::int64_t tried = 0;
 };
 
 /// A search with more plans than this is rejected before it begins.
@@ -126,7 +115,6 @@ inline constexpr std::int64_t most_tried = 20'000'000;
 
 Expected<TriplePlans> plan_triples(const TripleRequest& wish);
 
-/// Parameters of the duration of a measurement.
 struct MeasuringCost {
   std::int64_t runs = 5;   ///< number of runs; each is in both directions
   double feed = 2.0 / 60;  ///< speed of travel, m/s
@@ -136,16 +124,14 @@ struct MeasuringCost {
 double measuring_time(const TriplePlan&, const MeasuringCost&);
 
 /// Returns, for each triple and order of its legs, the plan with the shortest `measuring_time` that
-/// covers at least `least_cover` of both axes. For each number of steps, only the largest step that
-/// fits is tried. Empty if no plan fits. Error: the request is invalid, or there are more than
-/// `most_tried` plans.
+/// covers at least `least_cover` of both axes, with the largest step that fits; empty if no plan
+/// fits. Errors: an invalid request, more than `most_tried` plans.
 Expected<std::vector<TriplePlan>> cheapest_plans(const TripleRequest& wish, double least_cover,
                                                  const MeasuringCost&);
 
-/// Returns a table with one row per plan, with the documented column names and the noise gains.
+/// Returns a table with one row per plan.
 PointTable triple_table(const std::vector<TriplePlan>& plans);
 
-/// Returns whether `one` ranks before `other` in the order of preference.
 bool comes_before(const TriplePlan& one, const TriplePlan& other, EvenSteps even);
 
 }  // namespace nonio::math

@@ -23,27 +23,22 @@
 /// 0) at 0. phi: encoder reading. Its zero is that of these lines; its errors are in the residuals.
 ///
 /// Unknowns of each line: two coordinates of c and two components of n, along the two machine axes
-/// most nearly perpendicular to n; three of each q; three of each t except the first. Start: for n
-/// along each of the machine axes (and halfway between two of them) the problem is linear; the best
-/// starts are refined by Gauss-Newton. Columns of tilts are scaled with the extent of the readings;
-/// singular values below `chain_rank` of the largest count as 0. A value is identifiable if no
-/// combination of unknowns that changes no reading changes it.
-///
-/// Derived (docs/formulas.md); tests compare with exact homogeneous transforms. Range: one or two
-/// axes, coordinates up to 1e6 m, at least some mm of movement.
+/// most nearly perpendicular to n. Columns of tilts are scaled with the extent of the readings;
+/// singular values below `chain_rank` of the largest are treated as 0. A value is identifiable if
+/// no combination of unknowns that changes no reading changes it. Derived (docs/dev/estimators.md).
+/// Range: one or two axes, coordinates up to 1e6 m, at least some mm of movement.
 namespace nonio::math {
 
 inline constexpr double chain_rank = 1e-6;
 
 struct ChainReading {
-  Vector3 at{};               ///< reading of the linear axes, m
+  Vector3 at{};
   std::vector<double> angle;  ///< angle of each axis of the chain, rad
   double weight = 1.0;        ///< number of readings in the mean, above 0
   std::size_t ball = 0, tool = 0;
 };
 
-/// Numbers of axes, balls and tools of a chain. The order of its axes is tables from the bed
-/// outwards, then heads from the bed outwards.
+/// Order of the axes: tables from the bed outwards, then heads from the bed outwards.
 struct ChainOrder {
   std::size_t tables = 0, heads = 0;
   std::size_t balls = 1, tools = 1;
@@ -54,19 +49,17 @@ struct ChainLine {
   Vector3 point{}, direction{};
 };
 
-/// Values of the unknowns of the fit.
 struct ChainState {
-  std::vector<ChainLine> lines;     ///< lines of the axes, in the order of the chain
-  std::vector<Vector3> ball, tool;  ///< positions of balls and tool tips; the first tool is 0
+  std::vector<ChainLine> lines;
+  std::vector<Vector3> ball, tool;  ///< positions of balls and tool tips; the first tool is at 0
 };
 
 enum class ChainRefusal {
-  /// a number of a reading is not finite, a coordinate is beyond 1e6 m, a weight is not above 0, or
-  /// a count of angles or an index of a ball or tool does not match the chain
+  /// a number that is not finite, a coordinate beyond 1e6 m, a weight not above 0, or a wrong index
   not_finite,
-  too_few,         ///< fewer than two readings, no axis, or no degree of freedom
-  not_converging,  ///< no start converges
-  ambiguous,       ///< two chains with different directions fit equally well
+  too_few,  ///< fewer than two readings, no axis, or no degree of freedom
+  not_converging,
+  ambiguous,  ///< two chains with different directions fit equally well
 };
 
 struct ChainFit {
@@ -91,7 +84,7 @@ struct ChainFit {
   struct Followed {
     double along = 0.0, rest = 0.0, dof_along = 0.0, dof_rest = 0.0;
   };
-  std::vector<Followed> followed;  ///< residuals along the path of each axis
+  std::vector<Followed> followed;
 
   /// unit vectors of scaled unknowns that change no reading
   std::vector<std::vector<double>> null_space;
@@ -100,25 +93,20 @@ struct ChainFit {
 
 tl::expected<ChainFit, ChainRefusal> fit_chain(const std::vector<ChainReading>&, const ChainOrder&);
 
-/// A value computed from the unknowns.
 struct ChainValue {
   double value = 0.0;
   bool identifiable = false;
   std::vector<double> by;  ///< derivatives by the readings, in the order of `ChainFit::by`
 };
-/// Evaluates a function of the unknowns. Its derivatives are computed by central differences with
-/// steps of 1 um and 1 urad.
+/// The derivatives are central differences with steps of 1 um and 1 urad.
 ChainValue chain_value(const ChainFit&, const std::function<double(const ChainState&)>&);
 
-/// Returns the reading, m, that the linear axes would show for a state, with the angles, ball and
-/// tool of the given reading.
+/// Reading of the linear axes, m, in a state, with the angles, ball and tool of the given reading.
 Vector3 chain_reading(const ChainState&, const ChainOrder&, const ChainReading&);
 
-/// Returns the point of a line that is nearest to `to`.
 Vector3 nearest_on(const ChainLine&, const Vector3& to);
-/// `signed_distance`: distance of two lines, m, positive if the second is on the side of (direction
-/// of the first) x (direction of the second); never negative for parallel lines. `angle_between`:
-/// angle between their directions, rad.
+/// Distance of two lines, m, positive if the second is on the side of (direction of the first) x
+/// (direction of the second); never negative for parallel lines. The angle is in rad.
 double signed_distance(const ChainLine&, const ChainLine&);
 double angle_between(const ChainLine&, const ChainLine&);
 

@@ -15,10 +15,9 @@
 ///             stated radius without the last column
 ///     cov     s^2 (J'J)^-1, s^2 = sum e^2 / dof, dof = N - 4, or N - 3 with a stated radius
 ///
-/// Symbols: P_i touched point (center of the stylus), c center, m; r radius of ball and stylus
-/// together, m. Source: A. B. Forbes, Least-squares best-fit geometric elements, NPL Report DITC
-/// 140/89 (1991). Range: coordinates up to 1e6 m; points of equal accuracy, scatter much smaller
-/// than the radius.
+/// P_i touched point (center of the stylus), c center, r radius of ball and stylus together, m.
+/// Source: A. B. Forbes, Least-squares best-fit geometric elements, NPL Report DITC 140/89 (1991).
+/// The scatter must be much smaller than the radius.
 namespace nonio::math {
 
 struct SphereFit {
@@ -27,12 +26,11 @@ struct SphereFit {
   std::array<double, 3> cofactor{};  ///< variance of each coordinate of the center for s = 1 m
   double rss = 0.0;                  ///< residual sum of squares, m^2
   int dof = 0;
-  std::vector<double> residual;  ///< residual of each point, m
+  std::vector<double> residual;
 };
 
-/// Fits a sphere, with the stated `radius`, m, if it is given. Error: the points do not determine a
-/// sphere, because they are too few, in one plane or on too small a cap, or coordinates are not
-/// finite or beyond 1e6 m.
+/// `radius`: stated radius, m. Errors: too few points, points in one plane or on too small a cap,
+/// coordinates that are not finite or beyond 1e6 m.
 Expected<SphereFit> fit_sphere(std::span<const std::array<double, 3>> touches,
                                std::optional<double> radius = std::nullopt);
 

@@ -11,8 +11,7 @@ struct Bracket {
 };
 
 /// Golden section search (Kiefer, Proc. AMS 4 (1953) 502): narrows low..high about a minimum of f
-/// until the width is at most `fine`, in at most `steps` evaluations after the first two. If f has
-/// several minima, the interval keeps one of them.
+/// to a width of at most `fine`, in at most `steps` evaluations after the first two.
 template <class Function>
 Bracket golden_section(Function&& f, double low, double high, int steps, double fine = 0.0) {
   constexpr double golden = 0.6180339887498949;

@@ -7,8 +7,7 @@
 
 #include "nonio/math/budget.h"
 
-/// Tests whether a compensation had the intended effect: one line is measured before and after, at
-/// the same stops.
+/// Tests the effect of a compensation: one line is measured before and after, at the same stops.
 ///
 /// b_i, a_i: means before and after, each relative to its first stop. A table that compensates the
 /// errors leaves a = f b with f = 0; one that is not active f = 1; one with the wrong sign f = 2.
@@ -19,24 +18,20 @@
 ///     chi2 = r' V^-1 r, F = chi2/m with m and nu degrees of freedom
 ///     f by generalized least squares: b' V^-1 a/(b' V^-1 b), u^2 = 1/(b' V^-1 b)
 ///
-/// A table is not identical to b. It has entries with a step q at points of its own, and is linear
-/// between them; outside it keeps its last value. If a stop is between two points at a distance h,
-/// the table misses the corner of b there by
+/// A table has entries with a step q at points of its own, and is linear between them. If a stop is
+/// between two points at a distance h, the table misses the corner of b there by
 ///
-///     theta_i k_i,   k_i = (s_right - s_left) h/4,   0 <= theta_i = 4 t (1 - t) <= 1
+///     theta_i k_i,   k_i = (s_right - s_left) h/4,   0 <= theta_i <= 1
 ///
-/// s: slopes of b on both sides of the stop; t: its position between the points. h is not known,
-/// but no table is coarser than the smallest distance of the stops. theta_i is not known either:
-/// its second moment, if uniform, is 1/3, and it is the same for all stops (even steps) or
-/// independent for each, so both cases are added. Rounding is rectangular, q^2/12. For f = 0 and 2,
-/// where a table is active, the covariance is therefore V + W with
+/// with the slopes s of b on both sides of the stop. No table is coarser than the smallest distance
+/// of the stops, which is used for h. The second moment of a uniform theta_i is 1/3; it is the same
+/// for all stops or independent for each, so both cases are added. For f = 0 and 2, where a table
+/// is active, the covariance is V + W with
 ///
 ///     W = J [diag(k^2/3 + q^2/12) + k k'/3] J'     J: each stop minus the first one
 ///
 /// If the table was made from other readings b0 = E + n_0, f = 2 leaves r = n_a + n_0 - 2 n_b: the
-/// larger p of both cases is used. For f = 0 it is n_a - n_0, which has the covariance V too.
-///
-/// Derived; tests compare it with simulated campaigns.
+/// larger p of both cases is used. Derived.
 namespace nonio::math {
 
 struct BeforeAfter {
@@ -44,16 +39,14 @@ struct BeforeAfter {
   Answer answer = Answer::cannot_tell;
   std::array<double, 3> p{};  ///< p-values of f = 0, 1, 2
   double f = 0.0, u_f = 0.0;
-  /// for f = 0, at every stop: predicted value after compensation, difference r from it, and
-  /// standard uncertainty of r; all are 0 at the first stop
+  /// for f = 0, at every stop: predicted value, difference r from it, u of r; 0 at the first stop
   std::vector<double> predicted, rest, u;
   std::size_t worst = 0;  ///< index of the stop with the largest ratio of abs(r) to its u
 };
 
-/// Tests the means of a line before and after compensation. model: contains the line before and
-/// then the line after, with one reading for each mean; dof: degrees of freedom of the repetition;
-/// entry_step: q, 0 if the control is not known. The answer is `cannot_tell` if several values of f
-/// fit, because the errors before compensation are too small.
+/// `model`: the line before and then the line after, with one reading for each mean. `dof`: degrees
+/// of freedom of the repetition. `entry_step`: q; 0 if the control is not known. `cannot_tell`:
+/// several values of f fit, because the errors before compensation are too small.
 BeforeAfter before_after(std::span<const double> before, std::span<const double> after,
                          const ReadingModel& model, double dof, double entry_step = 0.0);
 

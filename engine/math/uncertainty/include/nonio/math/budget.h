@@ -12,8 +12,7 @@
 #include "nonio/sdk/observations.h"
 #include "nonio/sdk/results.h"
 
-/// Uncertainty budget of results that are fitted to readings; used by every analysis of several
-/// lines.
+/// Uncertainty budget of results that are fitted to readings.
 ///
 /// A result f depends on the readings y_i with J_i = df/dy_i. An input quantity of standard
 /// uncertainty u causes errors in the readings, and thereby the error of f:
@@ -26,27 +25,23 @@
 /// d_i: distance of reading i from the zero of its line, if the error grows with the length; m:
 /// readings of a line (for means of several visits the random walk follows the visits). The sum of
 /// all contributions is J V J' with the covariance V of the readings. An error that is common to
-/// the instrument (its scale) cancels in results that do not depend on the scale. If it is not
-/// known whether lines share an error (a sensor that stays in place, a shop with the same
-/// temperature for all lines), the larger value applies: independent per line, or common to all.
+/// the instrument (its scale) cancels in results that do not depend on it. If it is not known
+/// whether lines share an error, the larger value applies: independent per line, or common to all.
 ///
 /// Expanded: U = k u. k: the factor for 95.45 % of a sum of a normal and one rectangular part with
 /// the excess -1.2 sum c^4/u^4 of all rectangular parts c (2 without them, 1.65 for one alone),
-/// multiplied by the ratio of Student's t to 2 for the effective degrees of freedom nu =
-/// u^4/sum(u_k^4/nu_k); only the repetition has finite ones.
+/// times Student's t / 2 for nu = u^4/sum(u_k^4/nu_k); only the repetition has finite nu.
 ///
-/// Sources: JCGM 100:2008, 5.2 (correlated inputs), G.4 (Welch-Satterthwaite); the excess: the
-/// fourth cumulants of independent parts add (derived); the inputs are those of uncertainty.h;
-/// their correlations are a laboratory method (docs/uncertainty.md), checked by Monte Carlo
-/// according to JCGM 101 (bench/coverage.cpp).
+/// Sources: JCGM 100:2008, 5.2 (correlated inputs), G.4 (Welch-Satterthwaite); the excess is
+/// derived; the correlations of the inputs are a laboratory method (docs/uncertainty.md).
 namespace nonio::math {
 
 /// Readings that share a zero, in the order of the random walk.
 struct BudgetLine {
   enum class Kind {
-    length,      ///< lengths measured by a beam, along the line
-    lateral,     ///< deviations across the line: straightness
-    angle,       ///< angles, rad
+    length,   ///< lengths measured by a beam, along the line
+    lateral,  ///< deviations across the line: straightness
+    angle,
     coordinate,  ///< coordinates of the machine's own axis, probed
   };
   Kind kind = Kind::length;
@@ -54,20 +49,18 @@ struct BudgetLine {
   bool zeroed = false;                ///< whether its first reading is 0 by definition
   std::optional<double> expansion{};  ///< expansion coefficient of the machine along the line, 1/K
   std::string expansion_keys{};       ///< manifest key that is missing for `expansion`
-  std::size_t group = 0;  ///< lines of one measurement share errors that are common to a line
-  /// For a fit whose residuals give the repetition: whether they include those of this line.
-  bool in_residuals = true;
+  std::size_t group = 0;     ///< lines of one measurement share errors that are common to a line
+  bool in_residuals = true;  ///< whether the residuals of a fit include those of this line
   /// Standard uncertainty of a reading by repetition, and its degrees of freedom, if lines differ.
   double u = 0.0, dof = INFINITY;
   /// For readings that are means: one stop of the machine that contributes to a reading.
   struct Visit {
-    double time = 0.0;        ///< 0 at the first reading of the line, 1 at the last
-    std::size_t reading = 0;  ///< index of the reading in this line
-    double weight = 1.0;      ///< weight in the mean of that reading
+    double time = 0.0;  ///< 0 at the first reading of the line, 1 at the last
+    std::size_t reading = 0;
+    double weight = 1.0;
   };
   std::vector<Visit> visits{};  ///< sorted by time; empty: each reading once, one after the other
-  /// Variance that a random walk with variance 1 along the line contributes to one reading, in the
-  /// readings from which the repetition was estimated.
+  /// Variance by a random walk with variance 1 along the line in the readings of the repetition.
   double walk_seen = 0.0;
 };
 
@@ -77,27 +70,22 @@ struct Shares {
   /// The part of `u` that is already contained in the repetition: for inputs that are independent
   /// per reading, the part from lines whose readings are in the residuals.
   std::vector<double> in_residuals;
-  /// For each input with a rectangular distribution, the fourth root of the sum of the fourth
-  /// powers of its independent contributions to `u`; 0 for an input with a normal distribution.
+  /// Fourth root of the sum of fourth powers of independent rectangular parts of `u`; otherwise 0.
   std::vector<double> rectangular{};
   /// degrees of freedom of the repetition, if lines differ; 0: those of the budget
   double dof = 0.0;
 };
 
-/// The errors of readings except their repetition: the lines to which the readings belong, and the
-/// input quantities that cause the errors.
+/// Errors of the readings except their repetition.
 struct ReadingModel {
   struct Input {
     Contribution is;
     std::vector<double> of_line;  ///< standard uncertainty by line: m or rad, or per m of length
-    /// For an input that is common to a line: the fraction of its variance that is common to all
-    /// lines; absent if the fraction is not known.
+    /// Fraction of a line's common variance that all lines share; absent if it is not known.
     std::optional<double> together = 0.0;
-    /// Standard uncertainty of one reading that this input contributes to the residuals of a fit
-    /// (see_residuals).
+    /// Standard uncertainty of a reading by this input in the residuals of a fit (see_residuals).
     double seen = 0.0;
-    /// Returns whether the input is an error of a length or coordinate that is independent per
-    /// reading.
+    /// Whether the error is one of a length or coordinate and independent per reading.
     bool of_each_reading() const;
     /// If not empty, replaces the correlation: independent errors, each as the standard
     /// uncertainties that it causes in all readings.
@@ -105,59 +93,48 @@ struct ReadingModel {
   };
   std::vector<BudgetLine> lines;
   std::vector<Input> inputs;
-  std::vector<std::string> missing;  ///< manifest keys that are not stated
+  std::vector<std::string> missing;
 
   std::size_t readings() const;
-  /// Returns the uncertainty of a result by each input. row: derivative of the result by each
-  /// reading, in the order of the lines.
+  /// `row`: derivative of the result by each reading, in the order of the lines.
   Shares shares(std::span<const double> row) const;
-  /// Computes `Input::seen`, the part of each input that the repetition estimated from residuals
-  /// already contains. rows: derivatives of the residuals of a fit by the readings; dof: their
-  /// degrees of freedom.
+  /// Computes `Input::seen`. `rows`: derivatives of the residuals of a fit by the readings; `dof`:
+  /// their degrees of freedom.
   void see_residuals(std::span<const std::vector<double>> rows, double dof);
 };
 
-/// Returns when each reading was taken, from 0 to 1 over all of them: by their times, or without
-/// complete times run by run, up and then down. The order of the rows is ignored.
+/// Times of the readings, 0 to 1; without complete times run by run, up and then down.
 std::vector<double> reading_times(const Observations&);
 
 /// Returns the inputs that the manifest states. Nothing is assumed for missing keys.
 ReadingModel reading_model(const Campaign&, const Environment&, std::vector<BudgetLine>);
 
-/// Sets the expansion coefficient of the machine along a direction: sum of c^2 alpha over the axes,
-/// c: components of `direction`. If an axis has no stated coefficient, only `expansion_keys` is
-/// set, to the first missing key.
+/// Sets the expansion coefficient along `direction` with components c: the sum of c^2 alpha over
+/// the axes. If one is not stated, only `expansion_keys` is set, to the first missing key.
 void put_expansion(BudgetLine&, const Campaign&, std::span<const std::string> axes,
                    std::span<const double> direction);
 
-/// One result with its complete uncertainty.
 struct Expanded {
-  double u = 0.0;         ///< combined standard uncertainty
-  double k = 2.0;         ///< coverage factor of U, or of the repeatability if U is absent
-  double dof = INFINITY;  ///< effective degrees of freedom
-  /// expanded uncertainty; absent if a contribution was not stated or u is 0
-  std::optional<double> U;
+  double u = 0.0;              ///< combined standard uncertainty
+  double k = 2.0;              ///< coverage factor of U, or of the repeatability if U is absent
+  double dof = INFINITY;       ///< effective degrees of freedom
+  std::optional<double> U;     ///< absent if a contribution was not stated or u is 0
   double repeatability = 0.0;  ///< expanded uncertainty by repetition alone
 };
 
-/// Builds the budget of one evaluation.
 class BudgetOf {
  public:
-  /// repetition: largest standard uncertainty of one reading; dof: its degrees of freedom, infinite
-  /// if stated; source: "readings", or the option that states it. A repetition from the residuals
-  /// of a fit (finite dof, and no line has a repetition of its own) already contains errors that
-  /// are independent per reading: of inputs of that kind, only the part that the residuals do not
-  /// contain is added, the root of u^2 - repetition^2 of all of them. Other errors that contribute
-  /// to the scatter (drift, shapes that the fit does not model) are not counted twice either: of
-  /// these inputs, only the excess over their contribution to the scatter is added.
+  /// `repetition`: largest standard uncertainty of one reading; `dof`: its degrees of freedom,
+  /// infinite if stated; `source`: "readings", or the option that states it. A repetition from the
+  /// residuals of a fit (finite dof) already contains a part of the other inputs; of these inputs,
+  /// only the excess over this part is added.
   BudgetOf(const ReadingModel&, double repetition, double dof, Quantity quantity,
            std::string source = "readings");
 
-  /// Combines the uncertainty of a result. u_repetition: standard uncertainty of this result by
-  /// repetition.
+  /// `u_repetition`: standard uncertainty of this result by repetition.
   Expanded expand(double u_repetition, const Shares&) const;
-  /// Returns a value with U and k and records it in the budget. If U is not known, the value has
-  /// its repeatability instead and is not recorded.
+  /// Records the value with U and k in the budget. If U is not known, the value has its
+  /// repeatability instead and is not recorded.
   Value value(std::string name, double v, Quantity, double u_repetition, const Shares&);
   /// Sets U of each point of a curve, or its repeatability if a contribution was not stated. All
   /// points have the same coverage factor, the largest of all.
@@ -166,7 +143,6 @@ class BudgetOf {
   const UncertaintyBudget& budget() const { return budget_; }
 
  private:
-  /// Returns the contributions of the inputs that are used, in the order of the budget.
   std::vector<double> counted(double u_repetition, const Shares&) const;
 
   UncertaintyBudget budget_;
@@ -177,19 +153,16 @@ class BudgetOf {
   double unexplained_ = 0.0;
 };
 
-/// Limits that the manifest states, replaced by the values found in the readings if these are
-/// larger.
+/// Limits of the manifest, replaced by larger values found in the readings.
 struct HeldLimits {
   Environment environment;
   std::vector<Finding> findings;  ///< one for each limit that the readings exceed
 };
 HeldLimits limits_held(const Campaign&, std::span<const Observations* const>);
 
-/// Returns the finding `uncertainty.no-data` with these keys.
 Finding missing_finding(const std::vector<std::string>& keys);
 
-/// Returns the manifest key if the instrument is stated to have no uncertainty, which is not
-/// possible; nothing otherwise.
+/// Manifest key that states an instrument without uncertainty, which is not possible.
 std::optional<std::string> exact_instrument(const Instrument&, bool angular);
 
 }  // namespace nonio::math

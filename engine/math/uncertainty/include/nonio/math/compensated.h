@@ -12,19 +12,18 @@ struct CompensatedUncertainty {
   double B_mean = 0.0, E = 0.0, M = 0.0;
 };
 
-/// Computes the uncertainties from the budget of the campaign and, if `has_drift`, also from drift
-/// and repetition in the readings. `has_drift` is false if a model has removed the drift.
-/// docs/dev/constants.md, A28.
+/// `has_drift`: whether drift and repetition of the readings contribute; false if a model has
+/// removed the drift. docs/dev/constants.md, A28.
 CompensatedUncertainty compensated_uncertainty(const Campaign&, const Measurement&,
                                                const Observations&, const AxisTest&,
                                                bool has_drift);
 
-/// Computes the expanded uncertainty (k = 2) of the range of the mean deviations along a diagonal,
-/// m; 0: not known.
+/// Expanded uncertainty (k = 2) of the range of mean deviations along a diagonal, m; NaN: not known.
 double compensated_uncertainty_along(const Campaign&, const Measurement&, const Observations&);
 
 /// Returns the deviation to be stated after compensation: `after`, but at least min(U, before),
-/// because errors below U are not known and therefore not compensated.
+/// because errors below U are not known and therefore not compensated. NaN if U is NaN and the
+/// compensation has an effect.
 double predicted_after(double before, double after, double U);
 
 }  // namespace nonio::math

@@ -15,13 +15,12 @@ struct ProbedPlaces {
   std::vector<std::array<double, 3>> at;  ///< positions, m, in the order in which they were read
   std::array<double, 3> middle{};         ///< point from which squareness and scale errors grow
   double radius = 0.0;                    ///< largest distance of a place from `middle`, m
-  /// Bound of the squareness and scale differences of the linear axes, rad, absent if not stated;
-  /// and the manifest key that states it.
+  /// Bound of the squareness and scale differences of the linear axes, rad, and its manifest key.
   std::optional<double> linear_axes{};
   std::string linear_axes_key{};
 };
 
-/// Returns the model of the errors of the coordinates: three lines, x, y and z of all places.
+/// The model has three lines: x, y and z of all places.
 ReadingModel probed_model(const Campaign&, const Environment&, const ProbedPlaces&);
 
 }  // namespace nonio::math

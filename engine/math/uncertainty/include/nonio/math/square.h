@@ -18,27 +18,22 @@
 ///
 ///     C0Y = -t     B0Z = +t     A0Z = -t
 ///
-/// After the square is turned over about one of its faces it has the error -g: t is the mean of
-/// both positions, g half their difference. Derived; tests compare it with exact transforms. As the
-/// slopes are least-squares slopes, so is the squareness (C0Y_LSQ of diagonals).
+/// If the square is turned over about one of its faces, its error is -g: t is the mean of both
+/// positions, g half their difference. C0Y is that of least-squares lines (C0Y_LSQ). Derived.
 namespace nonio::math {
 
-/// The lines measured against one square in one plane and one state of the machine.
 struct SquareLines {
   std::string square, state;
-  std::string name;           ///< name of the squareness: C0Y, B0Z, A0Z
-  std::string first, second;  ///< names of the axes
-  /// indices of the measurements: of axis `first`, of axis `second`
-  std::vector<std::size_t> unturned;
-  /// indices of the measurements after the square was turned over
-  std::vector<std::size_t> turned;
+  std::string name;  ///< name of the squareness: C0Y, B0Z, A0Z
+  std::string first, second;
+  std::vector<std::size_t> unturned;  ///< indices of the measurements: `first`, then `second`
+  std::vector<std::size_t> turned;    ///< indices of measurements after the square was turned over
   bool whole() const { return unturned.size() == 2 && (turned.empty() || turned.size() == 2); }
-  /// Returns all measurements, in the order of the manifest.
+  /// In the order of the manifest.
   std::vector<std::size_t> all() const;
 };
 
-/// Returns the lines of straightness that were measured against squares, grouped by square, state
-/// and plane, in the order of the manifest.
+/// Groups lines of straightness against squares by square, state and plane.
 std::vector<SquareLines> squares_of(const Campaign&);
 
 struct Squareness {
@@ -53,10 +48,8 @@ struct Squareness {
   std::vector<Finding> findings;  ///< limits of the manifest that the readings exceed
 };
 
-/// Reason why no squareness is given: `one-line`, `unknown` (the square was not turned over, and
-/// its error is not stated), `too-few` or `incomplete`. `which` is the name of the square for the
-/// first two reasons, else the id of the measurement. `all` (below): observations of all
-/// measurements of the campaign.
+/// `one-line`, `unknown` (the square was not turned over, and its error is not stated), `too-few`
+/// or `incomplete`. `which`: name of the square for the first two, otherwise id of the measurement.
 struct NoSquareness {
   std::string why;
   std::string which;
@@ -68,7 +61,7 @@ tl::expected<Squareness, NoSquareness> squareness_of(const Campaign&,
 /// Two independent results for one quantity, combined and compared.
 struct OneQuantity {
   double value = 0.0, u = 0.0;  ///< mean weighted by 1/u^2, and its standard uncertainty
-  double dof = INFINITY;        ///< degrees of freedom of u
+  double dof = INFINITY;
   double difference = 0.0, u_difference = 0.0;
   double p = 1.0;  ///< probability of a difference this large by chance
 };

@@ -26,42 +26,39 @@ namespace nonio::math {
 /// Source: names of ISO/TR 230-9:2005 Annex C and ISO 230-2:2006 Annex A, whose texts were not
 /// available (docs/uncertainty.md, M).
 struct Budget {
-  double U_DEV = 0.0;   ///< contribution of the measuring instrument
-  double U_MIS = 0.0;   ///< contribution of the misalignment of the beam relative to the axis
-  double U_M = 0.0;     ///< contribution of the temperature measurement of the machine
-  double U_E = 0.0;     ///< contribution of the machine's expansion coefficient
-  double U_MD = 0.0;    ///< contribution of the temperature of a device with a length of its own
-  double U_ED = 0.0;    ///< contribution of the expansion coefficient of such a device
-  double U_EVE = 0.0;   ///< contribution of environmental variation, the drift test
+  double U_DEV = 0.0;
+  double U_MIS = 0.0;
+  double U_M = 0.0;
+  double U_E = 0.0;
+  double U_MD = 0.0;
+  double U_ED = 0.0;
+  double U_EVE = 0.0;
   double length = 0.0;  ///< measured length to which the contributions apply, m or rad
   bool rotary = false;  ///< if true, only U_DEV and U_EVE exist
   /// possible contribution of drift that these readings do not exclude; 0 if U_EVE is 0
   DriftShare seen;
-  /// Returns S, the contributions that do not average out over the approaches: root of the sum of
-  /// squares of all except U_EVE.
+  /// S: root of the sum of squares of all except U_EVE, which do not average out over approaches.
   double systematic() const;
 };
 
 struct BudgetOrGap {
   std::optional<Budget> budget;
-  std::vector<std::string> missing;  ///< manifest keys that are required for the budget but missing
+  std::vector<std::string> missing;  ///< manifest keys that the budget requires
 };
 
-/// Returns the budget stated by the manifest, or only the keys that are missing for it, because
-/// nothing is assumed for them. environment: that of the campaign, or as extended by the readings
-/// (limits_held).
+/// Returns the budget, or the keys that are missing for it. `environment`: that of the campaign, or
+/// as extended by the readings (limits_held).
 BudgetOrGap uncertainty_budget(const Campaign&, const Environment&, const std::string& axis,
                                const AxisTest&);
 
-/// Returns the contributions in the form common to all analyses, without results.
+/// The budget has no results.
 UncertaintyBudget contributions_of(const Budget&, const std::string& axis, bool rotary);
-/// Returns the standard uncertainty of each contribution in a result of expanded uncertainty U.
-/// systematic: the result contains the contributions that do not average out (A, E, M, P, Pa);
-/// otherwise only the environment contributes.
+/// Standard uncertainties in a result with U. `systematic`: the result contains the contributions
+/// that do not average out (A, E, M, P, Pa); otherwise only the environment contributes.
 std::vector<double> shares_of(const Budget&, double U, bool systematic);
 
-/// Returns the smallest number of readings in a mean, over targets and directions that have
-/// readings; 0 if there are none.
+/// Smallest number of readings in a mean, over targets and directions with readings; 0 without
+/// readings.
 std::size_t approaches_per_mean(const AxisTest&);
 
 /// Expanded uncertainties (k = 2) of the results of ISO 230-2; m or rad. n: approaches in each
@@ -72,10 +69,9 @@ std::size_t approaches_per_mean(const AxisTest&);
 ///     U(M) = sqrt(S^2 + U_EVE^2/n)          U(A) = U(A+) = U(A-) = sqrt(U(E)^2 + (k U_EVE)^2)
 ///     U(E) = U(E+) = U(E-) = sqrt(S^2 + 2 U_EVE^2/n)
 ///
-/// D_B, D_mean, D_s: contributions of drift that the readings do not exclude (drift.h).
-///
-/// Derived according to the GUM (docs/uncertainty.md, confidence L): compare with the standard
-/// before claiming conformity to it.
+/// D_B, D_mean, D_s: contributions of drift that the readings do not exclude (drift.h). Derived
+/// according to the GUM (docs/uncertainty.md, confidence L): compare with the standard before
+/// claiming conformity to it.
 struct Iso230Uncertainty {
   double A, A_plus, A_minus, E, E_plus, E_minus, M, R, R_plus, R_minus, B, B_mean;
 };
@@ -97,16 +93,13 @@ VdiUncertainty vdi3441_uncertainty(const Budget&, std::size_t n);
 ///     U^2 = means U_EVE^2/n + (scatter U_EVE)^2 + band E_VE^2 + (B D_B)^2 + (B_mean D_mean)^2
 ///           + S^2 if `systematic`, otherwise + (2 scatter D_s)^2
 ///
-/// E_VE = U_EVE/0.6 is the range of the environment, which limits the error of a difference of two
-/// readings.
+/// E_VE = U_EVE/0.6 limits the error of a difference of two readings.
 double rule_uncertainty(const Budget&, std::size_t n, const RuleShare&);
 
-/// Returns U of a slope of means over the length: U(M)/L of `slope_budget`, an upper bound for a
-/// least-squares slope.
+/// U(M)/L of `slope_budget`, an upper bound for the slope of a least-squares line of means.
 double slope_uncertainty(const Budget& of_slope, std::size_t n);
-/// Returns the budget of a slope. A misaligned beam makes every distance too short: in a slope its
-/// limit acts from one side, so it contributes 2/sqrt 3 of the limit instead of 0.6. A range is
-/// affected less than a slope.
+/// A misaligned beam makes every distance too short. In a slope its limit acts from one side, so it
+/// contributes 2/sqrt 3 of the limit instead of 0.6.
 Budget slope_budget(const Budget&);
 
 }  // namespace nonio::math

@@ -8,20 +8,10 @@
 #include <vector>
 
 /// Determines which of the 21 errors of three linear axes straight lines through a volume do not
-/// determine.
-///
-/// Chain bed - X - Y - Z - tool, no tool offset, small errors (ISO 230-1 names); y, z from the
-/// middle of the volume:
-///
-///     e_x = EXX + EXY + EXZ - y ECX + z (EBX + EBY + B0Z) - y C0Y
-///     e_y = EYX + EYY + EYZ - z (EAX + EAY + A0Z)
-///     e_z = EZX + EZY + EZZ + y EAX
-///
-/// Each error is represented by its simplest shape: positioning grows linearly, a straightness is
-/// an arc (0 at both ends), an angle changes linearly through 0 at mid-travel; the constant angles
-/// are the squarenesses. A coefficient of 1 causes an error of at most 1 in the volume. The null
-/// space of the readings contains the errors that are not determined. Derived; tests move exact
-/// transforms by every combination.
+/// determine. Chain and symbols are those of rigid_body.h. Positioning and angles are linear over
+/// the travel (an angle is 0 at mid-travel), a straightness is an arc (0 at both ends), and the
+/// constant angles are the squarenesses. A coefficient of 1 causes an error of at most 1 in the
+/// volume. The null space of the readings contains the errors that are not determined. Derived.
 namespace nonio::math {
 
 using Corner = std::array<double, 3>;  ///< coordinates X, Y, Z of a point, m
@@ -37,8 +27,7 @@ struct Blindness {
   std::vector<std::vector<std::pair<std::string, double>>> combinations;
 };
 
-/// Returns the errors that these lines do not determine. The volume is the box that contains all
-/// lines; an axis that does not move has no errors.
+/// The volume is the box that contains all lines; an axis that does not move has no errors.
 Blindness blind_to(const std::vector<ThroughVolume>& lines);
 
 }  // namespace nonio::math

@@ -26,26 +26,18 @@
 ///     straightness  sum of P_k(t), k = 2..degree   (a slope is squareness, or of the set-up)
 ///     angle         sum of P_k(t), k = 1..degree   (a constant is squareness)
 ///
-/// A reading senses n . e; readings of a line share an unknown zero, and half the reversal of the
-/// line if it was read from both sides. Further unknowns: the slope of a line read across its
-/// travel; for a step diagonal, two tilts of its mirror, and (w x n).(P - Q) theta for each angle
-/// theta about w, because the mirror turns with the tool (P: vector from the first reading, Q:
-/// vector to the farthest). A reading of an angle is the angle itself. Lines may share unknowns:
-/// the position of an artefact and of its balls (rigid_artefact.h), the set-up and the error of a
-/// square.
+/// A reading senses n . e; a reading of an angle is the angle itself. The readings of a line share
+/// an unknown zero, and half the reversal if the line was read from both sides. Further unknowns:
+/// the slope of a line across its travel; for a step diagonal, two tilts of its mirror, and (w x
+/// n).(P - Q) theta for each angle theta about w, because the mirror turns with the tool (P: vector
+/// from the first reading, Q: vector to the farthest). Lines may share unknowns: the positions of
+/// an artefact and of its balls (rigid_artefact.h), the set-up and the error of a square. Stated
+/// values of such unknowns have the weight of their standard uncertainty.
 ///
-/// A value of such an unknown in a certificate is treated as a reading of the set-up alone. Its
-/// weight follows from the stated standard uncertainty, which is also part of U.
-///
-/// Columns are scaled so that a coefficient of 1 causes at most 1 in the volume, unknowns of the
-/// set-up are eliminated, and readings are divided by the scatter of their group. Singular values
-/// below `rank_below` of the largest count as 0: those combinations of errors change no reading. A
-/// result is given if no such combination changes it; the others are not estimated.
-///
-/// The scatter of a group (readings of one kind) is estimated with the fit, s^2 = r'r / sum(1 - h)
-/// with the leverages h, iterated until it is stable (Helmert; Foerstner's simplification).
-///
-/// Derived; tests compare with exact transforms. docs/formulas.md.
+/// Singular values below `rank_below` of the largest are treated as 0. A result is given if no
+/// combination of errors that changes no reading changes it. The scatter of a group of readings is
+/// estimated with the fit, s^2 = r'r / sum(1 - h) with the leverages h, iterated until it is stable
+/// (Helmert; Foerstner's simplification). Derived (docs/dev/estimators.md).
 namespace nonio::math {
 
 struct RigidReading {
@@ -107,35 +99,30 @@ struct RigidCurve {
 using Combination = std::vector<std::pair<std::string, double>>;
 
 struct RigidSolution {
-  /// Degree of the polynomials, number of unknowns and of identifiable combinations of them, and
-  /// number of readings, which does not include stated values.
+  /// `rank`: number of identifiable combinations of unknowns; `readings`: without stated values.
   std::size_t degree = 0, unknowns = 0, rank = 0, readings = 0;
-  /// singular values relative to the largest, descending, of all unknowns
-  std::vector<double> singular;
+  std::vector<double> singular;     ///< of all unknowns, relative to the largest, descending
   std::vector<std::string> unseen;  ///< errors that affect no reading
   std::vector<Combination> combinations;
   Combination weakest;  ///< identifiable combination with the smallest singular value
   /// standard deviation of each group and its degrees of freedom; 0 if not estimated
   std::vector<double> scatter, dof;
-  std::vector<RigidCurve> curves;  ///< curves that the readings determine
-  /// names of curves and squarenesses that the readings do not determine
-  std::vector<std::string> withheld;
+  std::vector<RigidCurve> curves;
+  std::vector<std::string> withheld;  ///< curves and squarenesses that are not determined
   std::vector<std::pair<std::string, RigidValue>> squareness;  ///< C0Y, B0Z, A0Z, if identifiable
   VolumeMap map;
 };
 
-/// Returns the names of the 21 errors.
+/// ISO 230-1 names of the 21 errors.
 const std::vector<std::string>& rigid_errors();
 
-/// Solves for the errors. Error: there are no more readings than unknowns of the set-up and
-/// identifiable combinations, or a requested name is unknown. If there is a model, its lines must
-/// be those given, in their order. It then also contains the inputs of stated values, and u of the
-/// results is that of the repetition alone.
+/// Errors: not more readings than unknowns of the set-up and identifiable combinations, or an
+/// unknown name. The lines of the model must be those given, in their order; it also contains the
+/// inputs of stated values, and u of the results is that of the repetition alone.
 Expected<RigidSolution> solve_rigid_body(const std::vector<RigidLine>&, const RigidWish&,
                                          const ReadingModel* = nullptr);
 
-/// Returns e(p) for a coefficient of 1 m (1 rad) of a polynomial term of an error: a column of the
-/// fit, not scaled.
+/// Returns e(p) for a coefficient of 1 m (1 rad) of a polynomial term that is not scaled.
 Corner rigid_term(const std::string& error, std::size_t degree, const Corner& at, const Corner& low,
                   const Corner& high);
 

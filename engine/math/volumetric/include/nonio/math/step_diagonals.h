@@ -21,34 +21,25 @@
 ///     nu                                          set-up angle of a pass, rad: nu.u = 0
 ///     R = u.sum_a [E_a(j_a) - E_a(start)] + nu.p  reading minus the nominal one, m
 ///
-/// Least squares: 9n function values, two set-up angles per pass, the zero of each pass, and the
-/// zero of each axis series d(x) = E_aa(x) + zero. A rotation of the frame changes no reading: EYX,
-/// EZX and EZY are set to 0 at the far end while it is solved (three gauge rows, if the set-up is
-/// unknown). The rank is determined numerically; without axis series the set-up leaves two scales
-/// undetermined, and results that depend on them are not given. If the mirror is square to a beam
-/// that is not parallel to the diagonal, the path is shorter by |nu|^2/2 of u.p: this is
-/// subtracted, with nu.E, and the problem is solved again, twice.
+/// Least squares: 9n function values, two set-up angles and the zero of each pass, and the zero of
+/// each axis series. A rotation of the frame changes no reading: EYX, EZX and EZY are set to 0 at
+/// the far end. Results that depend on an undetermined scale are not given. A beam that is not
+/// parallel to the diagonal shortens the path by |nu|^2/2 of u.p, which is subtracted iteratively.
 ///
-/// Averaging (perfect set-up only), r = increment of a reading over interval i of axis a:
-///     dE_aa = mean of r / u_a,   dE_ba = mean of (e_a e_b r) / u_b   over the four diagonals
-///     check = sum of (product of the other two signs) r = 0         three per step
-///     slope EYX + slope EXY = L (sum of ex ey D) / (4 X Y)           D: totals of the diagonals
+/// Averaging (perfect set-up only) uses the means over the four diagonals: dE_aa = r / u_a, dE_ba =
+/// (e_a e_b r) / u_b, with r the increment of a reading over interval i of axis a. Three check sums
+/// per step, sum of (product of the other two signs) r, are 0.
 ///
-/// The functions are those on lines through the middle of the volume: for an axis that is measured
-/// on another line, its angular errors cause a difference to the axis series.
+/// The functions are those on lines through the middle of the volume.
 ///
-/// Given: straightness minus its least-squares line (ISO 230-1), and relative to it
-///     C0Y = -(slope EYX + slope EXY), B0Z = slope EZX + slope EXZ, A0Z = -(slope EZY + slope EYZ)
-/// which no set-up error changes to first order: the sums of two slopes of straightness lines are
-/// determined by the totals D of the diagonals. Positioning is given with its scale if that is
-/// known, otherwise minus its end-point line.
+/// C0Y = -(slope EYX + slope EXY), B0Z = slope EZX + slope EXZ and A0Z = -(slope EZY + slope EYZ)
+/// are those of least-squares lines (ISO 230-1); the totals of the diagonals determine them,
+/// whatever the set-up. Positioning is given with its scale if that is known, otherwise minus its
+/// end-point line.
 ///
-/// Uncertainty: white noise u of single readings. A function is a sum of increments whose noise
-/// does not cancel: a random walk, sd E_ba(i) = sqrt(2i) u / (2 u_b) for averaging.
+/// The noise of a function is a random walk: sd E_ba(i) = sqrt(2i) u / (2 u_b) for averaging.
 ///
-/// Source: derived; the averaging is that of C. Wang, "Laser vector measurement technique for the
-/// determination and compensation of volumetric positioning errors", Rev. Sci. Instrum. 71 (2000)
-/// 3933 (text not available). Checked with exact transforms.
+/// Source: derived; averaging: C. Wang, Rev. Sci. Instrum. 71 (2000) 3933 (text not available).
 namespace nonio::math {
 
 /// Largest number of steps, because the fit uses dense matrices.
@@ -59,8 +50,8 @@ struct StepDiagonals {
     std::array<int, 3> sign{1, 1, 1};
     std::vector<double> reading;  ///< reading after each of the 3n moves, m; NaN: not taken
   };
-  std::array<double, 3> low{}, travel{};      ///< start and length of travel of each axis, m
-  std::array<std::size_t, 3> order{0, 1, 2};  ///< order in which the axes move
+  std::array<double, 3> low{}, travel{};  ///< start and length of travel of each axis, m
+  std::array<std::size_t, 3> order{0, 1, 2};
   std::size_t n = 0;
   std::vector<Pass> passes;
 
@@ -84,8 +75,8 @@ struct AxisSeries {
 struct StepChoices {
   /// Whether the mirror is known to be square to the diagonals, to within u over a step.
   bool set_up_known = false;
-  /// true: the mirror was set square to the beam (the usual way); false: the beam was aligned with
-  /// the diagonal.
+  /// Whether the mirror was set square to the beam; otherwise the beam was aligned with the
+  /// diagonal.
   bool mirror_to_beam = true;
   /// Standard uncertainty of a reading, m; 0: estimated from the residuals.
   double u_reading = 0.0;
@@ -94,7 +85,7 @@ struct StepChoices {
 struct Estimated {
   double value = 0.0;
   double u = 0.0;  ///< standard uncertainty by noise
-  Shares shares;   ///< contributions of the inputs of a ReadingModel, if there was one
+  Shares shares;   ///< empty without a ReadingModel
 };
 
 struct StepCurve {
@@ -106,8 +97,7 @@ struct StepCurve {
   std::vector<Shares> shares;
 };
 
-/// Difference between an axis series and the positioning from the diagonals alone, minus its
-/// least-squares line.
+/// Difference of an axis series from the diagonals alone, minus its least-squares line.
 struct ShapeContrast {
   std::size_t axis = 0;
   double rms = 0.0, largest = 0.0, at = 0.0;  ///< rms and largest value, and its position, m
@@ -122,39 +112,34 @@ struct StepSolution {
   std::size_t unknowns = 0, rank = 0;
   double u_reading = 0.0;  ///< standard uncertainty of a reading, stated or estimated, m
   double dof = 0.0;        ///< degrees of freedom of an estimated u_reading
-  /// Set-up angle of each pass, rad; empty if the set-up is known, or if the angles are not
-  /// separable from the scales.
+  /// rad, for each pass; empty if the set-up is known or not separable from the scales.
   std::vector<double> set_up;
   std::vector<ShapeContrast> shapes;  ///< comparison with each axis series
   bool scales_known() const { return curves[0].known && curves[4].known && curves[8].known; }
 };
 
-/// Solves by least squares. Error: too many readings are missing to determine a function. The lines
-/// of the model, if there is one, are the passes, each with its zero before the 3n readings, and
-/// then the series.
+/// Solves by least squares. Error: too many readings are missing to determine a function. Lines of
+/// the model: the passes, each with its zero before the 3n readings, then the series.
 Expected<StepSolution> solve_step_diagonals(const StepDiagonals&, const std::vector<AxisSeries>&,
                                             const StepChoices&, const ReadingModel* = nullptr);
-/// Solves by averaging. Error: one of the four body diagonals or a reading is missing. The lines of
-/// the model, if there is one, are the passes.
+/// Solves by averaging. Error: a body diagonal or a reading is missing. Lines of the model: passes.
 Expected<StepSolution> average_step_diagonals(const StepDiagonals&, const StepChoices&,
                                               const ReadingModel* = nullptr);
 
-/// Tests whether the check sums (`check` at the head of this file) are 0 and do not change over the
-/// steps.
+/// Tests whether the check sums (see the head of this file) are 0 and constant.
 struct StepChecks {
   std::array<double, 3> constant{};  ///< mean check sum of the moves of X, Y, Z, m
   double p_constant = 1.0;  ///< p-value of the most significant constant, times 3, at most 1
   double trend = 0.0;       ///< change of the check sums per step, m
   double p_trend = 1.0;
-  /// standard deviation of a reading, from the scatter of the check sums, m
-  double u_reading = 0.0;
+  double u_reading = 0.0;  ///< standard deviation of a reading from the check sums, m
   std::size_t count = 0;
 };
 StepChecks check_step_diagonals(const StepDiagonals&);
 
-/// Returns the mean total of the diagonals minus its prediction from three axis series (ascending),
-/// m: mean D - sum of (T_a/L) E_aa(T_a). Nothing if a total is missing, or an axis has no series
-/// over more than 90 % of its travel; E_aa(T_a) is scaled to the whole travel.
+/// Returns the mean total of the diagonals minus its prediction from three axis series, m: mean D -
+/// sum of (T_a/L) E_aa(T_a), scaled to the whole travel. std::nullopt if a total is missing, or an
+/// axis has no series over more than 90 % of its travel.
 std::optional<Estimated> close_lengths(const StepDiagonals&, const std::vector<AxisSeries>&,
                                        double u_reading);
 

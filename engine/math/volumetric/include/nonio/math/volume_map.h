@@ -14,8 +14,7 @@
 ///     size = |e|,  u(size)^2 = n' V n with n = e/|e| and the covariance V of e
 ///
 /// `VolumeMap::size` is the largest size over the nodes. Noise increases it by about u^2/(2 size)
-/// for each direction perpendicular to e; if size < 5 u this bias is at least a tenth of u, and the
-/// size is not given.
+/// for each direction perpendicular to e; if size < 5 u, the bias is over u/10: no size is given.
 namespace nonio::math {
 
 struct VolumeNode {
@@ -34,7 +33,7 @@ struct VolumeMap {
   bool known() const { return !nodes.empty(); }
 };
 
-/// Returns the nodes of the lattice, with one position along an axis that does not move.
+/// An axis that does not move has one position.
 std::vector<Corner> lattice(const Corner& low, const Corner& high, std::size_t parts);
 
 /// Interpolates the error between the nodes of a map, linearly in each coordinate, as controls do.
