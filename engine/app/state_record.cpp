@@ -86,6 +86,7 @@ Expected<std::string> add_states(const OpenCampaign& open, const std::string& ax
   const Axis* const of = machine.axis(axis);
   const bool rotary = of != nullptr && of->rotary;
   bool is_new = false;
+  std::vector<std::pair<fs::path, std::vector<Artifact>>> copies;
   for (const NewState& state : states) {
     if (is_known(record, axis, state)) continue;
     is_new = true;
@@ -100,14 +101,15 @@ Expected<std::string> add_states(const OpenCampaign& open, const std::string& ax
       f.name = safe(f.name);
       list += (list.empty() ? "" : ",") + folder + "/" + f.name;
     }
-    if (!files.empty())
-      if (auto done = storage::publish(site / folder, files); !done) return fail(done.error());
+    if (!files.empty()) copies.emplace_back(site / folder, std::move(files));
     text += state_text(state, axis, rotary, list);
   }
   if (!is_new) return name;
   if (const auto read = config::parse_machine(text, name, asset); !read)
     return fail("the state of the control cannot be added to " + name + ": " +
                 read.error().front().message);
+  for (const auto& [folder, files] : copies)
+    if (auto done = storage::publish(folder, files); !done) return fail(done.error());
   if (auto done = storage::publish(site / config::machines_folder, {{asset + ".toml", text}});
       !done)
     return fail(done.error());

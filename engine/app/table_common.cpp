@@ -71,6 +71,7 @@ TableJson forecast_json(const tables::TableForecast& f) {
     put(json[when], "M", f.M[k], q);
   }
   if (f.scatter > 0.0) put(json["after"], "scatter", f.scatter, q);
+  if (!f.U_known) json["after"]["U_known"] = false;
   return json;
 }
 
@@ -79,7 +80,10 @@ void print_forecast(const tables::TableForecast& f) {
   std::string text = "axis " + f.axis + ", measurement " + f.measurement + ":";
   for (const auto& [name, v] : {std::pair{"E", f.E}, {"B", f.B}, {"M", f.M}})
     if (std::isfinite(v[0]) && std::isfinite(v[1]))
-      text += std::string("  ") + name + " " + with_unit(v[0], q) + " -> " + with_unit(v[1], q);
+      text += std::string("  ") + name + " " + with_unit(v[0], q) + " -> " +
+              (f.U_known ? "" : "at least ") + with_unit(v[1], q);
+  if (!f.U_known) text += "; U is not known";
+  if (std::isnan(f.E[0])) text += " not predicted, because targets were left out";
   if (f.scatter > 0.0)
     text +=
         "; E up to " + with_unit(f.E[1] + f.scatter, q) + " because the readings scatter (95 %)";

@@ -174,7 +174,7 @@ bool is_diagonal(const Measurement& m) {
 
 void state_backlash_of(Settings& options, const Tables& tables) {
   for (const LoadedTable& t : tables)
-    if (t.backlash.value_or(0.0) != 0.0 && present_backlash(options, t.output, t.rotary) == 0.0)
+    if (t.backlash && present_backlash(options, t.output, t.rotary) == 0.0)  // 0 is stated too
       state_backlash(options, t.output, t.rotary, *t.backlash);
 }
 
@@ -410,6 +410,7 @@ TableForecast forecast_of_axis(const Campaign& campaign, const Measurement& m,
       std::any_of(measured.position.begin(), measured.position.end(),
                   [&](double x) { return std::fabs(c(x, 1) - c(x, -1)) > last_digit; });
   const double U_B = measured.bidirectional() && compensates_reversal ? U.B_mean : 0.0;
+  f.U_known = !std::isnan(U.E);
   f.E[1] = math::predicted_after(was.E(), will.E(), std::max(U.E, U_B));
   f.B[1] = math::predicted_after(was.B(), will.B(), U_B);
   f.M[1] = math::predicted_after(was.M(), will.M(), U.M);

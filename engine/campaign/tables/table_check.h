@@ -47,7 +47,8 @@ struct TableForecast {
   double E[2]{}, B[2]{}, M[2]{};  ///< before and after loading, m or rad
   /// Possible increase of E by scatter of the readings (95 %), m or rad; 0 with one run.
   double scatter = 0.0;
-  bool worse() const { return !(E[1] <= E[0]); }
+  bool U_known = true;  ///< false: the table may leave more than the values after loading
+  bool worse() const { return E[1] > E[0]; }
 };
 
 struct Underlay {

@@ -40,8 +40,7 @@ double compensated_uncertainty_along(const Campaign& campaign, const Measurement
 }
 
 double predicted_after(double before, double after, double U) {
-  if (!(after < before)) return after;
-  return std::isnan(U) ? not_known : std::min(before, std::max(after, U));
+  return after < before && !std::isnan(U) ? std::min(before, std::max(after, U)) : after;
 }
 
 }  // namespace nonio::math

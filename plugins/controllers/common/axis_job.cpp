@@ -248,6 +248,25 @@ bool lacks_number(const std::vector<std::string>& of, const ControllerInput& inp
   return !unsaid.empty();
 }
 
+namespace {
+
+/// Returns the key of the measurement that contradicts that nothing was active, or "".
+std::string contradiction(const Campaign& campaign, const Measurement& m) {
+  if (m.compensation == "off") return {};
+  if (m.compensation == "on") return "compensation = \"on\"";
+  if (!m.adjustment.empty()) return m.adjustment == "after" ? "adjustment = \"after\"" : "";
+  // The same line in an earlier state of the machine, which something has changed since.
+  for (const Measurement& n : campaign.measurements) {
+    if (n.id == m.id) break;
+    if (n.kind == m.kind && n.axis == m.axis && n.at == m.at && n.from == m.from && n.to == m.to &&
+        !state_of(n).empty() && !state_of(m).empty() && state_of(n) != state_of(m))
+      return "state = \"" + state_of(m) + "\"";
+  }
+  return {};
+}
+
+}  // namespace
+
 bool states_active(const ControllerInput& input, const std::string& axis,
                    const std::string& measurement, bool backlash_in_options, OutputResult& result) {
   const Active active = active_of(input, axis, measurement, backlash_in_options);
@@ -256,16 +275,15 @@ bool states_active(const ControllerInput& input, const std::string& axis,
     const Measurement* m = measurement_of(input, measurement);
     const bool none =
         active.table->empty() && (a == nullptr || a->active_backlash.value_or(0.0) == 0.0);
-    const bool after = m != nullptr && m->adjustment == "after" && m->compensation != "off";
-    if (!none || !(after || (m != nullptr && m->compensation == "on"))) return true;
+    const std::string stated =
+        none && m != nullptr ? contradiction(input.campaign, *m) : std::string();
+    if (stated.empty()) return true;
     // A table from it would replace the one that was loaded meanwhile.
     result.findings.push_back(
         {"table.active-contradicted",
          false,
          {},
-         {{"axis", axis},
-          {"measurement", measurement},
-          {"stated", after ? "adjustment = \"after\"" : "compensation = \"on\""}},
+         {{"axis", axis}, {"measurement", measurement}, {"stated", stated}},
          measurement,
          "If no table and no backlash value was active, state compensation = \"off\" in this "
          "[[measurement]]. Otherwise state what was active, in a campaign of its own."});

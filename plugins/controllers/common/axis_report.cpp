@@ -169,7 +169,7 @@ void predict(const AxisJob& job, const math::Correction& whole, OutputResult& re
     add("M", was.M(), math::predicted_after(was.M(), will.M(), job.U.M));
   }
   if (std::isnan(job.U.E) && will.E() < was.E()) {
-    Remark& note = result.notes.emplace_back(remark(job, "table.not-predicted"));
+    Remark& note = result.notes.emplace_back(remark(job, "table.at-least"));
     note.texts.emplace_back("id", job.measurement);
   }
   if (!(will.E() < was.E()))

@@ -91,7 +91,7 @@ class HistoryTest(NightTest):
         self.assertIn("events.toml:4", done.stderr)
         self.assertIn("crsh", done.stderr)
         self.assertIn("not in the history", (self.out / "summary.txt").read_text())
-        line, = (x for x in json.loads(subprocess.run([NONIO, "status", "--actions", "--json", self.out], capture_output=True).stdout)["lines"] if x["id"] == "worklist.history")
+        line, = (x for x in json.loads(subprocess.run([NONIO, "status", "--actions", "--json", self.out], capture_output=True).stdout)["lines"] if x["id"].startswith("worklist.history"))
         self.assertIn("events.toml:4", json.dumps(line))
         self.assertEqual(self.results("b")["status"], self.results("a")["status"])
         self.assertEqual(self.rows(), before)

@@ -51,7 +51,7 @@ TEST(Rounding, DigitsShowTheSideOfTheLimit) {
     const char* text;
   } lines[] = {{13.2041, 1.4, 13.2, "13.204"}, {12.272, 1.3, 12.28, "12.27"},
                {12.272, 1.3, 13.0, "12.3"},    {-13.2041, 1.4, 13.2, "\u221213.204"},
-               {13.2, 1.4, 13.2, "13.2"},      {11.6800001, 1.0, 11.68, "11.6800001"}};
+               {13.2, 1.4, 13.2, "13.2"},      {11.6800001, 1.0, 11.68, "11.7"}};
   for (const auto& l : lines)
     EXPECT_EQ(
         printed_result(l.value * 1e-6, l.U * 1e-6, Quantity::deviation, "en", l.limit * 1e-6).value,

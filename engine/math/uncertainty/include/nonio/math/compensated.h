@@ -22,8 +22,8 @@ CompensatedUncertainty compensated_uncertainty(const Campaign&, const Measuremen
 double compensated_uncertainty_along(const Campaign&, const Measurement&, const Observations&);
 
 /// Returns the deviation to be stated after compensation: `after`, but at least min(U, before),
-/// because errors below U are not known and therefore not compensated. NaN if U is NaN and the
-/// compensation has an effect.
+/// because errors below U are not known and therefore not compensated. If U is NaN, more than the
+/// returned value may remain.
 double predicted_after(double before, double after, double U);
 
 }  // namespace nonio::math
