@@ -214,7 +214,7 @@ class Page {
         return (std::fabs(x) > most_accepted) - (std::fabs(x) < most_accepted);
       };
       while (key == std::string_view("value") && digits < most &&
-             side(std::strtod(fixed_text(value, digits).c_str(), nullptr)) != side(value))
+             side(rounded_to_places(value, digits)) != side(value))
         ++digits;
     }
     return local(fixed_text(value, digits));

@@ -54,8 +54,8 @@ std::string unfit_output(const fs::path& site, const fs::path& out) {
   return {};
 }
 
-/// Checks both folders in a child process, because the disk may hang. Returns the canonical path of
-/// the site.
+/// Checks the site and the output folder in a child process, because a disk may hang. Returns the
+/// canonical path of the site.
 Expected<std::string> look_at_site(const RunOptions& options) {
   const fs::path& site = options.site;
   return read_apart<std::string>("the site " + site.string(), config::Limits{}.disk_seconds,

@@ -174,7 +174,7 @@ Expected<void> keep_for_register(const evaluation::Evaluated& evaluated,
   return {};
 }
 
-/// Documents are signed first, because the PDFs contain them as attachments.
+/// DCCs are signed before the PDFs, because the PDFs contain them as attachments.
 Expected<void> sign_all(evaluation::Evaluated& evaluated, CampaignFiles& files,
                         const reading::Context& context, const SignWith& how, sign::Time now) {
   std::vector<evaluation::IssuedFile> signed_files;

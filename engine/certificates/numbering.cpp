@@ -157,13 +157,16 @@ bool any_unruled(const std::vector<evaluation::KnownFinding>& findings,
   });
 }
 
-/// Returns everything that the pages of a draft depend on.
+/// Returns the inputs that must not change between a draft and its approval.
 reading::Inputs made_from(const evaluation::Evaluated& evaluated, const reading::Context& context) {
   reading::Inputs all = data_of(evaluated, context);
   for (const auto& [name, digest] : evaluated.inputs)
     if (name.starts_with(config::machine_prefix)) all.emplace_back(name, digest);
   for (const auto& [name, digest] : reading::shared_inputs(context))
     if (name != config::site_name) all.emplace_back(name, digest);
+  // Texts of the pages, such as the laboratory's name and accreditation.
+  all.emplace_back(std::string(config::site_name) + " [laboratory], [certificate]",
+                   storage::sha256(context.site.settings));
   return all;
 }
 

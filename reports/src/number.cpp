@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "nonio/sdk/format.h"
 
@@ -32,14 +31,18 @@ std::string rounded_text(double printed_value, int place, std::string_view langu
   return typeset(nonio::rounded_text(printed_value, place), language);
 }
 
+double rounded_at(double value, int place) {
+  if (place <= 0) return rounded_to_places(value, -place);
+  const double unit = std::pow(10.0, place);
+  return std::round(value / unit) * unit;
+}
+
 /// Place of the last digit, at most `place`, at which the rounded magnitude is on the same side of
 /// the limit as the magnitude.
 int place_that_shows(double value, double limit, int place) {
   constexpr int least = -9;
   const auto side = [&](double x) { return (std::fabs(x) > limit) - (std::fabs(x) < limit); };
-  while (place > least &&
-         side(std::strtod(nonio::rounded_text(value, place).c_str(), nullptr)) != side(value))
-    --place;
+  while (place > least && side(rounded_at(value, place)) != side(value)) --place;
   return place;
 }
 

@@ -33,7 +33,8 @@ class SiteParts {
   /// Marks lost records as invalid, so that the campaigns of their machines fail. The last copy of
   /// a record identifies its machine.
   void complete(config::MachineRecords& records) const;
-  /// Writes the new inventory with the files that this run found valid.
+  /// Stores copies of new and changed valid files, and writes the inventory, in which lost files
+  /// remain with the date of the last run that found them valid.
   Expected<void> keep(const evaluation::RunLabel& run) const;
 
  private:

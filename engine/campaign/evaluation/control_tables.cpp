@@ -33,7 +33,7 @@ AxisCorrection correction_of(const std::vector<LoadedTable>& tables, const std::
 
 namespace {
 
-/// Measurements with more targets are not stored, because no table has so many points.
+/// Measurements with more targets are not stored, to limit the size of results.json.
 constexpr std::size_t most_targets = 500;
 
 double u_of_mean(const math::AxisTest& test) {

@@ -28,9 +28,10 @@ struct ImportRule {
 
 using Places = std::map<std::string, std::string, std::less<>>;
 
-/// `pattern` alone, or a TOML file with `pattern`, `campaign`, `kind`, `reader`, `exclude`, `axis`
-/// and the tables [axes] and [manifest].
+/// Returns a rule with default values for everything except the pattern.
 config::Checked<ImportRule> import_rule_of_pattern(const std::string& pattern);
+/// Parses a TOML file with `pattern`, `campaign`, `kind`, `reader`, `exclude`, `axis` and the
+/// tables [axes] and [manifest].
 config::Checked<ImportRule> parse_import_rule(std::string_view text, const std::string& file);
 
 /// Returns at most two matches of the pattern. Without "/", only the file name is matched.

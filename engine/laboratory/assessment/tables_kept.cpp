@@ -35,7 +35,7 @@ class OfAxis {
  private:
   const std::string& day(std::size_t campaign) const { return m_.stored.campaigns[campaign].day; }
 
-  /// Campaigns are sorted by date.
+  /// Returns the last campaign with as-left results; campaigns are sorted by date.
   std::optional<std::size_t> last_left() const {
     std::optional<std::size_t> out;
     for (const StoredResult& r : m_.stored.results)

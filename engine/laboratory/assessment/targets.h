@@ -56,10 +56,12 @@ struct Compared {
 };
 
 /// Computes comparable points of one quantity: scale, curve_2, curve_3 and B_mean are computed
-/// again from the fitted curves over the common stretch. The error between targets affects each
-/// choice of targets differently; its variance, estimated from the fits of all points, is added as
-/// an uncertainty that points with equal targets have in common. `targets` has one entry per point
-/// or is empty.
+/// again from the fitted curves over the common stretch; sinusoids are taken from the stored fits.
+/// The variance of the error between targets, estimated from the fits of all points, is added in
+/// two common uncertainties: the part that depends on the choice of targets is common to points
+/// with equal targets, the rest to points with equal numbers of targets and degrees of freedom.
+/// Points with equal targets throughout are unchanged. `targets` has one entry per point or is
+/// empty.
 Compared compared(std::vector<nonio::statistics::Point> points,
                   const std::vector<PointTargets>& targets, const std::string& quantity);
 

@@ -55,8 +55,8 @@ struct Trend {
   std::vector<Segment> segments;
   std::vector<Change> changes;
   double chi2 = 0.0, dof = 0.0;  ///< of the fit with the prior of the slope
-  /// Size of a step between the last two points without a step that would be detected with a
-  /// probability of 80 %.
+  /// Size that a step needs to be detected with a probability of 80 %, at the last place between
+  /// two points where the fit has no step.
   std::optional<double> smallest_change{};
   bool line_or_step = false;  ///< whether the points cannot distinguish a drift from a step
 

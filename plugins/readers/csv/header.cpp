@@ -123,9 +123,9 @@ tl::unexpected<Error> unknown_column(std::string_view name, std::size_t number) 
                    "unknown column " + shown(name) +
                        ": a row has one deviation, deviation_um or deviation_arcsec. Write the "
                        "readings of each sensor into a file of its own, or state the one that "
-                       "is evaluated with option columns: \"" +
-                       std::string(name) + " = deviation_um\" or \"" + std::string(name) +
-                       " = ignore\"");
+                       "is evaluated with option columns: " +
+                       shown(std::string(name) + " = deviation_um") + " or " +
+                       shown(std::string(name) + " = ignore"));
   std::vector<std::string_view> names;
   for (const Known& k : known_columns) names.push_back(k.name);
   return fail_at(name, "unknown column " + shown(name) + "; did you mean \"" +

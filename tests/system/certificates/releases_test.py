@@ -201,6 +201,12 @@ class Releases(NumberedTest):
         self.assertEqual(self.entries(), [])
         self.assertTrue(self.draft().exists(), "a release that fails leaves the draft")
         (self.site / "c1" / "x.csv").write_text(readings("c1"))
+        site = (self.site / "site.toml").read_text()
+        self.assertIn("[laboratory]\n", site)
+        (self.site / "site.toml").write_text(site.replace("[laboratory]\n", '[laboratory]\naccreditation = "LAT 999"\n'))
+        self.assertIn("[laboratory]", self.release_verb("--by", "B", expect=1).stderr)  # this page was not read
+        self.assertEqual(self.entries(), [])
+        (self.site / "site.toml").write_text(site)
         draft = self.draft().read_bytes()
         self.draft().write_bytes(draft + b"x")
         self.assertIn("has changed since the last run", self.release_verb("--by", "B", expect=2).stderr)

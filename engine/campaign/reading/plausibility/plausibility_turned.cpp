@@ -277,7 +277,7 @@ Turned turned_direction(const Curve& minus, const Curve& plus, const Scatter& sc
   return sign ? Turned::sign : Turned::not_at_all;
 }
 
-/// Requires exactly two passes.
+/// Returns the other pass in the direction of `own`; requires exactly two passes per direction.
 Curve the_other(const Stroke& own, const std::vector<Stroke>& strokes) {
   Curve other;
   for (const Stroke& s : strokes)

@@ -60,10 +60,11 @@ struct GridRule {
 
 /// Returns the grid of the requested step; without one, that of evenly spaced targets, otherwise
 /// the coarsest that contains every position of the curve with a step of at least 1/8 of their mean
-/// distance, otherwise one of about half their smallest distance, on which the curve is
-/// interpolated. Errors, with the axis: fewer than 2 targets or points; a first point after the
-/// last target; a requested step that is not an integer multiple of `unit`, does not divide the
-/// turn or is not a power of two; more points than the control accepts, with a suggestion.
+/// distance. Otherwise the curve is interpolated, with a step of about half the smallest or a
+/// quarter of the mean distance, whichever is larger, or more if the control accepts too few points
+/// for it. Errors, with the axis: fewer than 2 targets or points; a first point after the last
+/// target; a requested step that is not an integer multiple of `unit`, does not divide the turn or
+/// is not a power of two; more points than the control accepts, with a suggestion.
 Expected<Grid> choose_grid(const std::vector<double>& position, const GridRule& rule);
 
 /// Rounds each value to an integer number of `unit` (half away from zero, to 12 digits: 2.5 um is a
