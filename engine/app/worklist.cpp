@@ -40,7 +40,7 @@ void keep_lines(const WorklistWish& wish, reports::SiteHistory& site) {
   });
 }
 
-/// Omits losses that a person has since recorded as intended, and drafts that no longer wait.
+/// Omits losses that a person has since recorded as intended, and takes the drafts that wait now.
 void take_entered(const std::string& site, const config::SiteLogs& entered,
                   assessment::LastRun& last_run) {
   std::erase_if(last_run.vanished, [&](const assessment::LastRun::Vanished& v) {
@@ -49,9 +49,8 @@ void take_entered(const std::string& site, const config::SiteLogs& entered,
                          return f.campaign == v.campaign && f.date >= last_run.date;
                        });
   });
-  const auto drafts = certificates::waiting_campaigns(site);
-  if (!drafts) return;  // the drafts of the run remain
-  std::erase_if(last_run.waiting, [&](const std::string& id) { return !drafts->contains(id); });
+  if (const auto drafts = certificates::waiting_campaigns(site))  // else the drafts of the run
+    last_run.waiting.assign(drafts->begin(), drafts->end());
 }
 
 /// With --page, the JSON also contains the pages about all machines.

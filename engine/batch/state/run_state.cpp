@@ -28,7 +28,9 @@ constexpr const char* seconds_name = "seconds";
 /// equal bytes of all files.
 Expected<void> keep_seconds(const fs::path& out, double seconds) {
   const fs::path folder = out / state_folder;
-  if (auto kept = storage::publish(folder, {{seconds_name, ""}}); !kept) return kept;
+  std::error_code error;
+  if (!fs::exists(folder / seconds_name, error))
+    if (auto kept = storage::publish(folder, {{seconds_name, ""}}); !kept) return kept;
   const auto whole = static_cast<std::time_t>(seconds);
   const timespec at{whole, static_cast<long>((seconds - static_cast<double>(whole)) * 1e9)};
   const timespec times[2] = {at, at};

@@ -22,7 +22,7 @@ DOCS = pathlib.Path(os.environ["NONIO_DOCS"])
 
 def explained():
     """Names of mutators in the table of what is accepted."""
-    text = (DOCS / "wrong-inputs.md").read_text(encoding="utf-8")
+    text = (DOCS / "dev/wrong-inputs.md").read_text(encoding="utf-8")
     table = text[text.index("## Accepted"):]
     names = set()
     for line in table.split("\n"):
