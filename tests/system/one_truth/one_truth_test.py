@@ -311,6 +311,27 @@ class Samples(Truth):
             run("run", SOURCE / "samples/site", "--out", out, "--quiet")
             self.check_site(SOURCE / "samples/site", out)
 
+    def test_the_order_of_measurements_does_not_decide_what_is_after(self):
+        source = SOURCE / "samples/site/13-gantry-diagonals"
+        head, *blocks = re.split(r"(?m)^(?=\[\[measurement\]\]$)", (source / "campaign.toml").read_text())
+        blocks[-1], table, rest = re.match(r"(?s)(.*?)((?m:^\[(?!\[))|$)(.*)", blocks[-1]).groups()
+        blocks = [b.rstrip() + ('\nadjustment = "%s"' % ("after" if ' final"' in b else "before") if 'kind = "diagonal"' in b else "") + "\n\n" for b in blocks]
+        found = []
+        for order in (blocks, blocks[::-1]):
+            with tempfile.TemporaryDirectory(prefix="nonio-truth-") as folder:
+                site, out = pathlib.Path(folder) / "site", pathlib.Path(folder) / "out"
+                shutil.copytree(source, site / source.name)
+                (site / source.name / "campaign.toml").write_text(head + "".join(order) + table + rest)
+                run("run", site, "--out", out, "--quiet")
+                results = json.loads((out / source.name / "results.json").read_text())
+                after = [a["measurement"] for a in results["analyses"] for f in a.get("findings", []) if f["id"] == "diagonals.remeasured"]
+                self.assertEqual([m.split(" ")[1] for m in after], ["final"])
+                tables = [p for p in (out / source.name).glob("*CEC.ini")]
+                self.assertEqual(len(tables), 1)
+                found.append(re.findall(r"(?m)^\$AN_CEC\[.*", tables[0].read_text()))
+        self.assertGreater(len(found[0]), 20)
+        self.assertEqual(*found)
+
     def test_the_laboratory(self):
         with tempfile.TemporaryDirectory(prefix="nonio-truth-") as folder:
             out = pathlib.Path(folder) / "out"
