@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A worker does many campaigns, and no result shows which one did it, or after what."""
+import contextlib
 import os
 import pathlib
 import signal
@@ -46,9 +47,11 @@ class Workers(NightTest):
                                    stderr=subprocess.PIPE, text=True)
             while run.poll() is None and not any(out.glob("*/run.json")):
                 pass
-            killed = children(run.pid)  # plugins are loaded, evaluate; one has the files, one stores
-            for process in killed:
-                os.kill(process, signal.SIGKILL)
+            killed = []
+            for process in children(run.pid):  # plugins are loaded, evaluate; one has the files, one stores
+                with contextlib.suppress(ProcessLookupError):  # it had just ended
+                    os.kill(process, signal.SIGKILL)
+                    killed.append(process)
             _, errors = run.communicate(timeout=120)
             if len(killed) == 4:
                 break
