@@ -142,7 +142,7 @@ std::vector<Verb> register_verbs(Common& common) {
           "withdrew it. The name is the stated name; the account is that of the operating system "
           "(user@host). Neither authenticates the person.\n  issued     in force\n  amended    "
           "replaced by another number, because the data changed\n  withdrawn  no longer in force, "
-          "with the reason\n  drawn      not issued, with the reason; the next run uses it for the "
+          "with the reason\n  reserved   not issued, with the reason; the next run uses it for the "
           "same campaign\nEntries are never deleted, and the same data are never issued twice. "
           "Include the register (certificates.sqlite in the site) in your backups: without it, "
           "numbers would be used twice, so the nightly run stops.",

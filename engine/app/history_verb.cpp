@@ -364,8 +364,9 @@ int history(const HistoryWish& wish, const Common& common) {
   }
   if (const auto known = store::known_run(wish.out);
       !known || *known != std::optional(last_run->run))
-    complain(store::store_in(wish.out) + " does not contain run " + std::to_string(last_run->run) +
-             " yet: what follows is older. The next `nonio run` enters it.");
+    complain(store::store_in(wish.out) + " may lack results of run " +
+             std::to_string(last_run->run) +
+             ", because a run was interrupted. The next `nonio run` enters them.");
   auto site = assessment::assess(wish.out, *last_run, [] {});
   if (!site) return complain(site.error().message);
   keep(wish, machine, *site);

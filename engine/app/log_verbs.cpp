@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <charconv>
 #include <iostream>
 #include <memory>
 
 #include "campaign/config/site_logs.h"
+#include "laboratory/assessment/last_run.h"
 #include "laboratory/store/query.h"
 #include "platform/storage/json_values.h"
+#include "platform/storage/nearest.h"
 #include "printable.h"
 #include "verbs.h"
 
@@ -27,7 +30,7 @@ struct AckWish {
 };
 
 struct ForgetWish {
-  std::string site, by, why, date;
+  std::string site, out, by, why, date;
   std::vector<std::string> campaigns;
 };
 
@@ -174,6 +177,16 @@ int acknowledge(AckWish& wish, const Common& common) {
 
 int forget(ForgetWish& wish, const Common& common) {
   if (wish.date.empty()) wish.date = today();
+  if (!wish.out.empty()) {
+    const auto last_run = assessment::last_run_in(wish.out);
+    if (!last_run) return complain(last_run.error().message);
+    std::vector<std::string> missing;
+    for (const auto& one : last_run->vanished) missing.push_back(one.campaign);
+    for (const std::string& campaign : wish.campaigns)
+      if (std::find(missing.begin(), missing.end(), campaign) == missing.end())
+        return complain("the last run in " + wish.out + " does not miss \"" + campaign + "\"" +
+                        storage::suggestion(campaign, missing));
+  }
   for (const std::string& campaign : wish.campaigns) {
     if (const auto added =
             config::add_forgotten(wish.site, {wish.date, campaign, wish.by, wish.why});
@@ -269,6 +282,10 @@ Verb remove_verb(Common& common) {
                             "such as machines/S-0042.toml or templates"}),
                   required({"--by", &wish->by, "Name of the author of the entry"}),
                   required({"--why", &wish->why, "Reason for the removal"}),
+                  existing(Argument::Takes::folder,
+                           {"--out", &wish->out,
+                            "Output folder of `nonio run`: a name that its last run does not miss "
+                            "is rejected, with the nearest name"}),
                   day({"--date", &wish->date, "Day of the entry, YYYY-MM-DD; default: today"})},
                  common_arguments(common)),
       .footer =

@@ -151,7 +151,7 @@ int print_machines(const QueryWish& wish, const Common& common) {
   }
   std::vector<std::vector<std::string>> rows{{"machine", "campaigns"}};
   for (const NamedMachine& m : *machines)
-    rows.push_back({m.name.empty() ? "(neither asset nor serial)" : printable(m.name),
+    rows.push_back({m.name.empty() ? "(not stated, or the campaign failed)" : printable(m.name),
                     std::to_string(m.campaigns)});
   print_rows(rows, "lr");
   for (const Spelling& s : *spellings)

@@ -21,7 +21,6 @@ struct ReleaseVerbWish {
   std::string folder, by, user, role, out;
   std::vector<std::string> reasons;
   bool list = false;
-  const std::string& person() const { return by.empty() ? user : by; }
 };
 
 std::string reason_of(const WaitingDraft& draft, const evaluation::KnownFinding& finding) {
@@ -120,9 +119,9 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
       return exit_failed;
     case State::approved:
       if (!common.json)
-        std::cout << done.draft->campaign << " approved by " << wish.person()
+        std::cout << done.draft->campaign << " approved by " << done.by
                   << "; an authoriser approves it with nonio certificate approve " << wish.folder
-                  << " --by NAME --as authoriser\n";
+                  << " --by NAME (with users.toml: --user ACCOUNT) --as authoriser\n";
       return exit_done;
     case State::failed:
       return complain(done.why + " (nothing was issued by this command)", exit_failed);
@@ -131,7 +130,7 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
   }
   if (!common.json) {
     std::cout << done.entry.number << " issued for " << done.draft->campaign << ", released by "
-              << wish.person() << "\n";
+              << done.by << "\n";
     for (const fs::path& f : done.files) std::cout << "  " << f.string() << "\n";
   }
   if (!done.why.empty())

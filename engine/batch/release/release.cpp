@@ -71,18 +71,21 @@ Expected<std::map<std::string, std::string>> reasons_for(const certificates::Wai
   std::string known;
   for (const evaluation::KnownFinding& f : draft.findings) {
     known += (known.empty() ? "" : ", ") + certificates::finding_key(f);
-    for (const std::string& name : {certificates::finding_key(f), f.id})
-      if (const auto given = request.reasons.find(name); given != request.reasons.end()) {
-        reasons[certificates::finding_key(f)] = given->second;
-        break;
-      }
   }
-  for (const auto& given : request.reasons) {
-    const std::string& name = given.first;
-    if (std::none_of(draft.findings.begin(), draft.findings.end(),
-                     [&](const evaluation::KnownFinding& f) {
-                       return name == certificates::finding_key(f) || name == f.id;
-                     }))
+  for (const auto& [name, text] : request.reasons) {
+    const std::string given = name + "=" + text;
+    bool found = false;
+    for (const evaluation::KnownFinding& f : draft.findings)
+      for (const std::string& key : {f.id, certificates::finding_key(f)})
+        if (given.starts_with(key + "=")) {
+          const std::string reason = given.substr(key.size() + 1);
+          if (key == f.id)
+            reasons.try_emplace(certificates::finding_key(f), reason);
+          else
+            reasons[key] = reason;
+          found = true;
+        }
+    if (!found)
       return fail("the draft has no finding " + name + "; it has " +
                   (known.empty() ? "none" : known));
   }
@@ -96,6 +99,7 @@ class Releaser {
 
   Released run() {
     if (auto well = open_campaign(); !well) return refuse(well.error().message);
+    out_.by = request_.by;
     if (auto well = open_draft(); !well) return refuse(well.error().message);
     if (auto well = take_output(); !well) return refuse(well.error().message);
     const certificates::WaitingDraft& draft = *out_.draft;

@@ -16,7 +16,9 @@ struct ReleaseRequest {
   std::string by;  ///< printed name of the person; empty if `user` is stated
   /// Author or authoriser; empty for the default of the site: author if it requires two persons.
   std::string role;
-  std::map<std::string, std::string> reasons;  ///< by finding_key or by id of the finding
+  /// By finding_key or by id of the finding. FINDING=TEXT of a command is divided at the first "=",
+  /// which may be in the finding.
+  std::map<std::string, std::string> reasons;
   /// Output folder of the run; empty for that of the draft.
   std::filesystem::path out;
   /// Account in users.toml with its password, which prove the identity of the person. Without an
@@ -33,6 +35,7 @@ struct Released {
     issued
   } state = State::refused;
   std::string why;
+  std::string by;  ///< name of the person, as stated or from users.toml
   std::optional<certificates::WaitingDraft> draft;
   std::vector<std::string> without_reason;  ///< keys of findings
   std::vector<std::string> notes;

@@ -226,6 +226,8 @@ class Describing {
     const double last = s.series.points.back().time, first = s.series.points.front().time;
     if (f.leaves && *f.leaves <= last + (last - first) / 2.0)
       out.leaves = day_text(static_cast<std::int64_t>(std::floor(*f.leaves * days_a_year)));
+    if (f.answer == kernel::Answer::watch && !out.leaves.empty() && out.leaves <= today_)
+      out.answer = "watch-now";
     const bool open = open_now_.contains(axis_of(s.axis, s.quantity));
     if (!open && out.date < today_ && f.answer != kernel::Answer::cannot_say)
       out.answer = "overdue";

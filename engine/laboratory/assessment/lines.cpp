@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <tuple>
 
 #include "campaign/config/manifest.h"
@@ -89,7 +90,9 @@ std::vector<WorkItem> failed(const Known& known) {
       out.push_back(std::move(line));
       continue;
     }
+    std::set<std::string> named;  // several folders can state one id
     for (const LastRun::Failed* f : alike) {
+      if (!named.insert(f->campaign).second) continue;
       WorkItem line = line_of(Kind::failed, "worklist.failed", f->campaign);
       const auto machine = known.machine_of_campaign.find(f->campaign);
       if (machine != known.machine_of_campaign.end()) line.machine = machine->second;
@@ -106,7 +109,7 @@ void not_judged(const Known& known, std::vector<WorkItem>& out) {
   std::string names;
   std::size_t count = 0;
   for (const Standing* m : known.machines) {
-    if (m->judged || !m->has_results) continue;
+    if (m->judged || !m->has_campaigns) continue;
     if (++count <= most_machines) names += (names.empty() ? "" : ", ") + m->name;
   }
   if (count == 0) return;
@@ -222,9 +225,18 @@ bool wears(const WorkItem& l) {
   return l.kind == Kind::out && !l.finding.id.starts_with("worklist.out-changed");
 }
 
+/// Notes come last, acknowledged lines before them.
+int rank_of(const WorkItem& l) {
+  if (l.kind == Kind::information) return 2;
+  return l.state == WorkItem::State::known ? 1 : 0;
+}
+
 bool comes_before(const WorkItem& a, const WorkItem& b) {
-  return std::tuple(a.kind, a.state, wears(a), -size_of(a), std::tie(a.machine, a.axis, a.id)) <
-         std::tuple(b.kind, b.state, wears(b), -size_of(b), std::tie(b.machine, b.axis, b.id));
+  const auto key = [](const WorkItem& l) {
+    return std::tuple(rank_of(l), l.kind, l.state, wears(l), -size_of(l),
+                      std::tie(l.machine, l.axis, l.id));
+  };
+  return key(a) < key(b);
 }
 
 }  // namespace

@@ -414,7 +414,7 @@ class OfMachine {
                         : is_refusal(w.finding)             ? "worklist.no-result"
                                                             : "worklist.certificate",
                         c.id + (w.axis.empty() ? "" : ":" + w.axis));
-      l.axis = w.axis, l.campaign = c.id, l.since = c.day;
+      l.axis = w.axis, l.campaign = c.id, l.since = c.evaluated;
       put_text(l, "campaign", c.id);
       auto& to = all.emplace(l.id, std::move(l)).first->second;
       add_to_list(to, "withheld", {w.finding});

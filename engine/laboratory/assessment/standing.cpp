@@ -193,7 +193,7 @@ Standing standing_of(const AssessedMachine& m, const reports::MachineHistory& de
     if (auto rest = acknowledge(s.lines[i], m, logs, last_run.date)) s.lines.push_back(*rest);
   s.months = months_of(m, described, s.lines);
   s.instruments = instruments_of(m, out);
-  s.has_results = !m.stored.results.empty();
+  s.has_campaigns = !m.stored.campaigns.empty();
   s.judged = !m.stored.without_value.empty();
   s.conforms = open_limits(m.stored).empty();
   for (const ShownSeries& shown : m.shown) {

@@ -23,7 +23,7 @@ struct Standing {
   std::vector<reports::WorkItem> lines{};
   std::vector<reports::MonthOfMachine> months{};
   std::vector<reports::InstrumentUse> instruments{};
-  bool has_results = false;
+  bool has_campaigns = false;
   bool judged = false;  ///< whether any result has a tolerance limit
   /// Whether all last decisions are "conforms" and no limit lacks a value.
   bool conforms = false;

@@ -25,16 +25,23 @@ Expected<std::vector<NamedMachine>> machines_of(Database& database, const char* 
   return machines;
 }
 
-Expected<std::string> known_machine(Database& database, const std::string& name) {
+/// `superseded`: also a name that only earlier versions of campaigns state.
+Expected<std::string> known_machine(Database& database, const std::string& name, bool superseded) {
   const std::string alias =
       database.first("SELECT machine FROM machine_alias WHERE alias = ?", {name});
   const std::string machine = alias.empty() ? name : alias;
-  const bool known = !database.rows("SELECT 1 FROM machine WHERE machine = ?", {machine}).empty() ||
-                     !alias.empty();
+  const std::string stated =
+      std::string("FROM campaign c JOIN ") + (superseded ? "evaluation" : "latest") +
+      " e ON e.campaign = c.campaign AND e.campaign_sha256 = c.campaign_sha256 ";
+  const bool known =
+      !alias.empty() ||
+      !database.rows(("SELECT 1 " + stated + "WHERE c.machine = ? LIMIT 1").c_str(), {machine})
+           .empty();
   if (auto well = database.take_error(); !well) return fail(well.error());
   if (known) return machine;
   std::vector<std::string> names;
-  for (Database::Row& row : database.rows("SELECT machine FROM machine ORDER BY machine"))
+  for (Database::Row& row :
+       database.rows(("SELECT DISTINCT c.machine " + stated + "ORDER BY c.machine").c_str()))
     names.push_back(std::move(row[0]));
   return fail("there is no machine \"" + name + "\" in the history" +
               storage::suggestion(name, names));
@@ -85,11 +92,14 @@ Point point_of(Database::Row& r) {
 constexpr const char* joined_machines =
     "SELECT COALESCE(a.machine, m.machine) AS name, MAX(m.asset), MAX(m.maker), MAX(m.model), "
     "MAX(m.serial), COUNT(DISTINCT c.campaign) FROM machine m LEFT JOIN machine_alias a ON a.alias "
-    "= m.machine JOIN campaign c ON c.machine = m.machine GROUP BY COALESCE(a.machine, m.machine) "
+    "= m.machine JOIN campaign c ON c.machine = m.machine JOIN latest e ON e.campaign = c.campaign "
+    "AND e.campaign_sha256 = c.campaign_sha256 GROUP BY COALESCE(a.machine, m.machine) "
     "ORDER BY name";
 constexpr const char* stated_machines =
     "SELECT m.machine, m.asset, m.maker, m.model, m.serial, COUNT(DISTINCT c.campaign) FROM "
-    "machine m JOIN campaign c ON c.machine = m.machine GROUP BY m.machine, m.asset, m.maker, "
+    "machine m JOIN campaign c ON c.machine = m.machine JOIN latest e ON e.campaign = c.campaign "
+    "AND "
+    "e.campaign_sha256 = c.campaign_sha256 GROUP BY m.machine, m.asset, m.maker, "
     "m.model, m.serial ORDER BY m.machine";
 
 }  // namespace
@@ -100,7 +110,7 @@ Expected<std::vector<Point>> query(const fs::path& out, const Query& wanted) {
   Database& database = *opened;
   std::string machine;
   if (!wanted.machine.empty()) {
-    auto known = known_machine(database, wanted.machine);
+    auto known = known_machine(database, wanted.machine, wanted.superseded);
     if (!known) return fail(known.error());
     machine = std::move(*known);
   }
@@ -126,7 +136,7 @@ Expected<std::vector<Point>> query(const fs::path& out, const Query& wanted) {
 Expected<std::string> machine_named(const fs::path& out, const std::string& name) {
   auto opened = open_store(out);
   if (!opened) return fail(opened.error());
-  return known_machine(*opened, name);
+  return known_machine(*opened, name, false);
 }
 
 Expected<std::vector<NamedMachine>> machines_in(const fs::path& out) {

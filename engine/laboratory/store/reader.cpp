@@ -35,7 +35,7 @@ SELECT c.campaign, c.day, c.customer, c.purpose, e.status, c.instrument_maker, c
   c.instrument_serial, c.instrument_calibrated, c.instrument_certificate, c.instrument_valid_until, e.evaluation, e.night,
   (SELECT number FROM certificate n WHERE n.campaign = c.campaign AND NOT EXISTS
      (SELECT 1 FROM certificate m WHERE m.replaces = n.number) ORDER BY number DESC LIMIT 1),
-  e.place, e.control
+  e.place, e.control, e.date
 FROM campaign c
 )sql";
 
@@ -225,7 +225,8 @@ Expected<StoredMachine> StoreReader::stored(Of of, const std::string& name,
                              .run = whole_of<std::uint64_t>(r[12]),
                              .number = std::move(r[13]),
                              .place = std::move(r[14]),
-                             .control = std::move(r[15])});
+                             .control = std::move(r[15]),
+                             .evaluated = std::move(r[16])});
   out.findings.resize(out.campaigns.size());
   out.asked.resize(out.campaigns.size());
   for (std::size_t i = 0; i < out.campaigns.size(); ++i) {

@@ -26,6 +26,7 @@ struct StoredCampaign {
   std::uint64_t run = 0;
   std::string number{};  ///< number of the last certificate; empty if none was issued
   std::string place{}, control{};
+  std::string evaluated{};  ///< date of the run of the evaluation
 };
 
 /// A followed quantity, a value with a limit, or another value that the history contains, such as

@@ -128,11 +128,13 @@ double square_of(double x) { return x * x; }
 void compare_with_reversal(const AxisTest& test, double variance, double dof, Drift& drift) {
   std::vector<double> B, b;
   double per = 0.0;
+  const double m = static_cast<double>(test.targets.size());
   for (std::size_t i = 0; i < drift.lag.size(); ++i) {
     const auto plus = test.plus(i), minus = test.minus(i);
     if (plus.empty() || minus.empty()) continue;
     B.push_back(mean(deviations(plus)) - mean(deviations(minus)));
     b.push_back(drift.per_run_at(test.targets[i]) * drift.lag[i]);
+    drift.in_B_mean += b.back() / m;
     per += 1.0 / static_cast<double>(plus.size()) + 1.0 / static_cast<double>(minus.size());
   }
   if (B.size() < 3 || !(dof > 0.0)) return;
@@ -224,7 +226,7 @@ DriftShare share_of_drift(const AxisTest& test) {
   const double u_mean = std::isfinite(reversal.u_mean) ? reversal.u_mean : 0.0;
   share.s = std::max(in_scatter(test, drift, false), in_scatter(test, drift, true));
   const double k_largest = factor_of_largest(test.targets.size());
-  double shift = 0.0, by_offset = 0.0, by_slope = 0.0;
+  double by_offset = 0.0, by_slope = 0.0;
   for (std::size_t i = 0; i < test.targets.size(); ++i) {
     const double x = test.targets[i], rate = std::fabs(drift.per_run_at(x)), u = drift.u_at(x);
     if (drift.lag.empty() || test.plus(i).empty() || test.minus(i).empty()) continue;
@@ -235,13 +237,12 @@ DriftShare share_of_drift(const AxisTest& test) {
     share.B = std::max(share.B,
                        rate * std::fabs(lag) +
                            k_largest * std::sqrt(square_of(lag * u) + of_B_i + square_of(u_mean)));
-    shift += drift.per_run_at(x) * lag / m;
     by_offset += lag / m, by_slope += lag * (x - drift.middle) / m;
   }
   if (!drift.lag.empty())
-    share.B_mean =
-        std::fabs(shift) + k * std::sqrt(square_of(by_offset * drift.offset.u) +
-                                         square_of(by_slope * drift.slope.u) + square_of(u_mean));
+    share.B_mean = std::fabs(drift.in_B_mean) +
+                   k * std::sqrt(square_of(by_offset * drift.offset.u) +
+                                 square_of(by_slope * drift.slope.u) + square_of(u_mean));
   return share;
 }
 

@@ -62,15 +62,13 @@ void drift_findings(const AxisTest& test, std::vector<Finding>& findings) {
       wedge_found(drift) && std::fabs(wedge) > scatter && std::fabs(wedge) >= 0.25 * largest;
   const bool is_parallel = parallel_found(drift) && std::fabs(shift.total) > scatter &&
                            (!is_wedge || common > std::max(scatter, 0.5 * std::fabs(wedge)));
-  // The directions of a run follow one another, so half of the shift per run is part of B_mean.
-  const double in_B = std::fabs(shift.per_run) / 2.0;
   const auto finding = [&](const char* id, double total, const Drift::Part& part, double per_run) {
     const double size = std::max(std::fabs(total), steps_of_five_runs * std::fabs(per_run));
     return FindingBuilder(id, matters(test, size), test.rotary)
         .deviation("total", total)
         .deviation("per_run", per_run)
         .slope("wedge", turn.total)
-        .deviation("in_B", in_B)
+        .deviation("in_B", std::fabs(drift.in_B_mean))
         .deviation("scatter", scatter)
         .number("p", smallest_p(part), Quantity::probability)
         .count("runs", static_cast<double>(drift.runs))

@@ -112,13 +112,15 @@ class Releases(NumberedTest):
     def test_a_release_wants_a_reason_for_each_finding(self):
         self.by_hand()
         self.signed_campaign("c1")
+        manifest = self.site / "c1/campaign.toml"
+        manifest.write_text(manifest.read_text().replace('id = "X"', 'id = "X=0"', 1))
         self.out_of_tolerance()
         self.night()
         done = self.release_verb("--by", "B", expect=1, known=())
-        self.assertIn("X: " + KNOWN + " requires a reason", done.stderr)
+        self.assertIn("X=0: " + KNOWN + " requires a reason", done.stderr)
         done = self.release_verb("--by", "B", expect=1)
-        self.assertIn("X: tolerance.X.E.iso230-2 requires a reason", done.stderr)
-        self.assertNotIn("X: " + KNOWN + " requires a reason", done.stderr)
+        self.assertIn("X=0: tolerance.X.E.iso230-2 requires a reason", done.stderr)
+        self.assertNotIn("X=0: " + KNOWN + " requires a reason", done.stderr)
         self.assertEqual(self.entries(), [])
         for wrong in (["--reason", "nonsense=x"], ["--reason", "x"], ["--reason", "tolerance.X.E.iso230-2= "]):
             self.release_verb("--by", "B", *wrong, expect=2)
@@ -127,10 +129,10 @@ class Releases(NumberedTest):
             self.release_verb("--by", nobody, expect=2)
         self.release_verb("--by", "B", "--reason", "tolerance.X.E.iso230-2=-", expect=2)
         self.assertEqual(self.entries(), [])
-        self.release_verb("--by", "B", "--reason", "tolerance.X.E.iso230-2=as found, the customer knows", expect=0)
+        self.release_verb("--by", "B", "--reason", "X=0: tolerance.X.E.iso230-2=as found, the customer knows", expect=0)
         issued, = [says for what, _, says in self.journal() if what == "issued"]
         self.assertEqual(issued["released"]["released"]["reasons"],
-                         {"X: " + KNOWN: "it is what was ordered", "X: tolerance.X.E.iso230-2": "as found, the customer knows"})
+                         {"X=0: " + KNOWN: "it is what was ordered", "X=0: tolerance.X.E.iso230-2": "as found, the customer knows"})
         self.assertEqual(self.states(), {number(1): "issued"})
 
     def test_author_and_authoriser_may_have_to_differ(self):

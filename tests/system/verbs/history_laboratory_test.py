@@ -120,7 +120,7 @@ class Laboratory(unittest.TestCase):
         text = known.read_text()
         known.unlink()
         self.addCleanup(known.write_text, text)
-        self.assertIn("does not contain run", nonio("machine", "history", self.out).stderr)
+        self.assertIn("may lack results of run", nonio("machine", "history", self.out).stderr)
 
     def test_on_a_terminal(self):
         table = nonio("machine", "history", self.out).stdout.splitlines()

@@ -56,6 +56,19 @@ class HistoryVerbs(VerbTest):
         self.assertEqual([p["campaign"] for p in json.loads(everything)["points"]], ["c", "d", "e"])
         self.assertNotIn("one machine?", self.nonio("machine", "list", self.out).stdout)
 
+    def test_a_renamed_machine_is_listed_once(self):
+        self.write("c", "2025-01-02", 1)
+        self.write("d", "2025-03-02", 2)
+        self.night()
+        for name, day, seed in (("c", "2025-01-02", 1), ("d", "2025-03-02", 2)):
+            self.write(name, day, seed, MACHINE.replace("S-0042", "M-5"))
+        self.night()
+        listed = json.loads(self.nonio("machine", "list", self.out, "--json").stdout)["machines"]
+        self.assertEqual(listed, [{"machine": "M-5", "campaigns": 2}])
+        for refused in (("list", self.out, "S-0042", "--quantity", "A"), ("history", self.out, "S-0042"),
+                        ("event", self.site, "--machine", "S-0042", "--kind", "crash", "--text", "hit", "--out", self.out)):
+            self.assertIn('no machine "S-0042"', self.nonio("machine", *refused, expect=2).stderr)
+
     def test_query_says_what_is_wrong(self):
         self.assertIn("nonio run SITE", self.nonio("machine", "list", self.site, expect=2).stderr)
         self.write("c", "2025-01-02", 1)
@@ -102,7 +115,11 @@ class HistoryVerbs(VerbTest):
         (self.site / "site.toml").write_text("[limits]\nmissing_campaigns = 1\n")
         self.night()
         (self.site / "site.toml").write_text("# all limits are removed\n")
-        self.nonio("machine", "remove", self.site, "d", "--by", "B", "--why", "sold")
+        self.night(expect=1)
+        remove = ("machine", "remove", self.site, "--out", self.out, "--by", "B", "--why", "sold")
+        self.assertIn('does not miss "c"', self.nonio(*remove, "d", "c", expect=2).stderr)
+        self.assertFalse((self.site / "forgotten.toml").exists())
+        self.nonio(*remove, "d")
         self.assertNotIn("vanished", self.night().stderr)
 
 

@@ -413,19 +413,27 @@ TEST(WorklistLines, LostMotionThatConformsIsInformation) {
 TEST(WorklistLines, AreInTheirOrder) {
   Laboratory lab;
   lab.last_run.vanished = {{"gone", "gone", 4, "not there"}};
-  lab.last_run.failed = {{"bad", "bad", "x.csv:17: \"1O8.9\" is no number", ""}};
+  const assessment::LastRun::Failed bad{"bad", "bad", "x.csv:17: \"1O8.9\" is no number", ""};
+  lab.last_run.failed = {bad, bad};  // two folders with one id
   lab.machines = {hit(), MadeMachine("S-43"), MadeMachine("S-44"), MadeMachine("S-45")};
   lab.machines[1].follow("X", "B_mean", flat(-1.0, -3.0), 0.1);
   lab.machines[2].judge("X", "B", {7, 7, 7, 7, 7, 7, 7, 7.9});
   lab.machines[3].follow("X", "B_mean", {-1, -1.9, -3.1, -4, -5.1, -6, -7, -7.9}, 0.1);
   lab.machines[3].judge("X", "B", {1, 2, 3, 4, 5, 6, 7, 7.4});
   lab.due = "2024-03-01";
-  std::vector<Kind> kinds;
-  for (const WorkItem& l : lab.lines())
-    if (kinds.empty() || kinds.back() != l.kind) kinds.push_back(l.kind);
-  EXPECT_EQ(kinds,
+  const auto kinds = [&] {
+    std::vector<Kind> out;
+    for (const WorkItem& l : lab.lines())
+      if (out.empty() || out.back() != l.kind || l.kind == Kind::failed) out.push_back(l.kind);
+    return out;
+  };
+  EXPECT_EQ(kinds(),
             (std::vector<Kind>{Kind::lost, Kind::failed, Kind::out, Kind::changed, Kind::soon,
                                Kind::overdue, Kind::undecided, Kind::information}));
+  lab.logs.acknowledged = {acknowledged("worklist.out", "2024-01-01")};
+  EXPECT_EQ(kinds(),
+            (std::vector<Kind>{Kind::lost, Kind::failed, Kind::changed, Kind::soon, Kind::overdue,
+                               Kind::undecided, Kind::out, Kind::information}));
 }
 
 TEST(WorklistLines, TheWorstLineOfAnAxisDecidesAndWhatWasLeft) {
@@ -587,6 +595,21 @@ TEST(Forecasts, NothingKeepsTheDateOfAnAxisThatIsOut) {
   const auto d = assessment::describe(one[0], "out", "2024-03-01", "12 months");
   for (const auto& s : d.series)
     if (s.forecast) EXPECT_EQ(s.forecast->answer, s.axis == "X" ? "act" : "keep") << s.quantity;
+}
+
+TEST(Forecasts, AskForAMeasurementNowWhereTheLimitMayBeExceededNow) {
+  MadeMachine m("S-45");
+  m.follow("X", "B_mean", {-0.9, -1.8, -2.6, -3.6, -4.3, -5.2, -6.1, -7.0}, 0.1);
+  m.judge("X", "B", {1, 1.9, 2.7, 3.7, 4.4, 5.3, 6.2, 7.1});
+  std::vector<assessment::AssessedMachine> one{m.assessed()};
+  judge_all(one);
+  const auto forecast = [&](const std::string& today) {
+    return *series_of(assessment::describe(one[0], "out", "2024-03-01", "", today), "B").forecast;
+  };
+  const auto early = forecast("2023-07-20");
+  EXPECT_EQ(early.answer, "watch") << early.p_out;
+  ASSERT_LT(early.leaves, "2024-03-01");
+  EXPECT_EQ(forecast(early.leaves).answer, "watch-now");
 }
 
 TEST(Forecasts, NothingKeepsTheDateOfAnAxisThatIsOpenOrOverdue) {

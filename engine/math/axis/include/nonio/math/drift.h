@@ -36,6 +36,8 @@ struct Drift {
   std::size_t runs = 0;
   std::vector<double> lag;  ///< lag_i of each target, in runs; empty if measured from one direction
 
+  double in_B_mean = 0.0;  ///< mean of b_i over the targets: contribution of drift to B_mean
+
   /// Fraction of the variation of the reversal along the axis predicted by b_i that is observed,
   /// and p-value of the test that this fraction is 0.
   double seen_in_reversal = 0.0, p_reversal = 1.0;
