@@ -5,12 +5,15 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <iostream>
 #include <sstream>
+#include <utility>
 
 #include "colour.h"
 #include "common.h"
+#include "nonio/sdk/format.h"
 #include "platform/storage/nearest.h"
 #include "text_layout.h"
 
@@ -78,12 +81,25 @@ CLI::Validator calendar_day() {
           ""};
 }
 
+CLI::Validator within(double least, double most) {
+  return {[least, most](const std::string& found) {
+            double value = 0.0;
+            const char* const end = found.data() + found.size();
+            const auto [at, error] = std::from_chars(found.data(), end, value);
+            if (error == std::errc() && at == end && value >= least && value <= most)
+              return std::string();
+            return "expected a number from " + short_text(least, 9) + " to " + short_text(most, 9) +
+                   ", found \"" + found + "\"";
+          },
+          ""};
+}
+
 void check(CLI::Option& option, const Argument& a) {
   if (a.required) option.required();
   if (a.exists) option.check(existing(a.takes));
   if (a.takes == Argument::Takes::day) option.check(calendar_day());
   if (!a.choices.empty()) option.check(member_of(a.choices));
-  if (a.range) option.check(CLI::Range(a.range->first, a.range->second));
+  if (a.range) option.check(within(a.range->first, a.range->second));
 }
 
 Words split(const std::string& text) {
@@ -300,7 +316,7 @@ class HelpPage {
     if (!v.footer.empty()) out_ << "\n" << wrapped(v.footer, 0, width_);
     if (v.examples.empty()) return;
     heading(v.examples.size() == 1 ? "Example:" : "Examples:");
-    for (const std::string& example : v.examples) out_ << wrapped(example, 2, width_, 4);
+    for (const std::string& example : v.examples) out_ << command_lines(example);
   }
 
   static std::string synopsis(const std::string& path, const Verb& v) {
@@ -318,6 +334,23 @@ class HelpPage {
   }
 
  private:
+  /// An example that can be pasted: divided between words outside of quotes, with a backslash.
+  std::string command_lines(const std::string& example) const {
+    std::string out, row = "  ";
+    std::istringstream words(example);
+    std::string word;
+    for (std::string part; std::getline(words, part, ' ');) {
+      word += (word.empty() ? "" : " ") + part;
+      if (std::count(word.begin(), word.end(), '"') % 2 != 0) continue;
+      if (row.size() > 4 && row.size() + word.size() + 3 > width_) {
+        out += row + " \\\n";
+        row = "   ";
+      }
+      row += (row == "  " ? "" : " ") + std::exchange(word, "");
+    }
+    return out + row + "\n";
+  }
+
   static std::string one_paragraph(std::string text) {
     std::replace(text.begin(), text.end(), '\n', ' ');
     return text;

@@ -242,37 +242,39 @@ Verb triples_verb(Common& common) {
   return {
       .name = "triples",
       .summary = "Stops for X, Y and both diagonals of their rectangle, with equal whole steps",
-      .arguments = joined(
-          {required(number({"--x", &plan->mm.x, "Travel of X, mm"})),
-           required(number({"--y", &plan->mm.y, "Travel of Y, mm"})),
-           number({"--over-travel", &plan->mm.over_travel,
-                   "Range kept free at each end of both axes, mm (default 0)"}),
-           number({"--resolution", &plan->mm.resolution,
-                   "Steps are whole multiples of this value, mm (default 1)"}),
-           number({"--resolution-x", &plan->mm.resolution_x,
-                   "Scale factor of X: its steps are whole multiples of this, mm (default "
-                   "--resolution)"}),
-           number({"--resolution-y", &plan->mm.resolution_y,
-                   "The same of Y; --resolution is the diagonal's"}),
-           number(
-               {"--max-step", &plan->mm.max_step, "Largest step of either axis, mm (default any)"}),
-           {"--max-points", &plan->wish.max_points,
-            "Entries of the control's compensation table (default 1500)"},
-           number({"--pitch-x", &plan->mm.pitch_x, pitch}),
-           number({"--pitch-y", &plan->mm.pitch_y, pitch}),
-           {"--density", &plan->wish.density,
-            "Only stops that ISO 230-2 accepts: five per metre on axes of up to 2 m, no more than "
-            "250 mm apart on longer ones"},
-           even,
-           {"--hypotenuse", &plan->wish.hypotenuse,
-            "Largest c of the triples a-b-c (default 5000)"},
-           {"--count", &plan->count, "Plans to show (default 5)"},
-           takes(Argument::Takes::folder,
-                 {"--program", &plan->programs.out,
-                  "Folder for the part programs of one plan: X, Y and both diagonals"}),
-           {"--choose", &plan->choose, "Which plan --program writes (default 1)"}},
-          program_arguments(plan->programs),
-          joined(sheet_arguments(plan->sheet, common), common_arguments(common))),
+      .arguments =
+          joined({required(number({"--x", &plan->mm.x, "Travel of X, mm"})),
+                  required(number({"--y", &plan->mm.y, "Travel of Y, mm"})),
+                  number({"--over-travel", &plan->mm.over_travel,
+                          "Range kept free at each end of both axes, mm (default 0)"}),
+                  number({"--resolution", &plan->mm.resolution,
+                          "Steps are whole multiples of this value, mm (default 1)"}),
+                  number({"--resolution-x", &plan->mm.resolution_x,
+                          "Scale factor of X: its steps are whole multiples of this, mm (default "
+                          "--resolution)"}),
+                  number({"--resolution-y", &plan->mm.resolution_y,
+                          "The same of Y; --resolution is the diagonal's"}),
+                  number({"--max-step", &plan->mm.max_step,
+                          "Largest step of either axis, mm (default any)"}),
+                  {"--max-points", &plan->wish.max_points,
+                   "Entries of the control's compensation table (default 1500)"},
+                  number({"--pitch-x", &plan->mm.pitch_x, pitch}),
+                  number({"--pitch-y", &plan->mm.pitch_y, pitch}),
+                  {"--density", &plan->wish.density,
+                   "Only as many stops as ISO 230-2 requires: five per metre on axes of up to 2 m, "
+                   "no more "
+                   "than 250 mm apart on longer ones. They are evenly spaced, so they are no test "
+                   "by ISO 230-2"},
+                  even,
+                  {"--hypotenuse", &plan->wish.hypotenuse,
+                   "Largest c of the triples a-b-c (default 5000)"},
+                  {"--count", &plan->count, "Plans to show (default 5)"},
+                  takes(Argument::Takes::folder,
+                        {"--program", &plan->programs.out,
+                         "Folder for the part programs of one plan: X, Y and both diagonals"}),
+                  {"--choose", &plan->choose, "Which plan --program writes (default 1)"}},
+                 program_arguments(plan->programs),
+                 joined(sheet_arguments(plan->sheet, common), common_arguments(common))),
       .footer =
           "A diagonal whose steps are whole needs a right triangle with whole sides: 3-4-5, "
           "5-12-13, ... Step = q (a, b, c) x resolution; n steps cover n q a of X and n q b of Y. "

@@ -250,10 +250,19 @@ class Page {
     });
     std::string text;
     for (std::size_t i = 0; i < std::min(rest.size(), most_values); ++i)
-      text += (i == 0 ? "" : ", ") + say_.of("value", rest[i].first) + " " + result(rest[i].second);
+      text += (i == 0 ? "" : ", ") +
+              glued(say_.of("value", rest[i].first) + " " + result(rest[i].second));
     if (rest.size() > most_values)
       text += ", " + say_("show.more", {{"count", std::to_string(rest.size() - most_values)}});
-    if (!text.empty()) out_ << wrapped(text, 4, width_);
+    text = wrapped(text, 4, width_);
+    std::replace(text.begin(), text.end(), glue, ' ');
+    if (!rest.empty()) out_ << text;
+  }
+
+  static constexpr char glue = '\x1f';  // a space at which no line ends
+  static std::string glued(std::string text) {
+    std::replace(text.begin(), text.end(), ' ', glue);
+    return text;
   }
 
   void table(const std::vector<std::pair<std::string, Json>>& rows) {

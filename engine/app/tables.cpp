@@ -19,7 +19,9 @@ using config::TerminalWords;
 using storage::Json;
 
 void line(std::ostream& out, const std::string& name, const std::string& value) {
-  out << "  " << padded(name, 18) << wrapped(value, 20, sentence_width(STDOUT_FILENO)).substr(20);
+  const std::size_t width = std::max<std::size_t>(18, columns_of(name) + 2);
+  out << "  " << padded(name, width)
+      << wrapped(value, width + 2, sentence_width(STDOUT_FILENO)).substr(width + 2);
 }
 
 void sentence(std::ostream& out, std::size_t indent, const std::string& text) {
@@ -181,17 +183,22 @@ void print_candidates(std::ostream& out, const Json& part, bool all, const Termi
   if (shown.empty()) return;
   double best = 0.0;
   for (const Json& c : shown) best = std::max(best, c.at("score").get<double>());
+  const auto width = [&](const char* name, std::size_t least) {
+    return std::max(least, columns_of(say(name)) + 2);
+  };
+  const std::size_t alone = width("evidence.alone", 9), within = width("evidence.within", 10),
+                    after = width("rms-after", 14), left_out = width("left-out", 18);
   out << "  " << padded(say("candidate"), 22) << padded(say("evidence"), 13)
-      << padded(say("evidence.alone"), 9) << padded(say("evidence.within"), 10)
-      << padded(say("rms-after"), 14) << padded(say("left-out"), 18) << "p\n";
+      << padded(say("evidence.alone"), alone) << padded(say("evidence.within"), within)
+      << padded(say("rms-after"), after) << padded(say("left-out"), left_out) << "p\n";
   const auto evidence = [&](double score) {
     return score > 0.0 ? say.number(fixed_text(score, 1)) : "-";
   };
   for (const Json& c : shown)
     out << "  " << padded(text_in(c, "effect") + " ", 22) << bar(c.at("score"), best, 12) << " "
-        << padded(evidence(c.value("score_alone", 0.0)), 9)
-        << padded(evidence(c.value("score_within", 0.0)), 10)
-        << padded(with_unit(c, "rms", say), 14) << padded(with_unit(c, "cv_rms", say), 18)
+        << padded(evidence(c.value("score_alone", 0.0)), alone)
+        << padded(evidence(c.value("score_within", 0.0)), within)
+        << padded(with_unit(c, "rms", say), after) << padded(with_unit(c, "cv_rms", say), left_out)
         << p_text(c.value("p", NAN), say) << "\n";
   if (left > 0) out << "  " << say("show.more", {{"count", std::to_string(left)}}) << " (--all)\n";
 }
@@ -359,11 +366,12 @@ void print_change(std::ostream& out, const Json& change, const TerminalWords& sa
       << "\n";
   if (change.contains("no_before"))
     out << "  " << say("before") << ": " << text_in(change, "no_before") << "\n";
+  const std::size_t width = std::max<std::size_t>(18, columns_of(say("left-out")) + 2);
   const auto row = [&](const std::string& label, const std::string& name) {
-    out << "  " << padded(label, 18) << padded(with_unit(step, name + "_before", say), 14)
+    out << "  " << padded(label, width) << padded(with_unit(step, name + "_before", say), 14)
         << with_unit(step, name + "_after", say) << "\n";
   };
-  out << "  " << padded("", 18) << padded(say("before"), 14) << say("after") << "\n";
+  out << "  " << padded("", width) << padded(say("before"), 14) << say("after") << "\n";
   row("RMS", "rms");
   row(say("left-out"), "cv_rms");
   if (storage::get(step, "noise_floor"))

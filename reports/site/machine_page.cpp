@@ -140,9 +140,23 @@ void add_numbers(View& view, const Page& page, const HistorySeries& s,
 }
 
 std::string title_of(const Page& page, const HistorySeries& s) {
-  const std::string title = s.axis + " · " + quantity_text(page, s.quantity);
+  const std::string title =
+      (s.axis.empty() ? "" : s.axis + " · ") + quantity_text(page, s.quantity);
   if (!s.ended || s.points.empty()) return title;
   return title + ", " + page.words.get("site.until", {{"date", s.points.back().date}});
+}
+
+/// Whether an open line of the worklist is of this series.
+bool requires_action(const Page& page, const MachineHistory& m, const HistorySeries& s) {
+  return std::any_of(page.site.lines.begin(), page.site.lines.end(), [&](const WorkItem& l) {
+    const auto is_of = [&](const std::string& axis, const std::string& quantity) {
+      return axis == s.axis && quantity == s.quantity;
+    };
+    return l.machine == m.id && l.kind != WorkItem::Kind::information &&
+           (is_of(l.axis, l.quantity) ||
+            std::any_of(l.also.begin(), l.also.end(),
+                        [&](const OpenValue& v) { return is_of(v.axis, v.quantity); }));
+  });
 }
 
 void add_series(View& view, const Page& page, const MachineHistory& m, const HistorySeries& s) {
@@ -181,8 +195,9 @@ Expected<std::string> machine_page(const Page& page, const MachineHistory& m) {
   add_open_lines(view, page, m);
   add_events(view, page, m);
   add_tables(view, page, m);
-  for (const HistorySeries& s : m.series)
-    if (!s.points.empty()) add_series(view, page, m, s);
+  for (const bool first : {true, false})
+    for (const HistorySeries& s : m.series)
+      if (!s.points.empty() && requires_action(page, m, s) == first) add_series(view, page, m, s);
   add_curves(view, page, m);
   return written(page, "machine", view);
 }

@@ -191,8 +191,10 @@ config::Checked<std::vector<Artifact>> write_programs(
     const PointTable& rows, const std::map<std::string, std::string>& options,
     const Templates& templates) {
   const auto& all = plugins.outputs();
+  // A control such as siemens-840d is written by the plugin of its family, program-siemens.
+  const std::string family = "program-" + output.substr(0, output.find('-'));
   const auto found = std::find_if(all.begin(), all.end(), [&](const Output& o) {
-    return o.info.name == output || o.info.name == "program-" + output;
+    return o.info.name == output || o.info.name == "program-" + output || o.info.name == family;
   });
   const auto wrong = [](std::string message) {
     return tl::unexpected(std::vector<Error>{Error{std::move(message)}});

@@ -8,6 +8,7 @@
 #include "laboratory/assessment/days.h"
 #include "laboratory/assessment/describe.h"
 #include "laboratory/statistics/difference.h"
+#include "nonio/sdk/withheld.h"
 
 namespace nonio::assessment {
 
@@ -28,7 +29,7 @@ class OfAxis {
     const auto found = last_promised(*left);
     if (!found) return std::nullopt;
     const auto s = scatter(*left);
-    if (!s) return std::nullopt;
+    if (!s || has_failed(*left)) return std::nullopt;
     return worst(*found, *left, *s);
   }
 
@@ -89,6 +90,19 @@ class OfAxis {
     nonio::statistics::Point p{0.0, r.value, *r.u_repeat};
     for (const store::CommonPart& c : r.common) p.common.push_back({c.source, c.u});
     return p;
+  }
+
+  /// Whether a comparison of the states found that the compensation of the axis failed, which a
+  /// value that happens to be near its prediction would contradict.
+  bool has_failed(std::size_t campaign) const {
+    const auto& asked = m_.stored.asked;
+    if (campaign >= asked.size()) return false;
+    return std::any_of(asked[campaign].begin(), asked[campaign].end(), [&](const auto& f) {
+      return is_failed_compensation(f.id) &&
+             std::any_of(m_.stored.results.begin(), m_.stored.results.end(), [&](const auto& r) {
+               return r.campaign == campaign && r.axis == axis_ && r.measurement == f.measurement;
+             });
+    });
   }
 
   std::optional<reports::TableKept> worst(std::size_t found_in, std::size_t left_in,
