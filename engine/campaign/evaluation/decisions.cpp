@@ -25,9 +25,23 @@ Conformity decided(const Campaign& campaign, const Held& held, const std::string
                .reason = "no-uncertainty"};
   if (!v.U || !(*v.U > 0.0)) return c;
   c.decision = math::decide(std::fabs(v.value), *v.U, held.tolerance.limit,
-                            campaign.certificate.decision_rule);
+                            campaign.certificate.decision_rule, v.k);
   c.reason = c.decision == Decision::cannot_be_decided ? "near-limit" : "";
   return c;
+}
+
+Conformity judged_by_analysis(const Results::Analysed& a, const Value& v) {
+  const bool open = v.judged->decision == Decision::cannot_be_decided;
+  return {.measurement = a.measurement,
+          .axis = "",
+          .plugin = a.plugin,
+          .name = v.name,
+          .tolerance = v.judged->limit,
+          .quantity = v.quantity,
+          .decision = v.judged->decision,
+          .reason = !open ? ""
+                    : v.U ? "near-limit"
+                          : "no-uncertainty"};
 }
 
 bool is_in_unit_of(const Tolerance& tolerance, const Value& v) {
@@ -82,6 +96,9 @@ std::vector<Conformity> held_against_tolerances(const Campaign& campaign,
       const Held held{m.id, m.kind == "axis" ? m.axis : "", tolerance};
       if (!add_decisions(campaign, analyses, held, out)) out.push_back(without_value(held));
     }
+  for (const Results::Analysed& a : analyses)
+    for (const Value& v : a.evaluation.values)
+      if (v.judged) out.push_back(judged_by_analysis(a, v));
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include "campaign/modelling/model_fit.h"
 #include "campaign/reading/names.h"
 #include "campaign/reading/plausibility/plausibility.h"
+#include "nonio/math/decision.h"
 #include "nonio/sdk/campaign.h"
 #include "nonio/sdk/check.h"
 #include "nonio/sdk/format.h"
@@ -17,29 +18,13 @@ namespace nonio::evaluation {
 
 namespace {
 
-/// `length` in m. Returns 0 if [laboratory.cmc] states nothing for this quantity.
-double floor_of(const Cmc& cmc, Quantity q, double length) {
-  switch (q) {
-    case Quantity::length:
-    case Quantity::deviation:
-      return cmc.fixed.value_or(0.0) + cmc.per_length.value_or(0.0) * length;
-    case Quantity::angle:
-    case Quantity::angular_deviation:
-    case Quantity::small_angle:
-    case Quantity::number:  // components of a direction have the uncertainty of an angle
-      return cmc.angle.value_or(0.0);
-    default:
-      return 0.0;
-  }
-}
-
 /// Raises each U to at least the CMC over `length` (m). Does nothing without accreditation. Source:
 /// the policy of ILAC-P14; its text was not available.
 void apply_cmc(const Laboratory& laboratory, double length, Evaluation& e) {
   if (laboratory.accreditation.empty() || !laboratory.cmc.stated()) return;
   std::string raised;
   const auto raise = [&](double& U, Quantity q) {
-    const double least = floor_of(laboratory.cmc, q, length);
+    const double least = math::least_U(laboratory, q, length);
     const bool below = U < least;
     if (below) U = least;
     return below;

@@ -31,14 +31,15 @@ constexpr std::uint32_t repeats_of_plan = 3;
 }  // namespace
 
 LengthAnswer judge_lengths(const std::vector<LengthError>& all, const LengthLimit& limit,
-                           const std::vector<double>& U, bool by_2001, std::string_view rule) {
+                           const std::vector<double>& U, bool by_2001, std::string_view rule,
+                           const std::vector<double>& k) {
   constexpr std::size_t most_forgiven = 5;
   LengthAnswer out;
   double nearest = -INFINITY;
   std::vector<int> verdict(all.size());  // -1 inside, 0 indeterminate, 1 outside
   for (std::size_t i = 0; i < all.size(); ++i) {
     const double most = limit.at(all[i].L), over = std::fabs(all[i].E) - most;
-    const Decision one = decide(std::fabs(all[i].E), U[i], most, rule);
+    const Decision one = decide(std::fabs(all[i].E), U[i], most, rule, k.empty() ? 2.0 : k[i]);
     verdict[i] = one == Decision::conforms ? -1 : one == Decision::does_not_conform ? 1 : 0;
     if (over > nearest) nearest = over, out.worst = i;
   }

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/math/decision.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace nonio::math {
 
-Decision decide(double value, double U, double tolerance, std::string_view rule) {
+Decision decide(double value, double U, double tolerance, std::string_view rule, double k) {
   const bool simple = rule == "ilac-g8-simple", guarded = rule == "ilac-g8-guarded";
-  // One-sided 95 % of a normal distribution, in units of U with k = 2.
-  constexpr double one_sided = 1.65 / 2.0;
+  // One-sided 95 % of a normal distribution, in units of u. Of Student's distribution it is at most
+  // the same part of U as with k = 2.
+  const double one_sided = 1.65 / std::min(k, 2.0);
   const double guard = rule == "iso14253-1:2013" ? U : one_sided * U;
   if (!std::isfinite(value) || !std::isfinite(U)) return Decision::cannot_be_decided;
   if (simple || guarded)
@@ -17,6 +19,23 @@ Decision decide(double value, double U, double tolerance, std::string_view rule)
   if (value <= tolerance - guard) return Decision::conforms;
   if (value > tolerance + guard) return Decision::does_not_conform;
   return Decision::cannot_be_decided;
+}
+
+double least_U(const Laboratory& laboratory, Quantity quantity, double length) {
+  if (laboratory.accreditation.empty()) return 0.0;
+  const Cmc& cmc = laboratory.cmc;
+  switch (quantity) {
+    case Quantity::length:
+    case Quantity::deviation:
+      return cmc.fixed.value_or(0.0) + cmc.per_length.value_or(0.0) * length;
+    case Quantity::angle:
+    case Quantity::angular_deviation:
+    case Quantity::small_angle:
+    case Quantity::number:  // components of a direction have the uncertainty of an angle
+      return cmc.angle.value_or(0.0);
+    default:
+      return 0.0;
+  }
 }
 
 }  // namespace nonio::math

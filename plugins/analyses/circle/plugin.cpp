@@ -382,7 +382,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   auto fit = math::fit_causes_without_spikes(w.circle.readings, w.model, most_left_out * per_deg);
   if (!fit) {
     w.out.findings.push_back(
-        {.id = "circle.too-few",
+        {.id = "circle.refused-few",
          .attention = true,
          .evidence = {{"readings", static_cast<double>(in.observations.size()), Quantity::count}}});
     return std::move(w.out);

@@ -110,6 +110,13 @@ class Worker {
     return in_.observations.lines[e.line].name.starts_with(std::string(test) + " ");
   }
 
+  /// Returns U and its coverage factor, at least those of the accreditation.
+  std::pair<double, double> at_least(double U, double k, const math::BudgetOf& budget) const {
+    const double least =
+        math::least_U(in_.campaign.laboratory, Quantity::deviation, budget.budget().length);
+    return U < least ? std::pair(least, 2.0) : std::pair(U, k);
+  }
+
   void put_test(const char* test, const std::vector<LengthError>& all,
                 const math::ReadingModel& model, math::BudgetOf& budget) {
     std::vector<LengthError> errors;
@@ -118,16 +125,18 @@ class Worker {
       if (is_of(all[i], test)) errors.push_back(all[i]), rows.push_back(i);
     if (errors.empty()) return;
     std::vector<math::Shares> shares;
-    std::vector<double> U;
+    std::vector<double> U, k;
     for (const std::size_t i : rows) {
       std::vector<double> row(all.size(), 0.0);
       row[i] = 1.0;
       shares.push_back(model.shares(row));
-      U.push_back(budget.expand(0.0, shares.back()).U.value_or(NAN));
+      const math::Expanded expanded = budget.expand(0.0, shares.back());
+      const auto [least, factor] = at_least(expanded.U.value_or(NAN), expanded.k, budget);
+      U.push_back(least), k.push_back(factor);
     }
     const LengthLimit limit = limit_of(in_.options, test);
     const math::LengthAnswer answer =
-        math::judge_lengths(errors, limit, U, by_2001_, in_.campaign.certificate.decision_rule);
+        math::judge_lengths(errors, limit, U, by_2001_, in_.campaign.certificate.decision_rule, k);
     std::size_t most = 0, least = 0;
     for (std::size_t i = 0; i < errors.size(); ++i) {
       if (errors[i].E > errors[most].E) most = i;
@@ -136,7 +145,12 @@ class Worker {
     const auto value = [&](const std::string& name, std::size_t i) {
       out_.values.push_back(budget.value(name, errors[i].E, Quantity::deviation, 0.0, shares[i]));
     };
-    if (limit.stated()) value(test, answer.worst);
+    if (limit.stated()) {
+      value(test, answer.worst);
+      constexpr double printed = 1e9;  // to 0.001 um, as limits are stated
+      const double at_worst = std::round(limit.at(errors[answer.worst].L) * printed) / printed;
+      out_.values.back().judged = {at_worst, answer.decision};
+    }
     value(std::string(test) + "_max", most), value(std::string(test) + "_min", least);
     plan(test, errors);
     if (!limit.stated()) return no_limit(test);
@@ -168,7 +182,7 @@ class Worker {
     out_.values.push_back(v);
     const LengthLimit limit = limit_of(in_.options, "R0");
     if (!limit.stated()) return no_limit("R0");
-    decide_value("R0", v, limit.at(0.0));
+    decide_value("R0", out_.values.back(), limit.at(0.0), budget);
   }
 
   void sphere() {
@@ -187,7 +201,7 @@ class Worker {
     const auto f = math::form_of_sphere(list);
     const auto count = static_cast<double>(list.size());
     if (!f) {
-      out_.findings.push_back({.id = "lengths.no-sphere",
+      out_.findings.push_back({.id = "lengths.refused-sphere",
                                .attention = true,
                                .evidence = {{"points", count, Quantity::count}}});
       return;
@@ -229,13 +243,15 @@ class Worker {
     if (model.missing.empty()) out_.budget = budget.budget();
     const LengthLimit limit = limit_of(in_.options, "P");
     if (!limit.stated()) return no_limit("P_form");
-    decide_value("P_form", v, limit.at(0.0));
+    decide_value("P_form", out_.values[out_.values.size() - 2], limit.at(0.0), budget);
   }
 
-  void decide_value(const char* name, const Value& v, double limit) {
-    Decided d{name, v.value, limit, v.U.value_or(NAN)};
+  void decide_value(const char* name, Value& v, double limit, const math::BudgetOf& budget) {
+    const auto [U, k] = at_least(v.U.value_or(NAN), v.k, budget);
+    Decided d{name, v.value, limit, U};
     if (v.U)
-      d.decision = math::decide(v.value, *v.U, limit, in_.campaign.certificate.decision_rule);
+      d.decision = math::decide(v.value, U, limit, in_.campaign.certificate.decision_rule, k);
+    v.judged = {limit, d.decision};
     d.outside = d.decision == Decision::does_not_conform,
     d.undecided = d.decision == Decision::cannot_be_decided;
     decide(d);

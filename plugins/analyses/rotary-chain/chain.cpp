@@ -84,7 +84,7 @@ class Solver {
       case ChainRefusal::not_converging:
         break;
     }
-    return refuse(finding("rotary-chain.not-converging", {count("centres", centres())}));
+    return refuse(finding("rotary-chain.refused-fit", {count("centres", centres())}));
   }
 
   /// Detects a wrong order of axes, an angle in the wrong column, or a table declared as head.

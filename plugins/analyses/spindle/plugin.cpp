@@ -78,7 +78,7 @@ SetUps set_ups_of(const Observations& o) {
     auto turns = math::turns_of(track_of(o, std::move(rows[line])));
     if (!turns) {
       out.findings.push_back(
-          {.id = "spindle.no-turns",
+          {.id = "spindle.refused-turns",
            .attention = true,
            .evidence = {{"readings", static_cast<double>(count), Quantity::count}},
            .texts = {{"sensor", o.lines[line].name}}});
@@ -128,6 +128,7 @@ struct Channel {
   bool axial = false;
   double lever = 0.0;  ///< of a tilt: distance of the sensors, m; otherwise 0
   bool with_ball = true;
+  double u_ball = 0.0;  ///< standard uncertainty of the form of the ball that was subtracted, m
 };
 
 class Worker {
@@ -142,7 +143,14 @@ class Worker {
         continue;
       }
       const Separation how = separation_of(places);
-      one({name, first_of(places, how), false, 0.0, how.kind == Separation::Kind::none}, &how);
+      const bool none = how.kind == Separation::Kind::none;
+      if (none && places.size() > 1)
+        out_.findings.push_back(
+            {.id = "spindle.set-ups-not-used",
+             .attention = true,
+             .evidence = {{"set_ups", static_cast<double>(places.size()), Quantity::count}},
+             .texts = {{"sensor", name}}});
+      one({name, first_of(places, how), false, 0.0, none}, &how);
     }
     both_directions();
     tilts();
@@ -182,15 +190,21 @@ class Worker {
         *high, c.with_ball);
   }
 
-  void one(const Channel& c, const Separation* how) {
+  void one(Channel c, const Separation* how) {
+    std::vector<double> curve;
+    double u_mean = 0.0;
+    const bool separated = how != nullptr && how->kind != Separation::Kind::none;
+    if (separated) separate(c, *how, curve, u_mean);
     const ErrorMotion e = math::error_motion(c.turns);
     const double half = e.total / 2.0, N = static_cast<double>(c.turns.N);
     // The total motion is defined for these revolutions only, so it has no repetition uncertainty.
     const double total = c.axial ? e.total_with_once : e.total;
-    put(c, "total", total, 0.0, INFINITY, -total / 2.0, total / 2.0, c.with_ball && !c.axial);
-    std::vector<double> curve = c.axial ? e.with_once : e.motion;
-    double u_mean = e.u_mean;
-    if (how != nullptr && how->kind != Separation::Kind::none) separate(c, *how, curve, u_mean);
+    put(c, "total", total, std::numbers::sqrt2 * c.u_ball, e.dof, -total / 2.0, total / 2.0,
+        c.with_ball && !c.axial);
+    if (!separated) {
+      curve = c.axial ? e.with_once : e.motion;
+      u_mean = std::hypot(e.u_mean, c.u_ball);
+    }
     put_synchronous(c, "sync", curve, u_mean, e.dof);
     put(c, "async", e.asynchronous, 0.0, INFINITY, -half, half, false);
     const double once = e.eccentricity();
@@ -211,10 +225,9 @@ class Worker {
     }
   }
 
-  /// Replaces `curve` by the spindle motion without the form error of the ball, and adds the form
-  /// error as a result.
-  void separate(const Channel& c, const Separation& how, std::vector<double>& curve,
-                double& u_mean) {
+  /// Returns in `curve` the spindle motion without the form error of the ball, subtracts the form
+  /// error from the readings, and adds it as a result.
+  void separate(Channel& c, const Separation& how, std::vector<double>& curve, double& u_mean) {
     const auto& places = set_ups_.of.at(c.name);
     std::vector<std::vector<double>> curves;
     double squares = 0.0;
@@ -229,9 +242,10 @@ class Worker {
                                   : math::multi_step(curves);
     curve = s.spindle;
     u_mean = std::sqrt(squares) / K;
-    Channel ball = c;
-    ball.with_ball = false;
-    put_synchronous(ball, "ball", s.ball, u_mean, 2.0 * K);
+    put_synchronous(c, "ball", s.ball, u_mean, 2.0 * K);
+    for (std::size_t i = 0; i < c.turns.r.size(); ++i) c.turns.r[i] -= s.ball[i % c.turns.n];
+    c.u_ball = u_mean;
+    freed_.insert_or_assign(c.name, c);
     if (how.kind == Separation::Kind::multi_step)
       out_.findings.push_back({.id = "spindle.multi-step-leaves",
                                .attention = false,
@@ -300,6 +314,8 @@ class Worker {
     for (const auto& [x, y] : {std::pair{"X", "Y"}, {"X1", "Y1"}}) {
       const Turns *X = first(x), *Y = first(y);
       if (X == nullptr || Y == nullptr) continue;
+      const bool freed = freed_.contains(x) && freed_.contains(y);
+      if (freed) X = &freed_.at(x).turns, Y = &freed_.at(y).turns;
       const int sense = math::sense_of(math::error_motion(*X), math::error_motion(*Y));
       auto R = math::rotating(*X, *Y, sense == 0 ? 1 : sense);
       if (!R) continue;
@@ -307,7 +323,8 @@ class Worker {
                                      : sense < 0 ? "spindle.sense-y-to-x"
                                                  : "spindle.sense-not-known",
                                .attention = sense == 0});
-      return one({"R", std::move(*R)}, nullptr);
+      const double u = freed ? std::max(freed_.at(x).u_ball, freed_.at(y).u_ball) : 0.0;
+      return one({"R", std::move(*R), false, 0.0, !freed, u}, nullptr);
     }
     if (!set_ups_.of.empty())
       out_.findings.push_back({.id = "spindle.fixed-only", .attention = false});
@@ -333,6 +350,7 @@ class Worker {
   SetUps set_ups_;
   std::vector<Difference> items_;
   Evaluation out_;
+  std::map<std::string, Channel> freed_;  ///< sensors whose readings no longer contain the ball
   bool ball_ = false, few_turns_ = false;
 };
 

@@ -49,6 +49,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   out.points = std::move(worked.points);
   propose_drift(in, worked, wish, out);
   const char* id = tracks.test == Test::etve      ? "method.thermal-etve"
+                   : tracks.test == Test::loaded  ? "method.thermal-loaded"
                    : tracks.test == Test::spindle ? "method.thermal-spindle"
                                                   : "method.thermal-axis";
   out.notes.push_back({id, {{"window_min", wish.window / 60.0, Quantity::number}}});

@@ -94,6 +94,13 @@ void add_tilts(const Measurement& m, const std::map<std::string, math::Track>& t
   }
 }
 
+bool is_loaded(const Observations& o) {
+  return std::any_of(o.channels.begin(), o.channels.end(), [](const Observations::Channel& c) {
+    return c.unit != "degC" &&
+           std::any_of(c.value.begin(), c.value.end(), [](double v) { return v != 0.0; });
+  });
+}
+
 }  // namespace
 
 Tracks tracks_of(const Measurement& m, const Observations& o) {
@@ -106,7 +113,7 @@ Tracks tracks_of(const Measurement& m, const Observations& o) {
   const bool spindle = !o.axes.empty() && o.axes.front().approach.size() == o.size() &&
                        std::any_of(o.axes.front().approach.begin(), o.axes.front().approach.end(),
                                    [](std::int8_t a) { return a != 0; });
-  out.test = spindle ? Test::spindle : Test::etve;
+  out.test = spindle ? Test::spindle : is_loaded(o) ? Test::loaded : Test::etve;
   std::vector<std::vector<std::size_t>> rows(o.lines.size());
   for (std::size_t i = 0; i < o.size(); ++i) rows[o.line_of(i)].push_back(i);
   std::map<std::string, math::Track> tracks;

@@ -11,7 +11,8 @@
 
 namespace nonio::thermal {
 
-enum class Test { etve, spindle, axis };
+/// `loaded`: a speed or load was recorded as a channel, so the machine was not at rest.
+enum class Test { etve, loaded, spindle, axis };
 
 /// One sensor, or a tilt from two sensors; 0 at its first reading.
 struct Followed {

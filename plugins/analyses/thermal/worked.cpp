@@ -294,7 +294,8 @@ class Worker {
   }
 
   void settle() {
-    if (tracks_.test == Test::etve || slowest_name_.empty()) return;
+    const bool heats = tracks_.test == Test::spindle || tracks_.test == Test::axis;
+    if (!heats || slowest_name_.empty()) return;
     out_.findings.push_back({.id = open_ ? "thermal.warm-up-at-least" : "thermal.warm-up-time",
                              .attention = false,
                              .evidence = {minutes("time_min", slowest_),

@@ -55,21 +55,23 @@ Conditions conditions_of(const std::vector<Observations>& observations) {
 }
 
 std::string method_of(const Source& source, const Results::Analysed& a) {
-  std::string edition, k;
+  std::string edition, k, window;
   for (const Remark& note : a.evaluation.notes)
     for (const Number& n : note.evidence) {
       const std::string text = printed_number(n.value, Quantity::number, 0, source.language());
       if (n.name == "edition") edition = text;
       if (n.name == "k") k = text;
+      if (n.name == "window_min") window = localised(short_text(n.value, 4), source.language());
     }
   const std::string key =
       (pages::follows_plan(source.in, a) ? "method." : "method_own_plan.") + a.plugin;
   if (source.words.get_or(key, "").empty()) return pages::analysis_title(source, a);
   if (const Remark* rules = pages::rules_of(a))
     return source.words.get(key, {{"rules", rules->texts.front().second}});
-  return source.words.get(
-      key,
-      {{"edition", edition}, {"k", k}, {"procedure", source.in.campaign.certificate.procedure}});
+  return source.words.get(key, {{"edition", edition},
+                                {"k", k},
+                                {"window_min", window},
+                                {"procedure", source.in.campaign.certificate.procedure}});
 }
 
 void add_title(const Source& source, Blocks& blocks) {

@@ -30,8 +30,8 @@ void add_measurements(const Source& source, Blocks& blocks) {
 
 Expected<pages::Look> look_of(const Templates& templates, const std::string& name) {
   return pages::read_look(templates, name,
-                          {"title", "identity", "status", "measurements", "notes", "history",
-                           "laboratory", "models", "tables", "residuals"},
+                          {"title", "identity", "status", "summary", "measurements", "notes",
+                           "history", "laboratory", "models", "tables", "residuals"},
                           {"results", "plots", "findings", "targets", "budget"});
 }
 
@@ -61,6 +61,7 @@ Document compose(const Source& source) {
     if (block == "title") add_title(source, document.blocks);
     if (block == "identity") add_identity(source, document.blocks);
     if (block == "status") add_status(source, document.blocks);
+    if (block == "summary") add_summary(source, document.blocks);
     if (block == "measurements") {
       add_measurements(source, document.blocks);
       add_plans(source, document.blocks);

@@ -28,6 +28,8 @@ Expected<pages::Look> look_of(const Templates&, const std::string& name);
 void add_title(const Source&, Blocks&);
 void add_identity(const Source&, Blocks&);
 void add_status(const Source&, Blocks&);
+/// All measurements in one table, if there are at least three; then a new page.
+void add_summary(const Source&, Blocks&);
 
 /// Analyses of the whole campaign: rows of a plan, and findings.
 void add_plans(const Source&, Blocks&);

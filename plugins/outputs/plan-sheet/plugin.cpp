@@ -20,8 +20,8 @@ constexpr double mm = 1e-3;
 
 Expected<pages::Look> look_of(const Templates& templates, const std::string& name) {
   return pages::read_look(templates, name,
-                          {"title", "identity", "status", "measurements", "notes", "history",
-                           "laboratory", "models", "tables", "residuals"},
+                          {"title", "identity", "status", "summary", "measurements", "notes",
+                           "history", "laboratory", "models", "tables", "residuals"},
                           {"results", "plots", "findings", "targets", "budget"});
 }
 

@@ -96,6 +96,24 @@ std::string temperatures(const Source& source, const char* key, const std::vecto
   return " " + source.words.get(key, {{"from", text(low)}, {"to", text(high)}});
 }
 
+/// Speeds of the spindle from its angle, which applies until the next reading of a sensor.
+std::string speeds(const Source& source, const Observations& o) {
+  if (o.axes.empty() || o.axes.front().position.size() != o.size()) return {};
+  double low = INFINITY, high = -INFINITY;
+  for (std::size_t i = 1; i < o.size(); ++i) {
+    const double turns =
+        (o.axes.front().position[i] - o.axes.front().position[i - 1]) / (2.0 * std::numbers::pi);
+    if (o.line_of(i) != o.line_of(i - 1) || !(o.time[i] > o.time[i - 1])) continue;
+    const double rpm = 60.0 * turns / (o.time[i] - o.time[i - 1]);
+    low = std::min(low, rpm), high = std::max(high, rpm);
+  }
+  if (!(low < high || high != 0.0) || low > high) return {};
+  const auto text = [&](double rpm) {
+    return printed_number(rpm, Quantity::number, 0, source.language());
+  };
+  return " " + source.words.get("measurement.speed", {{"from", text(low)}, {"to", text(high)}});
+}
+
 std::string evaluated(const Source& source, const Measured& m) {
   double targets = 0, left_out = 0;
   for (const Results::Analysed* a : m.analyses) {
@@ -229,6 +247,7 @@ std::string test_of(const Source& source, const Measured& m) {
                             {{"count", std::to_string(o.size())},
                              {"minutes", localised(short_text((*last - *first) / 60.0, 4),
                                                    source.language())}}) +
+           (m.measurement.axis.empty() ? speeds(source, o) : "") +
            temperatures(source, "measurement.material", o.material) +
            temperatures(source, "measurement.air", o.air);
   }

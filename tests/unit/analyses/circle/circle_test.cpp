@@ -255,14 +255,14 @@ TEST(Circle, AnArcThatIsTooShortNamesWhatIsNotIdentifiable) {
   auto readings = exact::circle(m, {0.1e-6, 0.0, 0.0}, random);
   std::erase_if(readings, [](const CircleReading& r) { return r.angle > 60.0 * exact::deg; });
   const auto e = evaluated(test_of(m, readings), options());
-  EXPECT_TRUE(finding(e, "circle.inseparable") || finding(e, "circle.too-few"));
+  EXPECT_TRUE(finding(e, "circle.inseparable") || finding(e, "circle.refused-few"));
   if (const Value* v = value(e, "C0Y"); v != nullptr) {
     EXPECT_GT(v->U.value_or(1.0), 20e-6);
   }
   std::erase_if(readings, [](const CircleReading& r) { return r.angle > 5.0 * exact::deg; });
   const auto few = evaluated(test_of(m, readings), options());
   EXPECT_TRUE(few.values.empty());
-  EXPECT_TRUE(finding(few, "circle.too-few"));
+  EXPECT_TRUE(finding(few, "circle.refused-few"));
 }
 
 TEST(Circle, TheZoneIsNeverWiderThanAboutTheLeastSquaresCentre) {

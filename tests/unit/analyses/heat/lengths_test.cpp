@@ -45,6 +45,9 @@ TEST(Lengths, ThreeAnswers) {
   Random r(1);
   const MadeLengths m = gauging(r, 1e-6);
   EXPECT_NE(finding(evaluated(lengths(), m.test, wide), "lengths.conforms"), nullptr);
+  for (const char* judged : {"E0", "R0"})
+    EXPECT_EQ(value(evaluated(lengths(), m.test, wide), judged)->judged->decision,
+              Decision::conforms);
   // At its own largest error the limit is nearer than U.
   const auto e = evaluated(lengths(), m.test, wide);
   const double largest = std::max(value(e, "E0_max")->value, -value(e, "E0_min")->value);
@@ -53,6 +56,14 @@ TEST(Lengths, ThreeAnswers) {
   ASSERT_NE(f, nullptr);
   EXPECT_TRUE(f->attention);
   EXPECT_GT(evidence(*f, "undecided"), 0.0);
+  EXPECT_EQ(value(near, "E0")->judged->decision, Decision::cannot_be_decided);
+  EXPECT_NEAR(value(near, "E0")->judged->limit, largest, 1e-12);
+  // An accredited laboratory decides with at least its CMC, which the result has too.
+  MadeLengths accredited = m;
+  accredited.test.campaign.laboratory.accreditation = "LAT 123";
+  accredited.test.campaign.laboratory.cmc.fixed = 1e-3;
+  EXPECT_NE(finding(evaluated(lengths(), accredited.test, wide), "lengths.cannot-be-decided"),
+            nullptr);
   const auto far = evaluated(lengths(), m.test, {{"mpe_E0_um", largest * 1e6 - 1.0}});
   const Finding* beyond = finding(far, "lengths.does-not-conform");
   ASSERT_NE(beyond, nullptr);
@@ -124,7 +135,7 @@ TEST(Lengths, FormOnASphere) {
   t.campaign.instrument.sphere.reset();
   EXPECT_NE(finding(evaluated(lengths(), t, {{"mpe_P_um", 5.0}}), "lengths.no-uncertainty"),
             nullptr);
-  EXPECT_NE(finding(evaluated(lengths(), sphere(4, 0.0)), "lengths.no-sphere"), nullptr);
+  EXPECT_NE(finding(evaluated(lengths(), sphere(4, 0.0)), "lengths.refused-sphere"), nullptr);
 }
 
 TEST(Lengths, HostileReadingsAreNoCrashAndNoNumber) {

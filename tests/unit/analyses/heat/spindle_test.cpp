@@ -122,7 +122,37 @@ TEST(Spindle, DonaldsonTakesTheBallOut) {
   EXPECT_NE(finding(out, "spindle.reversal"), nullptr);
   EXPECT_NEAR(value(out, "sync_X")->value, 2e-6, 0.01e-6);
   EXPECT_NEAR(value(out, "ball_X")->value, 0.6e-6, 0.01e-6);
+  EXPECT_NEAR(value(out, "total_X")->value, 2e-6, 0.01e-6);
+  EXPECT_EQ(finding(out, "spindle.ball-in-values"), nullptr);
   EXPECT_EQ(t.o.lines.size(), 2U);
+  // Turned by 170 deg they are no reversal, and a finding says so.
+  t.o.axes[1].position.back() = 170.0 * turn_rad / 360.0;
+  for (std::size_t i = 0; i < t.o.size(); ++i)
+    if (t.o.line[i] == 1) t.o.axes[1].position[i] = t.o.axes[1].position.back();
+  const auto none = evaluated(spindle(), t);
+  ASSERT_NE(finding(none, "spindle.set-ups-not-used"), nullptr);
+  EXPECT_EQ(evidence(*finding(none, "spindle.set-ups-not-used"), "set_ups"), 2.0);
+  EXPECT_FALSE(value(none, "total_X")->U);
+}
+
+// Both sensors with a reversal free the rotating sensitive direction of the ball too.
+TEST(Spindle, ReversalsOfBothSensorsTakeTheBallOutOfBothDirections) {
+  const auto with = [](double of_ball) {
+    Made t = empty();
+    const auto ball = [&](double a) { return of_ball * ball_form(-a); };
+    for (const char* sensor : {"X", "Y"}) {
+      const double phase = sensor[0] == 'X' ? 0.0 : turn_rad / 4.0;
+      const auto S = [phase](double a) {
+        return spindle_motion(a) * std::cos(phase) + 1e-5 * std::cos(a - phase);
+      };
+      add_line(t, sensor, 0, 0, 4, 64, [&](double a) { return S(a) + ball(a - phase); });
+      add_line(t, sensor, 180, 180, 4, 64, [&](double a) { return -S(a) + ball(a - phase); });
+    }
+    return evaluated(spindle(), t);
+  };
+  const auto none = with(0.0), some = with(1.0);
+  EXPECT_NEAR(value(some, "total_R")->value, value(none, "total_R")->value, 1e-9);
+  EXPECT_TRUE(value(some, "sync_R")->U);
 }
 
 TEST(Spindle, MultiStepLeavesItsOwnWavesAndSaysSo) {
@@ -203,7 +233,7 @@ TEST(Spindle, HostileReadingsAreNoCrashAndNoNumber) {
   }
   for (double& a : t.o.axes[0].position) a *= 1e18;
   EXPECT_TRUE(evaluated(spindle(), t).values.empty());
-  EXPECT_NE(finding(evaluated(spindle(), t), "spindle.no-turns"), nullptr);
+  EXPECT_NE(finding(evaluated(spindle(), t), "spindle.refused-turns"), nullptr);
   t.o = rearranged(t.o, {});
   EXPECT_TRUE(evaluated(spindle(), t).values.empty());
 }

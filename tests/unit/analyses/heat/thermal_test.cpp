@@ -91,6 +91,11 @@ TEST(Thermal, AMachineAtRestHasRangesAndProposesADrift) {
   EXPECT_TRUE(above->attention);
   EXPECT_EQ(evidence(*above, "stated"), 1e-6);
   EXPECT_EQ(t.campaign.environment.drift, 1e-6) << "a proposal changes nothing";
+  t.o.channels = {
+      {.name = "spindle", .unit = "rpm", .time = {0.0, 1000.0}, .value = {0.0, 6000.0}}};
+  const auto loaded = evaluated(thermal(), t);
+  EXPECT_EQ(finding(loaded, "thermal.drift-above-stated"), nullptr) << "it was not at rest";
+  EXPECT_EQ(loaded.notes.back().id, "method.thermal-loaded");
 }
 
 TEST(Thermal, ShiftTurnAndOrderOfRowsChangeNothing) {

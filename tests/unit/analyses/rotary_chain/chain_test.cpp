@@ -132,7 +132,7 @@ TEST(RotaryChainPlugin, RefusesWithTheReason) {
   refused(shop.with("tables", std::vector<std::string>{"B"}), "rotary-chain.axes-needed");
   refused(shop.with("tables", std::vector<std::string>{"B", "B"}), "rotary-chain.axes-needed");
   refused(shop.with("tables", std::vector<std::string>{"B", "A"}), "rotary-chain.axes-needed");
-  refused(shop.with("tables", std::vector<std::string>{"C", "B"}), "rotary-chain.not-converging");
+  refused(shop.with("tables", std::vector<std::string>{"C", "B"}), "rotary-chain.refused-fit");
   shop = good;
   shop.with("tables", std::vector<std::string>{"C"});
   refused(shop.with("heads", std::vector<std::string>{"B"}), "rotary-chain.does-not-fit");

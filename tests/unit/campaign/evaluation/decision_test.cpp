@@ -27,6 +27,10 @@ TEST(Decision, UpperLimitAfterIso14253) {
   EXPECT_EQ(decide(9.176, 1.0, 10.0), Decision::cannot_be_decided);
   EXPECT_EQ(decide(10.825, 1.0, 10.0), Decision::cannot_be_decided);  // y = USL + 1.65 u
   EXPECT_EQ(decide(10.826, 1.0, 10.0), Decision::does_not_conform);
+  // One rectangular part has k = 1.65: 1.65 u is 1.0 U. With few degrees of freedom 0.825 U remains.
+  EXPECT_EQ(decide(9.05, 1.0, 10.0, "", 1.65), Decision::cannot_be_decided);
+  EXPECT_EQ(decide(8.99, 1.0, 10.0, "", 1.65), Decision::conforms);
+  EXPECT_EQ(decide(9.175, 1.0, 10.0, "", 2.8), Decision::conforms);
   const char* const older = "iso14253-1:2013";
   EXPECT_EQ(decide(9.0, 1.0, 10.0, older), Decision::conforms);  // y = USL - U
   EXPECT_EQ(decide(9.1, 1.0, 10.0, older), Decision::cannot_be_decided);
@@ -100,6 +104,17 @@ TEST(Decision, AMeasurementIsHeldAgainstItsOwnLimits) {
             "high|X|iso230-2|A conforms\n"
             "C1||circle|G cannot be decided, near-limit\n"
             "C1||circle|C0Y does not conform\n");
+}
+
+TEST(Decision, AnAnalysisStatesLimitsOfItsOwn) {
+  Limits limits;
+  limits.campaign = {};
+  limits.analyses.resize(1);
+  Value& v = limits.analyses[0].evaluation.values[0];
+  v.judged = {25e-6, Decision::does_not_conform};
+  EXPECT_EQ(limits.decided(), "low||iso230-2|A does not conform\n");
+  v.judged->decision = Decision::cannot_be_decided, v.U.reset();
+  EXPECT_EQ(limits.decided(), "low||iso230-2|A cannot be decided, no-uncertainty\n");
 }
 
 TEST(Decision, ALimitInAnotherUnitHoldsNothing) {

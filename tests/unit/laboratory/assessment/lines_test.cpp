@@ -599,8 +599,8 @@ TEST(Forecasts, NothingKeepsTheDateOfAnAxisThatIsOut) {
 
 TEST(Forecasts, AskForAMeasurementNowWhereTheLimitMayBeExceededNow) {
   MadeMachine m("S-45");
-  m.follow("X", "B_mean", {-0.9, -1.8, -2.6, -3.6, -4.3, -5.2, -6.1, -7.0}, 0.1);
-  m.judge("X", "B", {1, 1.9, 2.7, 3.7, 4.4, 5.3, 6.2, 7.1});
+  m.follow("X", "B_mean", {-0.9, -1.8, -2.5, -3.4, -4.1, -5.0, -5.7, -6.5}, 0.3);
+  m.judge("X", "B", {1, 1.9, 2.6, 3.5, 4.2, 5.1, 5.8, 6.8});
   std::vector<assessment::AssessedMachine> one{m.assessed()};
   judge_all(one);
   const auto forecast = [&](const std::string& today) {

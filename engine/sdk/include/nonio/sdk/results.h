@@ -31,6 +31,18 @@ struct Followed {
   std::vector<std::pair<std::string, std::string>> texts{};
 };
 
+/// Conformity of a result y with expanded uncertainty U to an upper limit T. ISO 14253-1 with a
+/// guard band g: conforms if y <= T - g, does not conform if y > T + g, otherwise indeterminate
+/// (math/decision.h defines g and the other rules).
+enum class Decision { conforms, does_not_conform, cannot_be_decided };
+
+/// A limit that an analysis itself states for a value, such as a maximum permissible error at its
+/// length, and its decision by the rule of the campaign.
+struct JudgedLimit {
+  double limit = 0.0;
+  Decision decision = Decision::cannot_be_decided;
+};
+
 struct Value {
   std::string name;  ///< symbol of the standard: A, R+, Ps_max
   double value = 0.0;
@@ -43,6 +55,7 @@ struct Value {
   /// Set if the history follows the value and the budget contains its uncertainty; see
   /// Analysis::states_followed.
   std::optional<Followed> followed{};
+  std::optional<JudgedLimit> judged{};
 };
 
 /// A statement about the results. Its text is looked up by `id` in templates/words, with
@@ -174,11 +187,6 @@ struct Issue {
 inline std::string identifier_of(std::string_view number, std::string_view readings_sha256) {
   return std::string(number) + "." + std::string(readings_sha256);
 }
-
-/// Conformity of a result y with expanded uncertainty U to an upper limit T. ISO 14253-1 with a
-/// guard band g: conforms if y <= T - g, does not conform if y > T + g, otherwise indeterminate
-/// (math/decision.h defines g and the other rules).
-enum class Decision { conforms, does_not_conform, cannot_be_decided };
 
 struct Conformity {
   std::string measurement, axis, plugin, name;  ///< axis: empty unless the kind is "axis"

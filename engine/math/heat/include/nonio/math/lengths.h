@@ -53,10 +53,10 @@ struct LengthAnswer {
 };
 
 /// `U`: expanded uncertainty of each error, m. `by_2001`: up to five lengths may have an error
-/// outside. `rule`: decision rule of the certificate.
+/// outside. `rule`: decision rule of the certificate. `k`: coverage factor of each U.
 LengthAnswer judge_lengths(const std::vector<LengthError>& all, const LengthLimit& limit,
                            const std::vector<double>& U, bool by_2001,
-                           std::string_view rule = "iso14253-1");
+                           std::string_view rule = "iso14253-1", const std::vector<double>& k = {});
 
 /// The largest range of the first three repeats of a length, m, and the indices of its smallest and
 /// largest error. `repeat_range` returns std::nullopt if no length has two repeats.

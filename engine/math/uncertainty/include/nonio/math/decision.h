@@ -3,14 +3,21 @@
 
 #include <string_view>
 
+#include "nonio/sdk/campaign.h"
 #include "nonio/sdk/results.h"
 
 namespace nonio::math {
 
 /// Decides conformity to an upper limit. The default, also for an empty `rule`, is ISO 14253-1:2017
-/// with at least 95 %: guard band 1.65 u = 0.825 U (k = 2) on both sides. "iso14253-1:2013" has a
+/// with at least 95 %: guard band 1.65 u on both sides, or 0.825 U if k > 2 (few degrees of freedom). "iso14253-1:2013" has a
 /// guard band U on both sides; ILAC-G8:09/2019 has simple acceptance (4.2.1) and a guard band U
 /// (4.2.2). Indeterminate without a finite value and U.
-Decision decide(double value, double U, double tolerance, std::string_view rule = "iso14253-1");
+Decision decide(double value, double U, double tolerance, std::string_view rule = "iso14253-1",
+                double k = 2.0);
+
+/// Smallest U (k = 2) that the accreditation covers over `length` (m), SI; 0 without accreditation
+/// or if [laboratory.cmc] states nothing for this quantity. An analysis that decides itself uses at
+/// least this U, because the result gets it too.
+double least_U(const Laboratory& laboratory, Quantity quantity, double length);
 
 }  // namespace nonio::math
