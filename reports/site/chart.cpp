@@ -181,7 +181,7 @@ class HistoryPlot {
     }
     if (y_.empty()) y_.show(0.0);
     x_.widen(0.03, 20);
-    y_.widen(0.08, 1e-9 + 1e-3 * most);
+    y_.widen(0.08, 1e-9 + 1e-6 * most);
     std::erase_if(limits_, [this](double limit) { return limit < y_.low || limit > y_.high; });
   }
 
