@@ -183,7 +183,7 @@ Expected<std::string> machine_page(const Page& page, const MachineHistory& m) {
   add_events(view, page, m);
   add_tables(view, page, m);
   for (const HistorySeries& s : m.series)
-    if (!s.points.empty()) add_series(view, page, m, s);
+    if (!s.points.empty()) add_series(view.flag("trends", true), page, m, s);
   add_curves(view, page, m);
   return written(page, "machine", view);
 }

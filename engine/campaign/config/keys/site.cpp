@@ -241,8 +241,8 @@ constexpr Choice terminal_languages[] = {{"de"}, {"en"}, {"it"}};
 constexpr Key site_file_keys[] = {
     format_key,
     {"language", into<&SiteFile::language>,
-     "Language of summary.txt, the pages, and what run, status, show, model, plan, machine history "
-     "and table session print. JSON, --help, error messages and the other commands are English.",
+     "Language of summary.txt, the pages, and what run, check, status, show, model, plan, machine "
+     "history and table session print. JSON, --help, error messages and the other commands are English.",
      otherwise("en"), terminal_languages},
     {"laboratory", nested<&SiteFile::laboratory>, "The calibration laboratory.", laboratory_keys},
     {"limits", nested<&SiteFile::limits>, "Limits for one campaign.", limits_keys},
