@@ -300,25 +300,7 @@ class HelpPage {
     if (!v.footer.empty()) out_ << "\n" << wrapped(v.footer, 0, width_);
     if (v.examples.empty()) return;
     heading(v.examples.size() == 1 ? "Example:" : "Examples:");
-    for (const std::string& example : v.examples) out_ << command_lines(example, width_);
-  }
-
-  /// Breaks a command before its options, so that all of it can be pasted.
-  static std::string command_lines(const std::string& command, std::size_t width) {
-    std::string out, row;
-    for (std::size_t at = 0, end = 0; at < command.size(); at = end + 1) {
-      end = std::min(command.find(" --", at), command.size());
-      const std::string part = command.substr(at, end - at);
-      if (row.empty()) {
-        row = "  " + part;
-      } else if (columns_of(row + part) + 3 <= width) {
-        row += " " + part;
-      } else {
-        out += row + " \\\n";
-        row = "      " + part;
-      }
-    }
-    return out + row + "\n";
+    for (const std::string& example : v.examples) out_ << wrapped(example, 2, width_, 4);
   }
 
   static std::string synopsis(const std::string& path, const Verb& v) {

@@ -248,18 +248,12 @@ class Page {
     std::erase_if(rest, [](const auto& row) {  // results of the test of a model
       return row.first.starts_with("lack_of_fit") || row.first == "redundancy";
     });
-    constexpr char unbroken = '\x1f';  // a value, its U and its unit are on one line
     std::string text;
-    for (std::size_t i = 0; i < std::min(rest.size(), most_values); ++i) {
-      std::string one = say_.of("value", rest[i].first) + " " + result(rest[i].second);
-      std::replace(one.begin(), one.end(), ' ', unbroken);
-      text += (i == 0 ? "" : ", ") + one;
-    }
+    for (std::size_t i = 0; i < std::min(rest.size(), most_values); ++i)
+      text += (i == 0 ? "" : ", ") + say_.of("value", rest[i].first) + " " + result(rest[i].second);
     if (rest.size() > most_values)
       text += ", " + say_("show.more", {{"count", std::to_string(rest.size() - most_values)}});
-    text = text.empty() ? "" : wrapped(text, 4, width_);
-    std::replace(text.begin(), text.end(), unbroken, ' ');
-    out_ << text;
+    if (!text.empty()) out_ << wrapped(text, 4, width_);
   }
 
   void table(const std::vector<std::pair<std::string, Json>>& rows) {

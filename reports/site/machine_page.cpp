@@ -148,7 +148,7 @@ std::string title_of(const Page& page, const HistorySeries& s) {
 
 void add_series(View& view, const Page& page, const MachineHistory& m, const HistorySeries& s) {
   const FollowedNumbers numbers(s, m.series, page.words);
-  View& series = view.add("series");
+  View& series = view.flag("trends", true).add("series");
   series.set("series", title_of(page, s)).set("chart", history_chart(page, m, s));
   add_changes(series, page, s, numbers);
   series.set("forecast", forecast(page, s, numbers));
@@ -183,7 +183,7 @@ Expected<std::string> machine_page(const Page& page, const MachineHistory& m) {
   add_events(view, page, m);
   add_tables(view, page, m);
   for (const HistorySeries& s : m.series)
-    if (!s.points.empty()) add_series(view.flag("trends", true), page, m, s);
+    if (!s.points.empty()) add_series(view, page, m, s);
   add_curves(view, page, m);
   return written(page, "machine", view);
 }
