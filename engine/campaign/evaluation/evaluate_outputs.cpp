@@ -29,8 +29,8 @@ void check_control(const Work& work) {
   std::vector<std::string> tables;
   for (const Controller& c : work.context.plugins->controllers()) tables.push_back(c.info.name);
   if (control.empty() || std::find(tables.begin(), tables.end(), control) != tables.end()) return;
-  work.report(work.error_at("machine.control", "there is no control \"" + control + "\"" +
-                                                   storage::suggestion(control, tables) +
+  work.report(work.error_at("machine.control", "no controller writes tables for \"" + control +
+                                                   "\"" + storage::suggestion(control, tables) +
                                                    "; there are " + comma_list(tables)));
 }
 
