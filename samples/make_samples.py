@@ -242,8 +242,8 @@ def tolerances():
     rows = standard_cycle(places, mean, [a - b for a, b in zip(mean, reversal)],
                           drawn(places, noise, 420.0), drawn(places, noise, 420.0), noise)
     story = ["With tolerances, an instrument and its surroundings: every value has its uncertainty U (k = 2), and",
-             "every tolerance an answer after ISO 14253-1. A conforms, B does not conform, and E lies so close to its",
-             "limit that it cannot be decided: three answers, not two."]
+             "every tolerance a decision according to ISO 14253-1. A conforms, B does not conform, and E is so close to",
+             "its limit that it is indeterminate: three decisions, not two."]
     axis = linear(1000.0, tolerance_um="{ A = 22.0, E = 12.0, B = 3.0 }")
     return {"campaign.toml": manifest(
                 story, "09-tolerances", "Esempio Nove S.p.A.", "Padova", "2026-03-23",

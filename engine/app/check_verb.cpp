@@ -146,8 +146,7 @@ Verb check_verb(Common& common) {
            {"--column", &wish->file.columns,
             "For a FILE with other names of columns: \"NAME = KNOWN\" such as \"Soll mm = "
             "target_mm\", or \"#3 = target_mm\" for the third one; may be given several times"},
-           {"--axis", &wish->file.axis,
-            "For a FILE: axis that its readings probably are of; it is tried first"},
+           {"--axis", &wish->file.axis, "For a FILE: probable axis of its readings, tried first"},
            {"--only-templates", &wish->only_templates,
             "Check the templates of reports and certificates instead: layouts, the texts of every "
             "language and their placeholders, missing characters. Without SITE: those that are "

@@ -172,9 +172,9 @@ Expected<std::string> export_one(const fs::path& folder, const GetWish& wish,
   const fs::path path = fs::path(wish.to) / name;
   NONIO_TRY(const auto there, storage::is_there(path));
   if (there && storage::sha256_of_file(path).value_or("") != storage::sha256(bytes))
-    return fail(
-        "exists with different content; nothing was written. Remove it, or give --to "
-        "another folder");
+    return fail(path.string() +
+                " exists with different content; nothing was written. Remove it, or give --to "
+                "another folder");
   if (!there)
     if (auto put = storage::publish(wish.to, {{name, std::move(bytes)}}); !put)
       return fail(put.error());

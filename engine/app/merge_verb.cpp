@@ -258,7 +258,7 @@ Verb insert_verb(Common& common) {
           "made "
           "from this campaign or from a later one, or contradicts the record, the command ends "
           "with "
-          "an error; on a terminal it asks for a state that nothing states. It prints the "
+          "an error; on a terminal it prompts for a state that is stated nowhere. It prints the "
           "differences, and E, B and M as measured and with all files "
           "loaded, and warns if a later campaign of the site measured this axis of the "
           "machine.\n\nFiles with several axes (FANUC's parameters and pitch data, SINUMERIK's "

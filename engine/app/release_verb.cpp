@@ -129,7 +129,7 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
       break;
   }
   if (!common.json) {
-    std::cout << done.entry.number << " issued for " << done.draft->campaign << ", released by "
+    std::cout << done.entry.number << " issued for " << done.draft->campaign << ", approved by "
               << done.by << "\n";
     for (const fs::path& f : done.files) std::cout << "  " << f.string() << "\n";
   }
@@ -141,7 +141,7 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
 int release(const ReleaseVerbWish& wish, const Common& common) {
   if (wish.list) return list_drafts(wish, common);
   if (wish.by.empty() && wish.user.empty())
-    return complain("--by NAME or --user ACCOUNT is missing: who releases it? Or --list");
+    return complain("state who approves it: --by NAME or --user ACCOUNT; --list lists the drafts");
   batch::ReleaseRequest wanted{wish.folder, wish.by, wish.role, {}, wish.out, wish.user};
   for (const std::string& given : wish.reasons) {
     const std::size_t equals = given.find('=');
@@ -200,7 +200,7 @@ Verb approve_verb(Common& common) {
           common_arguments(common)),
       .footer =
           "The nightly run makes a draft: OUT/CAMPAIGN/certificate-draft.pdf, marked on every "
-          "page, without number and signature. Read the draft, check the findings, and release it. "
+          "page, without number and signature. Read the draft, check the findings, and approve it. "
           "The certificate then gets a number, is signed, and is entered into the register of the "
           "site with your name, the time and the reasons. If data, plugins or templates have "
           "changed since the draft was made, repeat the nightly run first. Exit status 1 if a "

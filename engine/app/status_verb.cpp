@@ -148,7 +148,7 @@ Verb status_verb(Common& common) {
           "The first line states number, date and age of the last run and its campaigns; with "
           "--quiet it is printed only if something is wrong. The actions follow, most urgent "
           "first: lost, failed, out of tolerance, changed, soon out of tolerance, overdue, "
-          "withheld, indeterminate, note. "
+          "withheld, indeterminate, info. "
           "Each names the machine and axis, the value with U (k = 2), the limit, since when, what "
           "to do, and the page that shows it. Known: acknowledged (`nonio machine ack`) and not "
           "changed since.\n\nExit status: 0 the last run is complete and recent enough, also while "

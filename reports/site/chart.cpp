@@ -140,6 +140,7 @@ class HistoryPlot {
                 fixed_text(2 + 116 * (days(*day) - x_.low) / (x_.high - x_.low), 1) + ' ' +
                 y(value(p.value));
     if (path.empty()) return {};
+    if (path.find('L') == std::string::npos) path += "h3";  // a single value is a dash
     std::string out = "<path class=\"line\" d=\"" + path + "\"/>";
     for (const double limit : limits_) {
       const std::string at = y(limit);

@@ -161,7 +161,7 @@ bool requires_action(const Page& page, const MachineHistory& m, const HistorySer
 
 void add_series(View& view, const Page& page, const MachineHistory& m, const HistorySeries& s) {
   const FollowedNumbers numbers(s, m.series, page.words);
-  View& series = view.add("series");
+  View& series = view.flag("trends", true).add("series");
   series.set("series", title_of(page, s)).set("chart", history_chart(page, m, s));
   add_changes(series, page, s, numbers);
   series.set("forecast", forecast(page, s, numbers));

@@ -49,6 +49,12 @@ def lost_lists(text):
         before = line
 
 
+def elements(text):
+    """Placeholders such as <asset> outside of code, which a browser takes for an element and does not show."""
+    text = re.sub(r"^ *```.*?^ *```|<!--.*?-->|`[^`]*`", "", text, flags=re.M | re.S)
+    return [m[0] for m in re.finditer(r"<(\w+)>", text) if m[1] not in ("code", "br", "sub", "sup")]
+
+
 # Phrases that a reader had to read twice.
 RIDDLES = re.compile(r"""predecessors | \bhas\ a\ say\b | what\ comes\ of\ it | \bto\ be\ had\b | \bbad\ record\b
     | (held|hold|holds|holding)\ (\w+\ )?against\b | laws\ of\ (its|their|each)\ kind | verdict:\ nothing
@@ -87,6 +93,11 @@ class Documents(unittest.TestCase):
     def test_lines_fit_120_columns(self):
         wide = [f"{page.relative_to(ROOT)}:{n}" for page in PAGES for n in wide_lines(page.read_text())]
         self.assertEqual([], wide, "expected at most 120 columns")
+
+    def test_no_placeholder_is_an_element(self):
+        self.assertEqual(["<asset>"], elements("machines/<asset>.toml of `<folder>`, H<sub>2</sub>O"))
+        found = [f"{page.relative_to(ROOT)}: {e}" for page in PAGES for e in elements(page.read_text(encoding="utf-8"))]
+        self.assertEqual([], found, "expected a placeholder in capitals or in backquotes")
 
     def test_each_sample_has_one_row_in_their_order(self):
         rows = re.findall(r"^\| `([^`]+)` \|", (ROOT / "samples" / "README.md").read_text(), re.M)

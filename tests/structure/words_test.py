@@ -20,10 +20,8 @@ def rules(language):
     """(pattern, pattern of exceptions, words to write) of a language."""
     key = "forbidden" if language == "en" else f"forbidden_{language}"
     found = [(re.compile(pattern, re.I), None, term.get(language, "")) for term in TERM for pattern in term.get(key, [])]
-    if language == "en":
-        found += [(re.compile(p["pattern"], re.I), re.compile(p["except"], re.I) if "except" in p else None, p["write"])
-                  for p in TERMS["phrase"]]
-    return found
+    return found + [(re.compile(p["pattern"], re.I), re.compile(p["except"], re.I) if "except" in p else None, p["write"])
+                    for p in TERMS["phrase"] if p.get("language", "en") == language]
 
 
 def wrong(text, language="en"):
@@ -97,6 +95,12 @@ class Words(unittest.TestCase):
         for text in ("The key stands beside the file.", "the next night", "after our reading", "It cannot be decided."):
             self.assertTrue(list(wrong(text)), text)
         self.assertTrue(list(wrong("Alle Ablesungen", "de")))
+        for text in ("Die Spalte sagt es.", "Niemand nennt sie.", "was er wegnähme", "nicht wie versprochen", "nicht entscheidbar", "nicht sicher"):
+            self.assertTrue(list(wrong(text, "de")), text)
+        for text in ("Il manifesto non dice nulla.", "nessuno ha detto perché", "come promesso", "ciò che toglierebbe", "passate escluse", "non certo"):
+            self.assertTrue(list(wrong(text, "it")), text)
+        self.assertEqual([], list(wrong("Die Aussage ist vorausgesagt.", "de")))
+        self.assertEqual([], list(wrong("Da un certo istante tutto è spostato.", "it")))
         self.assertTrue(list(wrong("Le letture sono derivate", "it")))
         self.assertEqual(["a stands b"], literals('f("a stands "\n  "b");  // beside it\n'))
         self.assertEqual([], list(wrong("The number stands for the axis.")))

@@ -198,7 +198,7 @@ class Releaser {
 
   Expected<void> open_draft() {
     const std::string none = "nothing of campaign " + id_ +
-                             " waits for a release; a draft is made by `nonio run SITE --out OUT`";
+                             " waits for approval; a draft is made by `nonio run SITE --out OUT`";
     NONIO_TRY(const auto place, certificates::register_place(options_.site, numbering_));
     NONIO_TRY(const auto there, certificates::has_register(place, numbering_.patience));
     if (!there) return fail(none);
@@ -251,7 +251,7 @@ class Releaser {
   std::string none_but(certificates::Register& opened,
                        const certificates::RegisterEntry& last) const {
     const auto first = opened.approval_of(last.number).value_or(std::nullopt);
-    return "nothing of campaign " + id_ + " waits for a release; " + last.number + " of " +
+    return "no draft of campaign " + id_ + " waits for approval; " + last.number + " of " +
            last.date + " is its last certificate" +
            (first ? ", approved by " + first->by + " at " + first->at : "");
   }
@@ -294,7 +294,7 @@ class Releaser {
     CampaignState campaign;
     campaign.id = id_;
     campaign.folder = out_.draft->folder;
-    campaign.reason = "released by " + request_.by;
+    campaign.reason = "approved by " + request_.by;
     std::vector<CampaignState> campaigns{campaign};
     HistoryUpdate history(options_, (*place)->context);
     if (const auto begun = history.begin(); !begun) return fail_with(begun.error().message);

@@ -191,7 +191,7 @@ Expected<std::optional<Record>> staged_record(const fs::path& campaign_output) {
 
 std::vector<KnownFinding> known_findings(const Results& results, const Templates& templates,
                                          const std::string& language) {
-  const config::TerminalWords words(templates, language);
+  const config::TerminalWords words(templates, language), in_english(templates, "en");
   const bool english = language == "en";
   std::vector<KnownFinding> out;
   const auto take = [&](const std::vector<Finding>& findings) {
@@ -214,7 +214,9 @@ std::vector<KnownFinding> known_findings(const Results& results, const Templates
       out.push_back(
           {c.measurement,
            "tolerance." + (c.axis.empty() ? "" : c.axis + ".") + c.name + "." + c.plugin,
-           c.name + (c.axis.empty() ? "" : " of axis " + c.axis) + ": " + to_text(c.decision), true,
+           c.name + (c.axis.empty() ? "" : " of axis " + c.axis) + ": " +
+               in_english.of("decision", to_text(c.decision)),
+           true,
            english ? ""
            : c.axis.empty()
                ? c.name + ": " + decision

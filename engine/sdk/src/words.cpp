@@ -124,6 +124,8 @@ Texts said(const Templates& templates, std::string_view language, Texts texts) {
     if (std::string term = words(templates, language, "term." + key + "." + text); !term.empty())
       out = std::move(term);
     text = std::move(out);
+    // Errors with their sizes, such as "EYY 1.00, EXX -0.75".
+    if (key == "combinations") text = localised(std::move(text), language);
   }
   return texts;
 }

@@ -112,7 +112,7 @@ const campaigns = (() => {
             Object.assign(query, {search: m.machine, state: "", page: 0});
             location.hash = "#to=campaigns";
           })), el("td", {}, entries.visible(m.model)), el("td", {}, entries.visible(m.customer)), el("td", {class: "day"}, m.day || "\u2013"), el("td", {}, badge(m.state), " ", badge(m.verdict)),
-          el("td", {class: "number"}, m.campaigns), el("td", {}, m.page ? el("a", {href: "#to=" + encodeURIComponent(m.page), "data-key": "history-" + m.machine}, say("list.history")) : "\u2013"));
+          el("td", {class: "number", "data-label": say("list.number_of")}, m.campaigns), el("td", {}, m.page ? el("a", {href: "#to=" + encodeURIComponent(m.page), "data-key": "history-" + m.machine}, say("list.history")) : "\u2013"));
         })))), pager(answer, ofMachines, again)].filter(Boolean);
   }
 
@@ -138,18 +138,25 @@ const campaigns = (() => {
 
   // ---- one campaign ----
   const json = async (id, file) => JSON.parse(await (await net.ask(`/site/results/${encodeURIComponent(id)}/${file}`, {raw: true})).text());
-  /// Results with a decision, each with its U and its limit; and results of a positioning test without a limit.
+  /// Results with a decision, each with its U and its limit; and A, B, E, R of a positioning test without a limit. Without
+  /// either, the first results of each analysis, as on a terminal.
   function decisions(results) {
-    const decided = new Map((results.conformity || []).map((d) => [[d.plugin, d.measurement, d.name].join("\n"), d])), rows = [];
-    for (const a of results.analyses || []) for (const [name, v] of Object.entries(a.values || {})) {
-      const d = decided.get([a.plugin, a.measurement, name].join("\n")), unit = shownUnit(v.unit || "");
-      if (!d && !(a.values.A && a.values.R && ["A", "B", "E", "R"].includes(name))) continue;
-      const number = finite(v.value) ? (finite(v.U) && v.U > 0 ? withU(v.value, v.U).join(" \u00B1 ") : short(v.value)) : "\u2013";
-      rows.push(el("tr", {}, el("th", {scope: "row"}, `${entries.visible(a.measurement)}: ${name}`), el("td", {class: "number"}, `${number} ${unit}`), el("td", {class: "number"}, d ? `${local(String(d.tolerance))} ${unit}` : "\u2013"), el("td", {}, d ? badge(d.decision) : "\u2013")));
-    }
+    const decided = new Map((results.conformity || []).map((d) => [[d.plugin, d.measurement, d.name].join("\n"), d]));
+    const all = (results.analyses || []).map((a) => [a, Object.entries(a.values || {})]), most = 6;
+    const decisionOf = (a, name) => decided.get([a.plugin, a.measurement, name].join("\n"));
+    let shown = all.flatMap(([a, values]) => values.filter(([name]) => decisionOf(a, name) || (a.values.A && a.values.R && ["A", "B", "E", "R"].includes(name))).map(([name, v]) => [a, name, v]));
+    const ofOneDirection = (a, name) => /.[+-]$/.test(name) && name.slice(0, -1) in a.values, ofTest = (name) => name.startsWith("lack_of_fit") || name === "redundancy";
+    if (shown.length === 0) shown = all.flatMap(([a, values]) => values.filter(([name]) => !ofOneDirection(a, name) && !ofTest(name)).slice(0, most).map(([name, v]) => [a, name, v]));
+    const rows = shown.map(([a, name, v]) => {
+      const d = decisionOf(a, name), unit = shownUnit(v.unit || "");
+      const number = !finite(v.value) ? "\u2013" : finite(v.U) && v.U > 0 ? withExpanded(v.value, v.U).join(" \u00B1 ") : !unit && Number.isInteger(v.value) ? String(v.value) : short(v.value);
+      return el("tr", {}, el("th", {scope: "row"}, `${a.measurement ? entries.visible(a.measurement) + ": " : ""}${name}`), el("td", {class: "number"}, `${number} ${unit}`), el("td", {class: "number"}, d ? `${local(String(d.tolerance))} ${unit}` : "\u2013"), el("td", {}, d ? badge(d.decision) : "\u2013"));
+    });
     return [decided.size === 0 ? el("p", {}, say("one.no_limits")) : null, rows.length === 0 ? null :
-      el("table", {id: "decisions"}, el("thead", {}, el("tr", {}, ...["value", "result", "limit", "decision"].map((w) => el("th", {scope: "col"}, say("one." + w))))), el("tbody", {}, ...rows))];
+      el("div", {class: "scroll", role: "group", tabindex: 0, "aria-label": say("one.verdict")}, el("table", {id: "decisions"}, el("thead", {}, el("tr", {}, ...["value", "result", "limit", "decision"].map((w) => el("th", {scope: "col"}, say("one." + w))))), el("tbody", {}, ...rows)))];
   }
+  /// An error with its file, line and column.
+  const errorText = (e) => entries.visible([[[e.file, e.line].filter(Boolean).join(":"), e.column ? `(${e.column})` : ""].filter(Boolean).join(" "), e.message].filter(Boolean).join(": "));
   /// Keys that campaign.toml lacks for a certificate, by their names in the form.
   function missing(results) {
     const keys = [];
@@ -170,11 +177,12 @@ const campaigns = (() => {
     const has = c.files.includes("results.json");
     const [results, drafts] = await Promise.all([has ? json(c.id, "results.json") : {}, c.draft ? net.ask("/api/drafts") : {drafts: []}]);
     const draft = drafts.drafts.find((d) => d.folder === folder);
+    const errors = (results.errors || []).map(errorText);
     return [el("h1", {tabindex: -1}, `${entries.visible(nameOf(c))}${c.day ? ", " + c.day : ""}`),
       el("p", {id: "one-state"}, badge(c.state), " ", badge(c.verdict), " ", entries.visible([c.customer, c.place].filter(Boolean).join(", "))),
-      c.message ? el("p", {class: "flag"}, entries.visible(c.message)) : null, c.changed ? el("p", {class: "note"}, say("list.changed")) : null,
+      ...(errors.length ? errors : c.message ? [entries.visible(c.message)] : []).map((text) => el("p", {class: "flag"}, text)), c.changed ? el("p", {class: "note"}, say("list.changed")) : null,
       el("div", {class: "acts wide"}, back, ...tools.buttons(folder, folder)),
-      el("div", {class: "answer"}, fitted.places(folder), has ? el("section", {id: "verdict-of", "aria-labelledby": "verdict-title"}, el("h2", {id: "verdict-title"}, say("one.verdict")), ...decisions(results)) : el("p", {}, say("one.not_yet"))),
+      el("div", {class: "answer"}, fitted.places(folder), errors.length ? null : has ? el("section", {id: "verdict-of", "aria-labelledby": "verdict-title"}, el("h2", {id: "verdict-title"}, say("one.verdict")), ...decisions(results)) : el("p", {}, say("one.not_yet"))),
       c.findings.length ? el("section", {"aria-labelledby": "found-title"}, el("h2", {id: "found-title"}, say("one.found")), el("ul", {id: "found"}, ...c.findings.map((f) => el("li", {}, entries.visible(f))))) : null,
       missing(results),
       c.files.length ? el("section", {"aria-labelledby": "documents-title"}, el("h2", {id: "documents-title"}, say("list.documents")), el("div", {class: "acts wide"}, ...documents(c, tools))) : null,

@@ -88,17 +88,17 @@ const entries = (() => {
   }
   /// The page of the entries.
   function show(acknowledged, events, edit, {withdrawOne, addEvent, audit}) {
-    const cell = (text) => el("td", {}, visible(text || ""));
+    const cell = (text, name) => el("td", {class: name}, visible(text || ""));
     return [el("h1", {tabindex: -1}, say("site.entries")),
       el("p", {class: "muted"}, say("entry.when")), audit ? el("p", {}, el("button", {type: "button", id: "audit", "data-key": "audit", onclick: audit}, say("user.audit"))) : "",
       el("section", {"aria-labelledby": "known-title"}, el("h2", {id: "known-title"}, say("entry.acknowledged", {n: acknowledged.length})),
         acknowledged.length === 0 ? el("p", {}, say("entry.none")) : table({label: say("entry.acknowledged", {n: acknowledged.length}), columns: ["entry.until", "entry.machine", "entry.finding", "entry.why", "entry.who", "entry.do"].slice(0, edit ? 6 : 5)},
-          acknowledged.map((a, k) => el("tr", {}, cell(a.until), cell([a.machine, a.axis].filter(Boolean).join(" ")), cell(a.finding), cell(a.why), cell(a.by),
+          acknowledged.map((a, k) => el("tr", {}, cell(a.until, "day"), cell([a.machine, a.axis].filter(Boolean).join(" ")), cell(a.finding), cell(a.why), cell(a.by),
             edit ? el("td", {}, el("button", {type: "button", class: "small", "data-key": "withdraw-entry-" + k, onclick: () => withdrawOne(a)}, say("withdraw.short"))) : null)))),
       el("section", {"aria-labelledby": "events-title"}, el("h2", {id: "events-title"}, say("entry.events", {n: events.length})),
         edit ? el("p", {}, el("button", {type: "button", id: "add-event", "data-key": "add-event", onclick: () => addEvent()}, say("event.short"))) : null,
         events.length === 0 ? el("p", {}, say("entry.none")) : table({label: say("entry.events", {n: events.length}), columns: ["entry.date", "entry.machine", "entry.kind", "entry.text", "entry.who"]},
-          [...events].reverse().slice(0, 200).map((e) => el("tr", {}, cell(e.date), cell([e.machine, e.axis].filter(Boolean).join(" ")), cell(say("event.kind_" + e.kind)), cell(e.text), cell(e.by)))))];
+          [...events].reverse().slice(0, 200).map((e) => el("tr", {}, cell(e.date, "day"), cell([e.machine, e.axis].filter(Boolean).join(" ")), cell(say("event.kind_" + e.kind)), cell(e.text), cell(e.by)))))];
   }
   /// A file of the results to an address of the site.
   async function send(campaign, file, act) {

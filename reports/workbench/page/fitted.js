@@ -29,7 +29,7 @@ const fitted = (() => {
     const fit = await settled(mine, `${path}api/parts/${encodeURIComponent(part.name)}/picture`, () => true);
     if (!fit || fit.page.fit.none) return;
     place.hidden = false;
-    by("fitted-says").textContent = fit.page.fit.says;
+    by("fitted-says").textContent = [fit.page.fit.says, fit.page.suspects.length ? say("legend.suspects", {n: fit.page.suspects.length}) : ""].filter(Boolean).join(" ");
     fill(by("fitted-parts"), ...(state.parts.length < 2 ? [] : state.parts.map((p) => el("button", {type: "button", class: "small", "data-key": "fitted-" + p.name, "aria-pressed": String(p === part), onclick: () => {
       chosen.set(folder, p.name);
       draw().catch(() => null);

@@ -159,7 +159,7 @@ const measure = (() => {
   }
   function lacking() {
     const needed = [...current.querySelectorAll("[data-needed]")].filter((i) => i.value.trim() === "").map((i) => i.closest("label").querySelector("span").textContent);
-    current.querySelector("#new-lacks").textContent = needed.length ? say("new.lacks", {list: needed.join(", ")}) : say("new.lacks_nothing");
+    current.querySelector("#new-lacks").textContent = needed.length ? say("new.lacks", {list: needed.join("; ")}) : say("new.lacks_nothing");
   }
   function form() {
     const name = fromName(), typed_ = fromText(), allowed = axes.filter((a) => "ABC".includes(a) === preview.rotary), axis = preview.axis || [typed_.axis, name.axis].find((a) => allowed.includes(a)) || allowed[0];

@@ -17,21 +17,23 @@ function short(v) {
   const digits = Math.max(0, 2 - Math.floor(Math.log10(Math.abs(Number(v.toPrecision(3))))));
   return local(digits > 9 ? v.toExponential(1) : v.toFixed(Math.min(digits, 9)));
 }
-/// A value and U = 2 u, both rounded to the second digit of U.
-function withU(value, u) {
-  if (!finite(u) || u <= 0) return [short(value), ""];
-  const digits = Math.min(9, Math.max(0, 1 - Math.floor(Math.log10(2 * u))));
-  return [local(value.toFixed(digits)), local((2 * u).toFixed(digits))];
+/// A value and its expanded uncertainty, both rounded to the second digit of U.
+function withExpanded(value, U) {
+  if (!finite(U) || U <= 0) return [short(value), ""];
+  const digits = Math.min(9, Math.max(0, 1 - Math.floor(Math.log10(U))));
+  return [local(value.toFixed(digits)), local(U.toFixed(digits))];
 }
+/// A value and U = 2 u of its standard uncertainty.
+const withU = (value, u) => withExpanded(value, 2 * u);
 /// A field of an answer by its name without the unit: `rms_um`, or `rms_arcsec` for an angle.
 const field = (object, name) => {
   if (!object) return undefined;
   for (const unit of ["_um", "_arcsec"]) if (finite(object[name + unit])) return object[name + unit];
   return undefined;
 };
-const shownUnit = (unit) => unit.replace(/^um/, "\u00B5m").replace(/\bum\b/g, "\u00B5m").replace(/^degC$/, "\u00B0C");
+const shownUnit = (unit) => unit.replace(/^um/, "\u00B5m").replace(/\bum\b/g, "\u00B5m").replace(/^urad/, "\u00B5rad").replace(/^degC$/, "\u00B0C");
 /// A sentence of the engine with typographic units, signs and quotes.
-const typeset = (sentence) => sentence.replace(/ um\b/g, " \u00B5m").replace(/ degC\b/g, " \u00B0C").replace(/(^|[\s(])-(?=\d)/g, "$1\u2212").replace(/`([^`]*)`/g, "\u201C$1\u201D");
+const typeset = (sentence) => sentence.replace(/ u(m|rad)\b/g, " \u00B5$1").replace(/ degC\b/g, " \u00B0C").replace(/(^|[\s(])-(?=\d)/g, "$1\u2212").replace(/`([^`]*)`/g, "\u201C$1\u201D");
 /// The number in a typed text, with a decimal point or comma.
 const typed = (text) => (text.trim() === "" ? NaN : Number(text.trim().replace(",", ".").replace("\u2212", "-")));
 

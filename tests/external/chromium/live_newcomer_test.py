@@ -3,6 +3,7 @@
 site and a spreadsheet to an approved, verified certificate without a terminal; a table with unknown columns; what is kept and what
 is refused; pages at three sizes, without hindrances, file syntax and commands."""
 import json
+import math
 import os
 import pathlib
 import random
@@ -125,7 +126,7 @@ class Newcomer(live_browser.LivePage):
         self.wait(lambda: self.has(".draft form"), "verdict and draft")
         decided = self.js("[...document.querySelectorAll('#decisions tbody tr')].map((r) => r.cells[3].textContent)")
         self.assertEqual((4, 1), (len(decided), sum("conforms" in d for d in decided)), "four values, one of them with a limit")
-        self.assertIn("\u00b1", self.text("decisions"), "a value with its U")
+        numbers = dict(self.js("[...document.querySelectorAll('#decisions tbody tr')].map((r) => [r.cells[0].textContent.split(': ').pop(), r.cells[1].textContent])"))
         self.looks_right("campaign")
         asked = self.d.find_elements(By.CSS_SELECTOR, ".draft form [name=reason]")
         for box in asked:  # readings with unusual noise get findings; each needs a reason
@@ -144,6 +145,12 @@ class Newcomer(live_browser.LivePage):
         self.assertEqual(file.read_bytes(), (campaign / file.name).read_bytes())
         manifest = tomllib.loads((campaign / "campaign.toml").read_text())
         self.assertEqual(("Zayer", "0417", 11.5, {"A": 25}), (manifest["machine"]["maker"], manifest["machine"]["serial"], manifest["machine"]["axes"]["X"]["expansion_um_per_m_K"], manifest["machine"]["axes"]["X"]["tolerance_um"]))
+        results = json.loads((self.out / campaign.name / "results.json").read_text())
+        values = next(a["values"] for a in results["analyses"] if {"A", "R"} <= a["values"].keys())
+        for name, shown in numbers.items():  # the value with its expanded uncertainty, as everywhere
+            digits = max(0, 1 - math.floor(math.log10(values[name]["U"])))
+            for number, key in zip(shown.split("\u00b1"), ("value", "U"), strict=True):
+                self.assertAlmostEqual(values[name][key], float(number.replace("\u2212", "-").split()[0]), delta=0.51 * 10**-digits, msg=f"{name} {key}")
         issued = self.out / campaign.name / "certificate.pdf"
         verified = json.loads(subprocess.run([str(NONIO), "certificate", "verify", "--site", str(self.site), "--json", str(issued)], capture_output=True, text=True).stdout)
         self.assertTrue(verified["holds"])

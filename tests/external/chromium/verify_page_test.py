@@ -92,7 +92,7 @@ def main():
             assert results["campaign"]["customer"] in shown, shown
             first = next(iter(results["analyses"][0]["values"].values()))["value"]
             assert str(first) in shown and "results.json" in shown, (first, shown)
-            assert "signature.time" in browser.value("document.getElementById('verdict').textContent")
+            assert "Time stamp" in browser.value("document.getElementById('verdict').textContent")
             # The address of a QR code states of which certificate the paper is.
             issued = results["certificate"]
             for number, kind in ((issued["number"], "holds"), ("9999-0001", "fails")):

@@ -201,13 +201,14 @@ class Laboratory(unittest.TestCase):
     def test_a_good_table_is_said_to_be_good(self):
         lines, predictions, page = self.with_table("good-table", None)
         self.assertEqual(lines, [])
-        self.assertIn(f"{predictions['B']:.3f} µm predicted, 5.258 µm as found. As predicted.", page)
+        self.assertIn(f"5.258 µm as found, {predictions['B']:.3f} µm predicted, ", page)
+        self.assertIn("The difference from the prediction is not significant.", page)
 
     def test_a_table_with_the_wrong_sign_is_a_decision(self):
         lines, _, page = self.with_table("wrong-sign", 2.0)
         self.assertEqual([(line["kind"], line["machine"], line["axis"]) for line in lines], [("changed", "LAB-05", "X")])
         self.assertIn("did not have the predicted effect", lines[0]["says"])
-        self.assertIn("Not as predicted.", page)
+        self.assertIn("It differs significantly from the prediction.", page)
 
     def test_a_table_that_was_not_loaded_is_a_decision(self):
         lines, _, _ = self.with_table("not-loaded", 0.97)

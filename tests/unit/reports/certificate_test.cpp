@@ -378,7 +378,7 @@ TEST_F(Certificate, ADraftSaysSoOnEveryPageAndIsNotSigned) {
 
 TEST_F(Certificate, WhoApprovedItIsPrintedOnIt) {
   Case c = whole();
-  EXPECT_TRUE(says(text(c), "B. Verdi (by the rules of the laboratory for automatic release)"));
+  EXPECT_TRUE(says(text(c), "B. Verdi (by the rules of the laboratory for automatic approval)"));
   issue.released_by = "C. Neri";
   issue.author = "D. Viola";
   issue.register_id = "11111111-2222-4333-8444-555555555555";

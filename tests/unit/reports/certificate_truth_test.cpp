@@ -544,7 +544,7 @@ TEST_F(Truth, TheRegistersIdentityIsInBothWithTheSameWords) {
   EXPECT_TRUE(has(xml, "C. Neri")) << "who prepared it stands on the page";
   EXPECT_FALSE(has(xml, "automatic release"));
   issue.released_by.clear();
-  EXPECT_TRUE(has(dcc(c), "B. Verdi (by the rules of the laboratory for automatic release)"));
+  EXPECT_TRUE(has(dcc(c), "B. Verdi (by the rules of the laboratory for automatic approval)"));
 }
 
 TEST_F(Truth, TheFactorOfACurveIsTheSameOnPaperAndInTheDcc) {

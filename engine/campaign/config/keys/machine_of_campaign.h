@@ -49,7 +49,7 @@ inline constexpr Key axis_keys[] = {
 
 inline constexpr Key machine_keys[] = {
     {"asset", into<&Machine::asset>,
-     "The customer's number of the machine; its record is machines/<asset>.toml of the site. "
+     "The customer's number of the machine; its record is machines/ASSET.toml of the site. "
      "Without it the record is found by maker and serial.",
      an_asset},
     {"maker", into<&Machine::maker>, "Maker of the machine."},

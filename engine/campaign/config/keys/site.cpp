@@ -123,11 +123,11 @@ constexpr Key due_keys[] = {
      within(1, 240, "expected 1 to 240 months")},
 };
 
-constexpr Choice result_folders[] = {choice(false, "flat", "OUT/<id>"),
-                                     choice(true, "hashed", "OUT/ab/<id>")};
+constexpr Choice result_folders[] = {choice(false, "flat", "OUT/ID"),
+                                     choice(true, "hashed", "OUT/ab/ID")};
 constexpr Key results_keys[] = {
     {"folders", chosen<&SiteFile::hashed_folders>,
-     "Layout of the output folder: each campaign in OUT/<id>, or in OUT/ab/<id>, where ab are the "
+     "Layout of the output folder: each campaign in OUT/ID, or in OUT/ab/ID, where ab are the "
      "first two digits of the SHA-256 of the id; for sites with a million campaigns.",
      otherwise("flat"), result_folders},
 };
@@ -241,7 +241,9 @@ constexpr Choice terminal_languages[] = {{"de"}, {"en"}, {"it"}};
 constexpr Key site_file_keys[] = {
     format_key,
     {"language", into<&SiteFile::language>,
-     "Language of the terminal and of summary.txt. JSON, --help and error messages are English.",
+     "Language of summary.txt, the pages, and what run, check, status, show, model, plan, machine "
+     "history and table session print. JSON, --help, error messages and the other commands are "
+     "English.",
      otherwise("en"), terminal_languages},
     {"laboratory", nested<&SiteFile::laboratory>, "The calibration laboratory.", laboratory_keys},
     {"limits", nested<&SiteFile::limits>, "Limits for one campaign.", limits_keys},
