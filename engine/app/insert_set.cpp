@@ -1,16 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "insert_set.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
 #include "campaign/evaluation/evaluation.h"
+#include "campaign/reading/plausibility/plausibility.h"
 #include "insert.h"
 #include "platform/storage/files.h"
 #include "state_record.h"
 #include "tables.h"
 
 namespace nonio::app {
+
+namespace {
+
+bool moves_any(const Measurement& m, const std::vector<std::string>& axes) {
+  return std::any_of(axes.begin(), axes.end(), [&](const std::string& axis) {
+    return m.axis == axis || m.from.contains(axis);
+  });
+}
+
+}  // namespace
 
 Expected<tables::MergedSet> merge_set_now(const OpenCampaign& open, const Loaded& present,
                                           const Settings& options,
@@ -20,12 +32,16 @@ Expected<tables::MergedSet> merge_set_now(const OpenCampaign& open, const Loaded
   const evaluation::Work work{open.place->context, quiet, open.read, errors};
   Results results;
   results.analyses = evaluation::run_analyses(work);
+  for (Results::Analysed& a :
+       reading::implausible(open.read, open.place->context, open.read.inputs, results.analyses))
+    results.analyses.push_back(std::move(a));
   const auto doubts = evaluation::open_doubts(work, results.analyses);
   if (!errors.empty()) return fail(errors.front());
-  if (!doubts.empty())
-    return fail("finding " + doubts.front() +
-                " prevents tables: correct the cause, or accept it with a reason "
-                "([[accept]] in campaign.toml)");
+  for (const Measurement& m : open.campaign().measurements)
+    if (const auto of = doubts.find(m.id); of != doubts.end() && moves_any(m, set))
+      return fail("measurement " + m.id + ": finding " + *of->second.begin() +
+                  " prevents tables: correct the cause, or accept it with a reason "
+                  "([[tables.accept]] in campaign.toml)");
   return tables::merge_set(open.read, results, *present.control, options, present.files, set);
 }
 

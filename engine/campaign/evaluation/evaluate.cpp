@@ -95,7 +95,7 @@ AnalysedCampaign analyse(reading::ReadCampaign read, const std::string& id,
   const auto failed = [&] { return !results.errors.empty(); };
   results.analyses = run_analyses(work);
   append_analyses(results.analyses, fit_models(work, results.models));
-  std::vector<std::string> doubts;
+  Doubts doubts;
   if (!failed()) {
     stage("analysis " + std::string(reading::plausibility_name));
     append_analyses(results.analyses, reading::implausible(out.read, context, out.evaluated.inputs,

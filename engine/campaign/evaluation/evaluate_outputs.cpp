@@ -18,12 +18,6 @@ namespace nonio::evaluation {
 
 namespace {
 
-std::string comma_list(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 void check_control(const Work& work) {
   const std::string& control = work.campaign().machine.control;
   std::vector<std::string> tables;
@@ -146,12 +140,10 @@ void take_result(const Work& work, const Info& plugin, const std::string& who,
   work.report(std::move(result.error()));
 }
 
-OutputResult no_table(const char* id, const Info& controller, const char* why,
-                      const std::string& text) {
-  OutputResult nothing;
-  nothing.findings.push_back(
-      {.id = id, .attention = true, .texts = {{"output", controller.name}, {why, text}}});
-  return nothing;
+Finding no_table(const char* id, const Info& controller,
+                 std::vector<std::pair<std::string, std::string>> why) {
+  why.emplace(why.begin(), "output", controller.name);
+  return {.id = id, .attention = true, .texts = std::move(why)};
 }
 
 /// Readings predicted by the model; nullopt if the manifest requires the measured readings.
@@ -182,25 +174,49 @@ Expected<OutputResult> write_over_present(const Work& work, const WantedControll
 }
 
 Expected<OutputResult> table_of(const Work& work, const WantedController& w,
-                                const ModelReadings& of_model,
-                                const std::vector<std::string>& doubts, const Results& results) {
+                                const ModelReadings& of_model, const Results& results) {
   const Info& info = w.controller->info;
-  if (!doubts.empty()) return no_table("table.withheld", info, "findings", comma_list(doubts));
-  if (of_model && !*of_model)
-    return no_table("table.no-model", info, "why", of_model->error().message);
+  OutputResult nothing;
+  if (of_model && !*of_model) {
+    nothing.findings.push_back(
+        no_table("table.no-model", info, {{"why", of_model->error().message}}));
+    return nothing;
+  }
   auto written = write_over_present(work, w, of_model, results);
-  if (!written && !w.asked && written.error().key.empty())
-    written = no_table("table.not-written", info, "why", written.error().message);
+  if (!written && !w.asked && written.error().key.empty()) {
+    nothing.findings.push_back(
+        no_table("table.not-written", info, {{"why", written.error().message}}));
+    return nothing;
+  }
   if (written && !w.asked)
     for (Finding& f : written->findings)
       if (f.id == "table.axis-number" || f.id == "table.active-not-stated") f.attention = false;
   return written;
 }
 
+/// The tables of all measurements that are not doubted. A model uses all of them.
+Expected<OutputResult> sound_tables(const Work& work, const WantedController& w,
+                                    const Doubts& doubts, const Results& results) {
+  reading::ReadCampaign read = work.read;
+  Results sound = results;
+  std::set<std::string> ids, without = leave_out(doubts, read, sound);
+  Campaign rest = work.campaign();
+  for (const auto& [id, findings] : doubts) ids.insert(findings.begin(), findings.end());
+  std::erase_if(rest.measurements, [&](const Measurement& m) { return without.contains(m.id); });
+  Expected<OutputResult> written = OutputResult();
+  if (!rest.compensate_model && w.controller->applies(rest))
+    written = table_of({work.context, work.stage, read, work.errors}, w, std::nullopt, sound);
+  if (written)
+    written->findings.push_back(
+        no_table("table.withheld", w.controller->info,
+                 {{"findings", comma_list(ids)}, {"measurements", comma_list(without)}}));
+  return written;
+}
+
 }  // namespace
 
 void write_tables(const Work& work, const std::vector<WantedController>& wanted,
-                  const std::vector<std::string>& doubts, Results& results) {
+                  const Doubts& doubts, Results& results) {
   ModelReadings of_model;
   if (work.campaign().compensate_model)
     of_model = modelling::compensable_readings(work.read, results.notes);
@@ -208,7 +224,11 @@ void write_tables(const Work& work, const std::vector<WantedController>& wanted,
     const std::string who = "controller " + w.controller->info.name;
     work.stage(who);
     take_result(work, w.controller->info, who,
-                process::guarded(who, [&] { return table_of(work, w, of_model, doubts, results); }),
+                process::guarded(who,
+                                 [&] {
+                                   return doubts.empty() ? table_of(work, w, of_model, results)
+                                                         : sound_tables(work, w, doubts, results);
+                                 }),
                 results);
   }
 }
