@@ -72,8 +72,9 @@ std::string plane(const CrossJob& job, const std::vector<controllers::KnownAxis>
         4);
   };
   std::string out = "; straightness and squareness from the diagonals of " +
-                    controllers::plain(job.measurement) + "\n; " + controllers::cross_words(a) +
-                    "\n; " + controllers::cross_words(b) + "\n" +
+                    controllers::plain(job.measurement) + "\n; " +
+                    controllers::cross_words(a, 1e-9, a.position) + "\n; " +
+                    controllers::cross_words(b, 1e-9, b.position) + "\n" +
                     controllers::comments(controllers::set_words(job), "; ") + ":START2D " + row +
                     " " + col + " " + col + " " + row + " " + step(b) + " " + step(a) + " " +
                     std::to_string(a.position.size()) +

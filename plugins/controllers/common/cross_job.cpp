@@ -70,6 +70,17 @@ TableSize size_of_curve(const CrossCurve& curve) {
   return size;
 }
 
+/// Size of the entries that the control reads; that of the curve where no table is given.
+TableSize size_in(const std::vector<LoadedTable>& tables, const CrossCurve& curve) {
+  for (const LoadedTable& t : tables) {
+    if (t.output != curve.output || t.input != std::vector{curve.input}) continue;
+    TableSize size;
+    size.take(t.position.front(), t.plus);
+    return size;
+  }
+  return size_of_curve(curve);
+}
+
 NumberTables known_settings(const ControllerInput& in) {
   return settings_of_axes(in.options).value_or(NumberTables{});
 }
@@ -407,8 +418,11 @@ bool oversized(const CrossJob& job, const ControllerInput& in, OutputResult& res
   return beyond;
 }
 
-std::string cross_words(const CrossCurve& curve) {
-  const TableSize size = size_of_curve(curve);
+std::string cross_words(const CrossCurve& curve, double step, const std::vector<double>& at) {
+  std::vector<double> entries;
+  for (const double x : at) entries.push_back(math::ErrorCurve::at(curve.position, curve.value, x));
+  TableSize size;
+  size.take(at, math::rounded(entries, step));
   return plain(curve.output) + " over " + plain(curve.input) + ": zero at " +
          decimal(curve.reference * 1e3, 4) + " mm of " + plain(curve.input) +
          (curve.told ? "" : ", taken as reference point") + "; largest entry " +
@@ -439,9 +453,9 @@ std::vector<std::string> set_words(const CrossJob& job) {
   return lines;
 }
 
-void note_cross(const CrossJob& job, OutputResult& result) {
+void note_cross(const CrossJob& job, const std::vector<LoadedTable>& tables, OutputResult& result) {
   for (const CrossCurve& curve : job.curves) {
-    const TableSize size = size_of_curve(curve);
+    const TableSize size = size_in(tables, curve);
     result.notes.push_back({curve.told ? "table.cross-zero-at" : "table.cross-zero-taken",
                             {{"reference", curve.reference, Quantity::length},
                              {"largest", size.largest, Quantity::deviation},

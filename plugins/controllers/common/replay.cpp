@@ -197,7 +197,7 @@ Expected<void> predict_cross(const CrossJob& job, const std::vector<Artifact>& f
   Replay replay = replay_of(job, pitch, input);
   replay.tables.insert(replay.tables.end(), tables->begin(), tables->end());
   predict_lines(job, replay, result);
-  note_cross(job, result);
+  note_cross(job, *tables, result);
   return {};
 }
 

@@ -87,16 +87,21 @@ std::string text_of(const std::vector<Block>& blocks, double sign,
   return out;
 }
 
+/// Entries have 6 decimals of mm.
+constexpr double entry_step = 1e-9;
+
 std::string zero_words(const Block& b, const std::vector<AxisJob>& jobs) {
   std::string out =
       "errors over " + b.axis + ": zero at " + controllers::decimal(b.zero * 1e3, 4) + " mm";
   for (const AxisJob& j : jobs)
     if (const auto c = b.curves.find(j.axis); j.axis == b.axis && c != b.curves.end()) {
-      std::vector<double> e = c->second.value;
-      const double zero = math::ErrorCurve::at(c->second.position, e, b.zero);
-      for (double& v : e) v -= zero;
+      const auto at = [&](double x) {
+        return math::ErrorCurve::at(c->second.position, c->second.value, x);
+      };
+      std::vector<double> e;
+      for (const double x : b.position) e.push_back(at(x) - at(b.zero));
       controllers::TableSize size;
-      size.take(c->second.position, e);
+      size.take(b.position, math::rounded(e, entry_step));
       out += "; " + controllers::size_words(j, size);
     }
   return out;
@@ -211,7 +216,7 @@ Expected<OutputResult> write(const ControllerInput& in) {
   }
   for (const CrossJob& set : sets) {
     controllers::predict_lines(set, {.tables = *read}, result);
-    controllers::note_cross(set, result);
+    controllers::note_cross(set, *read, result);
   }
   controllers::note_facts(writer, result);
   return result;

@@ -82,12 +82,12 @@ class Claims(StateBench):
         columns = [table.plus, table.minus] if table.minus != table.plus else [table.plus]
         if control == "pmac":  # entries that hold the ends are not measured
             columns = [[(x, v) for x, v in table.plus if x <= truth.targets[-1] + 1e-6]]
-        near(max(abs(v) for c in columns for _, v in c), largest, step / 2 + 0.001)
-        near(max(abs(v) for c in columns for x, v in c if abs(x - where) < 1e-3), largest, step / 2 + 0.001)
+        digit = 0.000501  # of a text with three decimals
+        near(max(abs(v) for c in columns for _, v in c), largest, digit)
+        near(max(abs(v) for c in columns for x, v in c if abs(x - where) < 1e-3), largest, digit)
         slopes = [(abs(b[1] - a[1]) / (b[0] - a[0]) * 1e3, a[0]) for c in columns for a, b in zip(c, c[1:])]
-        shortest = min(b[0] - a[0] for c in columns for a, b in zip(c, c[1:]))
-        near(max(slopes)[0], steep, (step + 0.002) / shortest * 1e3)
-        near(max(s for s, x in slopes if abs(x - begin) < 1e-3), steep, (step + 0.002) / shortest * 1e3)
+        near(max(slopes)[0], steep, digit)
+        near(max(s for s, x in slopes if abs(x - begin) < 1e-3), steep, digit)
         (zero,) = self.one(r"zero at (?:the reference position )?(\S+) mm", text, what)
         near(sum(interpolate(c, float(zero)) for c in columns) / len(columns), 0.0, step / 2 + 0.001)
         whole = [v for v in means.values()]
@@ -97,9 +97,9 @@ class Claims(StateBench):
         for said in set(re.findall(r"mean reversal B = (-?[\d.]+) um", text)):
             near(float(said), B, 0.001)
         for said in set(re.findall(r"backlash parameter = (-?[\d.]+) mm", text)):
-            near(float(said) * 1e3, -B, 0.001)
+            near(float(said) * 1e3, -B, step / 2 + 0.001)
             if control in HAS_BACKLASH:
-                near(table.backlash, float(said) * 1e3, step / 2 + 0.001)
+                near(table.backlash, float(said) * 1e3, digit)
         for said in set(re.findall(r"^points in this table: (\d+)$", text, re.M)):
             self.assertEqual(int(said), len(table.plus) - (control == "mitsubishi"), what)
         for said in set(re.findall(r"\.comp has (\d+) lines", text)):

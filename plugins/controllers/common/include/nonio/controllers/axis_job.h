@@ -40,8 +40,9 @@ struct HeldReversal {
 /// One measured axis for which a table is to be written; SI.
 struct AxisJob {
   std::string axis, measurement;
-  std::string stem;        ///< start of file names; includes the measurement if an axis has two
-  std::size_t number = 0;  ///< axis number in the control; 0 if not stated
+  std::string stem;  ///< start of file names; includes the measurement if an axis has two
+  double backlash_step = 1e-9;  ///< resolution of the backlash parameter, m or rad
+  std::size_t number = 0;       ///< axis number in the control; 0 if not stated
   bool rotary = false;
   math::ErrorCurve curve;  ///< curve to be compensated: as measured, or as the model predicts
   std::optional<math::ErrorCurve> measured;  ///< measured curve, if `curve` is the model's
@@ -69,7 +70,9 @@ struct AxisJob {
   /// New value of the backlash parameter, positive for lost motion, m or rad. The present value is
   /// kept if a single value would leave a larger reversal somewhere than exists now.
   double backlash() const {
-    return one_value_helps() ? present_backlash() - curve.mean_reversal() : present_backlash();
+    return one_value_helps()
+               ? math::rounded({present_backlash() - curve.mean_reversal()}, backlash_step).front()
+               : present_backlash();
   }
   /// The measured value, whether or not the table contains it.
   double mean_reversal() const { return held ? held->mean : curve.mean_reversal(); }
