@@ -166,7 +166,7 @@ Expected<OutputResult> write_over_present(const Work& work, const WantedControll
         {work.campaign(), taken, results, w.options, of_model ? &read.observations : nullptr});
   const std::vector<Observations> of_curves =
       of_model ? tables::without_tables(work.campaign(), taken, (*on)->tables) : (*on)->readings;
-  const Results of_tables = tables::without_tables(results, (*on)->tables);
+  const Results of_tables = tables::without_tables(work.campaign(), results, (*on)->tables);
   auto written = controller.write({work.campaign(), of_curves, of_tables, (*on)->options,
                                    of_model ? &(*on)->readings : nullptr});
   if (written) tables::compare_with_measured(read, *written);

@@ -275,16 +275,21 @@ std::vector<Observations> without_tables(const Campaign& campaign,
                                          const Tables& tables) {
   std::vector<Observations> raw;
   for (std::size_t i = 0; i < readings.size(); ++i)
-    raw.push_back(is_diagonal(campaign.measurements[i])
+    raw.push_back(campaign.measurements[i].compensation == "off" ? readings[i]
+                  : is_diagonal(campaign.measurements[i])
                       ? diagonal_without(campaign, readings[i], tables)
                       : without(readings[i],
                                 control_axis(campaign.machine, campaign.measurements[i]), tables));
   return raw;
 }
 
-Results without_tables(const Results& results, const Tables& tables) {
+Results without_tables(const Campaign& campaign, const Results& results, const Tables& tables) {
   Results out = results;
   for (Results::Analysed& a : out.analyses) {
+    if (std::any_of(
+            campaign.measurements.begin(), campaign.measurements.end(),
+            [&](const Measurement& m) { return m.id == a.measurement && m.compensation == "off"; }))
+      continue;
     std::map<char, std::string> axis_of;
     const auto is_curve = [](const Series& s) {
       return s.name.size() >= 3 && s.name[0] == 'E' && s.quantity == Quantity::deviation;

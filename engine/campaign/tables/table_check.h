@@ -68,7 +68,7 @@ std::vector<Observations> without_tables(const Campaign&, const std::vector<Obse
                                          const std::vector<LoadedTable>&);
 /// Removes cross tables, as means of both directions, from curves of one axis over another (EYX,
 /// EXY_even, ...).
-Results without_tables(const Results&, const std::vector<LoadedTable>&);
+Results without_tables(const Campaign&, const Results&, const std::vector<LoadedTable>&);
 /// Replaces the values before loading by those measured. Adds a finding if a table does not reduce
 /// E.
 void compare_with_measured(const reading::ReadCampaign&, OutputResult&);

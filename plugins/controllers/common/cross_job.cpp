@@ -103,11 +103,12 @@ void put_readings(ReadLine& line, const ControllerInput& in, const Measurement& 
   line.U = math::compensated_uncertainty_along(in.campaign, m, readings);
 }
 
-bool any_active(const ControllerInput& in, const ReadLine& line) {
-  return std::any_of(line.sense.begin(), line.sense.end(), [&](const auto& of) {
-    const Axis* axis = in.campaign.machine.axis(of.first);
-    return axis != nullptr && axis->active_table && !axis->active_table->empty();
-  });
+bool any_active(const ControllerInput& in, const ReadLine& line, const Measurement& m) {
+  return m.compensation != "off" &&
+         std::any_of(line.sense.begin(), line.sense.end(), [&](const auto& of) {
+           const Axis* axis = in.campaign.machine.axis(of.first);
+           return axis != nullptr && axis->active_table && !axis->active_table->empty();
+         });
 }
 
 /// Replaces the deviations by those of the readings, from which the host has removed the tables
@@ -194,7 +195,7 @@ std::optional<CrossJob> of_diagonals(const ControllerInput& in, const Results::A
       line.at.push_back({{f->over, x[i]}, {g->over, y[rising ? i : y.size() - 1 - i]}});
     if (const Measurement* m = diagonal_over(in, a, *f, *g, rising)) {
       put_readings(line, in, *m);
-      if (any_active(in, line)) take_without_tables(line, in, *m);
+      if (any_active(in, line, *m)) take_without_tables(line, in, *m);
     }
     job.lines.push_back(std::move(line));
   }

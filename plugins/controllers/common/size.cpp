@@ -134,7 +134,8 @@ std::string size_words(const AxisJob& job, const TableSize& size) {
          limit("slope_um_per_m", "slope_arcsec_per_deg", slope.symbol) + " from " +
          with_unit(job, size.slope_from, 4) +
          (job.scale_known && job.curve.left_out == 0
-              ? "; E of the axis " + deviation_words(job, explained(job).E)
+              ? std::string("; E of the axis ") + (job.had_table ? "without any table " : "") +
+                    deviation_words(job, explained(job).E)
               : std::string());
 }
 
@@ -146,7 +147,9 @@ void note_zero(const AxisJob& job, double zero, OutputResult& result) {
 }
 
 void note_size(const AxisJob& job, const TableSize& size, OutputResult& result) {
-  Remark note = remark(job, job.scale_known ? "table.size" : "table.size-of-shape");
+  Remark note = remark(job, !job.scale_known ? "table.size-of-shape"
+                            : job.had_table  ? "table.size-without-table"
+                                             : "table.size");
   const Quantity q = deviation_of(job.rotary);
   note.evidence = {{"largest", size.largest, q}, {"slope", size.slope, slope_of(job.rotary)}};
   if (job.scale_known) note.evidence.push_back({"E", explained(job).E, q});

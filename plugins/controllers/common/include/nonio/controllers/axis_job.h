@@ -47,6 +47,7 @@ struct AxisJob {
   math::ErrorCurve curve;  ///< curve to be compensated: as measured, or as the model predicts
   std::optional<math::ErrorCurve> measured;  ///< measured curve, if `curve` is the model's
   std::optional<math::ErrorCurve> turn;      ///< for a rotary axis measured over a whole revolution
+  bool had_table = false;       ///< whether a table was active, which is removed from `curve`
   bool from_diagonals = false;  ///< positioning from step diagonals: the reversal is not known
   /// If false, `curve` is relative to its end-point line, because step diagonals alone do not
   /// determine the scale.
