@@ -70,6 +70,18 @@ std::optional<Settings> settle_controller(const Work& work, const Info& controll
   return std::nullopt;
 }
 
+void note_not_in_format(const Campaign& campaign, const std::string& controller,
+                        std::vector<Remark>& notes) {
+  std::set<std::string> measurements;
+  for (const Measurement& m : campaign.measurements)
+    if (m.kind == "axis" || m.kind == "diagonal" || m.kind == "step-diagonal")
+      measurements.insert(m.id);
+  if (!measurements.empty())
+    notes.push_back({"table.not-in-format",
+                     {},
+                     {{"output", controller}, {"measurements", comma_list(measurements)}}});
+}
+
 }  // namespace
 
 WantedPlugins wanted_plugins(const Work& work, std::vector<Remark>& notes) {
@@ -89,10 +101,14 @@ WantedPlugins wanted_plugins(const Work& work, std::vector<Remark>& notes) {
   const std::string& control = work.campaign().machine.control;
   for (const Controller* c : chosen_plugins(work, plugins.controllers(), names)) {
     if (!names && !control.empty() && control != c->info.name) continue;
-    if (!is_control_of_record(work, c->info.name) || !applies("controller ", *c)) continue;
+    if (!is_control_of_record(work, c->info.name)) continue;
+    const bool asked = names.has_value() || control == c->info.name;
+    if (!applies("controller ", *c)) {
+      if (asked) note_not_in_format(work.campaign(), c->info.name, notes);
+      continue;
+    }
     if (auto options = settle_controller(work, c->info, notes))
-      wanted.controllers.push_back(
-          {c, std::move(*options), names.has_value() || control == c->info.name});
+      wanted.controllers.push_back({c, std::move(*options), asked});
   }
   for (const Output* o : chosen_plugins(work, plugins.outputs(), names)) {
     if (!applies("output ", *o)) continue;

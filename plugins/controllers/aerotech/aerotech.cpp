@@ -222,7 +222,10 @@ Expected<OutputResult> write(const ControllerInput& in) {
   if (!axes) return tl::unexpected<Error>(axes.error());
   for (const CrossJob& set :
        controllers::cross_jobs(in, controllers::SecondSide::not_known, result)) {
-    if (set.volume || set.curves.size() != 2) continue;
+    if (set.volume || set.curves.size() != 2) {
+      result.notes.push_back(controllers::not_in_format(writer.name, set.measurement));
+      continue;
+    }
     if (controllers::lacks_number(set.moving(), in, *axes, set.measurement, result)) continue;
     if (std::any_of(set.curves.begin(), set.curves.end(),
                     [](const CrossCurve& c) { return std::fabs(c.position.front()) > 1e-9; }))

@@ -318,6 +318,10 @@ bool states_active(const ControllerInput& input, const std::string& axis,
   return false;
 }
 
+Remark not_in_format(const std::string& output, const std::string& measurement) {
+  return {"table.not-in-format", {}, {{"output", output}, {"measurements", measurement}}};
+}
+
 Remark remark(const AxisJob& job, std::string id) {
   return {std::move(id), {}, {{"axis", job.axis}, {"unit", std::string(job.unit())}}};
 }

@@ -223,7 +223,10 @@ Expected<void> write_cross(const ControllerInput& in,
   if (said.empty()) return {};
   const auto jobs = controllers::cross_jobs(in, controllers::SecondSide::own_table, result);
   for (const CrossJob& job : jobs) {
-    if (job.volume) continue;
+    if (job.volume) {
+      result.notes.push_back(controllers::not_in_format("twincat-cnc", job.measurement));
+      continue;
+    }
     if (auto ok = controllers::fits(job, in.options); !ok) return ok;
     if (controllers::lacks_number(job.moving(), in, *axes, job.measurement, result)) continue;
     if (controllers::oversized(job, in, result)) continue;

@@ -171,16 +171,16 @@ Expected<OutputResult> write(const ControllerInput& in) {
       "twincat-volumetric", *table, {"reference", "backlash"}, {}, parse};
   auto jobs = controllers::axis_jobs(in, writer.keys, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
+  std::map<std::string, int> runs;
+  for (const AxisJob& j : *jobs) ++runs[j.axis];
   std::erase_if(*jobs, [&](const AxisJob& j) {
-    return j.axis.size() != 1 || j.axis < "X" || j.axis > "Z" ||
-           controllers::refused(j, controllers::Columns::mean, result);
+    const bool in_format = (j.axis == "X" || j.axis == "Y" || j.axis == "Z") && runs[j.axis] == 1;
+    if (!in_format) result.notes.push_back(controllers::not_in_format(writer.name, j.measurement));
+    return !in_format || controllers::refused(j, controllers::Columns::mean, result);
   });
-  const auto twice =
-      [all = *jobs](const AxisJob& j) {  // jobs of one axis cannot be distinguished in this file
-        return std::count_if(all.begin(), all.end(),
-                             [&](const AxisJob& o) { return o.axis == j.axis; }) > 1;
-      };
-  std::erase_if(*jobs, twice);
+  std::erase_if(result.findings, [](const Finding& f) {
+    return f.id == "table.two-measurements";  // no table has the name of a measurement
+  });
   auto sets = controllers::cross_jobs(in, controllers::SecondSide::not_known, result);
   if (sets.size() > 1)
     return fail(

@@ -350,6 +350,17 @@ class Planes(BenchTest):
 
 
 class Chosen(BenchTest):
+    def test_a_control_without_a_table_for_an_axis_is_named(self):
+        for control, axis, unit in (("reprapfirmware", "X", "mm"), ("reprapfirmware", "C", "deg"), ("twincat-volumetric", "W", "mm")):
+            with self.subTest(control=control, axis=axis):
+                self.tearDown(), self.setUp()
+                options = '[options.%s]\nsign = "error"\n' % control if control == "twincat-volumetric" else ""
+                self.one_axis([0.0, 40.0, 80.0, 120.0, 160.0], wave, lambda x: wave(x) + LOST, options, control, unit, axis)
+                results = self.run_site()
+                self.assertEqual([o["file"] for o in results["outputs"] if o["plugin"] == control], [])
+                notes = results.get("notes", []) + [n for t in results.get("tables", []) for n in t.get("notes", [])]
+                self.assertEqual(len([n for n in notes if n.startswith("%s has no table for %s," % (control, axis))]), 1, notes)
+
     def test_only_the_four_are_tried_where_the_control_is_not_stated(self):
         self.one_axis(TARGETS, wave, lambda x: wave(x) + LOST)
         tried = {o["plugin"] for o in self.run_site()["outputs"]}

@@ -112,6 +112,9 @@ bool lacks_number(const std::vector<std::string>& of, const ControllerInput& inp
 bool states_active(const ControllerInput& input, const std::string& axis,
                    const std::string& measurement, bool backlash_in_options, OutputResult& result);
 
+/// States that a control's format has no table for a measurement.
+Remark not_in_format(const std::string& output, const std::string& measurement);
+
 /// The text of the note may contain {axis} and {unit}.
 Remark remark(const AxisJob& job, std::string id);
 
