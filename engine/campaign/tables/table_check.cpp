@@ -398,7 +398,8 @@ TableForecast forecast_of_axis(const Campaign& campaign, const Measurement& m,
                                const Observations& raw, const Tables& tables,
                                const Settings& options) {
   const auto test = math::AxisTest::arrange(readings);
-  const double present = present_backlash(options, axis, test.rotary);
+  const double present =
+      m.compensation == "off" ? 0.0 : present_backlash(options, axis, test.rotary);
   const math::ErrorCurve measured = math::error_curve(test);
   TableForecast f{m.id, axis, test.rotary};
   const auto was = math::before(measured);
@@ -422,7 +423,7 @@ TableForecast forecast_of_axis(const Campaign& campaign, const Measurement& m,
   f.scatter = std::max(will.E() + range_of_scatter(test) - f.E[1], 0.0);
   // Values of the axis require all targets.
   if (measured.left_out > 0)
-    for (double* value : {f.E, f.B, f.M}) value[0] = value[1] = std::nan("");
+    for (double* value : {f.E, f.B, f.M}) value[0] = value[1] = std::nan(""), f.scatter = 0.0;
   return f;
 }
 

@@ -350,6 +350,14 @@ class Planes(BenchTest):
 
 
 class Chosen(BenchTest):
+    def test_a_measurement_of_too_many_targets_for_the_history_is_named(self):
+        for targets, notes in ((500, 0), (501, 1)):
+            self.tearDown(), self.setUp()
+            self.one_axis([2.0 * i for i in range(targets)], wave, lambda x: wave(x) + LOST,
+                          "[options.siemens-840d]\nmax_points = 1000\n", "siemens-840d")
+            found = [n for n in self.run_site().get("notes", []) if "The history keeps tables of up to 500" in n]
+            self.assertEqual(len(found), notes, found)
+
     def test_a_control_without_a_table_for_an_axis_is_named(self):
         for control, axis, unit in (("reprapfirmware", "X", "mm"), ("reprapfirmware", "C", "deg"), ("twincat-volumetric", "W", "mm")):
             with self.subTest(control=control, axis=axis):
