@@ -2,6 +2,7 @@
 // The session stores no state: each call determines the present step from the files, the record of
 // the machine and the campaigns of the site.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -219,11 +220,15 @@ class Session {
     }
     const tables::TableForecast& f = merged_.forecast.front();
     const Quantity q = deviation_of(f.rotary);
-    done("table", say("session.table", {{"files", names_of(merged_.files)},
-                                        {"folder", out_.string()},
-                                        {"before", with_unit(f.E[0], q, *words_)},
-                                        {"after", with_unit(f.E[1], q, *words_)},
-                                        {"most", with_unit(f.E[1] + f.scatter, q, *words_)}}));
+    if (std::isnan(f.E[0]))
+      done("table", say("session.table.unpredicted",
+                        {{"files", names_of(merged_.files)}, {"folder", out_.string()}}));
+    else
+      done("table", say("session.table", {{"files", names_of(merged_.files)},
+                                          {"folder", out_.string()},
+                                          {"before", with_unit(f.E[0], q, *words_)},
+                                          {"after", with_unit(f.E[1], q, *words_)},
+                                          {"most", with_unit(f.E[1] + f.scatter, q, *words_)}}));
     return true;
   }
 
