@@ -140,28 +140,36 @@ Observations without(const Observations& o, const std::string& axis, const Table
 
 /// Returns readings along a diagonal without the correction of these tables; none if that depends
 /// on the positions of a gantry's sides, which are not stated.
-Observations diagonal_without(const Campaign& campaign, const Observations& o,
+Observations diagonal_without(const Campaign& campaign, const Measurement& m, const Observations& o,
                               const Tables& tables) {
   Observations raw = o;
   const auto beams = math::beams_of(campaign);
+  const bool relative = m.kind == "step-diagonal";  // its start is no reading
   for (std::size_t i = 0; i < o.size(); ++i) {
-    math::Places at;
+    math::Places at, start;
     math::MotionSigns ways;
     for (const auto& axis : o.axes) {
       at[axis.axis] = axis.position[i];
       if (!axis.approach.empty())
         ways[axis.axis] = axis.approach[i] == 0 ? 0 : axis.approach[i] > 0 ? 1 : -1;
+      const std::size_t k = coordinate_of(axis.axis);
+      if (!relative || k > 2) continue;
+      const auto [low, high] = std::minmax(m.from.at(axis.axis), m.to.at(axis.axis));
+      start[axis.axis] = o.sense_of(i)[k] > 0.0 ? low : high;
     }
     for (const auto& axis : o.axes) {
       const std::size_t k = coordinate_of(axis.axis);
       if (axis.rotary || k > 2 || o.sense_of(i)[k] == 0.0) continue;
-      const auto moved = math::added_on_beam(
-          beams, axis.axis, at, ways,
-          [&](const std::string& one, const math::Places& places, const math::MotionSigns& of) {
-            return math::added(tables, one, places, of);
-          });
-      if (!moved) return {};
-      raw.deviation[i] -= o.sense_of(i)[k] * *moved;
+      const auto moved = [&](const math::Places& places) {
+        return math::added_on_beam(
+            beams, axis.axis, places, ways,
+            [&](const std::string& one, const math::Places& there, const math::MotionSigns& of) {
+              return math::added(tables, one, there, of);
+            });
+      };
+      const auto here = moved(at), before = relative ? moved(start) : 0.0;
+      if (!here || !before) return {};
+      raw.deviation[i] -= o.sense_of(i)[k] * (*here - *before);
     }
   }
   return raw;
@@ -277,7 +285,7 @@ std::vector<Observations> without_tables(const Campaign& campaign,
   for (std::size_t i = 0; i < readings.size(); ++i)
     raw.push_back(campaign.measurements[i].compensation == "off" ? readings[i]
                   : is_diagonal(campaign.measurements[i])
-                      ? diagonal_without(campaign, readings[i], tables)
+                      ? diagonal_without(campaign, campaign.measurements[i], readings[i], tables)
                       : without(readings[i],
                                 control_axis(campaign.machine, campaign.measurements[i]), tables));
   return raw;

@@ -259,7 +259,12 @@ std::optional<CrossJob> of_volume(const ControllerInput& in, const Results::Anal
     if (auto curve = curve_of(e, part, o.axes[static_cast<std::size_t>(part.series[1] - 'X')].axis))
       job.curves.push_back(std::move(*curve));
   if (job.curves.empty()) return std::nullopt;
-  job.lines = body_diagonals(in.campaign, in.campaign.measurements[index], o);
+  const Measurement& m = in.campaign.measurements[index];
+  job.lines = body_diagonals(in.campaign, m, o);
+  // The host has removed the tables that were active from the readings, not from the results.
+  for (ReadLine& line : job.lines)
+    if (const auto* read = e.points.column(line.name); read != nullptr && any_active(in, line, m))
+      line.measured = read->values;
   return job;
 }
 

@@ -5,10 +5,12 @@
 With e = actual - nominal, what a table adds to the position must be -e (plus a constant).
 """
 import math
+import random
 import re
 import unittest
 
 from bench import BenchTest, axis_csv, interpolate, wave
+from parsers import TABLE, cec
 
 TARGETS = [25.0 * i for i in range(17)]  # mm, 0 to 400
 LOST = 3.0  # um: the axis stays behind by as much when it comes from above
@@ -347,6 +349,85 @@ class Planes(BenchTest):
         tables = self.json_of("table", "diff", self.site / "zero.g", path, "--control", "reprapfirmware")["tables"]
         self.assertEqual({(t["output"], *t["by"]): t["new"]["largest_slope_um_per_m"] for t in tables},
                          {("X", "Y"): 1000.0, ("Y", "Z"): 2000.0, ("X", "Z"): 3000.0})
+
+
+class Steps(BenchTest):
+    """Step diagonals of a machine whose control has old tables: the ranges after the new ones are those of the machine."""
+
+    SIZE, N = {"X": 800.0, "Y": 600.0, "Z": 500.0}, 10
+    SIGNS = {"PPP": (1, 1, 1), "NPP": (-1, 1, 1), "PNP": (1, -1, 1), "PPN": (1, 1, -1)}
+
+    def setUp(self):
+        super().setUp()
+        rng = random.Random("steps 1")
+        self.rng = rng
+        self.curves = {(a, b): [rng.gauss(0, 12), rng.gauss(0, 6)] for a in "XYZ" for b in "XYZ"}
+
+    def error(self, at, size, tables):
+        """um of each axis; the tables of a control add to it."""
+        out = {}
+        for a in "XYZ":
+            out[a] = sum(size * (self.curves[a, b][0] * at[b] / self.SIZE[b] +
+                                 self.curves[a, b][1] * math.sin(math.pi * at[b] / self.SIZE[b])) for b in "XYZ")
+            out[a] += sum(t.added(at[b], "+") for (b, output), t in tables.items() if output == a)
+        return out
+
+    def steps(self, name, size, tables):
+        """(positions, reading) after each move of one axis."""
+        way = math.hypot(*self.SIZE.values())
+        u = {a: s * self.SIZE[a] / way for a, s in zip("XYZ", self.SIGNS[name])}
+        moves, start, out = {a: 0 for a in "XYZ"}, None, []
+        for step in range(3 * self.N + 1):
+            at = {a: self.SIZE[a] * (moves[a] if u[a] > 0 else self.N - moves[a]) / self.N for a in "XYZ"}
+            e = self.error(at, size, tables)
+            start = start or e
+            out.append(sum(u[a] * (e[a] - start[a]) for a in "XYZ"))
+            moves["XYZ"[step % 3]] += 1
+        return out
+
+    def whole(self, name, size, tables):
+        read = self.steps(name, size, tables)[::3]
+        return max(read) - min(read)
+
+    def measured(self, size, tables, active):
+        files = {}
+        for k, a in enumerate("XYZ"):
+            at = {b: self.SIZE[b] / 2 for b in "XYZ"}
+            curve = lambda x, a=a, at=at: self.error({**at, a: x}, size, tables)[a]
+            files[a] = ("axis", axis_csv([self.SIZE[a] * i / self.N for i in range(self.N + 1)], curve, curve), 'axis = "%s"' % a)
+        rows = ["diagonal,step,moved,deviation_um"]
+        for name in self.SIGNS:
+            rows += ["%s,%d,%s,%.4f" % (name, i, "XYZ"[(i - 1) % 3], v + self.rng.gauss(0, 0.02))
+                     for i, v in list(enumerate(self.steps(name, size, tables)))[1:]]
+        ends = "from = { X = 0, Y = 0, Z = 0 }\nto = { %s }" % ", ".join("%s = %g" % p for p in self.SIZE.items())
+        files["SD"] = ("step-diagonal", "\n".join(rows) + "\n", ends)
+        self.campaign(files, '[run]\nanalyses = ["iso230-2", "step-diagonal"]\n', [(a, "linear") for a in "XYZ"], "siemens-840d")
+        path = self.folder / "campaign.toml"
+        if active:
+            path.write_text(path.read_text().replace('active_table = "none"', 'active_table = "%s"' % active))
+        results = self.run_site(expect=None)
+        self.assertEqual(results["errors"], [])
+        texts = {p.name: p.read_text() for p in (self.out / "c").iterdir() if p.name.startswith("siemens-840d")}
+        self.assertIn("siemens-840d-XYZ-CEC.ini", texts, results["tables"])
+        found = {("XYZ"[i - 1], "XYZ"[o - 1]): t for i, o, t in cec(texts["siemens-840d-XYZ-CEC.ini"])}
+        for k, a in enumerate("XYZ"):
+            found[a, a] = TABLE["siemens-840d"]({n: t for n, t in texts.items() if "-%s-" % a in n}, k + 1)
+            found[a, a].backlash = 0.0  # no reversal
+        return texts, found, {p["name"]: p for t in results["tables"] for p in t["predictions"] if p["name"] in self.SIGNS}
+
+    def test_ranges_over_old_tables(self):
+        texts, old, _ = self.measured(1.0, {}, None)
+        (self.folder / "old").mkdir()
+        for name, text in texts.items():
+            (self.folder / "old" / name).write_text(text)
+        active = ",".join("old/siemens-840d-%s-EEC.ini" % a for a in "XYZ") + ",old/siemens-840d-XYZ-CEC.ini"
+        _, new, predicted = self.measured(1.4, old, active)
+        self.assertEqual(sorted(predicted), sorted(self.SIGNS))
+        for name, p in predicted.items():
+            self.assertGreater(self.whole(name, 1.4, old), 2.0)
+            self.assertAlmostEqual(p["before"], self.whole(name, 1.4, old), delta=0.3)
+            self.assertAlmostEqual(p["predicted"], self.whole(name, 1.4, new), delta=0.3)
+            self.assertLess(self.whole(name, 1.4, new), 1.0)
 
 
 class Chosen(BenchTest):
