@@ -10,9 +10,6 @@
 namespace nonio::tables {
 namespace {
 
-// docs/dev/constants.md, A29.
-constexpr double same_within_um = 0.11;
-
 bool is_own(const LoadedTable& t, const std::string& axis) {
   return t.output == axis && t.input == std::vector{axis};
 }

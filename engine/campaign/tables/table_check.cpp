@@ -326,6 +326,47 @@ Campaign with_one(Campaign campaign, Measurement m) {
   return campaign;
 }
 
+namespace {
+
+/// Returns the tables by one position of which the sum is a table by two. Error: there are none.
+Expected<Tables> by_one_position(const LoadedTable& t) {
+  if (t.input.size() == 1) return Tables{t};
+  const std::size_t n = t.position[0].size(), m = t.position[1].size();
+  Tables parts;
+  for (const std::size_t k : {0U, 1U}) {
+    LoadedTable part = t;
+    part.input = {t.input[k]}, part.position = {t.position[k]};
+    for (auto* values : {&part.plus, &part.minus}) {
+      if (values->empty()) continue;
+      std::vector<double> along;
+      for (std::size_t i = 0; i < t.position[k].size(); ++i)
+        along.push_back((*values)[k == 0 ? i * m : i] - (k == 0 ? 0.0 : values->front()));
+      *values = std::move(along);
+    }
+    if (k == 1) part.backlash.reset();
+    parts.push_back(std::move(part));
+  }
+  const double most = 2.0 * same_within_um * 1e-6;  // of four rounded values
+  const auto is_sum = [&](const std::vector<double>& all, const std::vector<double>& first,
+                          const std::vector<double>& second) {
+    for (std::size_t i = 0; i < all.size() && n * m == all.size(); ++i)
+      if (std::fabs(all[i] - first[i / m] - second[i % m]) > most) return false;
+    return true;
+  };
+  if (!is_sum(t.plus, parts[0].plus, parts[1].plus) ||
+      !is_sum(t.minus, parts[0].minus, parts[1].minus))
+    return fail("the table of " + t.output + " by " + t.input[0] + " and " + t.input[1] +
+                " is no sum of tables by one position, so it cannot be removed from the curves: "
+                "measure with this table off (compensation = \"off\")");
+  std::erase_if(parts, [](const LoadedTable& part) {
+    const auto [low, high] = std::minmax_element(part.plus.begin(), part.plus.end());
+    return *high - *low == 0.0 && part.minus.empty() && !part.backlash;
+  });
+  return parts;
+}
+
+}  // namespace
+
 Expected<std::optional<Underlay>> active_compensation(const reading::ReadCampaign& read,
                                                       const Controller& controller,
                                                       const Settings& options) {
@@ -348,7 +389,9 @@ Expected<std::optional<Underlay>> active_compensation(const reading::ReadCampaig
       const auto stated = stated_backlash(options, axis, t.rotary);
       if (stated && t.backlash.value_or(0.0) != 0.0 && std::fabs(*stated - *t.backlash) > 5e-10)
         return fail(who + "its files hold another backlash than active_backlash states");
-      on.tables.push_back(t);
+      auto parts = by_one_position(t);
+      if (!parts) return fail(who + parts.error().message);
+      on.tables.insert(on.tables.end(), parts->begin(), parts->end());
     }
   }
   state_backlash_of(on.options, on.tables);

@@ -11,6 +11,9 @@
 
 namespace nonio::tables {
 
+// docs/dev/constants.md, A29.
+inline constexpr double same_within_um = 0.11;
+
 /// Without a name, returns the controller of the files' names, otherwise the only one that can read
 /// the files, or could if one line were correct.
 Expected<const Controller*> control_of(const loader::Plugins&, const std::string& name,

@@ -239,13 +239,21 @@ class Planes(BenchTest):
     L = {"X": 1200.0, "Y": 900.0}  # mm; diagonals of 1500
     SQUARE = 8e-6  # C0Y, rad: +Y turns towards -X
 
+    def setUp(self):
+        super().setUp()
+        self.ranges = {}
+
     def y_over_x(self, x):
         return 12.0 * math.sin(math.pi * x / self.L["X"])
 
     def x_over_y(self, y):
         return -7.0 * math.sin(2.0 * math.pi * y / self.L["Y"]) - self.SQUARE * y * 1e3
 
-    def gantry(self, control, extra=""):
+    def gantry(self, control, extra="", size=1.0, old=None, active=None):
+        """`old`: what the active cross tables add to X and Y, um; `active`: their files by axis."""
+        old = old or {"X": lambda y: 0.0, "Y": lambda x: 0.0}
+        x_over_y = lambda y: size * self.x_over_y(y) + old["X"](y)
+        y_over_x = lambda x: size * self.y_over_x(x) + old["Y"](x)
         files = {}
         for name, axis, more in (("X1", "X", "at = { Y = 100 }"), ("X2", "X", "at = { Y = 800 }"), ("Y", "Y", "")):
             targets = [self.L[axis] * i / 30 for i in range(31)]
@@ -256,14 +264,51 @@ class Planes(BenchTest):
 
             def along(d, start=start, end=end, length=length):
                 x, y = 1200.0 * d / length, start + (end - start) * d / length
-                return ((1200.0 * (self.x_over_y(y) - self.x_over_y(start)) + (end - start) * self.y_over_x(x))
-                        / length)
+                return (1200.0 * (x_over_y(y) - x_over_y(start)) + (end - start) * (y_over_x(x) - y_over_x(0.0))) / length
+            self.ranges[name] = [along(length * i / n) for i in range(n + 1)]
             files[name] = ("diagonal", axis_csv([length * i / n for i in range(n + 1)], along, along),
                            "from = { X = 0, Y = %d }\nto = { X = 1200, Y = %d }" % (start, end))
         for finding in ("readings-all-equal", "file-twice"):
             extra += '[[tables.accept]]\nfinding = "plausibility.%s"\nreason = "positioning is made perfect"\n' % finding
         self.campaign(files, extra, (("X", "linear"), ("Y", "linear")), control)
-        return self.run_site()
+        path = self.folder / "campaign.toml"
+        for axis, names in (active or {}).items():
+            path.write_text(path.read_text().replace('[machine.axes.%s]\nkind = "linear"\nactive_table = "none"' % axis,
+                                                     '[machine.axes.%s]\nkind = "linear"\nactive_table = "%s"' % (axis, names)))
+        return self.run_site(expect=None if active else 0)
+
+    def added(self, control):
+        """What the cross tables in the output add to X over Y and to Y over X, um over mm."""
+        if control == "aerotech":
+            rows = [numbers(l) for l in self.file("aerotech-plane-D1.cal").splitlines() if l and l[0] not in ":;"]
+            return {"X": [(30.0 * j, row[0]) for j, row in enumerate(rows)], "Y": [(40.0 * i, v) for i, v in enumerate(rows[0][1::2])]}
+        out = {}
+        for axis in "XY":
+            keys = dict(line.split(None, 1) for line in self.file("twincat-cnc-cross-%s.lis" % axis).splitlines() if not line.startswith("#"))
+            row = lambda i, what: int(keys["kw.crosscomp.table[%d].%s" % (i, what)])
+            out[axis] = [(row(i, "setpoint") * 1e-4, row(i, "correction") * 0.1) for i in range(int(keys["kw.crosscomp.last_index"]) + 1)]
+        return out
+
+    def test_a_cross_table_over_an_active_one(self):
+        """The new one is complete, and the diagonals are predicted over the old one."""
+        for control, extra, names in (("aerotech", "", {a: "aerotech-plane-D1.cal" for a in "XY"}),
+                                      ("twincat-cnc", '[options.twincat-cnc]\ncross_sign = "correction"\n',
+                                       {a: "twincat-cnc-cross-%s.lis" % a for a in "XY"})):
+            with self.subTest(control=control):
+                self.gantry(control, extra)
+                old = {a: (lambda x, p=p: interpolate(p, x)) for a, p in self.added(control).items()}
+                for name in set(names.values()):
+                    (self.folder / name).write_text(self.file(name))
+                results = self.gantry(control, extra, 1.5, old, names)
+                self.assertEqual(results["errors"], [])
+                for axis, true in (("X", self.x_over_y), ("Y", self.y_over_x)):
+                    for x, c in self.added(control)[axis]:
+                        self.assertAlmostEqual(c, -1.5 * (true(x) - true(0.0)), delta=0.15)
+                predicted = {p["name"]: p for t in results["tables"] for p in t["predictions"] if p["name"] in ("D1", "D2")}
+                self.assertEqual(sorted(predicted), ["D1", "D2"])
+                for name, p in predicted.items():
+                    self.assertAlmostEqual(p["before"], max(self.ranges[name]) - min(self.ranges[name]), delta=0.1)
+                    self.assertLess(p["predicted"], 0.3)
 
     def test_crosscomp_needs_a_sign(self):
         results = self.gantry("twincat-cnc")
