@@ -82,9 +82,15 @@ TableJson json_of(const tables::MergedSet& merged) {
 }  // namespace
 
 int insert_set(const SetWish& w, const Loaded& present, const Settings& options,
-               const std::vector<std::string>& set, const OpenCampaign& open,
-               const Common& common) {
-  const auto merged = merge_set_now(open, present, options, set);
+               const std::vector<std::string>& set, OpenCampaign& open, const Common& common) {
+  auto merged = merge_set_now(open, present, options, set);
+  StateAnswers answers;
+  if (!merged) {
+    auto asked = ask_for_states(open, *present.control, set, merged.error(), common);
+    if (!asked) return complain(text_of(asked.error()), exit_failed);
+    answers = std::move(*asked);
+    if (!answers.empty()) merged = merge_set_now(open, present, options, set);
+  }
   if (!merged) return complain(text_of(merged.error()), exit_failed);
   for (const std::string& axis : set) tell_findings(open, older_measurement(open, axis));
   tell_findings(open, merged->findings);
@@ -101,12 +107,10 @@ int insert_set(const SetWish& w, const Loaded& present, const Settings& options,
     for (const Artifact& f : merged->files)
       written.push_back((std::filesystem::path(w.out) / f.name).string());
   }
-  std::string recorded;
-  if (!w.loaded.empty()) {
-    auto record = record_set(*merged, present, options, set, w.loaded, open);
-    if (!record) return complain(text_of(record.error()), exit_failed);
-    recorded = std::move(*record);
-  }
+  auto recorded = record_answers(open, answers);
+  if (recorded && !w.loaded.empty())
+    recorded = record_set(*merged, present, options, set, w.loaded, open);
+  if (!recorded) return complain(text_of(recorded.error()), exit_failed);
   if (common.json) {
     TableJson json = {{"schema", "nonio-merge/1"},
                       {"campaign", open.campaign().id},
@@ -114,7 +118,7 @@ int insert_set(const SetWish& w, const Loaded& present, const Settings& options,
                       {"axis", w.axis}};
     json.update(json_of(*merged));
     json["files"] = written;
-    if (!recorded.empty()) json["recorded"] = recorded;
+    if (!recorded->empty()) json["recorded"] = *recorded;
     print_json(json);
     return exit_done;
   }
@@ -126,7 +130,7 @@ int insert_set(const SetWish& w, const Loaded& present, const Settings& options,
                  with_unit(line.before, Quantity::deviation) + " -> " +
                  with_unit(line.after, Quantity::deviation));
   for (const std::string& file : written) std::cout << file << "\n";
-  if (!recorded.empty()) std::cout << recorded << "\n";
+  if (!recorded->empty()) std::cout << *recorded << "\n";
   return exit_done;
 }
 

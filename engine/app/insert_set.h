@@ -26,6 +26,6 @@ struct SetWish {
 };
 /// Inserts the tables of several axes into a backup; returns the exit status.
 int insert_set(const SetWish& wish, const Loaded& present, const Settings& options,
-               const std::vector<std::string>& set, const OpenCampaign& open, const Common& common);
+               const std::vector<std::string>& set, OpenCampaign& open, const Common& common);
 
 }  // namespace nonio::app

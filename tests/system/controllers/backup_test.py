@@ -5,13 +5,10 @@ import json
 import math
 import os
 import pathlib
-import pty
 import re
 import shutil
-import time
 import unittest
 
-from bench import NONIO
 from parsers import OPTIONS, TABLE
 from truth import FOUR, StateBench, Truth
 
@@ -75,24 +72,6 @@ class Backup(StateBench):
         deep.parent.mkdir()
         later.rename(deep)
         self.assertIn(str(deep.resolve()), self.nonio("table", "insert", backup, "--with", now).stderr)
-
-    def answered(self, args, answers):
-        """What `insert` prints on a terminal, and its status; one answer for each question, which ends with a colon."""
-        child, terminal = pty.fork()
-        if child == 0:
-            os.execv(NONIO, [NONIO, *map(str, args)])
-        shown, seen = b"", 0
-        limit = time.monotonic() + 60
-        while time.monotonic() < limit:
-            try:
-                shown += os.read(terminal, 4096)
-            except OSError:
-                break
-            if answers and re.search(rb"(none\)|oder none\)): $", shown[seen:]):
-                seen = len(shown)
-                os.write(terminal, answers.pop(0).encode() + b"\n")
-        os.close(terminal)
-        return shown.decode(), os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
 
     def test_on_a_terminal_the_state_is_asked_for(self):
         control = "siemens-840d"

@@ -239,6 +239,27 @@ class Cross(gantry_test.Gantry):
                     self.assertNotIn("campaign old", cross.replace(self.FOREIGN, ""))
                     self.assertNotIn("CHOSEN", cross)
 
+    def test_on_a_terminal_the_state_of_each_axis_is_asked_for(self):
+        self.control = "siemens-840d"
+        now, before, files = self.worn(4, of="c")  # the backup is of later, so nothing states what was active
+        args = ["table", "insert", ",".join(map(str, files)), "--with", self.folder, "--axis", "XY", "--out", self.out / "load"]
+        self.assertIn("was made from campaign c", self.nonio(*args, expect=1).stderr)
+        answers = []
+        for axis in ("X", "Y", "X2"):
+            own = [str(f) for f in files if "-%s-" % axis in f.name or "CEC" in f.name]
+            lost = [re.search(r"MA_BACKLASH\[0,AX\d\]=(\S+)", f.read_text()) for f in files if "-%s-backlash" % axis in f.name]
+            answers += [",".join(f for f in own if "backlash" not in f), lost[0][1] if lost else "none"]
+        said, status = self.answered(args, answers)
+        self.assertEqual(status, 0, said)
+        for axis in ("X", "Y", "X2"):
+            self.assertIn("Value of MD32450 of %s then" % axis, said)
+        after, _ = self.loaded(now, files)
+        for falling in (False, True):
+            self.assertLess(diagonal(after, falling), 0.2 * diagonal(now, falling) + 2.5, said)
+        record = (self.site / "machines" / "G-1.toml").read_text()
+        self.assertEqual(record.count('source = "answer"'), 3)
+        self.nonio(*args)  # nothing is asked again
+
     def check_campaign(self, machine, seed):
         """The same lines on this machine, four days after loading."""
         self.folder, mine = self.site / "check", self.folder
