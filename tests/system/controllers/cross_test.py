@@ -8,6 +8,7 @@ errors whose beam is rigid, by parsers of their own.
 import csv
 import math
 import os
+import pathlib
 import random
 import re
 import shutil
@@ -282,6 +283,13 @@ class Cross(gantry_test.Gantry):
         first = session("--backup", backup, "--out", self.out / "load")
         self.assertEqual(steps(first), {"backup": "done", "state": "done", "table": "done", "probe": "done", "loading": "missing"})
         self.assertIn("D1", next(s["says"] for s in first["steps"] if s["step"] == "table"))
+        # A sign probe for the pitch table of each axis; the others need the diagonals.
+        probes = next(s["says"] for s in first["steps"] if s["step"] == "probe")
+        for axis in ("X", "Y", "X2"):
+            self.assertRegex(probes, r"(^|; )%s: " % axis)
+        for name in re.findall(r"(\S+): from \S+ mm to \S+ mm the instrument shows", probes):
+            self.assertTrue(pathlib.Path(name).is_file(), probes)
+        self.assertIn("checked by the diagonals", probes)
         self.assertIn("--loaded YYYY-MM-DD", first["command"])
         after, _ = self.loaded(now, files)
         second = session("--backup", backup, "--loaded", "2026-05-12")
@@ -292,14 +300,24 @@ class Cross(gantry_test.Gantry):
         third = session()
         self.assertEqual(steps(third)["loading"], "done")
         self.check_campaign(after, SEED + 7)
+        # The same readings by --check: the session makes the campaign.
+        made, text = self.site / "check", (self.site / "check" / "campaign.toml").read_text()
+        of = dict(re.findall(r'id = "(D\d)"\n(?:(?!\[).*\n)*?file = "(.*)"', text))
+        given = ",".join("%s=%s" % (d, shutil.copy(made / f, self.site.parent / ("after-" + f))) for d, f in sorted(of.items()))
+        made.rename(self.site.parent / "kept")
+        self.assertIn("--check D1=FILE,D2=FILE", session()["command"])
+        self.assertIn("expected D1=FILE,D2=FILE", next(s["says"] for s in session("--check", files[0], expect=1)["steps"] if s["step"] == "check"))
+        own = session("--check", given, "--checked", "2026-05-16")
+        self.assertEqual(steps(own)["verdict"], "done", own)
+        shutil.rmtree(self.folder.parent / (self.folder.name + "-check"))
+        (self.site.parent / "kept").rename(made)
         last = session()
         self.assertEqual(steps(last)["verdict"], "done", last)
+        self.assertEqual([s["says"] for s in own["steps"] if s["step"] == "verdict"], [s["says"] for s in last["steps"] if s["step"] == "verdict"])
         for name, falling in (("D1", False), ("D2", True)):
             said = next(s["says"] for s in last["steps"] if s["step"] == "verdict")
             found = re.search(name + r": range ([\d.]+) um before, ([\d.]+) um predicted, ([\d.]+) um after", said)
             self.assertAlmostEqual(float(found[3]), diagonal(after, falling), delta=1.5)
-        refused = session("--check", files[0], expect=1)
-        self.assertEqual(steps(refused)["check"], "refused")
         # Nothing was loaded.
         self.check_campaign(before, SEED + 8)
         worse = session(expect=1)
