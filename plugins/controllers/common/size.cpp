@@ -85,6 +85,8 @@ void refuse(const AxisJob& job, const char* id, double found, double at, const L
 
 void TableSize::take(const std::vector<double>& position, const std::vector<double>& added) {
   for (std::size_t i = 0; i < std::min(position.size(), added.size()); ++i) {
+    if (i == 0 && slope == 0.0) slope_from = position[0];
+    if (i == 0 && largest == 0.0) largest_at = position[0];
     if (std::fabs(added[i]) > largest) largest = std::fabs(added[i]), largest_at = position[i];
     if (i == 0) continue;
     const double way = position[i] - position[i - 1];

@@ -233,7 +233,47 @@ class Axis(BenchTest):
             self.assertEqual(ends[0], ends[1], control)
 
 
-class Planes(BenchTest):
+def columns_of(text):
+    """(output, input): points in um over mm, of a .COM of Heidenhain, with listed or with even positions."""
+    lines = text.splitlines()
+    heads = [(m[0], m.start()) for m in re.finditer(r"\S+", lines[1])] + [("", None)]
+    even = re.search(r"DATUM:(\S+) DISTANCE:(\S+)", lines[0])
+    at = lambda line: float(even[1]) + float(even[2]) * int(line.split()[0]) if even else float(line.split()[1])
+    out = {}
+    for (axis, start), (_, end) in list(zip(heads, heads[1:]))[1 if even else 3:]:
+        points = [(at(l), 1e3 * float(l[start:end])) for l in lines[2:] if l[:1].isdigit() and l[start:end].strip()]
+        if points:
+            out[axis, re.match(r"BEGIN AXIS[_-]([A-Z])", lines[0])[1]] = points
+    return out
+
+
+class CrossWords(BenchTest):
+    """What texts and messages state about cross tables is what the files contain."""
+
+    def assert_true(self, text, tables, results, control):
+        said = re.findall(r"(\w+) over (\w+): zero at (\S+) mm of \w+(?:, taken as reference point)?; "
+                          r"largest entry (\S+) um at (\S+) mm, steepest (\S+) um/m", text)
+        self.assertEqual({(o, i) for o, i, *_ in said}, set(tables), control)
+        digit = 0.000501
+        true = {}
+        for output, by, zero, largest, where, steep in said:
+            points = sorted(tables[output, by])
+            case = "%s: %s over %s" % (control, output, by)
+            true[output, by] = float(largest), float(steep)
+            self.assertAlmostEqual(interpolate(points, float(zero)), 0.0, delta=0.051, msg=case)
+            self.assertAlmostEqual(max(abs(v) for _, v in points), float(largest), delta=digit, msg=case)
+            self.assertAlmostEqual(abs(interpolate(points, float(where))), float(largest), delta=digit, msg=case)
+            slopes = [abs(v - u) / (b - a) * 1e3 for (a, u), (b, v) in zip(points, points[1:])]
+            self.assertAlmostEqual(max(slopes), float(steep), delta=digit, msg=case)
+        notes = [n for t in results["tables"] for n in t["notes"]]
+        found = [m for n in notes for m in re.findall(r"(\w+) over (\w+): .*largest entry is (\S+) um, its steepest change (\S+) um/m", n)]
+        self.assertEqual({(o, i) for o, i, *_ in found}, set(tables), notes)
+        for output, by, largest, steep in found:
+            for one, other in zip((float(largest), float(steep)), true[output, by]):
+                self.assertAlmostEqual(one, other, delta=0.0051 * max(other, 0.1), msg="%s %s" % (control, notes))
+
+
+class Planes(CrossWords):
     """A gantry with straightness and squareness, from its diagonals."""
 
     L = {"X": 1200.0, "Y": 900.0}  # mm; diagonals of 1500
@@ -309,6 +349,27 @@ class Planes(BenchTest):
                 for name, p in predicted.items():
                     self.assertAlmostEqual(p["before"], max(self.ranges[name]) - min(self.ranges[name]), delta=0.1)
                     self.assertLess(p["predicted"], 0.3)
+
+    def test_the_words_about_cross_tables_are_true(self):
+        seed = random.SystemRandom().randrange(1, 10**9)
+        print("seed %d" % seed)
+        rng = random.Random(seed)
+        for control, extra in (("siemens-840d", ""), ("heidenhain-tnc", ""), ("heidenhain-tnc", '[options.heidenhain-tnc]\nlayout = "itnc530"\n'),
+                               ("aerotech", ""), ("twincat-cnc", '[options.twincat-cnc]\ncross_sign = "error"\n')):
+            self.tearDown(), self.setUp()
+            results = self.gantry(control, extra, rng.uniform(0.3, 2.0))
+            files = {p.name: p.read_text() for p in (self.out / "c").iterdir() if p.name.startswith(control)}
+            if control == "siemens-840d":
+                tables = {("XY"[o - 1], "XY"[i - 1]): t.plus for n, f in files.items() if "CEC" in n for i, o, t in cec(f)}
+            elif control == "heidenhain-tnc":
+                tables = {}
+                for f in files.values():
+                    if f.startswith("BEGIN AXIS"):
+                        tables |= {k: v for k, v in columns_of(f).items() if k[0] != k[1]}
+            else:
+                tables = {("X", "Y"): self.added(control)["X"], ("Y", "X"): self.added(control)["Y"]}
+            self.assertTrue(tables, control)
+            self.assert_true("\n".join(files.values()), tables, results, control)
 
     def test_crosscomp_needs_a_sign(self):
         results = self.gantry("twincat-cnc")
@@ -396,7 +457,7 @@ class Planes(BenchTest):
                          {("X", "Y"): 1000.0, ("Y", "Z"): 2000.0, ("X", "Z"): 3000.0})
 
 
-class Steps(BenchTest):
+class Steps(CrossWords):
     """Step diagonals of a machine whose control has old tables: the ranges after the new ones are those of the machine."""
 
     SIZE, N = {"X": 800.0, "Y": 600.0, "Z": 500.0}, 10
@@ -404,7 +465,9 @@ class Steps(BenchTest):
 
     def setUp(self):
         super().setUp()
-        rng = random.Random("steps 1")
+        self.draw(random.Random("steps 1"))
+
+    def draw(self, rng):
         self.rng = rng
         self.curves = {(a, b): [rng.gauss(0, 12), rng.gauss(0, 6)] for a in "XYZ" for b in "XYZ"}
 
@@ -452,6 +515,7 @@ class Steps(BenchTest):
             path.write_text(path.read_text().replace('active_table = "none"', 'active_table = "%s"' % active))
         results = self.run_site(expect=None)
         self.assertEqual(results["errors"], [])
+        self.results = results
         texts = {p.name: p.read_text() for p in (self.out / "c").iterdir() if p.name.startswith("siemens-840d")}
         self.assertIn("siemens-840d-XYZ-CEC.ini", texts, results["tables"])
         found = {("XYZ"[i - 1], "XYZ"[o - 1]): t for i, o, t in cec(texts["siemens-840d-XYZ-CEC.ini"])}
@@ -459,6 +523,13 @@ class Steps(BenchTest):
             found[a, a] = TABLE["siemens-840d"]({n: t for n, t in texts.items() if "-%s-" % a in n}, k + 1)
             found[a, a].backlash = 0.0  # no reversal
         return texts, found, {p["name"]: p for t in results["tables"] for p in t["predictions"] if p["name"] in self.SIGNS}
+
+    def test_the_words_about_cross_tables_are_true(self):
+        seed = random.SystemRandom().randrange(1, 10**9)
+        print("seed %d" % seed)
+        self.draw(random.Random(seed))
+        texts, tables, _ = self.measured(1.0, {}, None)
+        self.assert_true("\n".join(texts.values()), {(o, i): t.plus for (i, o), t in tables.items() if i != o}, self.results, "siemens-840d")
 
     def test_ranges_over_old_tables(self):
         texts, old, _ = self.measured(1.0, {}, None)
