@@ -16,33 +16,58 @@ namespace nonio::app {
 
 namespace {
 
-bool moves_any(const Measurement& m, const std::vector<std::string>& axes) {
+/// Analyses for which nothing is printed.
+struct Analysed {
+  explicit Analysed(const OpenCampaign& open)
+      : work{open.place->context, quiet, open.read, errors} {
+    results.analyses = evaluation::run_analyses(work);
+  }
+  const reading::Stage quiet = [](const std::string&) {};
+  std::vector<Error> errors{};
+  const evaluation::Work work;
+  Results results{};
+};
+
+bool moves_any(const Machine& machine, const Measurement& m, const std::vector<std::string>& axes) {
   return std::any_of(axes.begin(), axes.end(), [&](const std::string& axis) {
-    return m.axis == axis || m.from.contains(axis);
+    return m.axis == axis || control_axis(machine, m) == axis || m.from.contains(axis);
   });
+}
+
+/// What prevents tables in `nonio run` prevents them here.
+Expected<void> refuse_doubts(const OpenCampaign& open, Analysed& now,
+                             const std::vector<std::string>& axes) {
+  for (Results::Analysed& a :
+       reading::implausible(open.read, open.place->context, open.read.inputs, now.results.analyses))
+    now.results.analyses.push_back(std::move(a));
+  const auto doubts = evaluation::open_doubts(now.work, now.results.analyses);
+  if (!now.errors.empty()) return fail(now.errors.front());
+  for (const Measurement& m : open.campaign().measurements)
+    if (const auto of = doubts.find(m.id);
+        of != doubts.end() && moves_any(open.campaign().machine, m, axes))
+      return fail("measurement " + m.id + ": finding " + *of->second.begin() +
+                  " prevents tables: correct the cause, or accept it with a reason "
+                  "([[tables.accept]] in campaign.toml)");
+  return {};
 }
 
 }  // namespace
 
+Expected<tables::MergedTables> merge_axis_now(const OpenCampaign& open, const Loaded& present,
+                                              const Settings& options, const std::string& axis) {
+  Analysed now(open);
+  now.errors.clear();  // the table needs no analysis
+  if (auto sound = refuse_doubts(open, now, {axis}); !sound) return fail(sound.error());
+  return tables::merge_tables(open.read, *present.control, options, present.files, axis);
+}
+
 Expected<tables::MergedSet> merge_set_now(const OpenCampaign& open, const Loaded& present,
                                           const Settings& options,
                                           const std::vector<std::string>& set) {
-  std::vector<Error> errors;
-  const reading::Stage quiet = [](const std::string&) {};
-  const evaluation::Work work{open.place->context, quiet, open.read, errors};
-  Results results;
-  results.analyses = evaluation::run_analyses(work);
-  for (Results::Analysed& a :
-       reading::implausible(open.read, open.place->context, open.read.inputs, results.analyses))
-    results.analyses.push_back(std::move(a));
-  const auto doubts = evaluation::open_doubts(work, results.analyses);
-  if (!errors.empty()) return fail(errors.front());
-  for (const Measurement& m : open.campaign().measurements)
-    if (const auto of = doubts.find(m.id); of != doubts.end() && moves_any(m, set))
-      return fail("measurement " + m.id + ": finding " + *of->second.begin() +
-                  " prevents tables: correct the cause, or accept it with a reason "
-                  "([[tables.accept]] in campaign.toml)");
-  return tables::merge_set(open.read, results, *present.control, options, present.files, set);
+  Analysed now(open);
+  if (!now.errors.empty()) return fail(now.errors.front());
+  if (auto sound = refuse_doubts(open, now, set); !sound) return fail(sound.error());
+  return tables::merge_set(open.read, now.results, *present.control, options, present.files, set);
 }
 
 Expected<std::string> record_set(const tables::MergedSet& merged, const Loaded& present,

@@ -186,8 +186,7 @@ int merge(const MergeWish& w, const Common& common) {
     return insert_set({w.axis, w.out, w.loaded}, *present, *options(present->control->info), set,
                       open, common);
   const auto merge_now = [&] {
-    return tables::merge_tables(open.read, *present->control, *options(present->control->info),
-                                present->files, *axis);
+    return merge_axis_now(open, *present, *options(present->control->info), *axis);
   };
   auto merged = merge_now();
   StateAnswers answers;

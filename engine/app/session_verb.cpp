@@ -192,8 +192,7 @@ class Session {
   }
 
   bool table() {
-    auto merged =
-        tables::merge_tables(open_->read, *present_.control, options(), present_.files, axis_);
+    auto merged = merge_axis_now(*open_, present_, options(), axis_);
     if (!merged) return refused("state", merged.error());
     merged_ = std::move(*merged);
     done("state",

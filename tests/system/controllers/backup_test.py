@@ -49,6 +49,23 @@ class Backup(StateBench):
         said = self.nonio("table", "diff", backup.split(",")[0], now, expect=1).stderr
         self.assertIn("MD32450", said)
 
+    def test_insert_refuses_readings_of_which_run_makes_no_table(self):
+        control = "siemens-840d"
+        truth, before, backup, now = self.prepared(control, 17)
+        rows = (now / "x.csv").read_text().splitlines()
+        first = {r.split(",", 1)[1].rsplit(",", 1)[0]: r.rsplit(",", 1)[1] for r in rows[1:] if r.startswith("1,")}
+        copied = [("%s,%s" % (r.rsplit(",", 1)[0], first[r.split(",", 1)[1].rsplit(",", 1)[0]]) if r.startswith("2,") else r) for r in rows]
+        (now / "x.csv").write_text("\n".join(copied) + "\n")
+        args = ["table", "insert", backup, "--with", now, "--out", self.site / "load"]
+        said = self.nonio(*args, expect=1).stderr
+        self.assertIn("plausibility.passes-identical", said)
+        self.assertIn("[[tables.accept]]", said)
+        path = now / "campaign.toml"
+        text = path.read_text()
+        head, tail = text.split("[[measurement]]", 1)
+        path.write_text(head + '[[tables.accept]]\nfinding = "plausibility.passes-identical"\nreason = "seen"\n[[measurement]]' + tail)
+        self.nonio(*args)
+
     def test_insert_names_a_later_measurement_of_the_axis(self):
         control = "linuxcnc"
         truth, before, backup, now = self.prepared(control, 13)
