@@ -109,7 +109,8 @@ AnalysedCampaign analyse(reading::ReadCampaign read, const std::string& id,
   results.conformity = held_against_tolerances(work.campaign(), results.analyses);
   WantedPlugins wanted = wanted_plugins(work, results.notes);
   write_tables(work, wanted.controllers, doubts, results);
-  out.evaluated.control_tables = control_tables(out.read, results, wanted.controllers, results.notes);
+  out.evaluated.control_tables =
+      control_tables(out.read, results, wanted.controllers, results.notes);
   out.documents = std::move(wanted.outputs);
   if (!out.documents.empty()) out.number = number_request(work, out.documents, results);
   return out;

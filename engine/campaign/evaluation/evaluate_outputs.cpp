@@ -74,8 +74,7 @@ void note_not_in_format(const Campaign& campaign, const std::string& controller,
                         std::vector<Remark>& notes) {
   std::set<std::string> measurements;
   for (const Measurement& m : campaign.measurements)
-    if (m.kind == "axis" || m.kind == "diagonal" || m.kind == "step-diagonal")
-      measurements.insert(m.id);
+    if (m.kind == "axis" || !m.from.empty()) measurements.insert(m.id);
   if (!measurements.empty())
     notes.push_back({"table.not-in-format",
                      {},

@@ -144,7 +144,7 @@ Observations diagonal_without(const Campaign& campaign, const Measurement& m, co
                               const Tables& tables) {
   Observations raw = o;
   const auto beams = math::beams_of(campaign);
-  const bool relative = m.kind == "step-diagonal";  // its start is no reading
+  const bool relative = o.lines.size() > 1;  // each is zero at its start, which is no reading
   for (std::size_t i = 0; i < o.size(); ++i) {
     math::Places at, start;
     math::MotionSigns ways;
