@@ -191,6 +191,15 @@ class Session {
     return true;
   }
 
+  /// The sign probe and the verdict need the compensation that was active during the measurement.
+  bool state_active() {
+    Settings settled = options();
+    std::vector<Finding> repeated;
+    const auto stated =
+        tables::state_by_backup(open_->read, *present_.control, present_.files, settled, repeated);
+    return stated || refused("state", stated.error());
+  }
+
   bool table() {
     auto merged = merge_axis_now(*open_, present_, options(), axis_);
     if (!merged) return refused("state", merged.error());
@@ -202,13 +211,7 @@ class Session {
                    {{"files", merged_.with.files}}));
     tell_findings(*open_, merged_.findings);
     if (merged_.files.empty()) return refused("table", Error{say("session.table.refused")});
-    // The sign probe and the verdict need the compensation that was active during the measurement.
-    Settings settled = options();
-    std::vector<Finding> repeated;
-    if (auto stated = tables::state_by_backup(open_->read, *present_.control, present_.files,
-                                              settled, repeated);
-        !stated)
-      return refused("state", stated.error());
+    if (!state_active()) return false;
     out_ = w_.out.empty() ? fs::path(w_.folder) / "load" : fs::path(w_.out);
     day_of_loading();
     if (loaded_.empty()) {
@@ -270,12 +273,7 @@ class Session {
 
   /// A sign probe for the pitch table of each axis.
   bool probes_of_set() {
-    Settings settled = options();
-    std::vector<Finding> repeated;
-    if (auto stated = tables::state_by_backup(open_->read, *present_.control, present_.files,
-                                              settled, repeated);
-        !stated)
-      return refused("state", stated.error());
+    if (!state_active()) return false;
     std::string all;
     for (const std::string& axis : set_) {
       if (!measured(axis)) continue;
