@@ -70,19 +70,33 @@ std::string backlash_text(double value, bool rotary) {
   return text;
 }
 
+bool is_rotary(const Machine& machine, const std::string& name) {
+  const Axis* const axis = machine.axis(name);
+  return axis != nullptr && axis->rotary;
+}
+
+/// The measurement of a section [[measurement]], or null.
+const std::pair<const std::string, Artifact>* measured_in(const Section& s,
+                                                          const CheckCampaign& check) {
+  for (const auto& one : check.readings)
+    if (std::any_of(s.lines.begin(), s.lines.end(), [&](const std::string& line) {
+          return Section::has_key(line, "id") && line.find(quoted(one.first)) != std::string::npos;
+        }))
+      return &one;
+  return nullptr;
+}
+
 /// Changes single lines, so that the rest of the text is kept.
 std::string check_text(std::string_view text, const std::string& id, const CheckCampaign& check,
-                       bool rotary) {
+                       const Machine& machine) {
   auto sections = sections_of(text);
-  bool keeps = true, has_axis = false;
+  auto missing = check.axes;
+  const std::pair<const std::string, Artifact>* of = nullptr;
   std::string out;
   for (Section& s : sections) {
-    if (s.head.starts_with("[[measurement]]"))
-      keeps = std::any_of(s.lines.begin(), s.lines.end(), [&](const std::string& line) {
-        return Section::has_key(line, "id") &&
-               line.find(quoted(check.measurement)) != std::string::npos;
-      });
-    if (s.is_part_of("measurement") ? !keeps : s.is_part_of("model") || s.is_part_of("accept"))
+    if (s.head.starts_with("[[measurement]]")) of = measured_in(s, check);
+    if (s.is_part_of("measurement") ? of == nullptr
+                                    : s.is_part_of("model") || s.is_part_of("accept"))
       continue;
     if (s.head.starts_with("[campaign]")) {
       s.set("purpose", quoted("check"));
@@ -91,24 +105,27 @@ std::string check_text(std::string_view text, const std::string& id, const Check
     }
     if (s.head.starts_with("[[measurement]]")) {
       for (const char* key : {"adjustment", "compensation", "exclude", "why"}) s.remove(key);
-      s.set("file", quoted(check.readings.name));
+      s.set("file", quoted(of->second.name));
     }
-    if (s.head.starts_with("[machine.axes." + check.axis + "]")) {
-      has_axis = true;
+    for (const auto& [axis, backlash] : check.axes) {
+      if (!s.head.starts_with("[machine.axes." + axis + "]")) continue;
+      missing.erase(axis);
       for (const char* key : {"active_backlash_mm", "active_backlash_deg"}) s.remove(key);
-      if (check.backlash)
+      const bool rotary = is_rotary(machine, axis);
+      if (backlash)
         s.set(rotary ? "active_backlash_deg" : "active_backlash_mm",
-              backlash_text(*check.backlash, rotary));
+              backlash_text(*backlash, rotary));
       s.set("active_table", quoted(list_of(check.loaded)));
     }
     for (const std::string& line : s.lines) out += line;
   }
-  if (has_axis) return out;
-  out +=
-      "\n[machine.axes." + check.axis + "]\nactive_table = " + quoted(list_of(check.loaded)) + "\n";
-  if (check.backlash)
-    out += std::string(rotary ? "active_backlash_deg = " : "active_backlash_mm = ") +
-           backlash_text(*check.backlash, rotary) + "\n";
+  for (const auto& [axis, backlash] : missing) {
+    const bool rotary = is_rotary(machine, axis);
+    out += "\n[machine.axes." + axis + "]\nactive_table = " + quoted(list_of(check.loaded)) + "\n";
+    if (backlash)
+      out += std::string(rotary ? "active_backlash_deg = " : "active_backlash_mm = ") +
+             backlash_text(*backlash, rotary) + "\n";
+  }
   return out;
 }
 
@@ -116,19 +133,28 @@ std::string check_text(std::string_view text, const std::string& id, const Check
 bool is_meant(const config::Manifest& read, const config::Manifest& before, const std::string& id,
               const CheckCampaign& check) {
   const Campaign& c = read.campaign;
-  if (c.id != id || c.date != check.date || read.purpose != "check" || c.measurements.size() != 1)
+  if (c.id != id || c.date != check.date || read.purpose != "check" ||
+      c.measurements.size() != check.readings.size())
     return false;
-  const Measurement& m = c.measurements.front();
-  const auto original =
-      std::find_if(before.campaign.measurements.begin(), before.campaign.measurements.end(),
-                   [&](const Measurement& o) { return o.id == check.measurement; });
-  const Axis* const axis = c.machine.axis(check.axis);
-  return original != before.campaign.measurements.end() && m.id == check.measurement &&
-         m.kind == original->kind && m.axis == original->axis && m.side == original->side &&
-         m.at == original->at && m.file == check.readings.name && m.adjustment.empty() &&
-         m.compensation.empty() && axis != nullptr && axis->active_table &&
-         *axis->active_table == (check.loaded.empty() ? "" : list_of(check.loaded)) &&
-         axis->active_backlash.has_value() == check.backlash.has_value() &&
+  const auto same_line = [&](const Measurement& m) {
+    const auto readings = check.readings.find(m.id);
+    return readings != check.readings.end() && m.file == readings->second.name &&
+           m.adjustment.empty() && m.compensation.empty() &&
+           std::any_of(before.campaign.measurements.begin(), before.campaign.measurements.end(),
+                       [&](const Measurement& o) {
+                         return o.id == m.id && m.kind == o.kind && m.axis == o.axis &&
+                                m.side == o.side && m.at == o.at && m.from == o.from &&
+                                m.to == o.to;
+                       });
+  };
+  const auto has_state = [&](const auto& loaded) {
+    const Axis* const axis = c.machine.axis(loaded.first);
+    return axis != nullptr && axis->active_table &&
+           *axis->active_table == (check.loaded.empty() ? "" : list_of(check.loaded)) &&
+           axis->active_backlash.has_value() == loaded.second.has_value();
+  };
+  return std::all_of(c.measurements.begin(), c.measurements.end(), same_line) &&
+         std::all_of(check.axes.begin(), check.axes.end(), has_state) &&
          c.machine.asset == before.campaign.machine.asset &&
          c.machine.serial == before.campaign.machine.serial &&
          c.machine.control == before.campaign.machine.control;
@@ -141,7 +167,6 @@ Expected<fs::path> write_check_campaign(const OpenCampaign& open, const CheckCam
   const auto before =
       config::parse_manifest(text, config::manifest_name, open.place->plugins.methods());
   if (!before) return fail(before.error().front());
-  const Axis* const axis = open.campaign().machine.axis(check.axis);
   const std::string id = open.campaign().id + "-check";
   std::error_code error;
   fs::path folder = fs::canonical(open.folder, error);
@@ -150,10 +175,17 @@ Expected<fs::path> write_check_campaign(const OpenCampaign& open, const CheckCam
     return fail(folder.string() +
                 " exists: put the readings of the check there, or make the campaign by hand, with "
                 "purpose = \"check\" in [campaign]");
-  if (!storage::is_artifact_name(check.readings.name) ||
-      check.readings.name == config::manifest_name)
-    return fail("--check: expected a plain file name, found \"" + check.readings.name + "\"");
-  const std::string changed = check_text(text, id, check, axis != nullptr && axis->rotary);
+  std::vector<Artifact> files;
+  for (const auto& [measurement, file] : check.readings) {
+    if (!storage::is_artifact_name(file.name) || file.name == config::manifest_name)
+      return fail("--check: expected a plain file name, found \"" + file.name + "\"");
+    for (const Artifact& other : files)
+      if (other.name == file.name)
+        return fail("--check: expected files of different names, found \"" + file.name +
+                    "\" twice");
+    files.push_back(file);
+  }
+  const std::string changed = check_text(text, id, check, open.campaign().machine);
   const auto read =
       config::parse_manifest(changed, config::manifest_name, open.place->plugins.methods());
   if (!read || !is_meant(*read, *before, id, check))
@@ -164,9 +196,8 @@ Expected<fs::path> write_check_campaign(const OpenCampaign& open, const CheckCam
         (read ? "" : " (" + read.error().front().message + ")"));
   if (auto done = storage::publish(folder / loaded_folder, check.loaded); !done)
     return fail(done.error());
-  if (auto done = storage::publish(folder, {check.readings, {config::manifest_name, changed}});
-      !done)
-    return fail(done.error());
+  files.push_back({config::manifest_name, changed});
+  if (auto done = storage::publish(folder, files); !done) return fail(done.error());
   return folder;
 }
 

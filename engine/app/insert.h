@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
+#include "campaign/tables/control_state.h"
 #include "table_common.h"
 
 namespace nonio::app {
@@ -21,6 +23,19 @@ Expected<void> check_day(const std::string& loaded, const std::string& day);
 Expected<std::string> record_loading(const tables::MergedTables& merged, const Loaded& present,
                                      const Settings& options, const std::string& axis,
                                      const std::string& loaded, const OpenCampaign& open);
+
+/// What was active during the measurement, by axis, as a person stated it on the terminal.
+using StateAnswers = std::map<std::string, tables::StateAnswer>;
+
+/// On a terminal, prints `why` and asks for the state of each of these axes that nothing states;
+/// otherwise empty. An error if an answer is missing.
+Expected<StateAnswers> ask_for_states(OpenCampaign& open, const Controller& control,
+                                      const std::vector<std::string>& axes, const Error& why,
+                                      const Common& common);
+
+/// Enters the answers into the record of the machine, if the campaign names the machine and states
+/// its day. Returns the name of the record; empty: not entered.
+Expected<std::string> record_answers(const OpenCampaign& open, const StateAnswers& answers);
 
 /// Returns a finding if a later campaign measured the axis again; otherwise the list is empty.
 std::vector<Finding> older_measurement(const OpenCampaign& open, const std::string& axis);

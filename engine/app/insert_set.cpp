@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "insert_set.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
 #include "campaign/evaluation/evaluation.h"
+#include "campaign/reading/plausibility/plausibility.h"
 #include "insert.h"
 #include "platform/storage/files.h"
 #include "state_record.h"
@@ -12,21 +14,60 @@
 
 namespace nonio::app {
 
+namespace {
+
+/// Analyses for which nothing is printed.
+struct Analysed {
+  explicit Analysed(const OpenCampaign& open)
+      : work{open.place->context, quiet, open.read, errors} {
+    results.analyses = evaluation::run_analyses(work);
+  }
+  const reading::Stage quiet = [](const std::string&) {};
+  std::vector<Error> errors{};
+  const evaluation::Work work;
+  Results results{};
+};
+
+bool moves_any(const Machine& machine, const Measurement& m, const std::vector<std::string>& axes) {
+  return std::any_of(axes.begin(), axes.end(), [&](const std::string& axis) {
+    return m.axis == axis || control_axis(machine, m) == axis || m.from.contains(axis);
+  });
+}
+
+/// What prevents tables in `nonio run` prevents them here.
+Expected<void> refuse_doubts(const OpenCampaign& open, Analysed& now,
+                             const std::vector<std::string>& axes) {
+  for (Results::Analysed& a :
+       reading::implausible(open.read, open.place->context, open.read.inputs, now.results.analyses))
+    now.results.analyses.push_back(std::move(a));
+  const auto doubts = evaluation::open_doubts(now.work, now.results.analyses);
+  if (!now.errors.empty()) return fail(now.errors.front());
+  for (const Measurement& m : open.campaign().measurements)
+    if (const auto of = doubts.find(m.id);
+        of != doubts.end() && moves_any(open.campaign().machine, m, axes))
+      return fail("measurement " + m.id + ": finding " + *of->second.begin() +
+                  " prevents tables: correct the cause, or accept it with a reason "
+                  "([[tables.accept]] in campaign.toml)");
+  return {};
+}
+
+}  // namespace
+
+Expected<tables::MergedTables> merge_axis_now(const OpenCampaign& open, const Loaded& present,
+                                              const Settings& options, const std::string& axis) {
+  Analysed now(open);
+  now.errors.clear();  // the table needs no analysis
+  if (auto sound = refuse_doubts(open, now, {axis}); !sound) return fail(sound.error());
+  return tables::merge_tables(open.read, *present.control, options, present.files, axis);
+}
+
 Expected<tables::MergedSet> merge_set_now(const OpenCampaign& open, const Loaded& present,
                                           const Settings& options,
                                           const std::vector<std::string>& set) {
-  std::vector<Error> errors;
-  const reading::Stage quiet = [](const std::string&) {};
-  const evaluation::Work work{open.place->context, quiet, open.read, errors};
-  Results results;
-  results.analyses = evaluation::run_analyses(work);
-  const auto doubts = evaluation::open_doubts(work, results.analyses);
-  if (!errors.empty()) return fail(errors.front());
-  if (!doubts.empty())
-    return fail("finding " + doubts.front() +
-                " prevents tables: correct the cause, or accept it with a reason "
-                "([[accept]] in campaign.toml)");
-  return tables::merge_set(open.read, results, *present.control, options, present.files, set);
+  Analysed now(open);
+  if (!now.errors.empty()) return fail(now.errors.front());
+  if (auto sound = refuse_doubts(open, now, set); !sound) return fail(sound.error());
+  return tables::merge_set(open.read, now.results, *present.control, options, present.files, set);
 }
 
 Expected<std::string> record_set(const tables::MergedSet& merged, const Loaded& present,
@@ -66,9 +107,15 @@ TableJson json_of(const tables::MergedSet& merged) {
 }  // namespace
 
 int insert_set(const SetWish& w, const Loaded& present, const Settings& options,
-               const std::vector<std::string>& set, const OpenCampaign& open,
-               const Common& common) {
-  const auto merged = merge_set_now(open, present, options, set);
+               const std::vector<std::string>& set, OpenCampaign& open, const Common& common) {
+  auto merged = merge_set_now(open, present, options, set);
+  StateAnswers answers;
+  if (!merged) {
+    auto asked = ask_for_states(open, *present.control, set, merged.error(), common);
+    if (!asked) return complain(text_of(asked.error()), exit_failed);
+    answers = std::move(*asked);
+    if (!answers.empty()) merged = merge_set_now(open, present, options, set);
+  }
   if (!merged) return complain(text_of(merged.error()), exit_failed);
   for (const std::string& axis : set) tell_findings(open, older_measurement(open, axis));
   tell_findings(open, merged->findings);
@@ -85,12 +132,10 @@ int insert_set(const SetWish& w, const Loaded& present, const Settings& options,
     for (const Artifact& f : merged->files)
       written.push_back((std::filesystem::path(w.out) / f.name).string());
   }
-  std::string recorded;
-  if (!w.loaded.empty()) {
-    auto record = record_set(*merged, present, options, set, w.loaded, open);
-    if (!record) return complain(text_of(record.error()), exit_failed);
-    recorded = std::move(*record);
-  }
+  auto recorded = record_answers(open, answers);
+  if (recorded && !w.loaded.empty())
+    recorded = record_set(*merged, present, options, set, w.loaded, open);
+  if (!recorded) return complain(text_of(recorded.error()), exit_failed);
   if (common.json) {
     TableJson json = {{"schema", "nonio-merge/1"},
                       {"campaign", open.campaign().id},
@@ -98,7 +143,7 @@ int insert_set(const SetWish& w, const Loaded& present, const Settings& options,
                       {"axis", w.axis}};
     json.update(json_of(*merged));
     json["files"] = written;
-    if (!recorded.empty()) json["recorded"] = recorded;
+    if (!recorded->empty()) json["recorded"] = *recorded;
     print_json(json);
     return exit_done;
   }
@@ -110,7 +155,7 @@ int insert_set(const SetWish& w, const Loaded& present, const Settings& options,
                  with_unit(line.before, Quantity::deviation) + " -> " +
                  with_unit(line.after, Quantity::deviation));
   for (const std::string& file : written) std::cout << file << "\n";
-  if (!recorded.empty()) std::cout << recorded << "\n";
+  if (!recorded->empty()) std::cout << *recorded << "\n";
   return exit_done;
 }
 

@@ -11,6 +11,11 @@
 /// `table insert` and `table session` for several axes together.
 namespace nonio::app {
 
+/// Replaces the table of the axis in the backup (`tables::merge_tables`), unless its readings are
+/// implausible.
+Expected<tables::MergedTables> merge_axis_now(const OpenCampaign& open, const Loaded& present,
+                                              const Settings& options, const std::string& axis);
+
 /// Evaluates the campaign and replaces the tables of the axes in the backup (`tables::merge_set`).
 Expected<tables::MergedSet> merge_set_now(const OpenCampaign& open, const Loaded& present,
                                           const Settings& options,
@@ -26,6 +31,6 @@ struct SetWish {
 };
 /// Inserts the tables of several axes into a backup; returns the exit status.
 int insert_set(const SetWish& wish, const Loaded& present, const Settings& options,
-               const std::vector<std::string>& set, const OpenCampaign& open, const Common& common);
+               const std::vector<std::string>& set, OpenCampaign& open, const Common& common);
 
 }  // namespace nonio::app

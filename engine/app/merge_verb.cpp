@@ -166,16 +166,6 @@ Expected<tables::StateAnswer> ask_for_state(OpenCampaign& open, const Controller
   return answer;
 }
 
-/// Enters the answer of a person into the record of the machine, if the campaign names the machine
-/// and states its day. Returns the name of the record; empty: not entered.
-Expected<std::string> record_answer(const OpenCampaign& open, const std::string& axis,
-                                    const std::optional<tables::StateAnswer>& answer) {
-  if (!answer || open.campaign().date.empty()) return std::string();
-  if (open.campaign().machine.asset.empty() && !open.read.machine) return std::string();
-  return add_states(open, axis,
-                    {{open.campaign().date, "answer", answer->files, answer->backlash}});
-}
-
 int merge(const MergeWish& w, const Common& common) {
   const auto settings = settings_of(w.settings);
   if (!settings) return complain(settings.error().message);
@@ -196,18 +186,15 @@ int merge(const MergeWish& w, const Common& common) {
     return insert_set({w.axis, w.out, w.loaded}, *present, *options(present->control->info), set,
                       open, common);
   const auto merge_now = [&] {
-    return tables::merge_tables(open.read, *present->control, *options(present->control->info),
-                                present->files, *axis);
+    return merge_axis_now(open, *present, *options(present->control->info), *axis);
   };
   auto merged = merge_now();
-  std::optional<tables::StateAnswer> answer;
-  if (const Axis* const of = open.campaign().machine.axis(*axis);
-      !merged && of != nullptr && !of->active_table && !common.json && Questions::on_terminal()) {
-    complain(text_of(merged.error()));
-    auto asked = ask_for_state(open, *present->control, *axis);
+  StateAnswers answers;
+  if (!merged) {
+    auto asked = ask_for_states(open, *present->control, {*axis}, merged.error(), common);
     if (!asked) return complain(text_of(asked.error()), exit_failed);
-    answer = std::move(*asked);
-    merged = merge_now();
+    answers = std::move(*asked);
+    if (!answers.empty()) merged = merge_now();
   }
   if (!merged) return complain(text_of(merged.error()), exit_failed);
   tell_findings(open, older_measurement(open, *axis));
@@ -216,7 +203,7 @@ int merge(const MergeWish& w, const Common& common) {
   if (!w.out.empty())
     if (auto done = storage::publish(std::filesystem::absolute(w.out), merged->files); !done)
       return complain(text_of(done.error()), exit_failed);
-  auto answered = record_answer(open, *axis, answer);
+  auto answered = record_answers(open, answers);
   if (!answered) return complain(text_of(answered.error()), exit_failed);
   auto recorded =
       record_loading(*merged, *present, *options(present->control->info), *axis, w.loaded, open);
@@ -226,6 +213,32 @@ int merge(const MergeWish& w, const Common& common) {
 }
 
 }  // namespace
+
+Expected<StateAnswers> ask_for_states(OpenCampaign& open, const Controller& control,
+                                      const std::vector<std::string>& axes, const Error& why,
+                                      const Common& common) {
+  StateAnswers answers;
+  if (common.json || !Questions::on_terminal()) return answers;
+  for (const std::string& axis : axes) {
+    const Axis* const of = open.campaign().machine.axis(axis);
+    if (of == nullptr || of->active_table) continue;
+    if (answers.empty()) complain(text_of(why));
+    NONIO_TRY(answers[axis], ask_for_state(open, control, axis));
+  }
+  return answers;
+}
+
+Expected<std::string> record_answers(const OpenCampaign& open, const StateAnswers& answers) {
+  std::string record;
+  if (open.campaign().date.empty()) return record;
+  if (open.campaign().machine.asset.empty() && !open.read.machine) return record;
+  for (const auto& [axis, answer] : answers) {
+    NONIO_TRY(
+        record,
+        add_states(open, axis, {{open.campaign().date, "answer", answer.files, answer.backlash}}));
+  }
+  return record;
+}
 
 Verb insert_verb(Common& common) {
   auto w = std::make_shared<MergeWish>();

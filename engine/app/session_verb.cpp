@@ -2,6 +2,7 @@
 // The session stores no state: each call determines the present step from the files, the record of
 // the machine and the campaigns of the site.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -76,9 +77,10 @@ class Session {
     set_ = tables::set_of_axes(axis_, campaign().machine);
     if (auto day = check_day(w_.loaded, open_->campaign().date); !day)
       return complain(text_of(day.error()));
-    const bool is_done =
-        set_.empty() ? backup() && table() && probe() && loading() && check() && verdict()
-                     : backup() && tables_of_set() && loading() && check() && verdict_of_set();
+    const bool is_done = set_.empty()
+                             ? backup() && table() && probe() && loading() && check() && verdict()
+                             : backup() && tables_of_set() && probes_of_set() && loading() &&
+                                   check() && verdict_of_set();
     print();
     if (!is_done) return is_refused_ ? exit_failed : exit_done;
     return answer_ == Answer::worked ? exit_done : exit_failed;
@@ -155,8 +157,7 @@ class Session {
 
   Settings options() const { return *campaign_options(*open_, present_.control->info, settings_); }
 
-  /// Adds the steps of the state, of the new tables of several axes, and of their sign probe, which
-  /// is replaced by the diagonals of the check campaign.
+  /// Adds the steps of the state and of the new tables of several axes.
   bool tables_of_set() {
     auto merged = merge_set_now(*open_, present_, options(), set_);
     if (!merged) return refused("state", merged.error());
@@ -187,13 +188,20 @@ class Session {
     done("table", say("session.set", {{"files", names_of(merged_set_.files)},
                                       {"folder", out_.string()},
                                       {"lines", lines}}));
-    done("probe", say("session.probe.none", {{"why", say("session.set.probe")}}));
     return true;
   }
 
+  /// The sign probe and the verdict need the compensation that was active during the measurement.
+  bool state_active() {
+    Settings settled = options();
+    std::vector<Finding> repeated;
+    const auto stated =
+        tables::state_by_backup(open_->read, *present_.control, present_.files, settled, repeated);
+    return stated || refused("state", stated.error());
+  }
+
   bool table() {
-    auto merged =
-        tables::merge_tables(open_->read, *present_.control, options(), present_.files, axis_);
+    auto merged = merge_axis_now(*open_, present_, options(), axis_);
     if (!merged) return refused("state", merged.error());
     merged_ = std::move(*merged);
     done("state",
@@ -203,13 +211,7 @@ class Session {
                    {{"files", merged_.with.files}}));
     tell_findings(*open_, merged_.findings);
     if (merged_.files.empty()) return refused("table", Error{say("session.table.refused")});
-    // The sign probe and the verdict need the compensation that was active during the measurement.
-    Settings settled = options();
-    std::vector<Finding> repeated;
-    if (auto stated = tables::state_by_backup(open_->read, *present_.control, present_.files,
-                                              settled, repeated);
-        !stated)
-      return refused("state", stated.error());
+    if (!state_active()) return false;
     out_ = w_.out.empty() ? fs::path(w_.folder) / "load" : fs::path(w_.out);
     day_of_loading();
     if (loaded_.empty()) {
@@ -219,11 +221,15 @@ class Session {
     }
     const tables::TableForecast& f = merged_.forecast.front();
     const Quantity q = deviation_of(f.rotary);
-    done("table", say("session.table", {{"files", names_of(merged_.files)},
-                                        {"folder", out_.string()},
-                                        {"before", with_unit(f.E[0], q, *words_)},
-                                        {"after", with_unit(f.E[1], q, *words_)},
-                                        {"most", with_unit(f.E[1] + f.scatter, q, *words_)}}));
+    if (std::isnan(f.E[0]))
+      done("table", say("session.table.unpredicted",
+                        {{"files", names_of(merged_.files)}, {"folder", out_.string()}}));
+    else
+      done("table", say("session.table", {{"files", names_of(merged_.files)},
+                                          {"folder", out_.string()},
+                                          {"before", with_unit(f.E[0], q, *words_)},
+                                          {"after", with_unit(f.E[1], q, *words_)},
+                                          {"most", with_unit(f.E[1] + f.scatter, q, *words_)}}));
     return true;
   }
 
@@ -245,10 +251,10 @@ class Session {
     }
   }
 
-  std::optional<std::size_t> measured() const {
+  std::optional<std::size_t> measured(const std::string& axis) const {
     for (std::size_t i = 0; i < campaign().measurements.size(); ++i) {
       const Measurement& m = campaign().measurements[i];
-      if (m.kind == "axis" && control_axis(campaign().machine, m) == axis_ &&
+      if (m.kind == "axis" && control_axis(campaign().machine, m) == axis &&
           open_->read.observations[i].size() > 0)
         return i;
     }
@@ -259,29 +265,45 @@ class Session {
   /// writes its part program before the table is loaded. Without a suitable probe the session
   /// continues. Returns false if the session ends at this step.
   bool probe() {
-    const auto raw = raw_readings(*open_, axis_);
-    if (!raw) return refused("probe", raw.error());
-    const auto p = probe_of(*open_, *measured(), *raw);
-    if (!p || !p->shows()) {
-      done("probe", say("session.probe.none",
-                        {{"why", p ? say("session.probe.small") : text_of(p.error())}}));
-      return true;
+    const auto text = probe_text(axis_);
+    if (!text) return refused("probe", text.error());
+    done("probe", *text);
+    return true;
+  }
+
+  /// A sign probe for the pitch table of each axis.
+  bool probes_of_set() {
+    if (!state_active()) return false;
+    std::string all;
+    for (const std::string& axis : set_) {
+      if (!measured(axis)) continue;
+      const auto text = probe_text(axis);
+      all += axis + ": " + (text ? *text : text_of(text.error())) + "; ";
     }
+    done("probe", all + say("session.set.probe"));
+    return true;
+  }
+
+  Expected<std::string> probe_text(const std::string& axis) {
+    NONIO_TRY(const auto raw, raw_readings(*open_, axis));
+    const auto p = probe_of(*open_, *measured(axis), raw);
+    if (!p || !p->shows())
+      return say("session.probe.none",
+                 {{"why", p ? say("session.probe.small") : text_of(p.error())}});
     ProbeWish wish;
     const auto program = program_of(*p, campaign().machine, wish, {}, open_->place->plugins);
     std::string where = program ? (out_ / program->name).string() : text_of(program.error());
     if (program && loaded_.empty())
       if (auto stored = storage::publish(fs::absolute(out_), {*program}); !stored)
-        return refused("probe", stored.error());
+        return fail(stored.error());
     const Quantity q = deviation_of(p->rotary), at = position_of(p->rotary);
-    done("probe", say("session.probe", {{"file", std::move(where)},
-                                        {"from", with_unit(p->from, at, *words_)},
-                                        {"to", with_unit(p->to, at, *words_)},
-                                        {"right", with_unit(0.0, q, *words_)},
-                                        {"wrong", with_unit(2.0 * p->difference, q, *words_)},
-                                        {"none", with_unit(p->difference, q, *words_)},
-                                        {"old", with_unit(p->as_measured, q, *words_)}}));
-    return true;
+    return say("session.probe", {{"file", std::move(where)},
+                                 {"from", with_unit(p->from, at, *words_)},
+                                 {"to", with_unit(p->to, at, *words_)},
+                                 {"right", with_unit(0.0, q, *words_)},
+                                 {"wrong", with_unit(2.0 * p->difference, q, *words_)},
+                                 {"none", with_unit(p->difference, q, *words_)},
+                                 {"old", with_unit(p->as_measured, q, *words_)}});
   }
 
   bool loading() {
@@ -305,18 +327,8 @@ class Session {
   /// the loading with purpose "check", otherwise the first campaign since the loading. Returns
   /// false if the session ends at this step.
   bool check() {
-    if (!w_.check.empty() && !set_.empty())
-      return refused("check", Error{say("session.set.check")});
     if (!w_.check.empty()) {
-      auto bytes = storage::read_file(w_.check);
-      if (!bytes) return refused("check", bytes.error());
-      const auto folder =
-          write_check_campaign(*open_, {axis_,
-                                        w_.checked.empty() ? today() : w_.checked,
-                                        campaign().measurements[*measured()].id,
-                                        {fs::path(w_.check).filename().string(), std::move(*bytes)},
-                                        merged_.whole,
-                                        loaded_backlash()});
+      auto folder = check_campaign();
       if (!folder) return refused("check", folder.error());
       check_ = {*folder, {}, w_.checked.empty() ? today() : w_.checked, "check"};
     } else {
@@ -326,15 +338,49 @@ class Session {
     if (check_.folder.empty())
       return missing("check", say("session.check.missing", {{"date", loaded_}}),
                      say(set_.empty() ? "session.todo.check" : "session.set.check"),
-                     set_.empty() ? " --check FILE" : "");
+                     " --check " + files_to_check());
     done("check",
          say("session.check", {{"folder", check_.folder.string()}, {"date", check_.date}}));
     return true;
   }
 
-  std::optional<double> loaded_backlash() const {
-    std::optional<double> out = merged_.with.backlash;
-    for (const LoadedTable& t : merged_.next)
+  /// "FILE", or "D1=FILE,D2=FILE" for several axes.
+  std::string files_to_check() const {
+    if (set_.empty()) return "FILE";
+    std::string out;
+    for (const tables::LineForecast& line : merged_set_.lines)
+      out += (out.empty() ? "" : ",") + shell_word(line.measurement) + "=FILE";
+    return out;
+  }
+
+  Expected<fs::path> check_campaign() const {
+    CheckCampaign check{w_.checked.empty() ? today() : w_.checked, {}, {}, {}};
+    for (std::size_t at = 0; at < w_.check.size();) {
+      const std::size_t end = set_.empty() ? w_.check.size() : w_.check.find(',', at);
+      std::string file = w_.check.substr(at, end - at);
+      at += file.size() + 1;
+      const std::size_t equal = file.find('=');
+      std::string id =
+          set_.empty() ? campaign().measurements[*measured(axis_)].id : file.substr(0, equal);
+      if (!set_.empty()) {
+        if (equal == std::string::npos)
+          return fail("--check: expected " + files_to_check() + ", found \"" + file + "\"");
+        file = file.substr(equal + 1);
+      }
+      NONIO_TRY(auto bytes, storage::read_file(file));
+      check.readings[id] = {fs::path(file).filename().string(), std::move(bytes)};
+    }
+    check.loaded = set_.empty() ? merged_.whole : merged_set_.whole;
+    if (set_.empty()) check.axes[axis_] = backlash_of(merged_.with, merged_.next);
+    for (const auto& [axis, with] : merged_set_.with)
+      check.axes[axis] = backlash_of(with, tables::own_tables(merged_set_.next, axis));
+    return write_check_campaign(*open_, check);
+  }
+
+  static std::optional<double> backlash_of(const tables::MeasuredWith& with,
+                                           const std::vector<LoadedTable>& next) {
+    std::optional<double> out = with.backlash;
+    for (const LoadedTable& t : next)
       if (t.backlash) out = t.backlash;
     return out;
   }
@@ -351,13 +397,16 @@ class Session {
     answer_ = judged->answer;
     const tables::TableForecast& f = merged_.forecast.front();
     const Quantity q = deviation_of(f.rotary);
+    const auto shown = [&](double v) {  // without all targets, there is no value
+      return std::isfinite(v) ? with_unit(v, q, *words_) : std::string("-");
+    };
     steps_.push_back({"verdict",
                       answer_ == Answer::worked   ? "done"
                       : answer_ == Answer::failed ? "failed"
                                                   : "open",
-                      say("session.verdict", {{"before", with_unit(f.E[0], q, *words_)},
-                                              {"predicted", with_unit(f.E[1], q, *words_)},
-                                              {"after", with_unit(judged->E, q, *words_)}})});
+                      say("session.verdict", {{"before", shown(f.E[0])},
+                                              {"predicted", shown(f.E[1])},
+                                              {"after", shown(judged->E)}})});
     if (judged->change && judged->change->loading != statistics::Loading::loaded)
       verdict_.push_back(named_change(*judged->change, q));
     verdict_.insert(verdict_.end(), judged->findings.begin(), judged->findings.end());
@@ -503,7 +552,8 @@ Verb session_verb(Common& common) {
                 "machines/<asset>.toml"}),
            takes(Takes::file, {"--check", &w->check,
                                "Readings of the axis with the new table: makes the check campaign, "
-                               "<CAMPAIGN>-check"}),
+                               "<CAMPAIGN>-check; of several axes ID=FILE,ID=FILE, one per "
+                               "diagonal"}),
            day({"--checked", &w->checked, "YYYY-MM-DD: the day of --check (default: today)"}),
            takes(Takes::folder,
                  {"--out", &w->out, "Folder for the files to load (default: CAMPAIGN/load)"}),

@@ -371,8 +371,10 @@ class Page {
       if (!std::exchange(any, true)) heading(say_("undecided"));
       const std::string reason = c.value("reason", ""),
                         why = words(say_.templates(), say_.language(), "results." + reason);
-      out_ << wrapped(say_("head.axis") + " " + c.value("axis", "") + ", " + c.value("name", "") +
-                          ": " + (why.empty() ? reason : why),
+      const std::string axis = c.value("axis", ""), measurement = c.value("measurement", "");
+      out_ << wrapped((axis.empty() ? "" : say_("head.axis") + " " + axis + ", ") +
+                          (measurement.empty() || measurement == axis ? "" : measurement + ", ") +
+                          c.value("name", "") + ": " + (why.empty() ? reason : why),
                       2, width_);
     }
   }

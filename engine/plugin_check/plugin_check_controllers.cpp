@@ -298,8 +298,8 @@ Verdict table_rounding(const Controller& o, const Bench& bench) {
       for (const int direction : {1, -1})
         if (const double off = added ? left_at_points(k, w.tables, *added, direction) : 0.0;
             off > 1.05 * step_of(o, false) + 1e-11)
-          return "its points leave the error by " + in_um(off) + ": expected half a step of " +
-                 in_um(step_of(o, false)) + " to each side";
+          return "the errors that it leaves at its points differ by " + in_um(off) +
+                 ": expected at most 1.05 steps of " + in_um(step_of(o, false));
     }
     return {};
   });

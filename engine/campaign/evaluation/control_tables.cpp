@@ -55,13 +55,21 @@ class OfCampaign {
              const WantedController& wanted)
       : read_(read), results_(results), wanted_(wanted) {}
 
-  std::optional<ControlTables> of(std::size_t index) const {
+  std::optional<ControlTables> of(std::size_t index, std::vector<Remark>& notes) const {
     const Campaign& campaign = read_.manifest->campaign;
     const Measurement& m = campaign.measurements[index];
     if (m.kind != "axis" || read_.observations[index].size() == 0) return std::nullopt;
     const auto test = math::AxisTest::arrange(read_.observations[index]);
     const auto curve = math::error_curve(test);
-    if (curve.position.size() < 3 || curve.position.size() > most_targets) return std::nullopt;
+    if (curve.position.size() < 3) return std::nullopt;
+    if (curve.position.size() > most_targets) {
+      notes.push_back({"table.not-recorded",
+                       {{"targets", static_cast<double>(curve.position.size()), Quantity::count},
+                        {"most", static_cast<double>(most_targets), Quantity::count}},
+                       {{"axis", control_axis(campaign.machine, m)}},
+                       m.id});
+      return std::nullopt;
+    }
     ControlTables out{.measurement = m.id,
                       .axis = control_axis(campaign.machine, m),
                       .state = m.adjustment == "after" ? "as-left" : "as-found"};
@@ -143,14 +151,15 @@ void put_correction(JsonWriter& json, const AxisCorrection& c, bool rotary) {
 }  // namespace
 
 std::vector<ControlTables> control_tables(const reading::ReadCampaign& read, const Results& results,
-                                          const std::vector<WantedController>& controllers) {
+                                          const std::vector<WantedController>& controllers,
+                                          std::vector<Remark>& notes) {
   std::vector<ControlTables> out;
   const std::string& control = read.manifest->campaign.machine.control;
   for (const WantedController& wanted : controllers) {
     if (control.empty() || wanted.controller->info.name != control) continue;
     const OfCampaign of(read, results, wanted);
     for (std::size_t i = 0; i < read.observations.size(); ++i)
-      if (auto one = of.of(i)) out.push_back(std::move(*one));
+      if (auto one = of.of(i, notes)) out.push_back(std::move(*one));
   }
   return out;
 }

@@ -95,7 +95,7 @@ AnalysedCampaign analyse(reading::ReadCampaign read, const std::string& id,
   const auto failed = [&] { return !results.errors.empty(); };
   results.analyses = run_analyses(work);
   append_analyses(results.analyses, fit_models(work, results.models));
-  std::vector<std::string> doubts;
+  Doubts doubts;
   if (!failed()) {
     stage("analysis " + std::string(reading::plausibility_name));
     append_analyses(results.analyses, reading::implausible(out.read, context, out.evaluated.inputs,
@@ -109,7 +109,8 @@ AnalysedCampaign analyse(reading::ReadCampaign read, const std::string& id,
   results.conformity = held_against_tolerances(work.campaign(), results.analyses);
   WantedPlugins wanted = wanted_plugins(work, results.notes);
   write_tables(work, wanted.controllers, doubts, results);
-  out.evaluated.control_tables = control_tables(out.read, results, wanted.controllers);
+  out.evaluated.control_tables =
+      control_tables(out.read, results, wanted.controllers, results.notes);
   out.documents = std::move(wanted.outputs);
   if (!out.documents.empty()) out.number = number_request(work, out.documents, results);
   return out;

@@ -5,7 +5,6 @@
 #include "campaign/evaluation/evaluation.h"
 #include "campaign/modelling/model_fit.h"
 #include "campaign/reading/names.h"
-#include "campaign/reading/plausibility/plausibility.h"
 #include "nonio/math/decision.h"
 #include "nonio/sdk/campaign.h"
 #include "nonio/sdk/check.h"
@@ -174,35 +173,6 @@ std::vector<Results::Analysed> fit_models(const Work& work, std::vector<ModelFit
   for (Results::Analysed& one : fitted->analyses)
     for (Finding& f : one.evaluation.findings) f.measurement = one.measurement;
   return std::move(fitted->analyses);
-}
-
-std::vector<std::string> open_doubts(const Work& work, std::vector<Results::Analysed>& analyses) {
-  const auto& accepted = work.read.manifest->accepted;
-  std::set<std::string> known, open;
-  for (Results::Analysed& a : analyses) {
-    if (a.plugin != reading::plausibility_name) continue;
-    for (Finding& f : a.evaluation.findings) {
-      known.insert(f.id);
-      const auto entry =
-          std::find_if(accepted.begin(), accepted.end(),
-                       [&](const config::AcceptedFinding& one) { return one.finding == f.id; });
-      if (entry != accepted.end()) {
-        f.texts.emplace_back(reading::accepted_because, entry->reason);
-        f.texts.emplace_back(reading::formerly_accepted_because, entry->reason);
-      } else if (f.attention) {
-        open.insert(f.id);
-      }
-    }
-  }
-  std::string found;
-  for (const std::string& id : known) found += (found.empty() ? "" : ", ") + id;
-  for (const config::AcceptedFinding& entry : accepted)
-    // Only a run of the site knows whether campaigns share a file.
-    if (!known.contains(entry.finding) && entry.finding != reading::file_of_another_campaign)
-      work.report(Error{"tables.accept: the readings have no finding " + entry.finding +
-                            "; they have " + (known.empty() ? "none" : found),
-                        config::manifest_name, entry.line});
-  return {open.begin(), open.end()};
 }
 
 std::vector<Remark> unevaluated(const reading::ReadCampaign& read, const Results& results) {

@@ -18,12 +18,6 @@ namespace nonio::evaluation {
 
 namespace {
 
-std::string comma_list(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 void check_control(const Work& work) {
   const std::string& control = work.campaign().machine.control;
   std::vector<std::string> tables;
@@ -76,6 +70,17 @@ std::optional<Settings> settle_controller(const Work& work, const Info& controll
   return std::nullopt;
 }
 
+void note_not_in_format(const Campaign& campaign, const std::string& controller,
+                        std::vector<Remark>& notes) {
+  std::set<std::string> measurements;
+  for (const Measurement& m : campaign.measurements)
+    if (m.kind == "axis" || !m.from.empty()) measurements.insert(m.id);
+  if (!measurements.empty())
+    notes.push_back({"table.not-in-format",
+                     {},
+                     {{"output", controller}, {"measurements", comma_list(measurements)}}});
+}
+
 }  // namespace
 
 WantedPlugins wanted_plugins(const Work& work, std::vector<Remark>& notes) {
@@ -95,10 +100,14 @@ WantedPlugins wanted_plugins(const Work& work, std::vector<Remark>& notes) {
   const std::string& control = work.campaign().machine.control;
   for (const Controller* c : chosen_plugins(work, plugins.controllers(), names)) {
     if (!names && !control.empty() && control != c->info.name) continue;
-    if (!is_control_of_record(work, c->info.name) || !applies("controller ", *c)) continue;
+    if (!is_control_of_record(work, c->info.name)) continue;
+    const bool asked = names.has_value() || control == c->info.name;
+    if (!applies("controller ", *c)) {
+      if (asked) note_not_in_format(work.campaign(), c->info.name, notes);
+      continue;
+    }
     if (auto options = settle_controller(work, c->info, notes))
-      wanted.controllers.push_back(
-          {c, std::move(*options), names.has_value() || control == c->info.name});
+      wanted.controllers.push_back({c, std::move(*options), asked});
   }
   for (const Output* o : chosen_plugins(work, plugins.outputs(), names)) {
     if (!applies("output ", *o)) continue;
@@ -146,12 +155,10 @@ void take_result(const Work& work, const Info& plugin, const std::string& who,
   work.report(std::move(result.error()));
 }
 
-OutputResult no_table(const char* id, const Info& controller, const char* why,
-                      const std::string& text) {
-  OutputResult nothing;
-  nothing.findings.push_back(
-      {.id = id, .attention = true, .texts = {{"output", controller.name}, {why, text}}});
-  return nothing;
+Finding no_table(const char* id, const Info& controller,
+                 std::vector<std::pair<std::string, std::string>> why) {
+  why.emplace(why.begin(), "output", controller.name);
+  return {.id = id, .attention = true, .texts = std::move(why)};
 }
 
 /// Readings predicted by the model; nullopt if the manifest requires the measured readings.
@@ -174,7 +181,7 @@ Expected<OutputResult> write_over_present(const Work& work, const WantedControll
         {work.campaign(), taken, results, w.options, of_model ? &read.observations : nullptr});
   const std::vector<Observations> of_curves =
       of_model ? tables::without_tables(work.campaign(), taken, (*on)->tables) : (*on)->readings;
-  const Results of_tables = tables::without_tables(results, (*on)->tables);
+  const Results of_tables = tables::without_tables(work.campaign(), results, (*on)->tables);
   auto written = controller.write({work.campaign(), of_curves, of_tables, (*on)->options,
                                    of_model ? &(*on)->readings : nullptr});
   if (written) tables::compare_with_measured(read, *written);
@@ -182,25 +189,49 @@ Expected<OutputResult> write_over_present(const Work& work, const WantedControll
 }
 
 Expected<OutputResult> table_of(const Work& work, const WantedController& w,
-                                const ModelReadings& of_model,
-                                const std::vector<std::string>& doubts, const Results& results) {
+                                const ModelReadings& of_model, const Results& results) {
   const Info& info = w.controller->info;
-  if (!doubts.empty()) return no_table("table.withheld", info, "findings", comma_list(doubts));
-  if (of_model && !*of_model)
-    return no_table("table.no-model", info, "why", of_model->error().message);
+  OutputResult nothing;
+  if (of_model && !*of_model) {
+    nothing.findings.push_back(
+        no_table("table.no-model", info, {{"why", of_model->error().message}}));
+    return nothing;
+  }
   auto written = write_over_present(work, w, of_model, results);
-  if (!written && !w.asked && written.error().key.empty())
-    written = no_table("table.not-written", info, "why", written.error().message);
+  if (!written && !w.asked && written.error().key.empty()) {
+    nothing.findings.push_back(
+        no_table("table.not-written", info, {{"why", written.error().message}}));
+    return nothing;
+  }
   if (written && !w.asked)
     for (Finding& f : written->findings)
       if (f.id == "table.axis-number" || f.id == "table.active-not-stated") f.attention = false;
   return written;
 }
 
+/// The tables of all measurements that are not doubted. A model uses all of them.
+Expected<OutputResult> sound_tables(const Work& work, const WantedController& w,
+                                    const Doubts& doubts, const Results& results) {
+  reading::ReadCampaign read = work.read;
+  Results sound = results;
+  std::set<std::string> ids, without = leave_out(doubts, read, sound);
+  Campaign rest = work.campaign();
+  for (const auto& [id, findings] : doubts) ids.insert(findings.begin(), findings.end());
+  std::erase_if(rest.measurements, [&](const Measurement& m) { return without.contains(m.id); });
+  Expected<OutputResult> written = OutputResult();
+  if (!rest.compensate_model && w.controller->applies(rest))
+    written = table_of({work.context, work.stage, read, work.errors}, w, std::nullopt, sound);
+  if (written)
+    written->findings.push_back(
+        no_table("table.withheld", w.controller->info,
+                 {{"findings", comma_list(ids)}, {"measurements", comma_list(without)}}));
+  return written;
+}
+
 }  // namespace
 
 void write_tables(const Work& work, const std::vector<WantedController>& wanted,
-                  const std::vector<std::string>& doubts, Results& results) {
+                  const Doubts& doubts, Results& results) {
   ModelReadings of_model;
   if (work.campaign().compensate_model)
     of_model = modelling::compensable_readings(work.read, results.notes);
@@ -208,7 +239,11 @@ void write_tables(const Work& work, const std::vector<WantedController>& wanted,
     const std::string who = "controller " + w.controller->info.name;
     work.stage(who);
     take_result(work, w.controller->info, who,
-                process::guarded(who, [&] { return table_of(work, w, of_model, doubts, results); }),
+                process::guarded(who,
+                                 [&] {
+                                   return doubts.empty() ? table_of(work, w, of_model, results)
+                                                         : sound_tables(work, w, doubts, results);
+                                 }),
                 results);
   }
 }

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -105,9 +107,22 @@ void report_absent(const Work& work, const char* kind, const char* key, const Pl
 std::vector<Results::Analysed> run_analyses(const Work& work);
 std::vector<Results::Analysed> fit_models(const Work& work, std::vector<ModelFit>& models);
 
-/// Returns the ids of findings that prevent tables. Adds the reason to each accepted finding. An
-/// accepted finding that does not occur is an error.
-std::vector<std::string> open_doubts(const Work& work, std::vector<Results::Analysed>& analyses);
+/// Ids of the open plausibility findings by measurement from which no table may be made.
+using Doubts = std::map<std::string, std::set<std::string>>;
+
+/// Adds the reason to each accepted finding. An accepted finding that does not occur is an error.
+Doubts open_doubts(const Work& work, std::vector<Results::Analysed>& analyses);
+
+/// Removes doubted readings and what was computed from them. Returns the measurements left out.
+std::set<std::string> leave_out(const Doubts& doubts, reading::ReadCampaign& read,
+                                Results& results);
+
+template <class Names>
+std::string comma_list(const Names& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
 
 /// Returns a remark for each measurement that no analysis and no model uses, and for an unfitted
 /// model.
@@ -124,9 +139,8 @@ struct WantedPlugins {
   std::vector<WantedOutput> outputs;
 };
 WantedPlugins wanted_plugins(const Work& work, std::vector<Remark>& notes);
-/// `doubts`: result of `open_doubts`.
 void write_tables(const Work& work, const std::vector<WantedController>& wanted,
-                  const std::vector<std::string>& doubts, Results& results);
+                  const Doubts& doubts, Results& results);
 /// Returns nullopt if no output is issued under a number, or after an error.
 std::optional<NumberRequest> number_request(const Work& work,
                                             const std::vector<WantedOutput>& documents,

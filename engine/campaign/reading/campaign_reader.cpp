@@ -125,10 +125,6 @@ void look_up_active_tables(const CampaignSource& from, ReadCampaign& out) {
       report_in(out, key_error(from, out, key, files.error().message));
     }
   }
-  for (const Measurement& m : campaign_in(out).measurements)
-    if (m.compensation == "off" && out.active_tables.contains(m.axis))
-      report_in(out, key_error(from, out, "measurement." + m.id + ".compensation",
-                               "\"off\" contradicts active_table of axis " + m.axis));
 }
 
 /// Returns a sentence, or "" if the formula differs from all effects on the readings.

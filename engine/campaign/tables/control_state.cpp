@@ -10,9 +10,6 @@
 namespace nonio::tables {
 namespace {
 
-// docs/dev/constants.md, A29.
-constexpr double same_within_um = 0.11;
-
 bool is_own(const LoadedTable& t, const std::string& axis) {
   return t.output == axis && t.input == std::vector{axis};
 }
@@ -191,8 +188,10 @@ Expected<MeasuredWith> measured_with(const reading::ReadCampaign& read,
        (!campaign.date.empty() && origin->date >= campaign.date && origin->date != "date"));
   MeasuredWith out{{}, {}, axis->active_backlash, false};
   if (!out.backlash) out.backlash = stated_backlash(options, name, axis->rotary);
+  if (off) out.backlash = 0.0;
   if (axis->active_table || off) {
-    if (const auto files = read.active_tables.find(name); files != read.active_tables.end()) {
+    if (const auto files = read.active_tables.find(name);
+        !off && files != read.active_tables.end()) {
       auto tables = tables_in(controller, files->second, campaign, options);
       if (!tables) return fail(*axis->active_table + ": " + tables.error().message);
       out.tables = own_tables(*tables, name), out.files = names_of(files->second);

@@ -301,7 +301,7 @@ Expected<MergedSet> merge_set(const reading::ReadCampaign& read, const Results& 
   if (!on) return fail(on.error());
   if (*on) options = (*on)->options;
   const Campaign& campaign = stated->manifest->campaign;
-  const Results curves = *on ? without_tables(results, (*on)->tables) : results;
+  const Results curves = *on ? without_tables(campaign, results, (*on)->tables) : results;
   auto written = process::guarded("controller " + name, [&] {
     return controller.write({campaign, *on ? (*on)->readings : read.observations, curves, options});
   });

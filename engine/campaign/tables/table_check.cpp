@@ -140,28 +140,36 @@ Observations without(const Observations& o, const std::string& axis, const Table
 
 /// Returns readings along a diagonal without the correction of these tables; none if that depends
 /// on the positions of a gantry's sides, which are not stated.
-Observations diagonal_without(const Campaign& campaign, const Observations& o,
+Observations diagonal_without(const Campaign& campaign, const Measurement& m, const Observations& o,
                               const Tables& tables) {
   Observations raw = o;
   const auto beams = math::beams_of(campaign);
+  const bool relative = o.lines.size() > 1;  // each is zero at its start, which is no reading
   for (std::size_t i = 0; i < o.size(); ++i) {
-    math::Places at;
+    math::Places at, start;
     math::MotionSigns ways;
     for (const auto& axis : o.axes) {
       at[axis.axis] = axis.position[i];
       if (!axis.approach.empty())
         ways[axis.axis] = axis.approach[i] == 0 ? 0 : axis.approach[i] > 0 ? 1 : -1;
+      const std::size_t k = coordinate_of(axis.axis);
+      if (!relative || k > 2) continue;
+      const auto [low, high] = std::minmax(m.from.at(axis.axis), m.to.at(axis.axis));
+      start[axis.axis] = o.sense_of(i)[k] > 0.0 ? low : high;
     }
     for (const auto& axis : o.axes) {
       const std::size_t k = coordinate_of(axis.axis);
       if (axis.rotary || k > 2 || o.sense_of(i)[k] == 0.0) continue;
-      const auto moved = math::added_on_beam(
-          beams, axis.axis, at, ways,
-          [&](const std::string& one, const math::Places& places, const math::MotionSigns& of) {
-            return math::added(tables, one, places, of);
-          });
-      if (!moved) return {};
-      raw.deviation[i] -= o.sense_of(i)[k] * *moved;
+      const auto moved = [&](const math::Places& places) {
+        return math::added_on_beam(
+            beams, axis.axis, places, ways,
+            [&](const std::string& one, const math::Places& there, const math::MotionSigns& of) {
+              return math::added(tables, one, there, of);
+            });
+      };
+      const auto here = moved(at), before = relative ? moved(start) : 0.0;
+      if (!here || !before) return {};
+      raw.deviation[i] -= o.sense_of(i)[k] * (*here - *before);
     }
   }
   return raw;
@@ -275,16 +283,21 @@ std::vector<Observations> without_tables(const Campaign& campaign,
                                          const Tables& tables) {
   std::vector<Observations> raw;
   for (std::size_t i = 0; i < readings.size(); ++i)
-    raw.push_back(is_diagonal(campaign.measurements[i])
-                      ? diagonal_without(campaign, readings[i], tables)
+    raw.push_back(campaign.measurements[i].compensation == "off" ? readings[i]
+                  : is_diagonal(campaign.measurements[i])
+                      ? diagonal_without(campaign, campaign.measurements[i], readings[i], tables)
                       : without(readings[i],
                                 control_axis(campaign.machine, campaign.measurements[i]), tables));
   return raw;
 }
 
-Results without_tables(const Results& results, const Tables& tables) {
+Results without_tables(const Campaign& campaign, const Results& results, const Tables& tables) {
   Results out = results;
   for (Results::Analysed& a : out.analyses) {
+    if (std::any_of(
+            campaign.measurements.begin(), campaign.measurements.end(),
+            [&](const Measurement& m) { return m.id == a.measurement && m.compensation == "off"; }))
+      continue;
     std::map<char, std::string> axis_of;
     const auto is_curve = [](const Series& s) {
       return s.name.size() >= 3 && s.name[0] == 'E' && s.quantity == Quantity::deviation;
@@ -313,6 +326,47 @@ Campaign with_one(Campaign campaign, Measurement m) {
   return campaign;
 }
 
+namespace {
+
+/// Returns the tables by one position of which the sum is a table by two. Error: there are none.
+Expected<Tables> by_one_position(const LoadedTable& t) {
+  if (t.input.size() == 1) return Tables{t};
+  const std::size_t n = t.position[0].size(), m = t.position[1].size();
+  Tables parts;
+  for (const std::size_t k : {0U, 1U}) {
+    LoadedTable part = t;
+    part.input = {t.input[k]}, part.position = {t.position[k]};
+    for (auto* values : {&part.plus, &part.minus}) {
+      if (values->empty()) continue;
+      std::vector<double> along;
+      for (std::size_t i = 0; i < t.position[k].size(); ++i)
+        along.push_back((*values)[k == 0 ? i * m : i] - (k == 0 ? 0.0 : values->front()));
+      *values = std::move(along);
+    }
+    if (k == 1) part.backlash.reset();
+    parts.push_back(std::move(part));
+  }
+  const double most = 2.0 * same_within_um * 1e-6;  // of four rounded values
+  const auto is_sum = [&](const std::vector<double>& all, const std::vector<double>& first,
+                          const std::vector<double>& second) {
+    for (std::size_t i = 0; i < all.size() && n * m == all.size(); ++i)
+      if (std::fabs(all[i] - first[i / m] - second[i % m]) > most) return false;
+    return true;
+  };
+  if (!is_sum(t.plus, parts[0].plus, parts[1].plus) ||
+      !is_sum(t.minus, parts[0].minus, parts[1].minus))
+    return fail("the table of " + t.output + " by " + t.input[0] + " and " + t.input[1] +
+                " is no sum of tables by one position, so it cannot be removed from the curves: "
+                "measure with this table off (compensation = \"off\")");
+  std::erase_if(parts, [](const LoadedTable& part) {
+    const auto [low, high] = std::minmax_element(part.plus.begin(), part.plus.end());
+    return *high - *low == 0.0 && part.minus.empty() && !part.backlash;
+  });
+  return parts;
+}
+
+}  // namespace
+
 Expected<std::optional<Underlay>> active_compensation(const reading::ReadCampaign& read,
                                                       const Controller& controller,
                                                       const Settings& options) {
@@ -335,7 +389,9 @@ Expected<std::optional<Underlay>> active_compensation(const reading::ReadCampaig
       const auto stated = stated_backlash(options, axis, t.rotary);
       if (stated && t.backlash.value_or(0.0) != 0.0 && std::fabs(*stated - *t.backlash) > 5e-10)
         return fail(who + "its files hold another backlash than active_backlash states");
-      on.tables.push_back(t);
+      auto parts = by_one_position(t);
+      if (!parts) return fail(who + parts.error().message);
+      on.tables.insert(on.tables.end(), parts->begin(), parts->end());
     }
   }
   state_backlash_of(on.options, on.tables);
@@ -393,7 +449,8 @@ TableForecast forecast_of_axis(const Campaign& campaign, const Measurement& m,
                                const Observations& raw, const Tables& tables,
                                const Settings& options) {
   const auto test = math::AxisTest::arrange(readings);
-  const double present = present_backlash(options, axis, test.rotary);
+  const double present =
+      m.compensation == "off" ? 0.0 : present_backlash(options, axis, test.rotary);
   const math::ErrorCurve measured = math::error_curve(test);
   TableForecast f{m.id, axis, test.rotary};
   const auto was = math::before(measured);
@@ -417,7 +474,7 @@ TableForecast forecast_of_axis(const Campaign& campaign, const Measurement& m,
   f.scatter = std::max(will.E() + range_of_scatter(test) - f.E[1], 0.0);
   // Values of the axis require all targets.
   if (measured.left_out > 0)
-    for (double* value : {f.E, f.B, f.M}) value[0] = value[1] = std::nan("");
+    for (double* value : {f.E, f.B, f.M}) value[0] = value[1] = std::nan(""), f.scatter = 0.0;
   return f;
 }
 

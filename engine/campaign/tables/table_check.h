@@ -11,6 +11,9 @@
 
 namespace nonio::tables {
 
+// docs/dev/constants.md, A29.
+inline constexpr double same_within_um = 0.11;
+
 /// Without a name, returns the controller of the files' names, otherwise the only one that can read
 /// the files, or could if one line were correct.
 Expected<const Controller*> control_of(const loader::Plugins&, const std::string& name,
@@ -68,7 +71,7 @@ std::vector<Observations> without_tables(const Campaign&, const std::vector<Obse
                                          const std::vector<LoadedTable>&);
 /// Removes cross tables, as means of both directions, from curves of one axis over another (EYX,
 /// EXY_even, ...).
-Results without_tables(const Results&, const std::vector<LoadedTable>&);
+Results without_tables(const Campaign&, const Results&, const std::vector<LoadedTable>&);
 /// Replaces the values before loading by those measured. Adds a finding if a table does not reduce
 /// E.
 void compare_with_measured(const reading::ReadCampaign&, OutputResult&);

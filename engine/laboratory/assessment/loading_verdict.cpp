@@ -92,7 +92,8 @@ std::optional<statistics::TableChange> change_between(const reading::ReadCampaig
                                                       const std::vector<LoadedTable>& next,
                                                       const evaluation::WantedController& control) {
   const auto of = [&](const reading::ReadCampaign& read) {
-    auto all = evaluation::control_tables(read, {}, {control});
+    std::vector<Remark> notes;
+    auto all = evaluation::control_tables(read, {}, {control}, notes);
     std::erase_if(all, [&](const evaluation::ControlTables& t) { return t.axis != axis; });
     return all;
   };

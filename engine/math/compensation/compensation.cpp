@@ -276,6 +276,12 @@ std::vector<std::int64_t> quantised(std::span<const double> value, double unit) 
   return out;
 }
 
+std::vector<double> rounded(std::vector<double> value, double unit) {
+  const auto steps = quantised(value, unit);
+  for (std::size_t i = 0; i < value.size(); ++i) value[i] = static_cast<double>(steps[i]) * unit;
+  return value;
+}
+
 std::vector<std::int64_t> increments(std::span<const std::int64_t> absolute) {
   std::vector<std::int64_t> out;
   for (std::size_t i = 1; i < absolute.size(); ++i) out.push_back(absolute[i] - absolute[i - 1]);

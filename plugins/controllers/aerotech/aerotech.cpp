@@ -72,8 +72,9 @@ std::string plane(const CrossJob& job, const std::vector<controllers::KnownAxis>
         4);
   };
   std::string out = "; straightness and squareness from the diagonals of " +
-                    controllers::plain(job.measurement) + "\n; " + controllers::cross_words(a) +
-                    "\n; " + controllers::cross_words(b) + "\n" +
+                    controllers::plain(job.measurement) + "\n; " +
+                    controllers::cross_words(a, 1e-9, a.position) + "\n; " +
+                    controllers::cross_words(b, 1e-9, b.position) + "\n" +
                     controllers::comments(controllers::set_words(job), "; ") + ":START2D " + row +
                     " " + col + " " + col + " " + row + " " + step(b) + " " + step(a) + " " +
                     std::to_string(a.position.size()) +
@@ -221,7 +222,10 @@ Expected<OutputResult> write(const ControllerInput& in) {
   if (!axes) return tl::unexpected<Error>(axes.error());
   for (const CrossJob& set :
        controllers::cross_jobs(in, controllers::SecondSide::not_known, result)) {
-    if (set.volume || set.curves.size() != 2) continue;
+    if (set.volume || set.curves.size() != 2) {
+      result.notes.push_back(controllers::not_in_format(writer.name, set.measurement));
+      continue;
+    }
     if (controllers::lacks_number(set.moving(), in, *axes, set.measurement, result)) continue;
     if (std::any_of(set.curves.begin(), set.curves.end(),
                     [](const CrossCurve& c) { return std::fabs(c.position.front()) > 1e-9; }))

@@ -52,7 +52,7 @@ Active active_of(const ControllerInput& input, const std::string& axis,
   const bool off = m != nullptr && m->compensation == "off";
   Active out;
   if (a != nullptr) out.table = a->active_table;
-  if (!out.table && off) out.table = std::string();
+  if (off) out.table = std::string();
   out.backlash = off || in_options || (a != nullptr && a->active_backlash);
   return out;
 }
@@ -250,19 +250,33 @@ bool lacks_number(const std::vector<std::string>& of, const ControllerInput& inp
 
 namespace {
 
-/// Returns the key of the measurement that contradicts that nothing was active, or "".
-std::string contradiction(const Campaign& campaign, const Measurement& m) {
-  if (m.compensation == "off") return {};
-  if (m.compensation == "on") return "compensation = \"on\"";
-  if (!m.adjustment.empty()) return m.adjustment == "after" ? "adjustment = \"after\"" : "";
-  // The same line in an earlier state of the machine, which something has changed since.
+/// The same line in an earlier state of the machine, which something has changed since.
+const Measurement* earlier_line(const Campaign& campaign, const Measurement& m) {
+  const auto is_line = [&](const Measurement& n) {
+    return n.kind == m.kind && n.axis == m.axis && n.at == m.at && n.from == m.from &&
+           n.to == m.to && n.side == m.side;
+  };
+  bool earlier = true;
   for (const Measurement& n : campaign.measurements) {
-    if (n.id == m.id) break;
-    if (n.kind == m.kind && n.axis == m.axis && n.at == m.at && n.from == m.from && n.to == m.to &&
-        !state_of(n).empty() && !state_of(m).empty() && state_of(n) != state_of(m))
-      return "state = \"" + state_of(m) + "\"";
+    if (n.id == m.id) earlier = false;
+    if (!is_line(n)) continue;
+    if (!n.adjustment.empty() && !m.adjustment.empty()
+            ? n.adjustment == "before" && m.adjustment == "after"
+            : earlier && !state_of(n).empty() && !state_of(m).empty() && state_of(n) != state_of(m))
+      return &n;
   }
-  return {};
+  return nullptr;
+}
+
+/// Returns the key of the measurement that contradicts what is stated of its axis, or "". A table
+/// is not contradicted if it was not active in the earlier state.
+std::string contradiction(const Campaign& campaign, const Measurement& m, bool none) {
+  if (m.compensation == "off") return {};
+  if (none && m.compensation == "on") return "compensation = \"on\"";
+  const Measurement* const earlier = earlier_line(campaign, m);
+  if (!none && (earlier == nullptr || earlier->compensation == "off")) return {};
+  if (!m.adjustment.empty()) return m.adjustment == "after" ? "adjustment = \"after\"" : "";
+  return earlier == nullptr ? "" : "state = \"" + state_of(m) + "\"";
 }
 
 }  // namespace
@@ -276,7 +290,7 @@ bool states_active(const ControllerInput& input, const std::string& axis,
     const bool none =
         active.table->empty() && (a == nullptr || a->active_backlash.value_or(0.0) == 0.0);
     const std::string stated =
-        none && m != nullptr ? contradiction(input.campaign, *m) : std::string();
+        m == nullptr ? std::string() : contradiction(input.campaign, *m, none);
     if (stated.empty()) return true;
     // A table from it would replace the one that was loaded meanwhile.
     result.findings.push_back(
@@ -302,6 +316,10 @@ bool states_active(const ControllerInput& input, const std::string& axis,
                              "State " + missing + " in [machine.axes." + axis +
                                  "]: what was active while the axis was measured, or \"none\"."});
   return false;
+}
+
+Remark not_in_format(const std::string& output, const std::string& measurement) {
+  return {"table.not-in-format", {}, {{"output", output}, {"measurements", measurement}}};
 }
 
 Remark remark(const AxisJob& job, std::string id) {
@@ -367,6 +385,9 @@ Expected<std::vector<AxisJob>> axis_jobs(const ControllerInput& input,
     }
     job.stem = file_part(job.axis);
     if (const auto it = settings->find(job.axis); it != settings->end()) job.settings = it->second;
+    if (const Measurement* m = measurement_of(input, job.measurement);
+        m != nullptr && m->compensation == "off")
+      job.settings[job.rotary ? "backlash_deg" : "backlash_mm"] = 0.0;
     if (const auto n = job.setting("number");
         n && std::find(keys.begin(), keys.end(), "number:") != keys.end()) {
       if (!(*n >= 1.0 && *n <= 99.0 && *n == std::floor(*n)))
@@ -390,6 +411,7 @@ Expected<std::vector<AxisJob>> axis_jobs(const ControllerInput& input,
     if (!states_active(input, job.axis, job.measurement,
                        job.position_setting("backlash").has_value(), result))
       continue;
+    job.had_table = !active_of(input, job.axis, job.measurement, true).table.value_or("").empty();
     job.about = about(input, job);
     say_what_was_left_out(job, result);
     jobs.push_back(std::move(job));

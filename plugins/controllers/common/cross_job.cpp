@@ -70,6 +70,17 @@ TableSize size_of_curve(const CrossCurve& curve) {
   return size;
 }
 
+/// Size of the entries that the control reads; that of the curve where no table is given.
+TableSize size_in(const std::vector<LoadedTable>& tables, const CrossCurve& curve) {
+  for (const LoadedTable& t : tables) {
+    if (t.output != curve.output || t.input != std::vector{curve.input}) continue;
+    TableSize size;
+    size.take(t.position.front(), t.plus);
+    return size;
+  }
+  return size_of_curve(curve);
+}
+
 NumberTables known_settings(const ControllerInput& in) {
   return settings_of_axes(in.options).value_or(NumberTables{});
 }
@@ -92,11 +103,12 @@ void put_readings(ReadLine& line, const ControllerInput& in, const Measurement& 
   line.U = math::compensated_uncertainty_along(in.campaign, m, readings);
 }
 
-bool any_active(const ControllerInput& in, const ReadLine& line) {
-  return std::any_of(line.sense.begin(), line.sense.end(), [&](const auto& of) {
-    const Axis* axis = in.campaign.machine.axis(of.first);
-    return axis != nullptr && axis->active_table && !axis->active_table->empty();
-  });
+bool any_active(const ControllerInput& in, const ReadLine& line, const Measurement& m) {
+  return m.compensation != "off" &&
+         std::any_of(line.sense.begin(), line.sense.end(), [&](const auto& of) {
+           const Axis* axis = in.campaign.machine.axis(of.first);
+           return axis != nullptr && axis->active_table && !axis->active_table->empty();
+         });
 }
 
 /// Replaces the deviations by those of the readings, from which the host has removed the tables
@@ -183,7 +195,7 @@ std::optional<CrossJob> of_diagonals(const ControllerInput& in, const Results::A
       line.at.push_back({{f->over, x[i]}, {g->over, y[rising ? i : y.size() - 1 - i]}});
     if (const Measurement* m = diagonal_over(in, a, *f, *g, rising)) {
       put_readings(line, in, *m);
-      if (any_active(in, line)) take_without_tables(line, in, *m);
+      if (any_active(in, line, *m)) take_without_tables(line, in, *m);
     }
     job.lines.push_back(std::move(line));
   }
@@ -247,7 +259,12 @@ std::optional<CrossJob> of_volume(const ControllerInput& in, const Results::Anal
     if (auto curve = curve_of(e, part, o.axes[static_cast<std::size_t>(part.series[1] - 'X')].axis))
       job.curves.push_back(std::move(*curve));
   if (job.curves.empty()) return std::nullopt;
-  job.lines = body_diagonals(in.campaign, in.campaign.measurements[index], o);
+  const Measurement& m = in.campaign.measurements[index];
+  job.lines = body_diagonals(in.campaign, m, o);
+  // The host has removed the tables that were active from the readings, not from the results.
+  for (ReadLine& line : job.lines)
+    if (const auto* read = e.points.column(line.name); read != nullptr && any_active(in, line, m))
+      line.measured = read->values;
   return job;
 }
 
@@ -407,8 +424,11 @@ bool oversized(const CrossJob& job, const ControllerInput& in, OutputResult& res
   return beyond;
 }
 
-std::string cross_words(const CrossCurve& curve) {
-  const TableSize size = size_of_curve(curve);
+std::string cross_words(const CrossCurve& curve, double step, const std::vector<double>& at) {
+  std::vector<double> entries;
+  for (const double x : at) entries.push_back(math::ErrorCurve::at(curve.position, curve.value, x));
+  TableSize size;
+  size.take(at, math::rounded(entries, step));
   return plain(curve.output) + " over " + plain(curve.input) + ": zero at " +
          decimal(curve.reference * 1e3, 4) + " mm of " + plain(curve.input) +
          (curve.told ? "" : ", taken as reference point") + "; largest entry " +
@@ -439,9 +459,9 @@ std::vector<std::string> set_words(const CrossJob& job) {
   return lines;
 }
 
-void note_cross(const CrossJob& job, OutputResult& result) {
+void note_cross(const CrossJob& job, const std::vector<LoadedTable>& tables, OutputResult& result) {
   for (const CrossCurve& curve : job.curves) {
-    const TableSize size = size_of_curve(curve);
+    const TableSize size = size_in(tables, curve);
     result.notes.push_back({curve.told ? "table.cross-zero-at" : "table.cross-zero-taken",
                             {{"reference", curve.reference, Quantity::length},
                              {"largest", size.largest, Quantity::deviation},

@@ -250,6 +250,9 @@ Expected<bool> write_axis(AxisJob& job, const ControllerInput& input, const Writ
     return fail("axis " + job.axis + ": these tables are of linear axes only");
   const auto table = w.of_axis ? w.of_axis(job, w.table) : Expected<ControlTable>(w.table);
   if (!table) return tl::unexpected<Error>(table.error());
+  job.backlash_step = w.backlash_in_steps
+                          ? table->value_step.of(job.rotary) / static_cast<double>(w.coarser.now)
+                          : 1e-6 / job.per_si();
   const auto sheet = sheet_of(job, *table, input, w, directions, result);
   if (!sheet) return tl::unexpected<Error>(sheet.error());
   auto files = w.files(*sheet);
@@ -330,14 +333,24 @@ std::int64_t Sheet::minus_start() const {
   return at(minus) - at(plus);
 }
 
+std::vector<double> Sheet::held(const std::vector<double>& entries) const {
+  std::vector<double> c = math::rounded(entries, value_step());
+  if (table.entry == Entry::position) {
+    const auto points = math::rounded(position, table.position_step.of(job.rotary));
+    for (std::size_t i = 0; i < c.size(); ++i) c[i] -= points[i];
+  }
+  // Only changes are in the file: both columns are 0 where that of plus is.
+  const double zero =
+      table.entry == Entry::increment && !c.empty()
+          ? math::ErrorCurve::at(position, math::rounded(plus, value_step()), reference)
+          : 0.0;
+  for (double& v : c) v -= zero;
+  return c;
+}
+
 std::vector<std::string> Sheet::zero_and_size() const {
   TableSize size;
-  for (const auto* entries : {&plus, &minus}) {
-    std::vector<double> c = *entries;
-    for (std::size_t i = 0; i < c.size(); ++i)
-      c[i] -= table.entry == Entry::position ? position[i] : 0;
-    size.take(position, c);
-  }
+  for (const auto* entries : {&plus, &minus}) size.take(position, held(*entries));
   return {"zero at " + with_unit(job, reference, 4) +
               (job.position_setting("reference") ? "" : ", taken as reference point"),
           outside_words(), size_words(job, size)};

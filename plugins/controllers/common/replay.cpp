@@ -136,7 +136,11 @@ Replay replay_of(const CrossJob& set, const std::vector<AxisJob>& pitch,
     for (const LoadedTable& t : *job.loaded) replay.tables.push_back(t);
     replay.backlash[job.axis] = job.present_backlash();
   }
-  for (const std::string& name : set.moving()) {
+  const auto& all = input.campaign.measurements;
+  const bool off = std::any_of(all.begin(), all.end(), [&](const Measurement& m) {
+    return m.id == set.measurement && m.compensation == "off";
+  });
+  for (const std::string& name : off ? std::vector<std::string>{} : set.moving()) {
     const Axis* axis = input.campaign.machine.axis(name);
     if (axis != nullptr && axis->active_table && !axis->active_table->empty())
       replay.replaces = name;
@@ -197,7 +201,7 @@ Expected<void> predict_cross(const CrossJob& job, const std::vector<Artifact>& f
   Replay replay = replay_of(job, pitch, input);
   replay.tables.insert(replay.tables.end(), tables->begin(), tables->end());
   predict_lines(job, replay, result);
-  note_cross(job, result);
+  note_cross(job, *tables, result);
   return {};
 }
 

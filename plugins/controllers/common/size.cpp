@@ -85,6 +85,8 @@ void refuse(const AxisJob& job, const char* id, double found, double at, const L
 
 void TableSize::take(const std::vector<double>& position, const std::vector<double>& added) {
   for (std::size_t i = 0; i < std::min(position.size(), added.size()); ++i) {
+    if (i == 0 && slope == 0.0) slope_from = position[0];
+    if (i == 0 && largest == 0.0) largest_at = position[0];
     if (std::fabs(added[i]) > largest) largest = std::fabs(added[i]), largest_at = position[i];
     if (i == 0) continue;
     const double way = position[i] - position[i - 1];
@@ -134,7 +136,8 @@ std::string size_words(const AxisJob& job, const TableSize& size) {
          limit("slope_um_per_m", "slope_arcsec_per_deg", slope.symbol) + " from " +
          with_unit(job, size.slope_from, 4) +
          (job.scale_known && job.curve.left_out == 0
-              ? "; E of the axis " + deviation_words(job, explained(job).E)
+              ? std::string("; E of the axis ") + (job.had_table ? "without any table " : "") +
+                    deviation_words(job, explained(job).E)
               : std::string());
 }
 
@@ -146,7 +149,9 @@ void note_zero(const AxisJob& job, double zero, OutputResult& result) {
 }
 
 void note_size(const AxisJob& job, const TableSize& size, OutputResult& result) {
-  Remark note = remark(job, job.scale_known ? "table.size" : "table.size-of-shape");
+  Remark note = remark(job, !job.scale_known ? "table.size-of-shape"
+                            : job.had_table  ? "table.size-without-table"
+                                             : "table.size");
   const Quantity q = deviation_of(job.rotary);
   note.evidence = {{"largest", size.largest, q}, {"slope", size.slope, slope_of(job.rotary)}};
   if (job.scale_known) note.evidence.push_back({"E", explained(job).E, q});

@@ -111,6 +111,8 @@ ControlTable skew_declared(std::string name) {
 Expected<OutputResult> write_skew(const ControllerInput& in, const Writer& w,
                                   std::string (*text)(const std::vector<Face>&)) {
   OutputResult result;
+  for (const Measurement& m : in.campaign.measurements)
+    if (m.kind == "axis") result.notes.push_back(not_in_format(w.name, m.id));
   const auto faces = faces_of(in, result);
   if (faces.empty()) return result;
   std::set<std::string> axes;

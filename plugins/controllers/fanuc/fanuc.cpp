@@ -219,6 +219,7 @@ Expected<OutputResult> write(const ControllerInput& input) {
       .parse = parse,
       .zero_of = o.text("reference_return", "+") != "-" ? controllers::ZeroOf::plus
                                                         : controllers::ZeroOf::minus,
+      .backlash_in_steps = true,
       .coarser = {
           "magnification", o.integer("magnification", 1), 100,
           o.flag("extended") ? "" : ", or set extended = true if the control takes -128..127"}};

@@ -131,7 +131,8 @@ std::string words(const Sheet& s, const Crosses& crosses, const Layout& layout,
       "in " +
       std::string(job.unit()));
   for (std::string& line : s.zero_and_size()) lines.push_back(std::move(line));
-  for (const CrossCurve* c : crosses) lines.push_back("column " + controllers::cross_words(*c));
+  for (const CrossCurve* c : crosses)
+    lines.push_back("column " + controllers::cross_words(*c, s.value_step(), s.position));
   lines.push_back(controllers::reversal_words(job, s.columns()));
   if (job.curve.bidirectional()) {
     lines.emplace_back(layout.listed ? "CfgAxisComp/backLash (401802), positive where the encoder "
@@ -201,7 +202,7 @@ void predict_columns(const CrossJob& set, const std::vector<AxisJob>& jobs,
   });
   if (!any) return;
   controllers::predict_lines(set, replay, result);
-  controllers::note_cross(set, result);
+  controllers::note_cross(set, replay.tables, result);
   const char* note = set.volume ? "heidenhain.cross-volume" : "heidenhain.cross";
   if (std::none_of(result.notes.begin(), result.notes.end(),
                    [&](const Remark& r) { return r.id == note; }))
@@ -248,6 +249,7 @@ Expected<OutputResult> write(const ControllerInput& input) {
       .keys = {"step", "first", "reference", "backlash"},
       .files = [&](const Sheet& s) { return files(s, crosses(s.job), layout); },
       .parse = parse,
+      .backlash_in_steps = true,
       .power_of_two = layout.power_of_two,
       .wanted = [&](const AxisJob& job) { return wanted(job, crosses(job), layout); }};
   const auto jobs = controllers::write_axes(input, writer, result);

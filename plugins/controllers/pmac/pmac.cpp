@@ -282,6 +282,7 @@ Expected<OutputResult> write(const ControllerInput& in) {
                                         .keys = {"number:", "counts_per", "step", "backlash"},
                                         .files = files,
                                         .parse = parse,
+                                        .backlash_in_steps = true,
                                         .of_axis = [](const AxisJob& job, ControlTable t) {
                                           return in_counts(job.settings, job.axis, job.rotary,
                                                            std::move(t));

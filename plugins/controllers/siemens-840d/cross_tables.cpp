@@ -46,7 +46,7 @@ std::string table(const CrossCurve& curve, std::int64_t number, const Naming& na
                                      controllers::plain(curve.side_of) + ": the same entries";
   std::string out = "; table " + t + ": axis " + controllers::plain(curve.output) +
                     " by the position of " + controllers::plain(curve.input) + side + "\n; " +
-                    controllers::cross_words(curve) + "\n";
+                    controllers::cross_words(curve, 1e-9, x) + "\n";
   for (std::size_t i = 0; i < x.size(); ++i)
     out += "$AN_CEC[" + t + "," + std::to_string(i) +
            "]=" + decimal(curve.value[i] * per_si, digits) + "\n";

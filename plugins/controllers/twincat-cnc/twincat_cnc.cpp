@@ -198,7 +198,7 @@ std::string cross_list(const CrossCurve& c, const std::vector<controllers::Known
   std::vector<std::string> words{"from the diagonals of " + controllers::plain(job.measurement),
                                  "compensation of " + controllers::plain(c.output) +
                                      " by the position of " + controllers::plain(c.input),
-                                 controllers::cross_words(c)};
+                                 controllers::cross_words(c, 1e-7, c.position)};
   for (std::string& line : controllers::set_words(job)) words.push_back(std::move(line));
   std::string out = head(words, axis_named(axes, c.output).number, c.output);
   out += line("kw.crosscomp.unit", "1") +
@@ -223,7 +223,10 @@ Expected<void> write_cross(const ControllerInput& in,
   if (said.empty()) return {};
   const auto jobs = controllers::cross_jobs(in, controllers::SecondSide::own_table, result);
   for (const CrossJob& job : jobs) {
-    if (job.volume) continue;
+    if (job.volume) {
+      result.notes.push_back(controllers::not_in_format("twincat-cnc", job.measurement));
+      continue;
+    }
     if (auto ok = controllers::fits(job, in.options); !ok) return ok;
     if (controllers::lacks_number(job.moving(), in, *axes, job.measurement, result)) continue;
     if (controllers::oversized(job, in, result)) continue;
@@ -248,7 +251,8 @@ Expected<OutputResult> write(const ControllerInput& in) {
       .keys = {"number:", "step", "first", "reference", "backlash"},
       .files = files,
       .parse = parse,
-      .directions = controllers::Directions::by_option_without_backlash};
+      .directions = controllers::Directions::by_option_without_backlash,
+      .backlash_in_steps = true};
   const auto jobs = controllers::write_axes(in, writer, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
   if (auto done = write_cross(in, *jobs, result); !done) return tl::unexpected<Error>(done.error());

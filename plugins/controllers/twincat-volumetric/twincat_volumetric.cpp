@@ -87,16 +87,21 @@ std::string text_of(const std::vector<Block>& blocks, double sign,
   return out;
 }
 
+/// Entries have 6 decimals of mm.
+constexpr double entry_step = 1e-9;
+
 std::string zero_words(const Block& b, const std::vector<AxisJob>& jobs) {
   std::string out =
       "errors over " + b.axis + ": zero at " + controllers::decimal(b.zero * 1e3, 4) + " mm";
   for (const AxisJob& j : jobs)
     if (const auto c = b.curves.find(j.axis); j.axis == b.axis && c != b.curves.end()) {
-      std::vector<double> e = c->second.value;
-      const double zero = math::ErrorCurve::at(c->second.position, e, b.zero);
-      for (double& v : e) v -= zero;
+      const auto at = [&](double x) {
+        return math::ErrorCurve::at(c->second.position, c->second.value, x);
+      };
+      std::vector<double> e;
+      for (const double x : b.position) e.push_back(at(x) - at(b.zero));
       controllers::TableSize size;
-      size.take(c->second.position, e);
+      size.take(b.position, math::rounded(e, entry_step));
       out += "; " + controllers::size_words(j, size);
     }
   return out;
@@ -166,16 +171,16 @@ Expected<OutputResult> write(const ControllerInput& in) {
       "twincat-volumetric", *table, {"reference", "backlash"}, {}, parse};
   auto jobs = controllers::axis_jobs(in, writer.keys, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
+  std::map<std::string, int> runs;
+  for (const AxisJob& j : *jobs) ++runs[j.axis];
   std::erase_if(*jobs, [&](const AxisJob& j) {
-    return j.axis.size() != 1 || j.axis < "X" || j.axis > "Z" ||
-           controllers::refused(j, controllers::Columns::mean, result);
+    const bool in_format = (j.axis == "X" || j.axis == "Y" || j.axis == "Z") && runs[j.axis] == 1;
+    if (!in_format) result.notes.push_back(controllers::not_in_format(writer.name, j.measurement));
+    return !in_format || controllers::refused(j, controllers::Columns::mean, result);
   });
-  const auto twice =
-      [all = *jobs](const AxisJob& j) {  // jobs of one axis cannot be distinguished in this file
-        return std::count_if(all.begin(), all.end(),
-                             [&](const AxisJob& o) { return o.axis == j.axis; }) > 1;
-      };
-  std::erase_if(*jobs, twice);
+  std::erase_if(result.findings, [](const Finding& f) {
+    return f.id == "table.two-measurements";  // no table has the name of a measurement
+  });
   auto sets = controllers::cross_jobs(in, controllers::SecondSide::not_known, result);
   if (sets.size() > 1)
     return fail(
@@ -211,7 +216,7 @@ Expected<OutputResult> write(const ControllerInput& in) {
   }
   for (const CrossJob& set : sets) {
     controllers::predict_lines(set, {.tables = *read}, result);
-    controllers::note_cross(set, result);
+    controllers::note_cross(set, *read, result);
   }
   controllers::note_facts(writer, result);
   return result;

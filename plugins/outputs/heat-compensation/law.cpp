@@ -120,6 +120,10 @@ std::optional<Term> term_of(const ModelFit& fit, const std::string& effect,
   return term;
 }
 
+bool is_thermal(const std::string& effect) {
+  return effect.starts_with("heat") || effect.starts_with("temperature");
+}
+
 double rms_about_mean(const std::vector<double>& x) {
   double mean = 0.0, squares = 0.0;
   for (const double v : x) mean += v / static_cast<double>(x.size());
@@ -175,7 +179,8 @@ Law law_of(const ModelFit& fit, const Observations& readings, const std::string&
   for (const ModelFit::Effect& effect : fit.effects) {
     auto term = term_of(fit, effect.name, readings);
     if (!term) {
-      if (!law.of_runs) law.left_out.push_back(effect.name);  // others are of tables
+      // Other effects on runs belong to tables.
+      if (!law.of_runs || is_thermal(effect.name)) law.left_out.push_back(effect.name);
       continue;
     }
     term->gain *= sense;
@@ -228,7 +233,7 @@ Expected<std::vector<Law>> laws(const OutputInput& in, std::vector<Finding>& fin
     Law law = law_of(fit, *readings, axis, in);
     law.displacement = displacement;
     if (law.terms.empty()) {
-      if (law.of_runs) continue;
+      if (law.of_runs && law.left_out.empty()) continue;
       findings.push_back(about("heat-compensation.no-effect", displacement));
       continue;
     }

@@ -27,7 +27,9 @@ void add(OutputResult& result, const OutputInput& in, const Format& format, cons
                           .texts = {{"displacement", law.displacement}, {"axis", law.axis}},
                           .measurement = law.measurement});
   for (const std::string& effect : law.left_out)
-    result.notes.push_back({.id = "heat-compensation.left-out",
+    result.notes.push_back({.id = effect.find('@') == std::string::npos
+                                      ? "heat-compensation.left-out"
+                                      : "heat-compensation.grouped",
                             .texts = {{"effect", effect}, {"displacement", law.displacement}},
                             .measurement = law.measurement});
 }

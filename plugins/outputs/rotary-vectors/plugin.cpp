@@ -153,16 +153,27 @@ bool applies(const Campaign& campaign) {
 
 /// Ids of plausibility findings without a stated reason for acceptance (text `accepted`). They
 /// prevent files for controls, as for tables.
-std::string doubts_of(const Results& results) {
+std::string doubts_of(const Campaign& campaign, const Results& results) {
   std::set<std::string> ids;
+  const auto is_used = [&](const std::string& id) {
+    return std::none_of(
+        campaign.measurements.begin(), campaign.measurements.end(),
+        [&](const Measurement& m) { return m.id == id && m.kind != "ball-centres"; });
+  };
   for (const Results::Analysed& a : results.analyses)
     for (const Finding& f : a.evaluation.findings)
-      if (f.id.starts_with("plausibility.") &&
+      if (f.id.starts_with("plausibility.") && is_used(f.measurement) &&
           std::none_of(f.texts.begin(), f.texts.end(),
                        [](const auto& text) { return text.first == "accepted"; }))
         ids.insert(f.id);
   std::string list;
   for (const std::string& id : ids) list += (list.empty() ? "" : ", ") + id;
+  return list;
+}
+
+std::string measurements_of(const std::vector<Line>& lines) {
+  std::string list;
+  for (const Line& line : lines) list += (list.empty() ? "" : ", ") + line.measurement;
   return list;
 }
 
@@ -176,7 +187,7 @@ Expected<OutputResult> write(const OutputInput& in) {
   result.artifacts = {{"rotary-vectors.txt", text(in.campaign, lines)},
                       {"rotary-vectors.json", json_of(in.campaign, lines)},
                       {"rotary-vectors.csv", csv(lines)}};
-  const std::string doubts = doubts_of(in.results);
+  const std::string doubts = doubts_of(in.campaign, in.results);
   const Wish wish{in.options.number("limit_mm") * 1e-3, in.options.texts("sign_shown"),
                   in.options.tables("before")};
   if (doubts.empty())
@@ -184,7 +195,9 @@ Expected<OutputResult> write(const OutputInput& in) {
   else
     result.findings.push_back({.id = "table.withheld",
                                .attention = true,
-                               .texts = {{"output", "rotary-vectors"}, {"findings", doubts}}});
+                               .texts = {{"output", "rotary-vectors"},
+                                         {"findings", doubts},
+                                         {"measurements", measurements_of(lines)}}});
   result.notes.push_back({.id = "vectors.frame"});
   return result;
 }

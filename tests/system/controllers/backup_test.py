@@ -5,13 +5,10 @@ import json
 import math
 import os
 import pathlib
-import pty
 import re
 import shutil
-import time
 import unittest
 
-from bench import NONIO
 from parsers import OPTIONS, TABLE
 from truth import FOUR, StateBench, Truth
 
@@ -52,6 +49,23 @@ class Backup(StateBench):
         said = self.nonio("table", "diff", backup.split(",")[0], now, expect=1).stderr
         self.assertIn("MD32450", said)
 
+    def test_insert_refuses_readings_of_which_run_makes_no_table(self):
+        control = "siemens-840d"
+        truth, before, backup, now = self.prepared(control, 17)
+        rows = (now / "x.csv").read_text().splitlines()
+        first = {r.split(",", 1)[1].rsplit(",", 1)[0]: r.rsplit(",", 1)[1] for r in rows[1:] if r.startswith("1,")}
+        copied = [("%s,%s" % (r.rsplit(",", 1)[0], first[r.split(",", 1)[1].rsplit(",", 1)[0]]) if r.startswith("2,") else r) for r in rows]
+        (now / "x.csv").write_text("\n".join(copied) + "\n")
+        args = ["table", "insert", backup, "--with", now, "--out", self.site / "load"]
+        said = self.nonio(*args, expect=1).stderr
+        self.assertIn("plausibility.passes-identical", said)
+        self.assertIn("[[tables.accept]]", said)
+        path = now / "campaign.toml"
+        text = path.read_text()
+        head, tail = text.split("[[measurement]]", 1)
+        path.write_text(head + '[[tables.accept]]\nfinding = "plausibility.passes-identical"\nreason = "seen"\n[[measurement]]' + tail)
+        self.nonio(*args)
+
     def test_insert_names_a_later_measurement_of_the_axis(self):
         control = "linuxcnc"
         truth, before, backup, now = self.prepared(control, 13)
@@ -75,24 +89,6 @@ class Backup(StateBench):
         deep.parent.mkdir()
         later.rename(deep)
         self.assertIn(str(deep.resolve()), self.nonio("table", "insert", backup, "--with", now).stderr)
-
-    def answered(self, args, answers):
-        """What `insert` prints on a terminal, and its status; one answer for each question, which ends with a colon."""
-        child, terminal = pty.fork()
-        if child == 0:
-            os.execv(NONIO, [NONIO, *map(str, args)])
-        shown, seen = b"", 0
-        limit = time.monotonic() + 60
-        while time.monotonic() < limit:
-            try:
-                shown += os.read(terminal, 4096)
-            except OSError:
-                break
-            if answers and re.search(rb"(none\)|oder none\)): $", shown[seen:]):
-                seen = len(shown)
-                os.write(terminal, answers.pop(0).encode() + b"\n")
-        os.close(terminal)
-        return shown.decode(), os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
 
     def test_on_a_terminal_the_state_is_asked_for(self):
         control = "siemens-840d"

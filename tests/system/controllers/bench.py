@@ -4,9 +4,12 @@ import json
 import math
 import os
 import pathlib
+import pty
 import random
+import re
 import subprocess
 import tempfile
+import time
 import unittest
 
 NONIO = os.environ["NONIO"]
@@ -86,6 +89,24 @@ class BenchTest(unittest.TestCase):
 
     def json_of(self, *args, expect=0):
         return json.loads(self.nonio(*args, "--json", expect=expect).stdout)
+
+    def answered(self, args, answers):
+        """What `insert` prints on a terminal, and its status; one answer for each question, which ends with a colon."""
+        child, terminal = pty.fork()
+        if child == 0:
+            os.execv(NONIO, [NONIO, *map(str, args)])
+        shown, seen = b"", 0
+        limit = time.monotonic() + 60
+        while time.monotonic() < limit:
+            try:
+                shown += os.read(terminal, 4096)
+            except OSError:
+                break
+            if answers and re.search(rb"(none\)|oder none\)): $", shown[seen:]):
+                seen = len(shown)
+                os.write(terminal, answers.pop(0).encode() + b"\n")
+        os.close(terminal)
+        return shown.decode(), os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
 
     def run_site(self, expect=0):
         self.nonio("run", self.site, "--out", self.out, "--quiet", expect=expect)

@@ -8,6 +8,7 @@ errors whose beam is rigid, by parsers of their own.
 import csv
 import math
 import os
+import pathlib
 import random
 import re
 import shutil
@@ -239,6 +240,27 @@ class Cross(gantry_test.Gantry):
                     self.assertNotIn("campaign old", cross.replace(self.FOREIGN, ""))
                     self.assertNotIn("CHOSEN", cross)
 
+    def test_on_a_terminal_the_state_of_each_axis_is_asked_for(self):
+        self.control = "siemens-840d"
+        now, before, files = self.worn(4, of="c")  # the backup is of later, so nothing states what was active
+        args = ["table", "insert", ",".join(map(str, files)), "--with", self.folder, "--axis", "XY", "--out", self.out / "load"]
+        self.assertIn("was made from campaign c", self.nonio(*args, expect=1).stderr)
+        answers = []
+        for axis in ("X", "Y", "X2"):
+            own = [str(f) for f in files if "-%s-" % axis in f.name or "CEC" in f.name]
+            lost = [re.search(r"MA_BACKLASH\[0,AX\d\]=(\S+)", f.read_text()) for f in files if "-%s-backlash" % axis in f.name]
+            answers += [",".join(f for f in own if "backlash" not in f), lost[0][1] if lost else "none"]
+        said, status = self.answered(args, answers)
+        self.assertEqual(status, 0, said)
+        for axis in ("X", "Y", "X2"):
+            self.assertIn("Value of MD32450 of %s then" % axis, said)
+        after, _ = self.loaded(now, files)
+        for falling in (False, True):
+            self.assertLess(diagonal(after, falling), 0.2 * diagonal(now, falling) + 2.5, said)
+        record = (self.site / "machines" / "G-1.toml").read_text()
+        self.assertEqual(record.count('source = "answer"'), 3)
+        self.nonio(*args)  # nothing is asked again
+
     def check_campaign(self, machine, seed):
         """The same lines on this machine, four days after loading."""
         self.folder, mine = self.site / "check", self.folder
@@ -261,6 +283,13 @@ class Cross(gantry_test.Gantry):
         first = session("--backup", backup, "--out", self.out / "load")
         self.assertEqual(steps(first), {"backup": "done", "state": "done", "table": "done", "probe": "done", "loading": "missing"})
         self.assertIn("D1", next(s["says"] for s in first["steps"] if s["step"] == "table"))
+        # A sign probe for the pitch table of each axis; the others need the diagonals.
+        probes = next(s["says"] for s in first["steps"] if s["step"] == "probe")
+        for axis in ("X", "Y", "X2"):
+            self.assertRegex(probes, r"(^|; )%s: " % axis)
+        for name in re.findall(r"(\S+): from \S+ mm to \S+ mm the instrument shows", probes):
+            self.assertTrue(pathlib.Path(name).is_file(), probes)
+        self.assertIn("checked by the diagonals", probes)
         self.assertIn("--loaded YYYY-MM-DD", first["command"])
         after, _ = self.loaded(now, files)
         second = session("--backup", backup, "--loaded", "2026-05-12")
@@ -271,14 +300,24 @@ class Cross(gantry_test.Gantry):
         third = session()
         self.assertEqual(steps(third)["loading"], "done")
         self.check_campaign(after, SEED + 7)
+        # The same readings by --check: the session makes the campaign.
+        made, text = self.site / "check", (self.site / "check" / "campaign.toml").read_text()
+        of = dict(re.findall(r'id = "(D\d)"\n(?:(?!\[).*\n)*?file = "(.*)"', text))
+        given = ",".join("%s=%s" % (d, shutil.copy(made / f, self.site.parent / ("after-" + f))) for d, f in sorted(of.items()))
+        made.rename(self.site.parent / "kept")
+        self.assertIn("--check D1=FILE,D2=FILE", session()["command"])
+        self.assertIn("expected D1=FILE,D2=FILE", next(s["says"] for s in session("--check", files[0], expect=1)["steps"] if s["step"] == "check"))
+        own = session("--check", given, "--checked", "2026-05-16")
+        self.assertEqual(steps(own)["verdict"], "done", own)
+        shutil.rmtree(self.folder.parent / (self.folder.name + "-check"))
+        (self.site.parent / "kept").rename(made)
         last = session()
         self.assertEqual(steps(last)["verdict"], "done", last)
+        self.assertEqual([s["says"] for s in own["steps"] if s["step"] == "verdict"], [s["says"] for s in last["steps"] if s["step"] == "verdict"])
         for name, falling in (("D1", False), ("D2", True)):
             said = next(s["says"] for s in last["steps"] if s["step"] == "verdict")
             found = re.search(name + r": range ([\d.]+) um before, ([\d.]+) um predicted, ([\d.]+) um after", said)
             self.assertAlmostEqual(float(found[3]), diagonal(after, falling), delta=1.5)
-        refused = session("--check", files[0], expect=1)
-        self.assertEqual(steps(refused)["check"], "refused")
         # Nothing was loaded.
         self.check_campaign(before, SEED + 8)
         worse = session(expect=1)

@@ -348,6 +348,26 @@ class HeatCompensation(BenchTest):
                 self.assertIn("heat-compensation." + finding, self.findings())
                 self.assertEqual(list(files.glob("heat-*")), [])
 
+    def test_an_effect_by_groups_is_named(self):
+        """A control has one value, so an effect with a value for each measurement is in no file."""
+        once = self.RUNS
+        again = once[once.index("[[measurement]]"):once.index("[model]")].replace('"warm"', '"again"').replace("warm.csv", "again.csv")
+        self.RUNS = once.replace("[model]", again + "[model]")
+        for effects, written, findings in ((("heat-growth:screw", "heat:bed@measurement"), 1, set()),
+                                           (("heat-growth:screw@measurement",), 0, {"heat-compensation.no-effect"})):
+            with self.subTest(effects=effects):
+                self.write_runs("twincat", effects)
+                rng, rows = random.Random(self.seed + 1), (self.folder / "warm.csv").read_text().splitlines()
+                parts = [r.split(",") for r in rows[1:]]
+                (self.folder / "again.csv").write_text("\n".join([rows[0]] + [",".join(
+                    p[:3] + ["%.5f" % (float(p[3]) + rng.gauss(0, 0.2))] + p[4:]) for p in parts]) + "\n")
+                self.answer = self.run_site(expect=None)
+                self.assertEqual(self.answer["errors"], [])
+                self.assertEqual(self.findings(), findings)
+                self.assertEqual(len(list((self.out / "c").glob("heat-*"))), written)
+                notes = [n for o in self.answer["tables"] for n in o.get("notes", [])]
+                self.assertEqual(sum(effects[-1] in n and "a control has one" in n for n in notes), written, notes)
+
     def findings(self):
         return {f["id"] for o in self.answer.get("tables", []) for f in o.get("findings", [])}
 

@@ -5,10 +5,12 @@
 With e = actual - nominal, what a table adds to the position must be -e (plus a constant).
 """
 import math
+import random
 import re
 import unittest
 
 from bench import BenchTest, axis_csv, interpolate, wave
+from parsers import TABLE, cec
 
 TARGETS = [25.0 * i for i in range(17)]  # mm, 0 to 400
 LOST = 3.0  # um: the axis stays behind by as much when it comes from above
@@ -231,11 +233,55 @@ class Axis(BenchTest):
             self.assertEqual(ends[0], ends[1], control)
 
 
-class Planes(BenchTest):
+def columns_of(text):
+    """(output, input): points in um over mm, of a .COM of Heidenhain, with listed or with even positions."""
+    lines = text.splitlines()
+    heads = [(m[0], m.start()) for m in re.finditer(r"\S+", lines[1])] + [("", None)]
+    even = re.search(r"DATUM:(\S+) DISTANCE:(\S+)", lines[0])
+    at = lambda line: float(even[1]) + float(even[2]) * int(line.split()[0]) if even else float(line.split()[1])
+    out = {}
+    for (axis, start), (_, end) in list(zip(heads, heads[1:]))[1 if even else 3:]:
+        points = [(at(l), 1e3 * float(l[start:end])) for l in lines[2:] if l[:1].isdigit() and l[start:end].strip()]
+        if points:
+            out[axis, re.match(r"BEGIN AXIS[_-]([A-Z])", lines[0])[1]] = points
+    return out
+
+
+class CrossWords(BenchTest):
+    """What texts and messages state about cross tables is what the files contain."""
+
+    def assert_true(self, text, tables, results, control):
+        said = re.findall(r"(\w+) over (\w+): zero at (\S+) mm of \w+(?:, taken as reference point)?; "
+                          r"largest entry (\S+) um at (\S+) mm, steepest (\S+) um/m", text)
+        self.assertEqual({(o, i) for o, i, *_ in said}, set(tables), control)
+        digit = 0.000501
+        true = {}
+        for output, by, zero, largest, where, steep in said:
+            points = sorted(tables[output, by])
+            case = "%s: %s over %s" % (control, output, by)
+            true[output, by] = float(largest), float(steep)
+            self.assertAlmostEqual(interpolate(points, float(zero)), 0.0, delta=0.051, msg=case)
+            self.assertAlmostEqual(max(abs(v) for _, v in points), float(largest), delta=digit, msg=case)
+            self.assertAlmostEqual(abs(interpolate(points, float(where))), float(largest), delta=digit, msg=case)
+            slopes = [abs(v - u) / (b - a) * 1e3 for (a, u), (b, v) in zip(points, points[1:])]
+            self.assertAlmostEqual(max(slopes), float(steep), delta=digit, msg=case)
+        notes = [n for t in results["tables"] for n in t["notes"]]
+        found = [m for n in notes for m in re.findall(r"(\w+) over (\w+): .*largest entry is (\S+) um, its steepest change (\S+) um/m", n)]
+        self.assertEqual({(o, i) for o, i, *_ in found}, set(tables), notes)
+        for output, by, largest, steep in found:
+            for one, other in zip((float(largest), float(steep)), true[output, by]):
+                self.assertAlmostEqual(one, other, delta=0.0051 * max(other, 0.1), msg="%s %s" % (control, notes))
+
+
+class Planes(CrossWords):
     """A gantry with straightness and squareness, from its diagonals."""
 
     L = {"X": 1200.0, "Y": 900.0}  # mm; diagonals of 1500
     SQUARE = 8e-6  # C0Y, rad: +Y turns towards -X
+
+    def setUp(self):
+        super().setUp()
+        self.ranges = {}
 
     def y_over_x(self, x):
         return 12.0 * math.sin(math.pi * x / self.L["X"])
@@ -243,7 +289,11 @@ class Planes(BenchTest):
     def x_over_y(self, y):
         return -7.0 * math.sin(2.0 * math.pi * y / self.L["Y"]) - self.SQUARE * y * 1e3
 
-    def gantry(self, control, extra=""):
+    def gantry(self, control, extra="", size=1.0, old=None, active=None):
+        """`old`: what the active cross tables add to X and Y, um; `active`: their files by axis."""
+        old = old or {"X": lambda y: 0.0, "Y": lambda x: 0.0}
+        x_over_y = lambda y: size * self.x_over_y(y) + old["X"](y)
+        y_over_x = lambda x: size * self.y_over_x(x) + old["Y"](x)
         files = {}
         for name, axis, more in (("X1", "X", "at = { Y = 100 }"), ("X2", "X", "at = { Y = 800 }"), ("Y", "Y", "")):
             targets = [self.L[axis] * i / 30 for i in range(31)]
@@ -254,14 +304,72 @@ class Planes(BenchTest):
 
             def along(d, start=start, end=end, length=length):
                 x, y = 1200.0 * d / length, start + (end - start) * d / length
-                return ((1200.0 * (self.x_over_y(y) - self.x_over_y(start)) + (end - start) * self.y_over_x(x))
-                        / length)
+                return (1200.0 * (x_over_y(y) - x_over_y(start)) + (end - start) * (y_over_x(x) - y_over_x(0.0))) / length
+            self.ranges[name] = [along(length * i / n) for i in range(n + 1)]
             files[name] = ("diagonal", axis_csv([length * i / n for i in range(n + 1)], along, along),
                            "from = { X = 0, Y = %d }\nto = { X = 1200, Y = %d }" % (start, end))
         for finding in ("readings-all-equal", "file-twice"):
             extra += '[[tables.accept]]\nfinding = "plausibility.%s"\nreason = "positioning is made perfect"\n' % finding
         self.campaign(files, extra, (("X", "linear"), ("Y", "linear")), control)
-        return self.run_site()
+        path = self.folder / "campaign.toml"
+        for axis, names in (active or {}).items():
+            path.write_text(path.read_text().replace('[machine.axes.%s]\nkind = "linear"\nactive_table = "none"' % axis,
+                                                     '[machine.axes.%s]\nkind = "linear"\nactive_table = "%s"' % (axis, names)))
+        return self.run_site(expect=None if active else 0)
+
+    def added(self, control):
+        """What the cross tables in the output add to X over Y and to Y over X, um over mm."""
+        if control == "aerotech":
+            rows = [numbers(l) for l in self.file("aerotech-plane-D1.cal").splitlines() if l and l[0] not in ":;"]
+            return {"X": [(30.0 * j, row[0]) for j, row in enumerate(rows)], "Y": [(40.0 * i, v) for i, v in enumerate(rows[0][1::2])]}
+        out = {}
+        for axis in "XY":
+            keys = dict(line.split(None, 1) for line in self.file("twincat-cnc-cross-%s.lis" % axis).splitlines() if not line.startswith("#"))
+            row = lambda i, what: int(keys["kw.crosscomp.table[%d].%s" % (i, what)])
+            out[axis] = [(row(i, "setpoint") * 1e-4, row(i, "correction") * 0.1) for i in range(int(keys["kw.crosscomp.last_index"]) + 1)]
+        return out
+
+    def test_a_cross_table_over_an_active_one(self):
+        """The new one is complete, and the diagonals are predicted over the old one."""
+        for control, extra, names in (("aerotech", "", {a: "aerotech-plane-D1.cal" for a in "XY"}),
+                                      ("twincat-cnc", '[options.twincat-cnc]\ncross_sign = "correction"\n',
+                                       {a: "twincat-cnc-cross-%s.lis" % a for a in "XY"})):
+            with self.subTest(control=control):
+                self.gantry(control, extra)
+                old = {a: (lambda x, p=p: interpolate(p, x)) for a, p in self.added(control).items()}
+                for name in set(names.values()):
+                    (self.folder / name).write_text(self.file(name))
+                results = self.gantry(control, extra, 1.5, old, names)
+                self.assertEqual(results["errors"], [])
+                for axis, true in (("X", self.x_over_y), ("Y", self.y_over_x)):
+                    for x, c in self.added(control)[axis]:
+                        self.assertAlmostEqual(c, -1.5 * (true(x) - true(0.0)), delta=0.15)
+                predicted = {p["name"]: p for t in results["tables"] for p in t["predictions"] if p["name"] in ("D1", "D2")}
+                self.assertEqual(sorted(predicted), ["D1", "D2"])
+                for name, p in predicted.items():
+                    self.assertAlmostEqual(p["before"], max(self.ranges[name]) - min(self.ranges[name]), delta=0.1)
+                    self.assertLess(p["predicted"], 0.3)
+
+    def test_the_words_about_cross_tables_are_true(self):
+        seed = random.SystemRandom().randrange(1, 10**9)
+        print("seed %d" % seed)
+        rng = random.Random(seed)
+        for control, extra in (("siemens-840d", ""), ("heidenhain-tnc", ""), ("heidenhain-tnc", '[options.heidenhain-tnc]\nlayout = "itnc530"\n'),
+                               ("aerotech", ""), ("twincat-cnc", '[options.twincat-cnc]\ncross_sign = "error"\n')):
+            self.tearDown(), self.setUp()
+            results = self.gantry(control, extra, rng.uniform(0.3, 2.0))
+            files = {p.name: p.read_text() for p in (self.out / "c").iterdir() if p.name.startswith(control)}
+            if control == "siemens-840d":
+                tables = {("XY"[o - 1], "XY"[i - 1]): t.plus for n, f in files.items() if "CEC" in n for i, o, t in cec(f)}
+            elif control == "heidenhain-tnc":
+                tables = {}
+                for f in files.values():
+                    if f.startswith("BEGIN AXIS"):
+                        tables |= {k: v for k, v in columns_of(f).items() if k[0] != k[1]}
+            else:
+                tables = {("X", "Y"): self.added(control)["X"], ("Y", "X"): self.added(control)["Y"]}
+            self.assertTrue(tables, control)
+            self.assert_true("\n".join(files.values()), tables, results, control)
 
     def test_crosscomp_needs_a_sign(self):
         results = self.gantry("twincat-cnc")
@@ -349,7 +457,115 @@ class Planes(BenchTest):
                          {("X", "Y"): 1000.0, ("Y", "Z"): 2000.0, ("X", "Z"): 3000.0})
 
 
+class Steps(CrossWords):
+    """Step diagonals of a machine whose control has old tables: the ranges after the new ones are those of the machine."""
+
+    SIZE, N = {"X": 800.0, "Y": 600.0, "Z": 500.0}, 10
+    SIGNS = {"PPP": (1, 1, 1), "NPP": (-1, 1, 1), "PNP": (1, -1, 1), "PPN": (1, 1, -1)}
+
+    def setUp(self):
+        super().setUp()
+        self.draw(random.Random("steps 1"))
+
+    def draw(self, rng):
+        self.rng = rng
+        self.curves = {(a, b): [rng.gauss(0, 12), rng.gauss(0, 6)] for a in "XYZ" for b in "XYZ"}
+
+    def error(self, at, size, tables):
+        """um of each axis; the tables of a control add to it."""
+        out = {}
+        for a in "XYZ":
+            out[a] = sum(size * (self.curves[a, b][0] * at[b] / self.SIZE[b] +
+                                 self.curves[a, b][1] * math.sin(math.pi * at[b] / self.SIZE[b])) for b in "XYZ")
+            out[a] += sum(t.added(at[b], "+") for (b, output), t in tables.items() if output == a)
+        return out
+
+    def steps(self, name, size, tables):
+        """(positions, reading) after each move of one axis."""
+        way = math.hypot(*self.SIZE.values())
+        u = {a: s * self.SIZE[a] / way for a, s in zip("XYZ", self.SIGNS[name])}
+        moves, start, out = {a: 0 for a in "XYZ"}, None, []
+        for step in range(3 * self.N + 1):
+            at = {a: self.SIZE[a] * (moves[a] if u[a] > 0 else self.N - moves[a]) / self.N for a in "XYZ"}
+            e = self.error(at, size, tables)
+            start = start or e
+            out.append(sum(u[a] * (e[a] - start[a]) for a in "XYZ"))
+            moves["XYZ"[step % 3]] += 1
+        return out
+
+    def whole(self, name, size, tables):
+        read = self.steps(name, size, tables)[::3]
+        return max(read) - min(read)
+
+    def measured(self, size, tables, active):
+        files = {}
+        for k, a in enumerate("XYZ"):
+            at = {b: self.SIZE[b] / 2 for b in "XYZ"}
+            curve = lambda x, a=a, at=at: self.error({**at, a: x}, size, tables)[a]
+            files[a] = ("axis", axis_csv([self.SIZE[a] * i / self.N for i in range(self.N + 1)], curve, curve), 'axis = "%s"' % a)
+        rows = ["diagonal,step,moved,deviation_um"]
+        for name in self.SIGNS:
+            rows += ["%s,%d,%s,%.4f" % (name, i, "XYZ"[(i - 1) % 3], v + self.rng.gauss(0, 0.02))
+                     for i, v in list(enumerate(self.steps(name, size, tables)))[1:]]
+        ends = "from = { X = 0, Y = 0, Z = 0 }\nto = { %s }" % ", ".join("%s = %g" % p for p in self.SIZE.items())
+        files["SD"] = ("step-diagonal", "\n".join(rows) + "\n", ends)
+        self.campaign(files, '[run]\nanalyses = ["iso230-2", "step-diagonal"]\n', [(a, "linear") for a in "XYZ"], "siemens-840d")
+        path = self.folder / "campaign.toml"
+        if active:
+            path.write_text(path.read_text().replace('active_table = "none"', 'active_table = "%s"' % active))
+        results = self.run_site(expect=None)
+        self.assertEqual(results["errors"], [])
+        self.results = results
+        texts = {p.name: p.read_text() for p in (self.out / "c").iterdir() if p.name.startswith("siemens-840d")}
+        self.assertIn("siemens-840d-XYZ-CEC.ini", texts, results["tables"])
+        found = {("XYZ"[i - 1], "XYZ"[o - 1]): t for i, o, t in cec(texts["siemens-840d-XYZ-CEC.ini"])}
+        for k, a in enumerate("XYZ"):
+            found[a, a] = TABLE["siemens-840d"]({n: t for n, t in texts.items() if "-%s-" % a in n}, k + 1)
+            found[a, a].backlash = 0.0  # no reversal
+        return texts, found, {p["name"]: p for t in results["tables"] for p in t["predictions"] if p["name"] in self.SIGNS}
+
+    def test_the_words_about_cross_tables_are_true(self):
+        seed = random.SystemRandom().randrange(1, 10**9)
+        print("seed %d" % seed)
+        self.draw(random.Random(seed))
+        texts, tables, _ = self.measured(1.0, {}, None)
+        self.assert_true("\n".join(texts.values()), {(o, i): t.plus for (i, o), t in tables.items() if i != o}, self.results, "siemens-840d")
+
+    def test_ranges_over_old_tables(self):
+        texts, old, _ = self.measured(1.0, {}, None)
+        (self.folder / "old").mkdir()
+        for name, text in texts.items():
+            (self.folder / "old" / name).write_text(text)
+        active = ",".join("old/siemens-840d-%s-EEC.ini" % a for a in "XYZ") + ",old/siemens-840d-XYZ-CEC.ini"
+        _, new, predicted = self.measured(1.4, old, active)
+        self.assertEqual(sorted(predicted), sorted(self.SIGNS))
+        for name, p in predicted.items():
+            self.assertGreater(self.whole(name, 1.4, old), 2.0)
+            self.assertAlmostEqual(p["before"], self.whole(name, 1.4, old), delta=0.3)
+            self.assertAlmostEqual(p["predicted"], self.whole(name, 1.4, new), delta=0.3)
+            self.assertLess(self.whole(name, 1.4, new), 1.0)
+
+
 class Chosen(BenchTest):
+    def test_a_measurement_of_too_many_targets_for_the_history_is_named(self):
+        for targets, notes in ((500, 0), (501, 1)):
+            self.tearDown(), self.setUp()
+            self.one_axis([2.0 * i for i in range(targets)], wave, lambda x: wave(x) + LOST,
+                          "[options.siemens-840d]\nmax_points = 1000\n", "siemens-840d")
+            found = [n for n in self.run_site().get("notes", []) if "The history keeps tables of up to 500" in n]
+            self.assertEqual(len(found), notes, found)
+
+    def test_a_control_without_a_table_for_an_axis_is_named(self):
+        for control, axis, unit in (("reprapfirmware", "X", "mm"), ("reprapfirmware", "C", "deg"), ("twincat-volumetric", "W", "mm")):
+            with self.subTest(control=control, axis=axis):
+                self.tearDown(), self.setUp()
+                options = '[options.%s]\nsign = "error"\n' % control if control == "twincat-volumetric" else ""
+                self.one_axis([0.0, 40.0, 80.0, 120.0, 160.0], wave, lambda x: wave(x) + LOST, options, control, unit, axis)
+                results = self.run_site()
+                self.assertEqual([o["file"] for o in results["outputs"] if o["plugin"] == control], [])
+                notes = results.get("notes", []) + [n for t in results.get("tables", []) for n in t.get("notes", [])]
+                self.assertEqual(len([n for n in notes if n.startswith("%s has no table for %s," % (control, axis))]), 1, notes)
+
     def test_only_the_four_are_tried_where_the_control_is_not_stated(self):
         self.one_axis(TARGETS, wave, lambda x: wave(x) + LOST)
         tried = {o["plugin"] for o in self.run_site()["outputs"]}

@@ -149,6 +149,20 @@ class Session(StateBench):
         answer = self.json_of(*args, "--check", path, expect=1)
         self.assertIn("now-check exists", answer["steps"][-1]["says"])
 
+    def test_without_all_targets_nothing_is_predicted(self):
+        truth, before, first = self.begin("siemens-840d", 42)
+        path = self.site / "now" / "x.csv"
+        path = path if path.exists() else next((self.site / "now").glob("*.csv"))
+        mark = ",-,%.3f," % truth.targets[3]
+        path.write_text("\n".join(l for l in path.read_text().splitlines() if mark not in l) + "\n")
+        answer = self.go(first)
+        says = next(s["says"] for s in answer["steps"] if s["step"] == "table")
+        self.assertIn("is not predicted, because targets were left out", says)
+        told = self.nonio(*shlex.split(first)[1:]).stdout + str(answer)
+        told += self.nonio("table", "insert", shlex.split(first)[shlex.split(first).index("--backup") + 1], "--with", self.site / "now",
+                           "--out", self.site.parent / "left").stdout
+        self.assertNotRegex(told, r"(?i)\bnan\b")
+
     def test_a_later_measurement_is_named_before_loading_and_a_check_goes_before_it(self):
         truth, before, first = self.begin("linuxcnc", 61)
         later = self.campaign_of("later", "2025-06-01", "linuxcnc", truth.readings(1, before))

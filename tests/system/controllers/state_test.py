@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """A machine whose control has a table already: from its backup to a table that is complete, replayed by independent
 parsers on the axis without any table."""
+import json
 import os
 import pathlib
+import shutil
 import unittest
 
 from parsers import STEP, TABLE
@@ -36,6 +38,40 @@ class State(StateBench):
                     self.tearDown(), self.setUp()
         self.assertLessEqual(beyond, 0.05 * cases + 3, "%d of %d beyond the scatter" % (beyond, cases))
         print("worst E after loading, um:", {k: round(v, 2) for k, v in worst.items()})
+
+    def test_before_and_after_in_one_campaign(self):
+        """compensation = "off" states that the active table did not act in one measurement."""
+        again = '[[measurement]]\nid = "X %s"\nkind = "axis"\naxis = "X"\nfile = "%s.csv"\n%s'
+        for control in FOUR:
+            with self.subTest(control=control):
+                truth = Truth(51, "wave")
+                table, backup = self.backup(control, truth)
+                (self.site / "both" / "old").mkdir(parents=True)
+                files = [shutil.copy(f, self.site / "both" / "old") for f in backup.split(",")]
+                active = 'active_table = "%s"\nactive_backlash_mm = %.6f\n' % (
+                    ",".join("old/" + os.path.basename(f) for f in files), table.backlash / 1e3)
+                for off, stated in ((True, 'compensation = "off"\n'), (False, "")):
+                    folder = self.campaign_of("both", "2022-12-01", control, truth.readings(0), active)
+                    (folder / "after.csv").write_text(truth.readings(0, table))
+                    path = folder / "campaign.toml"
+                    head, tail = path.read_text().split('[[measurement]]')
+                    options = tail[tail.index("[options"):] if "[options" in tail else ""
+                    path.write_text(head + again % ("before", "x", 'adjustment = "before"\n' + stated) +
+                                    again % ("after", "after", 'adjustment = "after"\n') + options)
+                    self.run_all(None)
+                    results = json.loads((self.out / "both" / "results.json").read_text())
+                    self.assertEqual(results["errors"], [])
+                    refused = [f["measurement"] for t in results["tables"] for f in t["findings"] if f["id"] == "table.active-contradicted"]
+                    self.assertEqual(refused, [] if off else ["X after"])
+                    if not off:
+                        continue
+                    for name, was, said in (("before", None, "no table of this axis was active"), ("after", table, "was active: this one replaces it")):
+                        files = {p.name: p.read_text() for p in sorted((self.out / "both").iterdir()) if p.name.startswith(control) and "_" + name in p.name}
+                        text = "\n".join(files.values())
+                        self.assertIn(said, text)
+                        self.assertEqual("E of the axis without any table" in text, was is not None, text[:900])
+                        self.assertLess(truth.E(0, TABLE[control](files)), 1.7 + STEP.get(control, 0.0))
+                self.tearDown(), self.setUp()
 
     def test_the_record_keeps_every_state_and_each_campaign_finds_its_own(self):
         """Backup, new table, and a campaign after it, of which nothing is typed."""

@@ -104,6 +104,14 @@ class Show(Nights):
                 if f["severity"] == "attention":
                     self.assertEqual(1, " ".join(shown.split()).count(" ".join(f["advice"].split())))
 
+    def test_a_limit_of_no_axis_is_named_by_its_measurement(self):
+        path = self.folder / "campaign.toml"
+        path.write_text(path.read_text() + '[[measurement]]\nid = "flat"\nkind = "straightness"\naxis = "X"\nlateral = "Y"\n'
+                        'file = "x.csv"\ntolerance_um = { nothing = 1.0 }\n')
+        shown = self.nonio("show", self.folder).stdout
+        self.assertIn("  flat, nothing: there is no value", shown)
+        self.assertNotIn("Axis ,", shown)
+
     def test_a_machine(self):
         self.night()
         machine = json.loads(self.nonio("machine", "list", self.out, "--json").stdout)["machines"][0]["machine"]

@@ -119,6 +119,47 @@ class Cases(unittest.TestCase):
         self.assertIn("expected -60 to 150 degC", error["message"])
         self.assertIn("found -999", error["message"])
 
+    def test_a_doubt_about_one_axis_withholds_only_what_is_made_of_it(self):
+        axis = ('[machine.axes.Y]\nkind = "linear"\ntravel = [0.0, 1000.0]\nexpansion_um_per_m_K = 11.5\nactive_table = "none"\nactive_backlash_mm = "none"\n'
+                '[instrument]')
+        lines = "".join(
+            f'[[measurement]]\nid = "{id}"\nkind = "{kind}"\n{more}\nfile = "{id}.csv"\n' for id, kind, more in (
+                ("Y", "axis", 'axis = "Y"\nat = { X = 0 }'), ("yaw", "angle", 'axis = "X"\nabout = "Z"'),
+                ("D1", "diagonal", "from = { X = 0, Y = 0 }\nto = { X = 800, Y = 600 }"),
+                ("D2", "diagonal", "from = { X = 0, Y = 600 }\nto = { X = 800, Y = 0 }")))
+        manifest = lambda text: text.replace("[instrument]", axis).replace('file = "x.csv"', 'file = "x.csv"\nat = { Y = 0 }').replace(
+            "[options.siemens-840d]\n", lines + "[options.siemens-840d]\n").replace('"X number=1"', '"X number=1", "Y number=2"')
+        rng = random.Random(SEED + 1)
+        spread = lambda rows, step: [[r, d, step * sorted({x[2] for x in rows}).index(t), v] for r, d, t, v in rows]
+        mean = lambda rows, at, d: sum(v for r, way, t, v in rows if (way, t) == (d, at)) / 5
+        first, other = spread(self.rows, 80.0), spread(mutants.rows_of(rng), 60.0)
+        cases = {"sound": other, "doubted": copy_run(other, 1, 2), "good": [[*r[:3], 0.02 * r[3]] for r in other]}
+        for name, rows in cases.items():
+            first[0][3] += 0.001
+            change = lambda text: manifest(text).replace("drift_um = 0.6", f"drift_um = {9 if name == 'good' else 0.6}")
+            self.campaign(name, csv(first), change)
+            (self.site / name / "Y.csv").write_text(csv([[*r[:3], r[3] + 1e-3 * len(name)] for r in rows]))
+            (self.site / name / "yaw.csv").write_text(csv(
+                [[r, d, 80.0 * i, rng.gauss(0, 0.02)] for r in range(1, 6) for d in "+-" for i in range(11)[::1 if d == "+" else -1]],
+                ["run", "direction", "target_mm", "deviation_arcsec"]))
+            for id in ("D1", "D2"):
+                (self.site / name / f"{id}.csv").write_text(csv(
+                    [[r, d, 100.0 * i, 0.8 * mean(first, 80 * i, d) + 0.6 * (mean(rows, 60 * i, d) if id == "D1" else
+                      -mean(rows, 600 - 60 * i, "-+"[d == "-"])) + rng.gauss(0, 0.3)] for r in range(1, 6) for d in "+-"
+                     for i in range(11)[::1 if d == "+" else -1]]))
+        self.night()
+        cross = {f for f in self.tables("sound") if "XY" in f}
+        self.assertTrue(cross)
+        self.assertEqual(self.doubts("sound"), {})
+        self.assertEqual({f for f in self.tables("doubted")}, {f for f in self.tables("sound") if "-X-" in f})
+        (withheld,) = [f for t in self.results["doubted"]["tables"] for f in t["findings"] if f["id"] == "table.withheld"]
+        self.assertEqual(withheld["evidence"]["measurements"], "D1, D2, Y")
+        self.assertEqual(withheld["evidence"]["findings"], "plausibility.passes-identical")
+        # A very good axis has a U of ordinary size.
+        self.assertEqual(self.doubts("good"), {})
+        values = [a["values"]["A"] for a in self.results["good"]["analyses"] if a["plugin"] == "iso230-2" and a["measurement"] == "Y"]
+        self.assertGreater(values[0]["U"], 5 * values[0]["value"])
+
     def test_a_person_says_why(self):
         standing = '[[tables.accept]]\nfinding = "plausibility.{}"\nreason = "the new bearing only"\n'
         short = csv(scaled(1e-3)(self.rows, None), target="{:.6f}")

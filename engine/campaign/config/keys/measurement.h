@@ -81,8 +81,9 @@ inline constexpr Key measurement_keys[] = {
      "certificate.",
      mm},
     {"compensation", into<&Measurement::compensation>,
-     "Whether the control's compensation (tables and backlash) was on or off during the test, for "
-     "the certificate.",
+     "Whether the control's compensation (tables and backlash) was on or off during the test. With "
+     "off, active_table and the active backlash value of the axis do not apply to this "
+     "measurement.",
      on_or_off},
 };
 

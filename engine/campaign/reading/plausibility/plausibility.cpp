@@ -334,7 +334,8 @@ void short_diagonal(const Measurement& m, const Observations& o, std::vector<Fin
                             .texts = {{"axis", axis}}});
 }
 
-/// A U above five times the largest value shows nothing about the axis.
+/// A U above five times the largest value, and above that of an ordinary test: a very good axis has
+/// small values and an ordinary U.
 void uncertain(const std::vector<Results::Analysed>& analyses, const std::string& measurement,
                std::vector<Finding>& out) {
   constexpr double most = 5.0;
@@ -349,7 +350,8 @@ void uncertain(const std::vector<Results::Analysed>& analyses, const std::string
       U = std::max(U, *v.U);
       quantity = v.quantity;
     }
-    if (U <= most * value || value <= 0.0) continue;
+    const double ordinary = 25.0 * (quantity == Quantity::deviation ? um : arcsec);
+    if (U <= std::max(most * value, ordinary) || value <= 0.0) continue;
     return out.push_back({.id = "plausibility.uncertainty-beyond-deviation",
                           .attention = true,
                           .evidence = {{"U", U, quantity}, {"value", value, quantity}},

@@ -70,6 +70,8 @@ Expected<Grid> choose_grid(const std::vector<double>& position, const GridRule& 
 /// Rounds each value to an integer number of `unit` (half away from zero, to 12 digits: 2.5 um is a
 /// tie). unit > 0; quotients within the range of std::int64_t.
 std::vector<std::int64_t> quantised(std::span<const double> value, double unit);
+/// The same in SI.
+std::vector<double> rounded(std::vector<double> value, double unit);
 /// Returns q[i] - q[i-1], one value fewer than `absolute`. Rounding the absolute curve first keeps
 /// the sum of the increments within half a unit of the curve at every point.
 std::vector<std::int64_t> increments(std::span<const std::int64_t> absolute);

@@ -40,12 +40,14 @@ struct HeldReversal {
 /// One measured axis for which a table is to be written; SI.
 struct AxisJob {
   std::string axis, measurement;
-  std::string stem;        ///< start of file names; includes the measurement if an axis has two
-  std::size_t number = 0;  ///< axis number in the control; 0 if not stated
+  std::string stem;  ///< start of file names; includes the measurement if an axis has two
+  double backlash_step = 1e-9;  ///< resolution of the backlash parameter, m or rad
+  std::size_t number = 0;       ///< axis number in the control; 0 if not stated
   bool rotary = false;
   math::ErrorCurve curve;  ///< curve to be compensated: as measured, or as the model predicts
   std::optional<math::ErrorCurve> measured;  ///< measured curve, if `curve` is the model's
   std::optional<math::ErrorCurve> turn;      ///< for a rotary axis measured over a whole revolution
+  bool had_table = false;       ///< whether a table was active, which is removed from `curve`
   bool from_diagonals = false;  ///< positioning from step diagonals: the reversal is not known
   /// If false, `curve` is relative to its end-point line, because step diagonals alone do not
   /// determine the scale.
@@ -69,7 +71,9 @@ struct AxisJob {
   /// New value of the backlash parameter, positive for lost motion, m or rad. The present value is
   /// kept if a single value would leave a larger reversal somewhere than exists now.
   double backlash() const {
-    return one_value_helps() ? present_backlash() - curve.mean_reversal() : present_backlash();
+    return one_value_helps()
+               ? math::rounded({present_backlash() - curve.mean_reversal()}, backlash_step).front()
+               : present_backlash();
   }
   /// The measured value, whether or not the table contains it.
   double mean_reversal() const { return held ? held->mean : curve.mean_reversal(); }
@@ -107,6 +111,9 @@ bool lacks_number(const std::vector<std::string>& of, const ControllerInput& inp
 /// remaining errors could replace a table that compensated the others.
 bool states_active(const ControllerInput& input, const std::string& axis,
                    const std::string& measurement, bool backlash_in_options, OutputResult& result);
+
+/// States that a control's format has no table for a measurement.
+Remark not_in_format(const std::string& output, const std::string& measurement);
 
 /// The text of the note may contain {axis} and {unit}.
 Remark remark(const AxisJob& job, std::string id);

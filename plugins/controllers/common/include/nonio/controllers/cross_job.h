@@ -99,9 +99,10 @@ bool oversized(const CrossJob&, const ControllerInput&, OutputResult&);
 /// as notes.
 std::vector<std::string> set_words(const CrossJob&);
 
-/// "Y over X: zero at 0.0 mm of X, largest entry ..."; `note_cross` adds the same as notes.
-std::string cross_words(const CrossCurve&);
-void note_cross(const CrossJob&, OutputResult&);
+/// "Y over X: zero at 0.0 mm of X, largest entry ..." of the entries at these positions, which are
+/// multiples of `step`. `note_cross` adds the same as notes, from the tables that were read back.
+std::string cross_words(const CrossCurve&, double step, const std::vector<double>& at);
+void note_cross(const CrossJob&, const std::vector<LoadedTable>& tables, OutputResult&);
 
 /// An error if there are more points than option `max_points` allows.
 Expected<void> fits(const CrossJob&, const Settings& options);

@@ -60,6 +60,8 @@ struct Sheet {
   /// table, and, last, size and steepness.
   std::vector<std::string> zero_and_size() const;
   std::string outside_words() const;
+  /// Values that the control adds at `position`, as the file states them.
+  std::vector<double> held(const std::vector<double>& entries) const;
   /// Machine, axis, date, warnings, sign and reversal, for comments or a separate file.
   std::vector<std::string> words() const;
 };
@@ -94,6 +96,8 @@ struct Writer {
   Directions directions = Directions::by_option;
   TurnEnd turn_end = TurnEnd::repeats;
   ZeroOf zero_of = ZeroOf::mean;
+  /// Whether the backlash parameter has the unit of the entries; otherwise 6 decimals of mm or deg.
+  bool backlash_in_steps = false;
   bool power_of_two = false;  ///< the step of linear axes must be a power of two
   double fixed_step = 0.0;    ///< step of a control whose points cannot be chosen, SI; otherwise 0
   /// Whether the maker states that the end value applies outside of the table; otherwise the file
