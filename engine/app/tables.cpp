@@ -130,7 +130,14 @@ std::string where_text(const Json& place, const TerminalWords& say) {
 }
 
 void print_places(std::ostream& out, const Json& part, const TerminalWords& say) {
-  if (part.at("fails").empty()) return line(out, say("fails"), say("fails.nowhere"));
+  if (part.at("fails").empty()) {
+    const auto floor = storage::get(part, "noise_floor"),
+               rms = storage::get(part.at("model"), "rms");
+    if (!floor || !rms || !(floor->value > 0.0))
+      return line(out, say("fails"), say("fails.nowhere"));
+    const std::string times = say.number(short_text(rms->value / floor->value));
+    return line(out, say("fails"), say("fails.nowhere-times", {{"times", times}}));
+  }
   out << "  " << say("fails") << "\n";
   for (const Json& place : part.at(part.at("left").empty() ? "fails" : "left"))
     out << "    " << padded(where_text(place, say) + " ", 29)

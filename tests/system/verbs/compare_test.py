@@ -2,6 +2,7 @@
 """nonio compare: figures, places, suspects and their exclusion."""
 import csv
 import pathlib
+import re
 import shutil
 import statistics
 import unittest
@@ -156,7 +157,6 @@ class Compare(VerbTest):
                     if set(told["takes"]) == set(part["model"]["effects"]):
                         self.assertAlmostEqual(told["rms_um"], part["rms_um"], delta=0.002 * part["rms_um"])
 
-    def test_without_anything_for_a_table_it_says_nothing_of_one(self):
     def test_the_error_before_a_table_does_not_depend_on_the_model(self):
         """A part is placed anew in the readings that a table would leave: its placement is no error of the machine."""
         folder = self.site / "50-turned-plates"
@@ -181,6 +181,7 @@ class Compare(VerbTest):
         times = [float(t) for t in re.findall(r"where it fails +no place stands out: the RMS is ([\d.]+) times the noise floor", printed)]
         self.assertTrue(any(abs(t / (part["rms_um"] / part["noise_floor_um"]) - 1) < 0.005 for t in times), times)
 
+    def test_without_anything_for_a_table_it_says_nothing_of_one(self):
         self.campaign(manifest(["zero-drift:X"]), x=readings())
         self.assertNotIn("after_table", self.part())
         self.assertNotIn("compensated", self.nonio("model", "compare", self.folder).stdout)
