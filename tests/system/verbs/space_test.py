@@ -107,6 +107,19 @@ class Space(VerbTest):
         self.assertIn(best["plan"], {"straightness-line", "other-line"})
         self.assertTrue(best["says"])
 
+    def test_what_shows_only_next_to_others_is_not_named_first(self):
+        """The wave of the screw in circles: added alone it leaves the RMS as it is."""
+        for name in ("40-circles", "41-circle-one-way"):
+            with self.subTest(sample=name):
+                self.sample(name)
+                said = self.part("explain")
+                before, first = said["model"]["rms_um"], said["candidates"][0]
+                self.assertLess(first["rms_um"], 0.8 * before, first)
+                wave, = (c for c in said["candidates"] if c["effect"] == "periodic:X")
+                self.assertGreater(wave["rms_um"], 0.99 * before)
+                if said["verdict"]["kind"] == "missing":
+                    self.assertEqual(said["verdict"]["effect"], first["effect"])
+
     def test_states_of_the_machine_are_not_mixed(self):
         self.sample("13-gantry-diagonals")
         parts = self.json_of("compare", self.folder)["parts"]
