@@ -38,7 +38,8 @@ class CourseFit {
       search();
     }
     refine();
-    drop_lags();
+    // Without the lag, the noise of the channel is part of the scatter.
+    if (drop_lags()) noise_.scatter = most_likely_scatter(data_, noise_, chosen());
     return fitted();
   }
 
@@ -168,16 +169,21 @@ class CourseFit {
 
   /// A lag smooths the noise of a channel, which generalized least squares rewards even without a
   /// lag of the machine. A lag must also reduce the RMS of the readings.
-  void drop_lags() {
+  bool drop_lags() {
+    bool any = false;
     for (std::size_t k = 0; k < terms_.size(); ++k)
       for (std::size_t s = 0; searched_[k] != 0 && s < terms_[k].shape.size(); ++s) {
         const Effect::Shape& shape = terms_[k].effect->shapes[s];
         const std::vector<double> grid = shape.grid(data_.part().table, terms_[k].axis);
         if (!shape.continuous || grid.empty() || grid.front() != 0.0) continue;
         const std::vector<double> none = with(k, s, 0.0);
-        if (squares_with(k, columns_at(terms_[k], none)) <= squares_with(k, chosen_[k].columns))
-          replace(k, none);
+        if (terms_[k].shape == none ||
+            squares_with(k, columns_at(terms_[k], none)) > squares_with(k, chosen_[k].columns))
+          continue;
+        replace(k, none);
+        any = any || terms_[k].shape == none;
       }
+    return any;
   }
 
   /// Sum of squares that ordinary least squares leaves, with `instead` as the columns of term k.
