@@ -111,19 +111,19 @@ class Kinds {
 using Axes = std::map<Key, std::vector<Measured>>;
 
 void put_axis(Axes& out, const std::string& machine, const reading::ReadCampaign& read,
-              PartModel& part, std::vector<std::string>& left_out) {
+              const PartModel& part, std::vector<std::string>& left_out) {
   const Campaign& campaign = read.manifest->campaign;
   std::set<Line, std::greater<>> lines;  // "before" comes before "after"
   for (const std::string& id : part.part.measurements) lines.insert(line_of(campaign, id));
+  const std::string axis = part.part.name, name = campaign.id + " " + axis;
   for (const Line& line : lines) {
-    PartModel one = lines.size() > 1 ? only(part, line, read) : std::move(part);
-    const std::string name = campaign.id + " " + one.part.name;
+    PartModel one = lines.size() > 1 ? only(part, line, read) : part;
     if (one.part.table.size() > most_readings)
       left_out.push_back(name + " (more than " + std::to_string(most_readings) + " readings)");
     else if (!one.unfit.empty())
       left_out.push_back(name + " (" + one.unfit + ")");
     else
-      out[{machine, one.part.name, line.first}].push_back({&read, line.second, std::move(one)});
+      out[{machine, axis, line.first}].push_back({&read, line.second, std::move(one)});
   }
 }
 
@@ -141,7 +141,7 @@ Axes common_parts(const std::vector<const reading::ReadCampaign*>& campaigns,
       trouble = fail(std::move(error));
       return {};
     }
-    for (PartModel& part : *parts) {
+    for (const PartModel& part : *parts) {
       if (part.part.kind == model::Part::Kind::axis)
         put_axis(out, kinds.of(campaign.machine), *read, part, left_out);
       else
