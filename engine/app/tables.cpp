@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <ostream>
+#include <set>
 
 #include "campaign/modelling/model_json.h"
 #include "nonio/sdk/format.h"
@@ -131,7 +132,14 @@ std::string where_text(const Json& place, const TerminalWords& say) {
 }
 
 void print_places(std::ostream& out, const Json& part, const TerminalWords& say) {
-  if (part.at("fails").empty()) return line(out, say("fails"), say("fails.nowhere"));
+  if (part.at("fails").empty()) {
+    const auto floor = storage::get(part, "noise_floor"),
+               rms = storage::get(part.at("model"), "rms");
+    if (!floor || !rms || !(floor->value > 0.0))
+      return line(out, say("fails"), say("fails.nowhere"));
+    const std::string times = say.number(short_text(rms->value / floor->value));
+    return line(out, say("fails"), say("fails.nowhere-times", {{"times", times}}));
+  }
   out << "  " << say("fails") << "\n";
   for (const Json& place : part.at(part.at("left").empty() ? "fails" : "left"))
     out << "    " << padded(where_text(place, say) + " ", 29)
@@ -384,12 +392,18 @@ void print_change(std::ostream& out, const Json& change, const TerminalWords& sa
 
 void print_together(std::ostream& out, const Json& part, const TerminalWords& say) {
   const Json& campaigns = part.at("campaigns");
+  std::set<std::string> names;  // as found and as left are two members of one campaign
+  for (const Json& c : campaigns) names.insert(text_in(c, "campaign"));
   sentence(out, 0,
-           say("joint.head", {{"part", text_in(part, "axis")},
-                              {"count", std::to_string(campaigns.size())},
+           say("joint.head", {{"part", text_in(part, "part")},
+                              {"count", std::to_string(names.size())},
                               {"first", text_in(campaigns.front(), "campaign")},
                               {"last", text_in(campaigns.back(), "campaign")},
                               {"readings", part.at("observations").dump()}}));
+  if (part.contains("machines") && part["machines"].size() > 1)
+    sentence(out, 2,
+             say("joint.machines", {{"count", std::to_string(part["machines"].size())},
+                                    {"machines", list_in(part, "machines")}}));
   line(out, "RMS", with_unit(part.at("model"), "rms", say));
   line(out, say("floor"), with_unit(part, "noise_floor", say));
   sentence(out, 2, text_in(part.at("verdict"), "says"));

@@ -12,27 +12,15 @@ namespace {
 
 constexpr double k = 2.0;  // coverage factor of ISO 230-2 since 1997
 
-/// Returns the weighted RMS about the mean of each line, without the parts of the set-up (zeros,
-/// slopes, rotations).
-double rms_about_zeros(const Observations& o, std::vector<double> values, const model::Fit& fit) {
-  const std::vector<double>& weight = fit.weight;
-  for (std::size_t t = 0; t < fit.terms.size(); ++t)
-    if (fit.terms[t].effect->is_nuisance)
-      for (std::size_t i = 0; i < values.size(); ++i) values[i] -= fit.part[t][i];
-  const auto weight_of = [&](std::size_t i) { return i < weight.size() ? weight[i] : 1.0; };
-  std::vector<double> sum(std::max<std::size_t>(o.lines.size(), 1)), weights(sum.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    sum[o.line_of(i)] += weight_of(i) * values[i];
-    weights[o.line_of(i)] += weight_of(i);
-  }
-  double squares = 0.0, all = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!(weight_of(i) > 0.0)) continue;
-    const double left = values[i] - sum[o.line_of(i)] / weights[o.line_of(i)];
-    squares += weight_of(i) * left * left;
-    all += weight_of(i);
-  }
-  return all > 0.0 ? std::sqrt(squares / all) : std::nan("");
+/// Returns the weighted RMS of what the set-up (zeros, slopes, rotations) does not explain. It is
+/// fitted to these values, because their RMS must not depend on the other effects of the model.
+double rms_of(Observations o, const std::vector<double>& values, const model::Fit& fit) {
+  o.deviation = values;
+  std::vector<model::Term> set_up;
+  for (const model::Term& term : fit.terms)
+    if (term.effect->is_nuisance) set_up.push_back(term);
+  const auto fitted = model::fit(o, std::move(set_up), fit.weight);
+  return fitted ? fitted->rms : std::nan("");
 }
 
 Observations readings_of(const model::Part& part, std::size_t measurement,
@@ -67,8 +55,8 @@ AfterTable after_table(const PartModel& model, const model::Fit& fit) {
     out.effects.push_back(fit.terms[t].name());
     for (std::size_t i = 0; i < left.size(); ++i) left[i] -= fit.part[t][i];
   }
-  out.rms_before = rms_about_zeros(part.table, measured, fit);
-  out.rms = rms_about_zeros(part.table, left, fit);
+  out.rms_before = rms_of(part.table, measured, fit);
+  out.rms = rms_of(part.table, left, fit);
   if (part.kind != model::Part::Kind::axis) return out;
   for (std::size_t m = 0; m < part.measurements.size(); ++m)
     out.tests.push_back({part.measurements[m], positioning(readings_of(part, m, measured)),

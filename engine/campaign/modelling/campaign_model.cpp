@@ -277,8 +277,9 @@ Error nothing_to_compare(const reading::ReadCampaign& read) {
   const auto kinds = kinds_measured(read);
   if (kinds.empty()) return {"no measurement of this campaign has readings"};
   return {
-      "effects explain runs of an axis, straightness, diagonals, circles, ball centres and "
-      "displacements over time; this campaign has readings of another kind: " +
+      "effects explain runs of an axis, straightness, diagonals, circles, centres of a ball that "
+      "turns with one rotary axis, and displacements over time; this campaign has other "
+      "readings: " +
       storage::listed(kinds)};
 }
 

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <set>
 
+#include "campaign/config/machines.h"
+#include "campaign/modelling/held_terms.h"
 #include "campaign/modelling/model_json.h"
 #include "nonio/math/distributions.h"
 #include "nonio/sdk/format.h"
@@ -32,11 +35,103 @@ const char* name_of(Holds holds) {
   return "own";
 }
 
+/// Side of a gantry and adjustment of a measurement.
+using Line = std::pair<std::string, std::string>;
+
+Line line_of(const Campaign& campaign, const std::string& measurement) {
+  for (const Measurement& m : campaign.measurements)
+    if (m.id == measurement) return {m.side, m.adjustment};
+  return {};
+}
+
+/// Without "@side" and similar if the measurements of the part do not differ by it.
+std::vector<std::string> effects_of(const model::Part& part, std::vector<std::string> effects) {
+  for (std::string& written : effects) {
+    Entry entry = entry_of(written);
+    const std::size_t at = entry.effect.find('@');
+    if (at == std::string::npos ||
+        std::any_of(part.groupings.begin(), part.groupings.end(),
+                    [&](const auto& g) { return g->by == entry.effect.substr(at + 1); }))
+      continue;
+    entry.effect.resize(at);
+    written = entry.text();
+  }
+  std::set<std::string> known;
+  std::erase_if(effects, [&](const std::string& e) { return !known.insert(e).second; });
+  return effects;
+}
+
+/// The readings of the axis on one side before or after an adjustment, with the model for these.
+PartModel only(const PartModel& whole, const Line& line, const reading::ReadCampaign& read) {
+  const Campaign& campaign = read.manifest->campaign;
+  std::vector<Observations> readings = read.observations;
+  for (std::size_t m = 0; m < readings.size(); ++m) {
+    const std::string& id = campaign.measurements[m].id;
+    const auto& all = whole.part.measurements;
+    if (std::find(all.begin(), all.end(), id) != all.end() && line_of(campaign, id) != line)
+      readings[m] = {};
+  }
+  PartModel out;
+  for (model::Part& part : model::parts_of(campaign, readings))
+    if (part.kind == whole.part.kind && part.name == whole.part.name) out.part = std::move(part);
+  set_model(out, effects_of(out.part, campaign.model), read);
+  fill_catalogue(out, read);
+  return out;
+}
+
+/// An axis of a machine, or of machines of one model, on one side.
+struct Key {
+  std::string machine, axis, side;
+  auto operator<=>(const Key&) const = default;
+};
+
+struct Measured {
+  const reading::ReadCampaign* read;
+  std::string adjustment;
+  PartModel part;
+};
+
+std::string name_of(const Machine& m) { return !m.asset.empty() ? m.asset : m.serial; }
+
+/// Campaigns of one machine have one key, and so do machines with the same maker and model.
+class Kinds {
+ public:
+  const std::string& of(const Machine& m) {
+    const std::string machine = config::machine_input(m);
+    const std::string kind = m.model.empty() ? machine : m.maker + "\n" + m.model;
+    if (machine.empty()) return unnamed_ = kind;
+    return kinds_.try_emplace(machine, kind).first->second;
+  }
+
+ private:
+  std::map<std::string, std::string> kinds_;
+  std::string unnamed_;
+};
+
+using Axes = std::map<Key, std::vector<Measured>>;
+
+void put_axis(Axes& out, const std::string& machine, const reading::ReadCampaign& read,
+              const PartModel& part, std::vector<std::string>& left_out) {
+  const Campaign& campaign = read.manifest->campaign;
+  std::set<Line, std::greater<>> lines;  // "before" comes before "after"
+  for (const std::string& id : part.part.measurements) lines.insert(line_of(campaign, id));
+  const std::string axis = part.part.name, name = campaign.id + " " + axis;
+  for (const Line& line : lines) {
+    PartModel one = lines.size() > 1 ? only(part, line, read) : part;
+    if (one.part.table.size() > most_readings)
+      left_out.push_back(name + " (more than " + std::to_string(most_readings) + " readings)");
+    else if (!one.unfit.empty())
+      left_out.push_back(name + " (" + one.unfit + ")");
+    else
+      out[{machine, axis, line.first}].push_back({&read, line.second, std::move(one)});
+  }
+}
+
 /// `trouble` receives the error of a campaign whose model has a mistake.
-std::map<std::string, std::vector<std::pair<const reading::ReadCampaign*, PartModel>>> common_parts(
-    const std::vector<const reading::ReadCampaign*>& campaigns, Expected<void>& trouble,
-    std::vector<std::string>& left_out) {
-  std::map<std::string, std::vector<std::pair<const reading::ReadCampaign*, PartModel>>> out;
+Axes common_parts(const std::vector<const reading::ReadCampaign*>& campaigns,
+                  Expected<void>& trouble, std::vector<std::string>& left_out) {
+  Axes out;
+  Kinds kinds;
   for (const reading::ReadCampaign* read : campaigns) {
     const Campaign& campaign = read->manifest->campaign;
     auto parts = part_models(*read, campaign.model);
@@ -46,21 +141,20 @@ std::map<std::string, std::vector<std::pair<const reading::ReadCampaign*, PartMo
       trouble = fail(std::move(error));
       return {};
     }
-    for (PartModel& part : *parts) {
-      if (part.part.kind != model::Part::Kind::axis)
-        left_out.push_back(campaign.id + " " + part.part.name);
-      else if (part.part.table.size() > most_readings)
-        left_out.push_back(campaign.id + " " + part.part.name + " (more than " +
-                           std::to_string(most_readings) + " readings)");
-      else if (!part.unfit.empty())
-        left_out.push_back(campaign.id + " " + part.part.name + " (" + part.unfit + ")");
+    for (const PartModel& part : *parts) {
+      if (part.part.kind == model::Part::Kind::axis)
+        put_axis(out, kinds.of(campaign.machine), *read, part, left_out);
       else
-        out[part.part.name].emplace_back(read, std::move(part));
+        left_out.push_back(campaign.id + " " + part.part.name);
     }
   }
   for (auto it = out.begin(); it != out.end();) {
-    if (it->second.size() < 2) {
-      left_out.push_back(it->second.front().first->manifest->campaign.id + " " + it->first);
+    const auto& list = it->second;
+    if (list.front().read == list.back().read) {
+      const Campaign& campaign = list.front().read->manifest->campaign;
+      const std::string machine = name_of(campaign.machine);
+      left_out.push_back(campaign.id + " " + it->first.axis + " (the only campaign" +
+                         (machine.empty() ? "" : " of machine " + machine) + ")");
       it = out.erase(it);
     } else {
       ++it;
@@ -90,8 +184,12 @@ std::string value_text(const std::vector<model::Parameter>& group, double size, 
   return out;
 }
 
-std::string place_text(const Together& t, std::size_t campaign) {
-  return t.campaigns[campaign] + (t.dates[campaign].empty() ? "" : " (" + t.dates[campaign] + ")");
+std::string place_text(const Together& t, std::size_t campaign, const config::TerminalWords& say) {
+  std::vector<std::string> more;
+  if (each_once(t.machines).size() > 1) more.push_back(t.machines[campaign]);
+  if (!t.adjustments[campaign].empty()) more.push_back(say("joint." + t.adjustments[campaign]));
+  if (!t.dates[campaign].empty()) more.push_back(t.dates[campaign]);
+  return t.campaigns[campaign] + (more.empty() ? "" : " (" + storage::listed(more) + ")");
 }
 
 bool is_absent(const std::vector<model::Parameter>& group) {
@@ -134,15 +232,15 @@ std::string sentence_of(const model::JointEffect& e, const Together& t,
   if (e.holds == Holds::changed) {
     if (is_curve(e.groups[0]))
       return say("joint.changed-curve", {{"effect", e.effect},
-                                         {"last", place_text(t, e.after - 1)},
-                                         {"first", place_text(t, e.after)},
+                                         {"last", place_text(t, e.after - 1, say)},
+                                         {"first", place_text(t, e.after, say)},
                                          {"value", value_text(e.groups[0], e.size, q, say)}});
     const char* id = is_absent(e.groups[0])   ? "joint.appears"
                      : is_absent(e.groups[1]) ? "joint.vanishes"
                                               : "joint.changed";
     return say(id, {{"effect", e.effect},
-                    {"last", place_text(t, e.after - 1)},
-                    {"first", place_text(t, e.after)},
+                    {"last", place_text(t, e.after - 1, say)},
+                    {"first", place_text(t, e.after, say)},
                     {"before", value_text(e.groups[0], e.size, q, say)},
                     {"after", value_text(e.groups[1], e.size, q, say)}});
   }
@@ -152,9 +250,9 @@ std::string sentence_of(const model::JointEffect& e, const Together& t,
                {{"effect", e.effect}, {"value", value_text(e.groups[low], e.size, q, say)}});
   return say("joint.own", {{"effect", e.effect},
                            {"low", value_text(e.groups[low], e.size, q, say)},
-                           {"of-low", place_text(t, low)},
+                           {"of-low", place_text(t, low, say)},
                            {"high", value_text(e.groups[high], e.size, q, say)},
-                           {"of-high", place_text(t, high)}});
+                           {"of-high", place_text(t, high, say)}});
 }
 
 std::string sentence_of(const Together& t, const config::TerminalWords& say) {
@@ -169,7 +267,7 @@ std::string sentence_of(const Together& t, const config::TerminalWords& say) {
   std::vector<std::string> names;
   for (const model::JointEffect& e : x.effects) names.push_back(e.effect);
   const config::TerminalWords::Parts parts{{"part", t.part},
-                                           {"count", std::to_string(t.campaigns.size())},
+                                           {"count", std::to_string(each_once(t.campaigns).size())},
                                            {"effects", storage::listed(names)},
                                            {"before", text(x.rms)},
                                            {"after", text(x.rms_after)},
@@ -196,10 +294,9 @@ Json effect_json(const model::JointEffect& e, const Together& t, const config::T
     Json values = Json::array();
     for (std::size_t g = 0; g < e.groups.size(); ++g) {
       Json one = Json::object();
-      if (e.holds == Holds::own)
-        one["campaign"] = t.campaigns[g];
-      else
-        one[g == 0 ? "to" : "from"] = t.campaigns[e.after - (g == 0 ? 1 : 0)];
+      const std::size_t at = e.holds == Holds::own ? g : e.after - (g == 0 ? 1 : 0);
+      one[e.holds == Holds::own ? "campaign" : g == 0 ? "to" : "from"] = t.campaigns[at];
+      if (!t.adjustments[at].empty()) one["adjustment"] = t.adjustments[at];
       if (!e.groups[g].empty()) one["parameters"] = parameters_json(e.groups[g]);
       values.push_back(std::move(one));
     }
@@ -218,7 +315,10 @@ Json part_of_json(const Together& t, const ModelWords& words) {
   const config::TerminalWords say = words.terminal();
   const model::JointExplanation& x = t.explanation;
   const Quantity q = t.deviation();
-  Json json = {{"axis", t.part}};
+  Json json = {{"axis", t.axis}, {"part", t.part}};
+  if (!t.side.empty()) json["side"] = t.side;
+  if (const auto machines = each_once(t.machines); machines != std::vector<std::string>{""})
+    json["machines"] = machines;
   std::size_t readings = 0;
   Json campaigns = Json::array();
   for (std::size_t m = 0; m < x.campaigns.size(); ++m) {
@@ -226,6 +326,8 @@ Json part_of_json(const Together& t, const ModelWords& words) {
     const std::size_t taken = t.parts[m].part.table.size();
     readings += taken;
     Json c = {{"campaign", t.campaigns[m]}, {"date", t.dates[m]}, {"observations", taken}};
+    if (!t.adjustments[m].empty()) c["adjustment"] = t.adjustments[m];
+    if (!t.machines[m].empty()) c["machine"] = t.machines[m];
     storage::put(c, "rms", one.rms, q);
     storage::put(c, "rms_after", one.rms_after, q);
     if (one.floor) storage::put(c, "noise_floor", one.floor->s, q);
@@ -272,7 +374,8 @@ Json part_of_json(const Together& t, const ModelWords& words) {
 std::vector<model::Member> members_of(const Together& t) {
   std::vector<model::Member> members;
   for (std::size_t m = 0; m < t.parts.size(); ++m)
-    members.push_back({t.campaigns[m], &t.parts[m].part, t.parts[m].terms, t.parts[m].catalogue});
+    members.push_back(
+        {t.campaigns[m], t.machines[m], &t.parts[m].part, t.parts[m].terms, t.parts[m].catalogue});
   return members;
 }
 
@@ -297,6 +400,14 @@ bool add_named_causes(Together& t, std::uint64_t seed) {
 
 }  // namespace
 
+std::vector<std::string> each_once(const std::vector<std::string>& names) {
+  std::vector<std::string> out;
+  std::set<std::string> known;
+  for (const std::string& name : names)
+    if (known.insert(name).second) out.push_back(name);
+  return out;
+}
+
 Expected<std::vector<Together>> explain_together(
     const std::vector<const reading::ReadCampaign*>& campaigns, std::uint64_t seed,
     std::vector<std::string>& left_out) {
@@ -308,21 +419,28 @@ Expected<std::vector<Together>> explain_together(
   auto parts = common_parts(ordered, trouble, left_out);
   if (!trouble) return fail(trouble.error());
   if (parts.empty())
-    return fail("expected an axis that two campaigns or more measured with runs; found none");
+    return fail(
+        "expected an axis that two campaigns or more of one machine, or of one stated model of "
+        "machines, measured with runs; found none");
+  const bool one_kind = parts.begin()->first.machine == std::prev(parts.end())->first.machine;
   std::vector<Together> out;
-  for (auto& [name, list] : parts) {
-    Together t{name, {}, {}, {}, {}, {}};
-    for (auto& [read, part] : list) {
-      t.campaigns.push_back(read->manifest->campaign.id);
-      t.dates.push_back(read->manifest->campaign.date);
-      for (const std::string& effect : part.names())
+  for (auto& [key, list] : parts) {
+    Together t;
+    t.axis = key.axis, t.side = key.side;
+    for (Measured& one : list) {
+      const Campaign& campaign = one.read->manifest->campaign;
+      t.campaigns.push_back(campaign.id), t.dates.push_back(campaign.date);
+      t.adjustments.push_back(one.adjustment), t.machines.push_back(name_of(campaign.machine));
+      for (const std::string& effect : one.part.names())
         if (std::find(t.effects.begin(), t.effects.end(), effect) == t.effects.end())
           t.effects.push_back(effect);
-      if (part.part.table.angular != list.front().second.part.table.angular)
-        return fail("axis " + name + ": " + t.campaigns.front() + " and " + t.campaigns.back() +
+      if (one.part.part.table.angular != list.front().part.part.table.angular)
+        return fail("axis " + key.axis + ": " + t.campaigns.front() + " and " + t.campaigns.back() +
                     " give its deviation in different units (um and arcsec)");
-      t.parts.push_back(std::move(part));
+      t.parts.push_back(std::move(one.part));
     }
+    t.part = (one_kind ? "" : storage::listed(each_once(t.machines)) + " ") + key.axis +
+             (key.side.empty() ? "" : " " + key.side);
     NONIO_TRY(t.explanation, model::explain_together(members_of(t), seed));
     const bool explained =
         t.explanation.verdict == model::Verdict::Kind::nothing ||

@@ -11,10 +11,13 @@
 
 namespace nonio::modelling {
 
-/// One axis in several campaigns, by date, and the explanation of all together.
+/// One axis, and one side of a gantry, in several campaigns, by date, and the explanation of all
+/// together. An axis before and after an adjustment is two members of one campaign.
 struct Together {
-  std::string part;
-  std::vector<std::string> campaigns, dates;
+  std::string axis, side;
+  std::string part;  ///< axis and side; with the machine, if others are explained, too
+  /// For each member; "before", "after" or "" for `adjustments`; `machines` may be empty texts.
+  std::vector<std::string> campaigns, dates, adjustments, machines;
   std::vector<PartModel> parts;
   std::vector<std::string> effects;
   model::JointExplanation explanation;
@@ -23,9 +26,13 @@ struct Together {
   Quantity deviation() const { return parts.front().deviation(); }
 };
 
-/// Explains each axis that at least two campaigns measured. Other parts are added to `left_out` as
-/// "<campaign> <part>": other kinds, axes in one campaign only, parts with more than 20000
-/// readings, and parts that cannot show their model.
+/// Returns the names without repetitions, in their order.
+std::vector<std::string> each_once(const std::vector<std::string>& names);
+
+/// Explains each axis that at least two campaigns of one machine, or of machines of one stated
+/// model, measured. Other parts are added to `left_out` as "<campaign> <part>": other kinds, axes
+/// in one campaign only, parts with more than 20000 readings, and parts that cannot show their
+/// model.
 Expected<std::vector<Together>> explain_together(
     const std::vector<const reading::ReadCampaign*>& campaigns, std::uint64_t seed,
     std::vector<std::string>& left_out);

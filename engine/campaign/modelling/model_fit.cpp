@@ -65,7 +65,8 @@ class Findings {
   void verdict(const model::Explanation& e) {
     if (e.verdict.kind == Kind::nothing) return;
     Finding f = verdict_finding(e, part_);
-    f.id = "model." + std::string(to_text(e.verdict.kind));
+    const bool alias = f.id == "verdict.missing-or-alias";
+    f.id = "model." + std::string(to_text(e.verdict.kind)) + (alias ? "-or-alias" : "");
     out_.push_back(std::move(f));
   }
 

@@ -313,7 +313,8 @@ std::string ModelWords::prediction(const model::Prediction& p, const PartModel& 
   for (const double one : p.u) u += one / static_cast<double>(p.u.size());
   std::vector<Number> numbers = {
       {"rms", p.rms, q}, {"sd", p.sd, q}, {"U", 2.0 * u, q}, percent("inside", p.inside)};
-  std::string text = says("prediction", numbers, {{"part", part.part.name}});
+  std::string text =
+      says(p.rms < p.sd ? "prediction" : "prediction.worse", numbers, {{"part", part.part.name}});
   if (p.fails_from)
     text += " " + says("prediction.fails", {{"from", *p.fails_from, Quantity::time}}, {});
   if (p.outside)

@@ -38,6 +38,8 @@ class CourseFit {
       search();
     }
     refine();
+    // Without the lag, the noise of the channel is part of the scatter.
+    if (drop_lags()) noise_.scatter = most_likely_scatter(data_, noise_, chosen());
     return fitted();
   }
 
@@ -140,22 +142,61 @@ class CourseFit {
       if (g > now && (high == now || g < high)) high = g;
     }
     if (!(high > low)) return;
-    const auto with = [&](double value) {
-      std::vector<double> at = terms_[k].shape;
-      at[s] = value;
-      return at;
+    const auto f = [&](double v) {
+      return cost_of_chosen(k, columns_at(terms_[k], with(k, s, v)));
     };
-    const auto f = [&](double v) { return cost_of_chosen(k, columns_at(terms_[k], with(v))); };
     constexpr int steps = 12;
     const auto bracket = math::golden_section(f, low, high, steps);
     const double best = 0.5 * (bracket.low + bracket.high);
     if (!(f(best) < cost_of_chosen(k, chosen_[k].columns))) return;
-    CourseColumns before =
-        std::exchange(chosen_[k], {with(best), columns_at(terms_[k], with(best))});
+    replace(k, with(k, s, best));
+  }
+
+  std::vector<double> with(std::size_t k, std::size_t s, double value) const {
+    std::vector<double> at = terms_[k].shape;
+    at[s] = value;
+    return at;
+  }
+
+  /// Unless two effects of one channel become equal.
+  void replace(std::size_t k, const std::vector<double>& shape) {
+    CourseColumns before = std::exchange(chosen_[k], {shape, columns_at(terms_[k], shape)});
     if (const auto qr = decomposed(); qr.rank() < qr.cols())
-      chosen_[k] = std::move(before);  // two effects of one channel have become equal
+      chosen_[k] = std::move(before);
     else
       terms_[k].shape = chosen_[k].shape;
+  }
+
+  /// A lag smooths the noise of a channel, which generalized least squares rewards even without a
+  /// lag of the machine. A lag must also reduce the RMS of the readings.
+  bool drop_lags() {
+    bool any = false;
+    for (std::size_t k = 0; k < terms_.size(); ++k)
+      for (std::size_t s = 0; searched_[k] != 0 && s < terms_[k].shape.size(); ++s) {
+        const Effect::Shape& shape = terms_[k].effect->shapes[s];
+        const std::vector<double> grid = shape.grid(data_.part().table, terms_[k].axis);
+        if (!shape.continuous || grid.empty() || grid.front() != 0.0) continue;
+        const std::vector<double> none = with(k, s, 0.0);
+        if (terms_[k].shape == none ||
+            squares_with(k, columns_at(terms_[k], none)) > squares_with(k, chosen_[k].columns))
+          continue;
+        replace(k, none);
+        any = any || terms_[k].shape == none;
+      }
+    return any;
+  }
+
+  /// Sum of squares that ordinary least squares leaves, with `instead` as the columns of term k.
+  double squares_with(std::size_t k, const MatrixXd& instead) const {
+    MatrixXd all = MatrixXd::Ones(data_.size(), 1);
+    for (std::size_t t = 0; t < terms_.size(); ++t) {
+      const MatrixXd& more = t == k ? instead : chosen_[t].columns;
+      all.conservativeResize(Eigen::NoChange, all.cols() + more.cols());
+      all.rightCols(more.cols()) = more;
+    }
+    const MatrixXd& y = data_.displacements();
+    const Eigen::ColPivHouseholderQR<MatrixXd> qr(all);
+    return (y - all * qr.solve(y)).squaredNorm();
   }
 
   /// If the rank is below the number of columns, the terms cannot be separated.

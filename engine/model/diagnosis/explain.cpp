@@ -271,8 +271,7 @@ void describe(const Finding& finding, const std::vector<Term>& catalogue, Explan
   }
   out.significant_rms = rms_with_certain(finding, out);
   if (out.certain.size() == before) return;
-  std::stable_sort(out.candidates.begin(), out.candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  rank(out.candidates);
   out.descriptions = described(finding, certain_terms(out));
 }
 

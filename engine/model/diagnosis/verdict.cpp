@@ -31,6 +31,9 @@ constexpr double most_of_one_target = 0.3;
 constexpr double most_of_one_pass = 0.5;
 // Effects of the printed smallest size would otherwise be rejected: docs/dev/constants.md, M29.
 constexpr double least_against_zero = 30.0;
+// Largest share of the RMS that a named effect leaves as the first addition, so that the printed
+// RMS falls: docs/dev/constants.md, M51.
+constexpr double falls_to = 0.999;
 // Two effects with a correlation below minus this value cancel: docs/dev/constants.md, M10.
 constexpr double cancels_beyond = 0.95;
 
@@ -59,6 +62,8 @@ class Judge {
     for (const Place& place : f_.of_model.places)
       if (place.p < place_p) out_.fails.push_back(place);
     for (const std::string& name : passes_.of_any_order()) std::erase(out_.together, name);
+    std::stable_partition(out_.together.begin(), out_.together.end(),
+                          [&](const std::string& name) { return lowers(name); });
     const double least = least_serious(f_.of_best.floor);
     // If the search treated zeros of passes as noise, the tests of effects and places do so, too.
     const bool searched = f_.noise.zero == Noise::Zero::of_pass;
@@ -92,6 +97,7 @@ class Judge {
     if (!out_.together.empty() && !walks && !of_passes && !of_one_pass(out_.together.front()) &&
         !cancels(out_.together.front()) && !with_cancelling(out_.together.front()) &&
         !in_doubt(out_.together.front(), left, unexplained_share) &&
+        lowers(out_.together.front()) &&
         std::none_of(out_.together.begin(), out_.together.end(),
                      [&](const std::string& name) { return is_single(name); })) {
       v.kind = Verdict::Kind::missing;
@@ -243,6 +249,15 @@ class Judge {
     return false;
   }
 
+  const Candidate& candidate(const std::string& name) const {
+    return *std::find_if(out_.candidates.begin(), out_.candidates.end(),
+                         [&](const Candidate& c) { return c.term.name() == name; });
+  }
+
+  bool lowers(const std::string& name) const {
+    return candidate(name).rms < falls_to * f_.of_model.fit.rms;
+  }
+
   const std::vector<double>* part_of(const std::string& name) const {
     const Fit& fit = f_.of_best.fit;
     for (std::size_t t = 0; t < fit.terms.size(); ++t)
@@ -352,9 +367,8 @@ class Judge {
   /// at their places, which neither one target or pass nor random zeros can explain.
   void list_certain(const std::vector<Place>& serious, bool walks) {
     for (const std::string& name : out_.together) {
-      const auto c = std::find_if(out_.candidates.begin(), out_.candidates.end(),
-                                  [&](const Candidate& k) { return k.term.name() == name; });
-      if (c->within < certain_evidence || !c->aliases.empty() || cancels(name)) continue;
+      const Candidate& c = candidate(name);
+      if (c.within < certain_evidence || !c.aliases.empty() || cancels(name)) continue;
       if (in_doubt(name, serious, certain_share)) continue;
       if (of_one_target(name) || of_one_pass(name) || (walks && !walk_with(name)) ||
           (passes_.scatter() && f_.noise.zero == Noise::Zero::steady && !passes_.shows(name)))

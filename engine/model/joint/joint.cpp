@@ -164,7 +164,9 @@ class JointSearch {
   void look_for_date(std::size_t i) {
     const std::size_t n = r_.members.size();
     const Choice own = choices_[i];
-    if (n < 3) return;
+    if (n < 3 || std::any_of(of_.begin(), of_.end(),
+                             [&](const Member& m) { return m.machine != of_.front().machine; }))
+      return;
     double least = criterion(choices_);
     const auto offer = [&](std::size_t after) {
       Choices other = choices_;

@@ -267,9 +267,16 @@ std::vector<Candidate> candidates_of(const Finding& finding, const Ground& groun
     Candidate c = candidate(e);
     if (c.visible || !c.term.library) out.push_back(std::move(c));
   }
-  std::stable_sort(out.begin(), out.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  rank(out);
   return out;
+}
+
+void rank(std::vector<Candidate>& candidates) {
+  const auto before = [](const Candidate& a, const Candidate& b) {
+    const bool a_shows = a.alone > 0.0 && a.score > 0.0, b_shows = b.alone > 0.0 && b.score > 0.0;
+    return a_shows != b_shows ? a_shows : a.score > b.score;
+  };
+  std::stable_sort(candidates.begin(), candidates.end(), before);
 }
 
 }  // namespace nonio::model

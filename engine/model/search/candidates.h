@@ -11,4 +11,8 @@ namespace nonio::model {
 /// they are or could replace a member of the best explanation. `ground`: weights and noise.
 std::vector<Candidate> candidates_of(const Finding& finding, const Ground& ground);
 
+/// Candidates with evidence alone come first: the others show only next to further effects, and do
+/// not reduce the RMS as the first addition to the model.
+void rank(std::vector<Candidate>& candidates);
+
 }  // namespace nonio::model

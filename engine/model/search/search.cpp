@@ -95,6 +95,33 @@ bool extend(const Workbench& bench, State& best) {
   return true;
 }
 
+bool is_curve(const Workbench& bench, std::size_t effect) {
+  return bench.instances()[effect].term.effect->curve;
+}
+
+/// Curves that partly cancel each other can imitate several simple effects. Grows the set again
+/// without its curves, and adds a curve only if no other effect improves the criterion.
+State without_curves(const Workbench& bench, const State& start, const State& best, int most) {
+  const auto fixed = effects_of(bench, start);
+  State state = best;
+  for (const std::size_t e : effects_of(bench, best))
+    if (is_curve(bench, e) && !fixed.contains(e)) state = bench.without(state, e);
+  for (int added = 0; added < most; ++added) {
+    const Workbench::Gains gains = bench.gains(state);
+    State simple = state, curved = state;
+    for (std::size_t e = 0; e < bench.instances().size(); ++e) {
+      if (bench.holds(state, e)) continue;
+      State& known = is_curve(bench, e) ? curved : simple;
+      State more = bench.with(state, gains, e);
+      if (more.criterion < known.criterion - 1e-9) known = std::move(more);
+    }
+    const State& next = simple.blocks.size() > state.blocks.size() ? simple : curved;
+    if (next.blocks.size() == state.blocks.size()) break;
+    state = bench.settled(next);
+  }
+  return state;
+}
+
 }  // namespace
 
 State best_explanation(const Workbench& bench, const State& start) {
@@ -114,13 +141,21 @@ State best_explanation(const Workbench& bench, const State& start) {
       ++without_gain;
     }
   }
-  const auto room = [&] {
-    return bench.in_space() && best.blocks.size() < start.blocks.size() + most_in_space;
+  const auto room = [&](const State& state) {
+    return bench.in_space() && state.blocks.size() < start.blocks.size() + most_in_space;
   };
-  for (int step = 0; step < 20 && (improve(bench, start, best) || (room() && extend(bench, best)));
-       ++step) {
-  }
-  return best;
+  const auto finish = [&](State& state) {
+    for (int step = 0;
+         step < 20 && (improve(bench, start, state) || (room(state) && extend(bench, state)));
+         ++step) {
+    }
+  };
+  finish(best);
+  if (!bench.in_space()) return best;
+  State simple = without_curves(bench, start, best, most);
+  if (simple.blocks == best.blocks) return best;
+  finish(simple);
+  return simple.criterion < best.criterion ? simple : best;
 }
 
 double p_of(const Workbench& bench, const State& state, std::size_t effect) {

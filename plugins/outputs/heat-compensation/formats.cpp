@@ -27,8 +27,16 @@ std::vector<std::string> heading(const OutputInput& in, const Law& law) {
       "model: " + effects,
       std::string("RMS of the ") + (law.of_runs ? "deviations" : "displacement") +
           " in this test: " + um(law.before) + " um, with the compensation " + um(law.after) +
-          " um",
-      "Zero is the state in which the compensation begins: begin it where the machine is zeroed."};
+          " um"};
+  const auto fixed = [](const Term& term) { return term.zero.has_value(); };
+  for (const Term& term : law.terms)
+    if (term.zero)
+      out.push_back("Zero of " + term.channels.front() + " is " + fixed_text(*term.zero, 3) +
+                    " degC, the mean of this test, as for tables of the same model.");
+  if (!std::all_of(law.terms.begin(), law.terms.end(), fixed))
+    out.emplace_back(
+        "Zero is the state in which the compensation begins: begin it where the machine is "
+        "zeroed.");
   for (const std::string& effect : law.left_out)
     out.push_back("not compensated, it follows no recorded channel: " + effect);
   return out;
@@ -234,7 +242,8 @@ std::string block(const OutputInput& in, const Law& law, const std::string& name
     for (std::size_t k = 0; k < term.channels.size(); ++k) {
       const std::string id = std::to_string(++n), x = input_of(term, k), y = "y" + id, r = "r" + id;
       states += "  " + y + " : " + d.number + ";\n  " + r + " : " + d.number + ";\n";
-      begin += "  " + y + " := " + x + ";\n  " + r + " := " + y + ";\n";
+      begin += "  " + y + " := " + x + ";\n  " + r +
+               " := " + (term.zero ? fixed_text(*term.zero, 3) : y) + ";\n";
       if (term.tau > 0.0)
         step += "  " + y + " := " + y + " + (" + x + " - " + y + ") * (1.0 - EXP(-elapsed / " +
                 fixed_text(term.tau, 3) + "));\n";

@@ -99,6 +99,10 @@ std::optional<Term> term_of(const ModelFit& fit, const std::string& effect,
     term.channels = {of};
   } else if (kind == "temperature") {
     term.channels = {material};
+    double sum = 0.0, n = 0.0;
+    for (const double t : fit.temperature)
+      if (std::isfinite(t)) sum += t, ++n;
+    if (n > 0.0) term.zero = sum / n;
   } else if (kind == "heat-difference") {
     term.kind = Term::Kind::difference;
     term.channels = {of.substr(0, of.find('-')), of.substr(std::min(of.size(), of.find('-') + 1))};
@@ -131,15 +135,15 @@ double rms_about_mean(const std::vector<double>& x) {
   return x.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(x.size()));
 }
 
-/// What a term of runs follows at each reading: change of its channel since the first sample, with
-/// its lag.
+/// What a term of runs follows at each reading: change of its channel since the first sample, or
+/// from `zero`, with its lag.
 std::vector<double> followed(const OutputInput& in, const ModelFit& fit, const Term& term) {
   std::vector<double> out(fit.size(), 0.0);
   std::optional<double> first;
   for (std::size_t m = 0; m < fit.measurements.size(); ++m) {
     const auto channel = channel_of(*readings_of(in, fit.measurements[m]), term.channels.front());
     if (!channel || channel->value.empty()) continue;
-    if (!first) first = channel->value.front();
+    if (!first) first = term.zero.value_or(channel->value.front());
     std::vector<double> time;
     for (std::size_t i = 0; i < fit.size(); ++i)
       if (fit.measurement[i] == m)
@@ -151,7 +155,7 @@ std::vector<double> followed(const OutputInput& in, const ModelFit& fit, const T
   return out;
 }
 
-/// Adds what only runs of the axis show: the compensation begins with the first sample.
+/// Adds what only runs of the axis show.
 void put_runs(Law& law, const OutputInput& in, const ModelFit& fit) {
   const auto [low, high] = std::minmax_element(fit.target.begin(), fit.target.end());
   law.reference = 0.5 * (*low + *high);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace nonio::heat_compensation {
 ///
 ///     gain L(T, tau)      gain (L(T1, tau) - L(T2, tau))      gain L(|n/largest|^power, tau)
 ///
-/// each relative to its value at the start of compensation; L: first-order lag (sdk/channels.h).
+/// each relative to its value at the start of compensation or to `zero`; L: first-order lag (sdk/channels.h).
 /// In runs of the axis a temperature also has a growth: (gain + growth (P - reference)) L(T, tau).
 struct Term {
   enum class Kind { temperature, difference, source };
@@ -24,6 +25,8 @@ struct Term {
   double tau = 0.0;                   ///< s
   int power = 1;
   double largest = 0.0;  ///< largest value of the channel, in its unit
+  /// For `temperature`: mean temperature of this test, degC, which is also that of the tables.
+  std::optional<double> zero{};
 };
 
 struct Law {

@@ -18,6 +18,13 @@ void add(OutputResult& result, const OutputInput& in, const Format& format, cons
     result.findings.push_back(refusal(std::move(id), format, law));
     return;
   }
+  if (!(law.after < law.before)) {
+    Finding f = refusal("heat-compensation.no-gain", format, law);
+    f.evidence = {{"before", law.before, Quantity::deviation},
+                  {"after", law.after, Quantity::deviation}};
+    result.findings.push_back(std::move(f));
+    return;
+  }
   for (Artifact& file : format.files(in, law)) result.artifacts.push_back(std::move(file));
   result.predictions.push_back(
       {law.measurement, law.displacement + " RMS", law.before, law.after, Quantity::deviation});

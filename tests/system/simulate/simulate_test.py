@@ -325,6 +325,18 @@ class Circles(unittest.TestCase):
         self.assertLess(wave["Y"], values["cyclic_X"]["U"])
         self.assertEqual(set(followed), {("Y", "lateral"), ("Y", "bow:EXY")})
 
+    def test_explain_names_the_causes_and_no_curves_that_imitate_them(self):
+        """Curves of straightness and yaw that cancel each other imitate squareness and scale."""
+        self.made(self.text)
+        done = nonio("model", "explain", self.root / "site" / "bar", "--auto", "--json", "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = json.loads(done.stdout)
+        named = {step["effect"] for step in found["steps"]}
+        scale = named & {"scale:X", "scale:Y"}  # a circle shows only their difference
+        self.assertEqual(len(scale), 1, named)
+        self.assertEqual(named - scale, {"backlash:X", "backlash:Y", "servo-mismatch:XY", "squareness:XY", "periodic:X"})
+        self.assertEqual(found["verdict"]["kind"], "nothing")
+
     def test_one_direction_and_the_lines_of_the_file(self):
         servo = '[[effect]]\nname = "servo-mismatch:XY"\nw_um = 6.0\n'
         one_way = self.text.replace(servo, "").replace("runs = 2", 'runs = 1\norder = "unidirectional"\ndirection = "-"')

@@ -2,6 +2,7 @@
 """nonio compare: figures, places, suspects and their exclusion."""
 import csv
 import pathlib
+import re
 import shutil
 import statistics
 import unittest
@@ -155,6 +156,30 @@ class Compare(VerbTest):
                     self.assertLess(told["rms_um"], told["rms_before_um"])
                     if set(told["takes"]) == set(part["model"]["effects"]):
                         self.assertAlmostEqual(told["rms_um"], part["rms_um"], delta=0.002 * part["rms_um"])
+
+    def test_the_error_before_a_table_does_not_depend_on_the_model(self):
+        """A part is placed anew in the readings that a table would leave: its placement is no error of the machine."""
+        folder = self.site / "50-turned-plates"
+        shutil.copytree(SITE / "50-turned-plates", folder)
+        before, left = [], []
+        for effect in (None, "yaw:X", "straightness:EYX"):
+            if effect:
+                self.nonio("model", "add", folder, effect)
+            part, = self.json_of("compare", folder)["parts"]
+            before.append(part["after_table"]["rms_before_um"])
+            left.append(part["after_table"]["rms_um"])
+            if effect:
+                self.nonio("model", "drop", folder, effect)
+        self.assertAlmostEqual(before[1], before[0], delta=0.001 * before[0])
+        self.assertAlmostEqual(before[2], before[0], delta=0.001 * before[0])
+        self.assertLess(left[0], before[0])
+
+    def test_no_place_of_a_large_error_is_not_the_absence_of_an_error(self):
+        folder = SITE / "49-spindle-sensors"
+        part = next(p for p in self.json_of("compare", folder)["parts"] if not p["fails"] and p["rms_um"] > 10 * p["noise_floor_um"])
+        printed = self.nonio("model", "compare", folder).stdout
+        times = [float(t) for t in re.findall(r"where it fails +no single place: the RMS is ([\d.]+) times the noise floor", printed)]
+        self.assertTrue(any(abs(t / (part["rms_um"] / part["noise_floor_um"]) - 1) < 0.005 for t in times), times)
 
     def test_without_anything_for_a_table_it_says_nothing_of_one(self):
         self.campaign(manifest(["zero-drift:X"]), x=readings())

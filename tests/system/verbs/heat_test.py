@@ -98,6 +98,21 @@ class Heat(VerbTest):
             kept = self.json("compare", unseen, "--model-of", seen, "--zero", "kept")
             self.assertGreaterEqual(kept["parts"][0]["rms_um"], part["rms_um"] - 1e-9)
 
+    def test_noise_of_a_thermometer_is_no_lag(self):
+        """A lag smooths the noise of its channel. Without a lag of the machine the readings fit best without one."""
+        seed = random.randrange(10**6)
+        rng = random.Random(seed)
+        column = [20 + 1.5 * math.sin(i / 170) + 0.8 * math.sin(i / 61) + 2.0 * i / ROWS for i in range(ROWS)]
+        rows = [[i * STEP, 5.2 * t + rng.gauss(0, 0.05), t + rng.gauss(0, 0.004)] for i, t in enumerate(column)]
+        for lag in (0.0, 600.0):
+            late = follow(column, lag) if lag else column
+            text = "time_s,y_um,column_c\n" + "".join(f"{a:g},{b + 5.2 * (l - c):.4f},{t:.4f}\n"
+                                                      for (a, b, t), l, c in zip(rows, late, column))
+            folder = self.write(f"c{lag:g}", MANIFEST.format(id="c", more='[model]\neffects = ["heat:column"]\n'), **{"warm.csv": text})
+            part, = self.json("compare", folder)["parts"]
+            tau, = (p["value"] for p in part["model"]["parameters"] if p["name"] == "tau")
+            self.assertLess(abs(tau - lag), 0.05 * lag + 25, f"seed {seed}")
+
     def test_displacements_that_move_together_share_their_effects_and_others_do_not(self):
         rows = record(5, [3.0, -1.5])
         rng = random.Random(6)

@@ -122,7 +122,10 @@ class Part(unittest.TestCase):
         self.assertGreater(part["sd_um"], 2.0)
         self.assertGreater(part["inside_U"], 0.9)
         text = subprocess.run([NONIO, "model", "compare", other, "--model-of", seen], capture_output=True, text=True, check=True).stdout
-        self.assertIn("lie within the mean uncertainty", text)
+        self.assertIn("are reduced to", text)
+        none = self.campaign("none", "none")
+        text = subprocess.run([NONIO, "model", "compare", none, "--model-of", seen], capture_output=True, text=True, check=True).stdout
+        self.assertIn("the model does not help with readings that it has not seen", text)
 
     def test_mistakes(self):
         folder = self.campaign("a", "none")

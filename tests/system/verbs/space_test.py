@@ -26,6 +26,14 @@ class Space(VerbTest):
         done = self.json_of(verb, self.folder, *args, **keys)
         return done["parts"][0] if "parts" in done else done
 
+    def results(self, folder):
+        """What the analysis model-fit found."""
+        out = folder.parent / "out"
+        shutil.rmtree(out, ignore_errors=True)
+        self.nonio("run", folder.parent, "--out", out, expect=0)
+        path, = out.glob("*/results.json")
+        return next(a for a in json.loads(path.read_text())["analyses"] if a["plugin"] == "model-fit")
+
     def test_the_diagonals_show_more_than_squareness(self):
         self.sample("17-straight-or-square")
         compared = self.part("compare")
@@ -90,11 +98,27 @@ class Space(VerbTest):
         self.assertEqual(said["verdict"]["kind"], "missing")
         first = said["candidates"][0]
         self.assertTrue({"yaw:X", "straightness:EYX"} <= {first["effect"], *first["aliases"]}, first)
+        answers = self.results(self.folder)
+        finding, = (f for f in answers["findings"] if f["id"] == "model.missing-or-alias")
+        self.assertEqual({finding["evidence"]["effect"], *finding["evidence"]["aliases"].split(", ")}, {first["effect"], *first["aliases"]})
         self.assertTrue(said["plans"])
         best = said["plans"][0]
         self.assertGreaterEqual(best["power"], 4.0)
         self.assertIn(best["plan"], {"straightness-line", "other-line"})
         self.assertTrue(best["says"])
+
+    def test_what_shows_only_next_to_others_is_not_named_first(self):
+        """The wave of the screw in circles: added alone it leaves the RMS as it is."""
+        for name in ("40-circles", "41-circle-one-way"):
+            with self.subTest(sample=name):
+                self.sample(name)
+                said = self.part("explain")
+                before, first = said["model"]["rms_um"], said["candidates"][0]
+                self.assertLess(first["rms_um"], 0.8 * before, first)
+                wave, = (c for c in said["candidates"] if c["effect"] == "periodic:X")
+                self.assertGreater(wave["rms_um"], 0.99 * before)
+                if said["verdict"]["kind"] == "missing":
+                    self.assertEqual(said["verdict"]["effect"], first["effect"])
 
     def test_states_of_the_machine_are_not_mixed(self):
         self.sample("13-gantry-diagonals")
@@ -137,12 +161,9 @@ class Space(VerbTest):
 
     def test_the_run_evaluates_the_model_in_space(self):
         self.sample("17-straight-or-square")
-        out = self.folder.parent / "out"
-        shutil.rmtree(out, ignore_errors=True)
-        self.nonio("run", self.folder.parent, "--out", out, expect=0)
-        results = json.loads((out / "17-straight-or-square" / "results.json").read_text())
-        fit = next(a for a in results["analyses"] if a["plugin"] == "model-fit")
+        fit = self.results(self.folder)
         self.assertIn("model.missing", [f["id"] for f in fit["findings"]])
+        out = self.folder.parent / "out"
         self.assertTrue((out / "17-straight-or-square").glob("*.pdf"))
 
 

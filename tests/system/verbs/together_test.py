@@ -126,7 +126,64 @@ class Together(unittest.TestCase):
         of = self.answer(self.site, "--machine", "M-2")
         self.assertEqual([c["campaign"] for c in of["campaigns"]], ["c0000", "c0001", "c0002"])
         of = self.answer(self.site, "--since", "2020-03-01", "--until", "2020-05-31")
-        self.assertEqual([c["campaign"] for c in of["campaigns"]], ["c0002", "c0003", "c0004"])
+        self.assertEqual([c["campaign"] for c in of["campaigns"]], ["c0003", "c0004"])
+        self.assertEqual(of["left_out"], ["c0002 X (the only campaign of machine M-2)"])
+
+    def replace(self, campaigns, old, new):
+        for manifest in campaigns:
+            text = manifest.read_text()
+            self.assertIn(old, text)
+            manifest.write_text(text.replace(old, new))
+
+    def test_machines_are_joined_only_if_their_model_is_the_same(self):
+        fleet.fleet(self.site, "shared", "backlash:X", 1.0, 8, 0.0, self.rng)
+        manifests = sorted(self.site.glob("*/campaign.toml"))
+        for file in self.site.glob("c000[4-7]/x.csv"):  # another machine, with a larger reversal error
+            rows = [line.split(",") for line in file.read_text().splitlines()]
+            for row in rows[1:]:
+                row[3] = f"{float(row[3]) + (-40 if row[1] == '+' else 40):.3f}"
+            file.write_text("\n".join(map(",".join, rows)) + "\n")
+        self.replace(manifests[4:], '"M-1"', '"M-2"')
+        each = {part["part"]: part for part in self.answer()["parts"]}
+        self.assertEqual(sorted(each), ["M-1 X", "M-2 X"])
+        for part, first in (("M-1 X", 0), ("M-2 X", 4)):
+            effect, = (e for e in each[part]["effects"] if e["effect"] == "backlash:X")
+            self.assertEqual([c["campaign"] for c in each[part]["campaigns"]], [f"c{n:04d}" for n in range(first, first + 4)])
+            self.assertEqual(effect["per_campaign"], "shared")
+        alone = explain(self.site / "c0000", self.site / "c0004", status=1)
+        self.assertIn("of one machine, or of one stated model of machines", alone.stderr)
+        self.replace(manifests, 'asset = ', 'model = "VM 1"\nasset = ')
+        together = self.answer()
+        self.assertEqual((together["part"], together["machines"]), ("X", ["M-1", "M-2"]))
+        effect, = (e for e in together["effects"] if e["effect"] == "backlash:X")
+        self.assertEqual(effect["per_campaign"], "own")
+        self.assertRegex(effect["says"], r"from .* in c000[4-7] \(M-2, .* to .* in c000[0-3] \(M-1, ")
+        self.assertIn("2 machines: M-1, M-2", explain(self.site).stdout)
+
+    def test_sides_are_separate_and_adjustments_are_two_measurements(self):
+        fleet.fleet(self.site, "shared", "backlash:X", 1.0, 6, 0.0, self.rng)
+        manifests = sorted(self.site.glob("*/campaign.toml"))
+        for n, manifest in enumerate(manifests[1:], 1):  # c0001 gets the readings of c0000 as its first file
+            if n == 1:
+                shutil.copy(manifests[0].parent / "x.csv", manifest.parent / "found.csv")
+                text = manifest.read_text()
+                start = text.index("[[measurement]]")
+                second = text[start:].replace('"X"', '"X left"', 1) + 'adjustment = "after"\n'
+                first = text[start:].replace("x.csv", "found.csv") + 'adjustment = "before"\n'
+                manifest.write_text(text[:start] + first + second + '[model]\neffects = ["scale:X@adjustment"]\n')
+        answer = self.answer()
+        self.assertEqual([(c["campaign"], c.get("adjustment")) for c in answer["campaigns"]],
+                         [("c0000", None), ("c0001", "before"), ("c0001", "after")] + [(f"c000{n}", None) for n in range(2, 6)])
+        self.assertEqual([c["observations"] for c in answer["campaigns"]], [210] * 7)
+        self.assertIn("X in 6 campaigns", explain(self.site).stdout)
+        self.replace(manifests, 'kind = "linear"', 'kind = "linear"\nslave = "X2"')
+        self.replace(manifests[1:2], 'adjustment = "before"', 'side = "master"')
+        self.replace(manifests[1:2], 'adjustment = "after"', 'side = "slave"')
+        self.replace(manifests[1:2], '@adjustment', '@side')
+        self.replace(manifests[2:4], 'axis = "X"\n', 'axis = "X"\nside = "master"\n')
+        self.replace(manifests[4:], 'axis = "X"\n', 'axis = "X"\nside = "slave"\n')
+        each = {part["part"]: [c["campaign"] for c in part["campaigns"]] for part in self.answer()["parts"]}
+        self.assertEqual(each, {"X master": ["c0001", "c0002", "c0003"], "X slave": ["c0001", "c0004", "c0005"]})
 
     def test_screens_and_refusals(self):
         fleet.fleet(self.site, "shared", "backlash:X", 1.0, 3, 0.0, self.rng)

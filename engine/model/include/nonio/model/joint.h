@@ -14,7 +14,7 @@ namespace nonio::model {
 
 /// The part of one campaign; members are sorted by date.
 struct Member {
-  std::string campaign;
+  std::string campaign, machine;
   const Part* part = nullptr;
   std::vector<Term> model;      ///< fitted with separate values for this campaign
   std::vector<Term> catalogue;  ///< terms that are searched
@@ -22,7 +22,7 @@ struct Member {
 
 enum class Holds {
   shared,   ///< the same value in all campaigns
-  changed,  ///< one value up to some campaign, another value after it
+  changed,  ///< one value up to some campaign, another value after it; only of one machine
   own,      ///< a separate value in each campaign
 };
 
