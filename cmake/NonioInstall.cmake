@@ -76,7 +76,7 @@ foreach(folder IN LISTS NONIO_PLUGIN_FOLDERS)
 endforeach()
 # Named one by one, so that a key or a register made here for a trial is not installed.
 set(samples ${PROJECT_SOURCE_DIR}/samples)
-install(DIRECTORY ${samples}/site ${samples}/laboratory ${samples}/simulate ${samples}/tutorial ${samples}/notebooks DESTINATION ${papers}/examples)
+install(DIRECTORY ${samples}/site ${samples}/laboratory ${samples}/simulate ${samples}/tutorial ${samples}/notebooks ${samples}/plugins DESTINATION ${papers}/examples)
 install(DIRECTORY ${samples}/certificates/adjusted DESTINATION ${papers}/examples/certificates)
 install(FILES ${samples}/certificates/site.toml DESTINATION ${papers}/examples/certificates)
 install(PROGRAMS ${samples}/certificates/make-key.sh DESTINATION ${papers}/examples/certificates)

@@ -56,7 +56,6 @@ Register::Register(std::unique_ptr<storage::Database> database, const RegisterPl
       place_(std::make_unique<RegisterPlace>(place)),
       pattern_(std::move(pattern)) {}
 Register::Register(Register&&) noexcept = default;
-Register& Register::operator=(Register&&) noexcept = default;
 Register::~Register() = default;
 
 Expected<Register> Register::open(const fs::path& site, const config::Numbering& numbering,

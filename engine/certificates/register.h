@@ -96,7 +96,6 @@ class Register {
                                                     const config::Numbering& numbering,
                                                     double patience = 60.0);
   Register(Register&&) noexcept;
-  Register& operator=(Register&&) noexcept;
   ~Register();
 
   Expected<std::vector<RegisterEntry>> all();

@@ -165,18 +165,6 @@ void evaluate_positioning(const Case& c, const AxisTest& test, Outcome& out) {
     }
 }
 
-// A figure of a sheet by another number of standard deviations: R+, R- and nothing else.
-void evaluate_converted(const Case& c, Outcome& out) {
-  const auto number = [&](const char* name) {
-    const auto it = c.options.find(name);
-    return it == c.options.end() ? NAN : Expression::value(it->second).value_or(NAN);
-  };
-  const auto name = c.options.find("name");
-  if (name == c.options.end()) return;
-  if (const auto v = converted(name->second, number("value"), number("from"), number("to")))
-    out.values["converted"] = *v;
-}
-
 const char* kind_name(Reversal::Kind kind) {
   switch (kind) {
     case Reversal::Kind::unknown:
@@ -259,7 +247,6 @@ Outcome evaluate(const Case& c) {
   if (c.analysis == "iso230-2") evaluate_iso(c, test, out);
   if (c.analysis == "vdi-dgq-3441") evaluate_vdi(c, test, out);
   if (c.analysis == "positioning") evaluate_positioning(c, test, out);
-  if (c.analysis == "converted") evaluate_converted(c, out);
   if (c.analysis == "reversal") evaluate_reversal(c, test, out);
   if (c.analysis == "findings")
     for (auto& f : axis_findings(test, c.observations, &c.campaign.machine.axes[0]))

@@ -10,7 +10,7 @@ trap 'rm -rf "$work"' EXIT
 "$cmake" --build "$work/plugin"
 # Docs, the papers of plugins, and a sample that runs.
 papers=$work/prefix/share/doc/nonio
-for file in howto-plugin.md howto-instruments.md pictures/long-tables.svg plugins/readers/long-table/README.md examples/README.md; do
+for file in howto-plugin.md howto-instruments.md pictures/long-tables.svg plugins/readers/long-table/README.md examples/README.md examples/plugins/CMakeLists.txt; do
   [ -s "$papers/$file" ] || { echo "not installed: $file"; exit 1; }
 done
 [ -z "$(find "$papers" -empty -o -name '*.p12' -o -name '*.key')" ] || { echo "installed, and should not be: $(find "$papers" -empty)"; exit 1; }

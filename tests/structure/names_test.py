@@ -13,18 +13,14 @@ WORDS = {"backlash", "certificate", "circles", "csv", "dcc", "descriptions", "ec
 SAMPLES = ("engine/plugin_check/plugin_check_",)  # a sample for each kind of measurement
 SIMULATED = SAMPLES + ("engine/simulation/",)  # the kinds that are simulated without a method
 KNOWN = {
-    "circle": SIMULATED + ("engine/laboratory/assessment/lines.cpp",),  # words of the worklist
-    "pitch-curve": ("engine/laboratory/assessment/lines.cpp",),
-    "rtcp": SIMULATED,
-    "step-diagonal": SIMULATED + ("engine/campaign/reading/plausibility/plausibility.cpp",),  # its lines are sized one by one
+    "circle": SIMULATED, "rtcp": SIMULATED, "step-diagonal": SIMULATED,
     "diagonals": SAMPLES, "lengths": SAMPLES, "spindle": SAMPLES, "thermal": SAMPLES,
-    "growth-drift": ("engine/model/diagnosis/verdict.cpp",),  # two effects that are one growth from another place
-    "zero-drift": ("engine/model/diagnosis/verdict.cpp",),
     "siemens-840d": ("engine/app/new_text.cpp",),  # the example in a new file
     "iso230-2": ("engine/campaign/planning/plan.cpp",),  # the standard, as the reason for a plan
 }
 
 names = {p.name for p in (ROOT / "plugins").glob("*/*") if p.is_dir() and p.name != "common"} - WORDS
+names |= {p.stem for p in (ROOT / "samples/plugins").glob("*.cpp")}
 literal = re.compile(r'"((?:[^"\\]|\\.)*)"')
 
 

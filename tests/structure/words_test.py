@@ -142,7 +142,7 @@ class Words(unittest.TestCase):
 
     def test_pages(self):
         pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("**/*.md")),
-                 ROOT / "samples" / "README.md", *sorted((ROOT / "plugins").rglob("README.md"))]
+                 *sorted((ROOT / "samples").rglob("README.md")), *sorted((ROOT / "plugins").rglob("README.md"))]
         found = [f"{page.relative_to(ROOT)}: {phrase!r}; write {write}" for page in pages
                  for line in prose(page.read_text(encoding="utf-8")).split("\n") for phrase, write in wrong(line)]
         self.assertEqual("", "\n".join(found))

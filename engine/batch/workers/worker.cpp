@@ -45,12 +45,6 @@ Expected<void> Worker::start_with(const Task& task, double memory_MB) {
   return {};
 }
 
-Expected<Worker> Worker::start(const Task& task, double memory_MB) {
-  Worker worker;
-  if (auto started = worker.start_with(task, memory_MB); !started) return fail(started.error());
-  return worker;
-}
-
 Expected<Worker> Worker::start(PluginHost& plugins, const std::function<Task(int)>& task,
                                double memory_MB) {
   Worker worker;

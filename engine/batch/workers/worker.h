@@ -45,7 +45,6 @@ class Worker {
   using Task =
       std::function<Outcome(std::size_t campaign, bool first, process::SharedStatus& stage)>;
 
-  static Expected<Worker> start(const Task& task, double memory_MB);
   /// `task` receives the stream to the process with the plugins.
   static Expected<Worker> start(PluginHost& plugins, const std::function<Task(int stream)>& task,
                                 double memory_MB);

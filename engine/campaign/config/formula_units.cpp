@@ -3,12 +3,6 @@
 
 namespace nonio::config {
 
-std::optional<Quantity> quantity_of(std::string_view unit) {
-  for (const FormulaUnit& u : formula_units)
-    if (u.symbol() == unit) return u.quantity;
-  return std::nullopt;
-}
-
 std::string known_units() {
   std::string text;
   for (const FormulaUnit& u : formula_units)

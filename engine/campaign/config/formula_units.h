@@ -40,8 +40,6 @@ inline constexpr std::array<FormulaUnit, 18> formula_units{
      {Quantity::temperature_difference, "temperature difference"},
      {Quantity::number, "none: a number"}}};
 
-/// Returns nullopt if no quantity of `formula_units` has this unit.
-std::optional<Quantity> quantity_of(std::string_view unit);
 /// Returns "um (deviation), mm (position or period), ..." for messages.
 std::string known_units();
 

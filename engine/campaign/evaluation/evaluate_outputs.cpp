@@ -12,7 +12,6 @@
 #include "nonio/sdk/history.h"
 #include "platform/process/guarded.h"
 #include "platform/storage/files.h"
-#include "platform/storage/nearest.h"
 
 namespace nonio::evaluation {
 
@@ -23,9 +22,9 @@ void check_control(const Work& work) {
   std::vector<std::string> tables;
   for (const Controller& c : work.context.plugins->controllers()) tables.push_back(c.info.name);
   if (control.empty() || std::find(tables.begin(), tables.end(), control) != tables.end()) return;
-  work.report(work.error_at("machine.control", "no controller writes tables for \"" + control +
-                                                   "\"" + storage::suggestion(control, tables) +
-                                                   "; there are " + comma_list(tables)));
+  work.report(work.error_at(
+      "machine.control",
+      work.context.plugins->absence("controller", control) + "; there are " + comma_list(tables)));
 }
 
 /// Whether the record of the machine states this control, or states none. Reports a difference only

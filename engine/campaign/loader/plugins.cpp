@@ -315,6 +315,17 @@ bool may_contain(const fs::path& file, std::string_view kind, std::string_view n
          stem.find(name) != std::string::npos;
 }
 
+/// Sources that are delivered, but not built.
+constexpr std::string_view samples = " " NONIO_SAMPLE_PLUGINS " ";
+
+/// If `name` is a sample plugin, returns how to get it, otherwise `suggestion`.
+std::string sample_or(std::string_view name, std::string suggestion) {
+  if (samples.find(" " + std::string(name) + " ") == samples.npos) return suggestion;
+  return "; it is a sample plugin: build " NONIO_SAMPLES_SUBDIR
+         " with CMake (its README.md), then pass the build folder with --plugin-path or "
+         "NONIO_PLUGIN_PATH";
+}
+
 }  // namespace
 
 std::vector<Option> Plugins::options_of_namesakes(const Info& plugin) const {
@@ -338,7 +349,7 @@ std::string Plugins::absence(std::string_view kind, std::string_view name) const
     for (const auto& [known, where] : names_)
       if (known.starts_with(of)) candidates.push_back(known.substr(of.size()));
   std::string words = "there is no " + prefix + "\"" + std::string(name) + "\"" +
-                      storage::suggestion(name, candidates);
+                      sample_or(name, storage::suggestion(name, candidates));
   for (const PluginFile& file : files_)
     if (!file.refused.empty() && may_contain(file.path, kind, name))
       words += "; " + file.path.string() + " " + file.refused;

@@ -368,7 +368,8 @@ std::string ModelWords::verdict(const model::Explanation& e, const PartModel& pa
       e.candidates.front().term.grouping)
     text += " " + differs(e.candidates.front());
   if (e.one_growth && e.verdict.kind == Kind::missing)
-    text += " " + says("one-growth", {{"at", *e.one_growth, Quantity::length}}, {});
+    text += " " + says("one-growth", {{"at", e.one_growth->at, Quantity::length}},
+                       {{"growth", e.one_growth->growth}, {"drift", e.one_growth->drift}});
   if (e.verdict.kind != Kind::unknown) return text;
   for (const model::Statement& s : e.statements) text += " " + statement(s, part.deviation());
   for (const auto& [one, other] : e.cancelling) text += " " + cancelling(one, other);

@@ -43,7 +43,7 @@ std::vector<Error> ownerless_options(const config::RawOptions& options,
       continue;
     const config::RawOption& first = values.begin()->second;
     errors.push_back(
-        Error{"options." + name + ": there is no plugin of that name", first.file, first.line});
+        Error{"options." + name + ": " + plugins.absence("plugin", name), first.file, first.line});
   }
   return errors;
 }

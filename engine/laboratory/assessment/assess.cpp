@@ -469,7 +469,6 @@ class Assessment::State {
 
 Assessment::Assessment(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Assessment::Assessment(Assessment&&) noexcept = default;
-Assessment& Assessment::operator=(Assessment&&) noexcept = default;
 Assessment::~Assessment() = default;
 
 Expected<Assessment> Assessment::of(const fs::path& out, const LastRun& last_run,

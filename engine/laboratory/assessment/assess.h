@@ -35,7 +35,6 @@ class Assessment {
                                  const std::function<void()>& alive, Kept kept,
                                  const config::SiteLogs* entered = nullptr);
   Assessment(Assessment&&) noexcept;
-  Assessment& operator=(Assessment&&) noexcept;
   ~Assessment();
 
   /// Without series, which worklist_text, lines_json and the lists of all machines do not need.

@@ -247,9 +247,9 @@ std::string kind_of(const std::string& quantity) {
   if (is("B_mean") || is("backlash")) return "reversal";
   for (const char* of_circle :
        {"B_circle", "bow:", "lateral", "radius:", "scale_mismatch", "servo_mismatch"})
-    if (is(of_circle)) return "circle";
+    if (is(of_circle)) return "circular";
   if (is("scale")) return "scale";
-  if (is("curve") || is("pitch-curve")) return "curve";
+  if (quantity.substr(0, quantity.find(':')).ends_with("curve")) return "curve";
   if (is("turn")) return "turn";
   if (is("cyclic")) return "cyclic";
   if (is("squareness")) return "squareness";

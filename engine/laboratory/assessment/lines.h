@@ -28,8 +28,8 @@ struct Known {
 /// before gradual, large before small changes. Each cause has one line.
 std::vector<reports::WorkItem> lines_of(const Known& known);
 
-/// Returns reversal, scale, curve, turn, cyclic, scatter, squareness, straightness, centre, circle
-/// or parameter. The word lists `term.what` and `term.look` contain the texts.
+/// Returns reversal, scale, curve, turn, cyclic, scatter, squareness, straightness, centre,
+/// circular or parameter. The word lists `term.what` and `term.look` contain the texts.
 std::string kind_of(const std::string& quantity);
 
 /// Returns `axis`, or if it is empty the axis in the name of the quantity, such as X in

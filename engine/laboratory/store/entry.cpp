@@ -162,8 +162,8 @@ class EntryReader {
                   .k = number_at(v, "k")};
     row.tolerance = number_at(v, "tolerance");
     row.decision = text_at(v, "decision");
-    if (const auto edition = number_at(analysis, "edition"))
-      row.conditions = R"({"edition":)" + std::to_string(static_cast<std::int64_t>(*edition)) + "}";
+    if (std::uint64_t edition = 0; analysis["edition"].get(edition) == simdjson::SUCCESS)
+      row.conditions = R"({"edition":)" + std::to_string(edition) + "}";
     if (dom::object budget; analysis["budget"].get(budget) == simdjson::SUCCESS)
       read_parts(budget, name, row);
     entry_.results.push_back(std::move(row));
@@ -308,7 +308,9 @@ Expected<Entry> entry_of(std::string_view results, const reading::Inputs& inputs
     dom::parser parser;
     Entry entry = read_entry(parser.parse(results), inputs);
     // A database server cannot store a character 0.
-    if (canonical_of(entry).find('\0') != std::string::npos)
+    std::string texts = canonical_of(entry);
+    if (const auto& c = entry.certificate) texts += c->number + c->day + c->replaces;
+    if (texts.find('\0') != std::string::npos)
       return fail(std::string(evaluation::results_name) + ": a text with a character 0 in it");
     if (entry.campaign == id) return entry;
     return fail(std::string(evaluation::results_name) + ": expected campaign " + id + ", found \"" +

@@ -398,11 +398,6 @@ Expected<Updated> update(const fs::path& out, bool behind, std::vector<std::stri
   return write(out, behind, campaigns, records, alive);
 }
 
-Expected<Updated> rebuild(const fs::path& out, const SiteRecords& records,
-                          const std::function<void()>& alive) {
-  return write(out, true, {}, records, alive);
-}
-
 Expected<std::optional<std::uint64_t>> known_run(const fs::path& out) {
   const fs::path path = out / known_folder / known_name;
   NONIO_TRY(const auto there, storage::is_there(path));

@@ -35,11 +35,6 @@ Expected<Updated> update(const std::filesystem::path& out, bool behind,
                          std::vector<std::string> campaigns, const SiteRecords& records,
                          const std::function<void()>& alive);
 
-/// Rebuilds the store from the output folder alone, in one transaction, with the rows that `update`
-/// would write.
-Expected<Updated> rebuild(const std::filesystem::path& out, const SiteRecords& records,
-                          const std::function<void()>& alive);
-
 /// Returns the run up to which the store is complete, from a note in OUT/.nonio. std::nullopt if
 /// results may be newer than the store.
 Expected<std::optional<std::uint64_t>> known_run(const std::filesystem::path& out);

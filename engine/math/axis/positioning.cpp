@@ -248,10 +248,4 @@ std::vector<RuleValue> evaluate_rule(const PositioningRule& rule, const AxisStat
   return {};
 }
 
-std::optional<double> converted(std::string_view name, double value, double k_from, double k_to) {
-  const bool of_scatter = name == "R+" || name == "R-";
-  if (!of_scatter || !(k_from > 0.0) || !(k_to > 0.0)) return std::nullopt;
-  return value / k_from * k_to;
-}
-
 }  // namespace nonio::math

@@ -183,7 +183,6 @@ OneQuantity one_quantity(double a, const Expanded& of_a, double b, const Expande
   const double va = of_a.u * of_a.u, vb = of_b.u * of_b.u, sum = va + vb;
   OneQuantity out;
   out.difference = a - b;
-  out.u_difference = std::sqrt(sum);
   // Welch-Satterthwaite for the difference, and for the mean with weights vb/sum and va/sum.
   const double dof =
       std::min(as_good_as_normal, sum * sum / (va * va / of_a.dof + vb * vb / of_b.dof));

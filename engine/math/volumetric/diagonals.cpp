@@ -487,7 +487,6 @@ Expected<DiagonalResult> solve_diagonals(const DiagonalReadings& r, const Readin
       if (!s.determined(row)) return fail("the readings do not determine what two diagonals do");
   out.C0Y = s.value(square);
   out.u_C0Y = s.u(square);
-  out.gain_C0Y = s.gain(square);
   out.shares_C0Y = s.shares(square);
   out.EYX_even = known(s, part(f, 1.0));
   out.EXY_even = known(s, part(g, 1.0));

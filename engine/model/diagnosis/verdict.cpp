@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -307,7 +308,21 @@ class Judge {
     return nullptr;
   }
 
-  /// A growth about the middle and a drift of the zero are one growth about another fixed point. If
+  /// The first column is that of a growth, (p - fixed) times the second one, that of a drift; null
+  /// if it is not.
+  static std::optional<double> fixed_point(const MatrixXd& columns, const std::vector<double>& p,
+                                           double length) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (Index i = 0; i < columns.rows(); ++i) {
+      if (columns(i, 1) == 0.0) continue;
+      const double at = p[static_cast<std::size_t>(i)] - columns(i, 0) / columns(i, 1);
+      low = std::min(low, at), high = std::max(high, at);
+    }
+    if (!(high - low < 1e-6 * length)) return std::nullopt;
+    return low;
+  }
+
+  /// A growth about a point and a drift of the zero are one growth about another fixed point. If
   /// a bearing can be at this point, the growth is named first, as the cause of the drift.
   void find_one_growth() {
     // docs/dev/constants.md, M21.
@@ -315,16 +330,25 @@ class Judge {
     constexpr double farthest = 0.8;
     auto& names = out_.together;
     if (f_.part.kind != Part::Kind::axis || f_.part.axes.front().rotary) return;
-    const std::string axis = ":" + f_.part.axes.front().name;
-    const auto growth = std::find(names.begin(), names.end(), "growth-drift" + axis);
-    const auto drift = std::find(names.begin(), names.end(), "zero-drift" + axis);
+    const auto term = [&](const std::string& name) { return f_.terms[f_.index_of(name)]; };
+    const auto of = [&](Quantity quantity) {
+      return std::find_if(names.begin(), names.end(), [&](const std::string& name) {
+        const Effect& e = *term(name).effect;
+        return e.linear.size() == 1 && e.shapes.empty() && e.linear.front().quantity == quantity;
+      });
+    };
+    const auto growth = of(Quantity::growth), drift = of(Quantity::deviation_per_time);
     if (growth == names.end() || drift == names.end()) return;
     const Parameter *g = parameter_of(*growth), *z = parameter_of(*drift);
     const auto read = readings_of(f_.part.table, f_.part.axes.front());
     if (g == nullptr || z == nullptr || !read || !(std::fabs(g->value) > 0.0)) return;
-    const double from = -z->value / g->value;
+    const auto columns = f_.columns_of({term(*growth), term(*drift)});
+    if (!columns) return;
+    const auto fixed = fixed_point(*columns, read->p, read->length);
+    if (!fixed) return;
+    const double from = *fixed - z->value / g->value;
     if (std::fabs(from) > farthest * read->length) return;
-    out_.one_growth = read->middle + from;
+    out_.one_growth = {*growth, *drift, read->middle + from};
     if (drift < growth) std::iter_swap(drift, growth);
   }
 

@@ -98,12 +98,6 @@ MappedFile::~MappedFile() {
   if (size_ != 0) ::munmap(const_cast<char*>(data_), size_);
 }
 
-void MappedFile::release(std::size_t offset) const {
-  const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-  const std::size_t whole = std::min(offset, size_) / page * page;
-  if (whole != 0) ::madvise(const_cast<char*>(data_), whole, MADV_DONTNEED);
-}
-
 namespace {
 
 bool same_state(const struct stat& a, const struct stat& b) {

@@ -27,8 +27,6 @@ class MappedFile {
   ~MappedFile();
 
   std::string_view bytes() const { return {data_, size_}; }
-  /// Returns the pages before `offset` to the system; reading them again loads them from disk.
-  void release(std::size_t offset) const;
 
  private:
   MappedFile(const char* data, std::size_t size) : data_(data), size_(size) {}

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t block = 512;
 constexpr std::uint64_t most_octal = 077777777777;  // largest size in 11 octal digits
-constexpr std::uint64_t most_pax = 1U << 20U;
+constexpr std::uint64_t most_pax = 1U << 20U, most_part = 1U << 20U;
 using Block = std::array<char, block>;
 
 struct TarField {
@@ -192,7 +192,7 @@ Expected<void> read_tar(const std::filesystem::path& path, const TarReads& reads
     return size == 0 || in.read(rest.data(), static_cast<std::streamsize>(size));
   };
   std::map<std::string, std::string> pax;
-  std::string part(1U << 20U, '\0');
+  std::string part;
   for (Block header{};;) {
     if (!in.read(header.data(), block)) return cut();
     if (std::all_of(header.begin(), header.end(), [](char c) { return c == '\0'; })) return {};
@@ -229,6 +229,7 @@ Expected<void> read_tar(const std::filesystem::path& path, const TarReads& reads
     entry.kind = type == '\0' ? TarEntry::Kind::file : static_cast<TarEntry::Kind>(type);
     while (entry.name.ends_with('/')) entry.name.pop_back();
     if (auto done = reads.begin(entry); !done) return done;
+    part.resize(std::min<std::uint64_t>(entry.size, most_part));
     for (std::uint64_t left = entry.size; left > 0;) {
       const std::size_t now = std::min<std::uint64_t>(left, part.size());
       if (!in.read(part.data(), static_cast<std::streamsize>(now))) return cut();

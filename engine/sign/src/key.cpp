@@ -84,7 +84,6 @@ Expected<void> check(Key::Impl& impl, Time now) {
 
 Key::Key(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Key::Key(Key&&) noexcept = default;
-Key& Key::operator=(Key&&) noexcept = default;
 Key::~Key() = default;
 const Identity& Key::identity() const { return impl_->identity; }
 

@@ -90,7 +90,7 @@ class Input(NightTest):
         self.run_nonio(expect=1)
         self.assertIn('nearest: "iso230-2"', self.errors("analysis")[0]["message"])
         self.assertIn('nearest: "edition"', self.errors("option")[0]["message"])
-        self.assertIn("there is no plugin of that name", self.errors("owner")[0]["message"])
+        self.assertIn('there is no plugin "', self.errors("owner")[0]["message"])
 
     def place(self, campaign_id):
         error = self.errors(campaign_id)[0]
@@ -117,7 +117,7 @@ class Input(NightTest):
         self.campaign("a")
         for text, line, words in (('[run]\nanalyses = ["iso230-3"]\n', 2, 'nearest: "iso230-2"'),
                                   ('[run]\noutputs = [\n"jsn"]\n', 2, 'nearest: "json"'),
-                                  ("[options.nobody]\nx = 1\n", 2, "no plugin of that name"),
+                                  ("[options.nobody]\nx = 1\n", 2, "there is no plugin"),
                                   ("[options.iso230-2]\nedition = 2007\n", 2, "expected one of")):
             (self.site / "site.toml").write_text(text)
             done = self.run_nonio(expect=2)

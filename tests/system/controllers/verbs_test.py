@@ -3,7 +3,9 @@
 """controllers, diff, apply and plan sign-probe, on tables written by hand or by a run."""
 import json
 import math
+import os
 import unittest
+import unittest.mock
 
 from bench import BenchTest, axis_csv, wave
 
@@ -28,6 +30,16 @@ class Controllers(BenchTest):
         text = self.nonio("table", "controls", "pmac").stdout
         self.assertIn("documented", text)
         self.nonio("table", "controls", "pmax", expect=2)
+
+
+    def test_a_sample_plugin_that_is_not_built_is_an_error_that_states_how(self):
+        for options, start in (("", 'machine.control: there is no controller "klipper"'),
+                               ("[options.klipper]\naxes = []\n", 'options.klipper: there is no plugin "klipper"')):
+            self.one_axis(TARGETS, wave, wave, options, control="klipper")
+            with unittest.mock.patch.dict(os.environ, NONIO_PLUGIN_PATH=""):
+                error = self.run_site(expect=1)["errors"][0]["message"]
+            self.assertTrue(error.startswith(start + "; it is a sample plugin: build share/doc/nonio/examples/plugins with CMake"), error)
+            self.assertIn("--plugin-path", error)
 
 
 class Tables(BenchTest):
@@ -146,7 +158,8 @@ class Tables(BenchTest):
     def test_a_file_of_no_known_control(self):
         other = self.put("other.dat", "unit = mm\n[X]\n-100.0, 0.003, 0.012\n0.0, 0.0, 0.009\n")
         error = self.nonio("diff", other, other, expect=2).stderr
-        self.assertIn("other.dat: no control known to Nonio could have written it; known are aerotech, ", error)
+        self.assertIn("other.dat: no control known to Nonio could have written it; known are ", error)
+        self.assertIn(" aerotech, ", error)
         self.assertNotIn("--control", error)
 
     def test_the_control_is_known_by_its_files_or_asked_for(self):

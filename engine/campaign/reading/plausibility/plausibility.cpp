@@ -45,6 +45,9 @@ bool along_one_axis(const Measurement& m) {
   return m.kind == "axis" || m.kind == "straightness" || m.kind == "angle";
 }
 
+/// Whether the deviation is along the line between two stated ends.
+bool between_ends(const Measurement& m) { return !m.from.empty() && !m.to.empty(); }
+
 double range_of(const std::vector<double>& values) {
   if (values.empty()) return 0.0;
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
@@ -114,8 +117,7 @@ class Size {
   }
 
   void too_large(std::vector<Finding>& out) const {
-    const bool position = measurement_.kind == "axis" || measurement_.kind == "diagonal" ||
-                          measurement_.kind == "step-diagonal";
+    const bool position = measurement_.kind == "axis" || between_ends(measurement_);
     if (position && same_unit() && std::fabs(slope_) > bounds_.slope)
       return out.push_back({.id = "plausibility.deviation-grows-with-position",
                             .attention = true,
@@ -367,10 +369,10 @@ std::vector<Finding> implausible_readings(const Campaign& campaign, std::size_t 
   const Observations& o = all[measurement];
   if (o.size() == 0 || o.axes.empty() || o.axes.front().position.empty()) return out;
   if (m.motion == Measurement::Motion::none) return out;
-  const bool runs = along_one_axis(m) || m.kind == "diagonal";
-  const bool steps = m.kind == "step-diagonal";
+  const bool along_line = along_one_axis(m) || between_ends(m);
+  const bool runs = along_line && o.lines.size() < 2;  // otherwise each pass has its own zero
   for (const Observations& line : lines_of(o)) {
-    if (!runs && !steps) break;
+    if (!along_line) break;
     const Size size(campaign, m, line);
     const std::size_t before = out.size();
     size.too_large(out);
@@ -383,7 +385,7 @@ std::vector<Finding> implausible_readings(const Campaign& campaign, std::size_t 
   if (m.kind == "diagonal") short_diagonal(m, o, out);
   if (m.kind == "ball-centres") implausible_centres(m, o, out);
   beyond_travel(campaign, o, out);
-  if (runs || steps) {
+  if (along_line) {
     const std::size_t before = out.size();
     implausible_passes(passes, o, runs, out);
     if (runs && out.size() == before) shifted_rows(passes, deviation_of(o.angular), out);

@@ -79,20 +79,6 @@ TEST(RigidBody, SchwarzFindsTheDegree) {
   EXPECT_EQ(solved(whole_campaign(t, &random, 0.3 * um), wish).degree, 4u);
 }
 
-TEST(RigidBody, TheMapOfTheNodesIsThatOfTheControl) {
-  std::mt19937_64 random(4);
-  const Truth t = any_machine(random, 10, 15);
-  const RigidSolution s = solved(whole_campaign(t, nullptr, 0.0), wish_of_fourth_degree());
-  const auto& nodes = s.map.nodes;
-  EXPECT_EQ(interpolated(s.map, nodes[37].at), nodes[37].error);
-  Corner between = nodes[0].at;
-  for (std::size_t k = 0; k < 3; ++k) between[k] = (nodes[0].at[k] + nodes[31].at[k]) / 2.0;
-  Corner mean{};  // of the eight corners of the first cell
-  for (const std::size_t n : {0U, 1U, 5U, 6U, 25U, 26U, 30U, 31U})
-    for (std::size_t k = 0; k < 3; ++k) mean[k] += nodes[n].error[k] / 8.0;
-  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(interpolated(s.map, between)[k], mean[k], 1e-15);
-}
-
 /// A machine that has nothing but one combination: its largest term makes 20 um in the volume.
 Truth machine_of(const Combination& c) {
   Truth t;

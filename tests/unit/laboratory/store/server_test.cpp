@@ -28,11 +28,11 @@ TEST(HistoryServer, SaysWhatSqliteSaysToTheLastDigit) {
   Output out("same");
   two_campaigns(out, 1, 0.1 + 0.2);
   two_campaigns(out, 2, 1e-7 / 3.0);
-  ASSERT_TRUE(store::rebuild(out.root(), {}, nothing));
+  ASSERT_TRUE(store::update(out.root(), true, {}, {}, nothing));
   const std::string on_the_server = rows_of(out.root());
   const auto place = store::place_of(out.root());
   ASSERT_TRUE(store::note_place(out.root(), std::nullopt).value()) << "it lies elsewhere now";
-  ASSERT_TRUE(store::rebuild(out.root(), {}, nothing));
+  ASSERT_TRUE(store::update(out.root(), true, {}, {}, nothing));
   EXPECT_EQ(rows_of(out.root()), on_the_server);
   EXPECT_TRUE(fs::exists(out.root() / store::store_name));
   // Back on the server: the schema is still the site's, and the outdated file is removed.
@@ -142,7 +142,7 @@ TEST(HistoryServer, OneThatForgotRunsIsMadeAgain) {
 TEST(HistoryServer, ReadersSeeOneRunWhileItIsMadeAgain) {
   Output out("readers");
   for (int i = 0; i < 20; ++i) ASSERT_TRUE(out.store({.id = "c" + std::to_string(i)}, 1, "r1"));
-  ASSERT_TRUE(store::rebuild(out.root(), {}, nothing));
+  ASSERT_TRUE(store::update(out.root(), true, {}, {}, nothing));
   const std::size_t all = store::query(out.root(), {})->size();
   ASSERT_EQ(all, 60U);
   std::atomic<bool> over = false;
@@ -164,7 +164,7 @@ TEST(HistoryServer, ReadersSeeOneRunWhileItIsMadeAgain) {
       }
     });
   for (int i = 0; i < 10; ++i) {
-    const auto made = store::rebuild(out.root(), {}, nothing);
+    const auto made = store::update(out.root(), true, {}, {}, nothing);
     EXPECT_TRUE(made) << made.error().message;
   }
   over = true;
@@ -176,7 +176,7 @@ TEST(HistoryServer, ReadersSeeOneRunWhileItIsMadeAgain) {
 TEST(HistoryServer, TwoThatWriteWaitForEachOther) {
   Output out("writers");
   ASSERT_TRUE(out.store({.id = "a"}, 1, "r1"));
-  ASSERT_TRUE(store::rebuild(out.root(), {}, nothing));
+  ASSERT_TRUE(store::update(out.root(), true, {}, {}, nothing));
   const auto server = *store::place_of(out.root())->server;
   auto one = Database::open(server);
   auto other = Database::open(server, 0.2);

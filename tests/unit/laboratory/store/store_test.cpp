@@ -71,11 +71,11 @@ TEST(HistoryStore, MadeAgainHasTheSameRows) {
   live(out);
   const std::string grown = rows_of(out.root());
   out.lose_store();
-  const auto done = store::rebuild(out.root(), records(), nothing);
+  const auto done = store::update(out.root(), true, {}, records(), nothing);
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_EQ(done->evaluations, 10U);
   EXPECT_EQ(rows_of(out.root()), grown);
-  ASSERT_TRUE(store::rebuild(out.root(), records(), nothing)) << "in place of itself";
+  ASSERT_TRUE(store::update(out.root(), true, {}, records(), nothing)) << "in place of itself";
   EXPECT_EQ(rows_of(out.root()), grown);
   EXPECT_EQ(grown.find("ERROR"), std::string::npos);
 }
@@ -239,7 +239,7 @@ TEST(HistoryStore, KilledAtAnyMomentItIsTheOldOneOrTheNewOne) {
       ++kept;
     } else {
       ASSERT_EQ(WEXITSTATUS(status), 0);
-      ASSERT_TRUE(store::rebuild(out.root(), records(), nothing));
+      ASSERT_TRUE(store::update(out.root(), true, {}, records(), nothing));
       // Back to what it was: only the store forgets what the results say already.
       out.lose_store();
       break;
@@ -248,7 +248,7 @@ TEST(HistoryStore, KilledAtAnyMomentItIsTheOldOneOrTheNewOne) {
   EXPECT_GE(kept, 6) << "it was killed while it was at work";
   ASSERT_TRUE(store::update(out.root(), false, {"b", "c"}, records(), nothing));
   const std::string grown = rows_of(out.root());
-  ASSERT_TRUE(store::rebuild(out.root(), records(), nothing));
+  ASSERT_TRUE(store::update(out.root(), true, {}, records(), nothing));
   EXPECT_EQ(rows_of(out.root()), grown);
 }
 
@@ -289,7 +289,7 @@ TEST(HistoryStore, LeavesOutWhatCannotBeReadAndSaysIt) {
   Output::write(out.root() / "list" / "results.json", "[]");
   for (std::size_t size = 0; size + 2 < whole.size(); size += 41) {
     Output::write(out.root() / "cut" / "results.json", whole.substr(0, size));
-    const auto done = store::rebuild(out.root(), records(), nothing);
+    const auto done = store::update(out.root(), true, {}, records(), nothing);
     ASSERT_TRUE(done) << done.error().message;
     EXPECT_EQ(done->left_out.size(), 8U) << size;
     EXPECT_EQ(ask(out.root(), "SELECT campaign FROM campaign"), "good;");
@@ -325,7 +325,7 @@ TEST(HistoryStore, DamagedMemoryIsSaidAndNeverTakenForNone) {
     Output::write(path, damage);
     EXPECT_FALSE(out.store({.id = "a", .scale = 3.0}, 3, "r1"));
     EXPECT_NE(out.why().find("earlier.json is damaged"), std::string::npos) << out.why();
-    const auto done = store::rebuild(out.root(), {}, nothing);
+    const auto done = store::update(out.root(), true, {}, {}, nothing);
     ASSERT_TRUE(done);
     EXPECT_EQ(done->left_out.size(), 1U);
   }
@@ -337,14 +337,14 @@ TEST(HistoryStore, AFailureThatMayPassChangesNothing) {
   Output out("passing");
   ASSERT_TRUE(out.store({.id = "a"}, 1, "r1"));
   ASSERT_TRUE(out.store({.id = "a", .scale = 2.0}, 2, "r1"));
-  ASSERT_TRUE(store::rebuild(out.root(), {}, nothing));
+  ASSERT_TRUE(store::update(out.root(), true, {}, {}, nothing));
   const std::string before = rows_of(out.root());
   ASSERT_TRUE(out.store({.id = "a", .status = "failed"}, 3, "r1", "1.0", true));
   ASSERT_TRUE(out.store({.id = "a", .status = "failed"}, 4, "r1", "1.0", true));
-  ASSERT_TRUE(store::rebuild(out.root(), {}, nothing));
+  ASSERT_TRUE(store::update(out.root(), true, {}, {}, nothing));
   EXPECT_EQ(rows_of(out.root()), before);
   ASSERT_TRUE(out.store({.id = "a", .scale = 2.0}, 5, "r1"));
-  ASSERT_TRUE(store::rebuild(out.root(), {}, nothing));
+  ASSERT_TRUE(store::update(out.root(), true, {}, {}, nothing));
   EXPECT_EQ(rows_of(out.root()), before);
 }
 
@@ -352,7 +352,7 @@ TEST(HistoryStore, AFailureThatStaysIsKeptBehindOneThatMayPass) {
   Output out("stays");
   ASSERT_TRUE(out.store({.id = "a"}, 1, "r1"));
   ASSERT_TRUE(out.store({.id = "a", .status = "failed"}, 2, "r2"));
-  ASSERT_TRUE(store::rebuild(out.root(), {}, nothing));
+  ASSERT_TRUE(store::update(out.root(), true, {}, {}, nothing));
   const std::string before = rows_of(out.root());
   for (const std::uint64_t run : {3, 4}) {
     ASSERT_TRUE(out.store({.id = "a", .status = "failed"}, run, "r2", "1.0", true));

@@ -155,8 +155,12 @@ struct Explanation {
   std::vector<std::string> certain;
   /// Pairs of effects of `together` that cancel each other, so that neither is demonstrated.
   std::vector<std::pair<std::string, std::string>> cancelling;
-  /// Fixed point, m, of a single growth that is equivalent to the growth and drift in `together`.
-  std::optional<double> one_growth{};
+  /// A growth and a drift in `together` that are one growth about the point `at`, m.
+  struct OneGrowth {
+    std::string growth, drift;
+    double at = 0.0;
+  };
+  std::optional<OneGrowth> one_growth{};
   /// for `unknown`: rms with the significant effects, m or rad; for a course `best_rms`
   double significant_rms = 0.0;
   /// if the verdict is `unknown`: descriptions of the residuals that the significant effects leave

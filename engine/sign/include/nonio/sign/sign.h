@@ -60,7 +60,6 @@ class Key {
   /// Opens the key. The certificate must be valid at `now`. Errors never contain the password.
   static Expected<Key> open(const KeyPlace& place, const std::string& password, Time now);
   Key(Key&&) noexcept;
-  Key& operator=(Key&&) noexcept;
   ~Key();
 
   const Identity& identity() const;

@@ -73,8 +73,4 @@ struct RuleValue {
 std::vector<RuleValue> evaluate_rule(const PositioningRule&, const AxisStatistics&,
                                      Offset = Offset::mean_of_all);
 
-/// Converts R+ or R-, which are 2 k s, from k_from to k_to standard deviations. Returns nothing for
-/// other values, because they contain means, or if a number of deviations is not above 0.
-std::optional<double> converted(std::string_view name, double value, double k_from, double k_to);
-
 }  // namespace nonio::math

@@ -62,7 +62,7 @@ tl::expected<Squareness, NoSquareness> squareness_of(const Campaign&,
 struct OneQuantity {
   double value = 0.0, u = 0.0;  ///< mean weighted by 1/u^2, and its standard uncertainty
   double dof = INFINITY;
-  double difference = 0.0, u_difference = 0.0;
+  double difference = 0.0;
   double p = 1.0;  ///< probability of a difference this large by chance
 };
 OneQuantity one_quantity(double a, const Expanded& of_a, double b, const Expanded& of_b);

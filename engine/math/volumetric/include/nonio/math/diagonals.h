@@ -109,7 +109,7 @@ struct Agreement {
 
 struct DiagonalResult {
   /// squareness and its u, rad, in the end-point gauge; u for noise of 1 m, 1/m
-  double C0Y = 0.0, u_C0Y = 0.0, gain_C0Y = 0.0;
+  double C0Y = 0.0, u_C0Y = 0.0;
   Shares shares_C0Y;
   std::size_t unknowns = 0, rank = 0;
   std::size_t nullity() const { return unknowns - rank; }

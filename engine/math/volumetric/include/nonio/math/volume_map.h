@@ -36,8 +36,4 @@ struct VolumeMap {
 /// An axis that does not move has one position.
 std::vector<Corner> lattice(const Corner& low, const Corner& high, std::size_t parts);
 
-/// Interpolates the error between the nodes of a map, linearly in each coordinate, as controls do.
-/// Outside of the volume, it returns the error at the nearest point of its surface.
-Corner interpolated(const VolumeMap&, const Corner& at);
-
 }  // namespace nonio::math
