@@ -210,7 +210,8 @@ void put_analysis(JsonWriter& json, const Results::Analysed& a,
   put_text(json, "part", a.part);
   for (const Remark& note : a.evaluation.notes)
     for (const Number& n : note.evidence)
-      if (n.name == "edition") json.member("edition", static_cast<std::uint64_t>(n.value));
+      if (n.name == "edition" && n.value >= 0.0 && n.value < 1e6)
+        json.member("edition", static_cast<std::uint64_t>(n.value));
   if (!a.evaluation.uses.empty()) json.member("uses", a.evaluation.uses);
   json.key("values");
   json.begin_object();

@@ -119,7 +119,7 @@ class Gantry(BenchTest):
                     self.assertLessEqual({"D1", "D2"}, {name for _, name in predicted["Y"]})
                     for key, p in predicted["Y"].items():
                         self.assertAlmostEqual(p["predicted"], predicted["X"][key]["predicted"], delta=rounding, msg=key)
-                        if key[1][0] == "D":
+                        if key[1][0] == "D" and p["before"] > 10.0:  # a range below its U stays as it is
                             self.assertLess(p["predicted"], 0.25 * p["before"] + 1.0, key)
                     files = {a: [o["file"] for o in of[a]["outputs"] if o["plugin"] == control] for a in "XY"}
                     self.assertEqual(len(files["X"]), len(files["Y"]), files)
