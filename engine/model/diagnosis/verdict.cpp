@@ -38,18 +38,6 @@ constexpr double falls_to = 0.999;
 // Two effects with a correlation below minus this value cancel: docs/dev/constants.md, M10.
 constexpr double cancels_beyond = 0.95;
 
-/// Whether two places share a factor; run is time, screw phase and angle are position.
-bool same_factor(const Where& a, const Where& b) {
-  const auto kin = [](Factor f) {
-    if (f == Factor::run) return Factor::time;
-    return f == Factor::screw_phase || f == Factor::angle ? Factor::position : f;
-  };
-  const auto in_b = [&](Factor f) {
-    return kin(f) == kin(b.first) || (b.second && kin(f) == kin(*b.second));
-  };
-  return in_b(a.first) || (a.second && in_b(*a.second));
-}
-
 class Judge {
  public:
   Judge(const Finding& finding, Explanation& out) : f_(finding), out_(out) {}

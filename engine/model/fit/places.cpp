@@ -506,4 +506,15 @@ std::vector<Where> FactorsOf::operator()(const VectorXd& signal) const {
   return out;
 }
 
+bool same_factor(const Where& a, const Where& b) {
+  const auto kin = [](Factor f) {
+    if (f == Factor::run) return Factor::time;
+    return f == Factor::screw_phase || f == Factor::angle ? Factor::position : f;
+  };
+  const auto in_b = [&](Factor f) {
+    return kin(f) == kin(b.first) || (b.second && kin(f) == kin(*b.second));
+  };
+  return in_b(a.first) || (a.second && in_b(*a.second));
+}
+
 }  // namespace nonio::model

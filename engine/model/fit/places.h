@@ -53,4 +53,7 @@ class FactorsOf {
   std::vector<MatrixXd> bases_;
 };
 
+/// Whether two places share a factor; run is time, screw phase and angle are position.
+bool same_factor(const Where& a, const Where& b);
+
 }  // namespace nonio::model
