@@ -277,6 +277,8 @@ void rank(std::vector<Candidate>& candidates) {
     return a_shows != b_shows ? a_shows : a.score > b.score;
   };
   std::stable_sort(candidates.begin(), candidates.end(), before);
+  for (std::size_t i = 1; i < candidates.size(); ++i)
+    candidates[i].score = std::min(candidates[i].score, candidates[i - 1].score);
 }
 
 }  // namespace nonio::model

@@ -12,7 +12,7 @@ namespace nonio::model {
 std::vector<Candidate> candidates_of(const Finding& finding, const Ground& ground);
 
 /// Candidates with evidence alone come first: the others show only next to further effects, and do
-/// not reduce the RMS as the first addition to the model.
+/// not reduce the RMS as the first addition to the model. Their `score` is limited by those before.
 void rank(std::vector<Candidate>& candidates);
 
 }  // namespace nonio::model
