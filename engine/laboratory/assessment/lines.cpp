@@ -249,7 +249,7 @@ std::string kind_of(const std::string& quantity) {
        {"B_circle", "bow:", "lateral", "radius:", "scale_mismatch", "servo_mismatch"})
     if (is(of_circle)) return "circular";
   if (is("scale")) return "scale";
-  if (quantity.substr(0, quantity.find(':')).ends_with("curve")) return "curve";
+  if (quantity.substr(0, quantity.find(':')).find("curve") != std::string::npos) return "curve";
   if (is("turn")) return "turn";
   if (is("cyclic")) return "cyclic";
   if (is("squareness")) return "squareness";

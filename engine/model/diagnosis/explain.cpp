@@ -218,7 +218,7 @@ std::vector<Candidate> certain_in(const Part& part, const std::vector<Term>& mod
   for (const Candidate& c : e.candidates)
     if (c.visible && finding->bench->holds(finding->best, finding->index_of(c.term.name())))
       e.together.push_back(c.term.name());
-  judge(*finding, e);
+  judge(*finding, finding->of_model.fit.rms, e);
   for (const Candidate& c : e.candidates)
     if (std::find(e.certain.begin(), e.certain.end(), c.term.name()) != e.certain.end() &&
         !of_place(*finding, c.term))
@@ -286,7 +286,8 @@ Expected<Explanation> explain_all(const Part& part, const std::vector<Term>& mod
     if (c.visible && finding->bench->holds(finding->best, finding->index_of(c.term.name())))
       out.together.push_back(c.term.name());
   out.best_rms = finding->of_best.fit.rms;
-  judge(*finding, out);
+  const double rms = rms_with(finding->part.table, finding->of_model.fit.terms, ground.weight);
+  judge(*finding, std::isfinite(rms) ? rms : finding->of_model.fit.rms, out);
   if (out.verdict.kind == Verdict::Kind::unknown) {
     describe(*finding, catalogue, out);
     out.statements = statements_of(*finding);

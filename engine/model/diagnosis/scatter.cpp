@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "data/whitening.h"
 #include "nonio/math/distributions.h"
@@ -197,6 +198,19 @@ std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
     worst = Place{{Factor::run}, squares / all, p, s, static_cast<double>(run), Quantity::count};
   }
   return worst;
+}
+
+double degrees_of_cells(const Repeats& repeats, const std::vector<double>& weight) {
+  std::vector<Index> in_pass(repeats.passes, 0), shared(repeats.sides, 0);
+  std::vector<char> used(repeats.cells, 0);
+  for (std::size_t i = 0; i < weight.size(); ++i)
+    if (weight[i] > 0.0) ++in_pass[repeats.pass[i]], used[repeats.cell[i]] = 1;
+  for (std::size_t p = 0; p < in_pass.size(); ++p) {
+    Index& of_side = shared[repeats.side[p]];
+    of_side = std::max(of_side, shared_columns(in_pass[p]));
+  }
+  return static_cast<double>(std::count(used.begin(), used.end(), 1) -
+                             std::accumulate(shared.begin(), shared.end(), Index{0}));
 }
 
 }  // namespace nonio::model

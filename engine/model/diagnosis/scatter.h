@@ -26,4 +26,7 @@ std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
                               const std::vector<double>& residual,
                               const std::vector<double>& weight, const Noise& noise);
 
+/// Number of cells with readings, minus the terms that the passes of each side share.
+double degrees_of_cells(const Repeats& repeats, const std::vector<double>& weight);
+
 }  // namespace nonio::model

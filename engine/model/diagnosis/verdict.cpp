@@ -40,7 +40,8 @@ constexpr double cancels_beyond = 0.95;
 
 class Judge {
  public:
-  Judge(const Finding& finding, Explanation& out) : f_(finding), out_(out) {}
+  Judge(const Finding& finding, double rms_of_model, Explanation& out)
+      : f_(finding), rms_of_model_(rms_of_model), out_(out) {}
 
   void run() {
     Verdict& v = out_.verdict;
@@ -129,26 +130,12 @@ class Judge {
     // Correct for the number of independent squares if adjacent readings are correlated.
     const double of_dof = f_.of_best.floor->dof / all.dof;
     const double excess = within.squares - all.squares;
-    const double dof = degrees_of_cells();
+    const double dof = degrees_of_cells(f_.repeats, f_.weight);
     if (!(dof * of_dof >= 1.0)) return false;
     const double F = math::test_ratio(excess / dof, s2);
     return math::f_upper(F, dof * of_dof, f_.of_best.floor->dof) < lacks_fit_p &&
            std::sqrt(std::max(excess - dof * s2, 0.0) / static_cast<double>(e.size())) >
                least_serious(f_.of_best.floor);
-  }
-
-  /// Cells with readings, minus the terms that the passes of each side share.
-  double degrees_of_cells() const {
-    std::vector<Index> in_pass(f_.repeats.passes, 0), shared(f_.repeats.sides, 0);
-    std::vector<char> used(f_.repeats.cells, 0);
-    for (std::size_t i = 0; i < f_.weight.size(); ++i)
-      if (f_.weight[i] > 0.0) ++in_pass[f_.repeats.pass[i]], used[f_.repeats.cell[i]] = 1;
-    for (std::size_t p = 0; p < in_pass.size(); ++p) {
-      Index& of_side = shared[f_.repeats.side[p]];
-      of_side = std::max(of_side, shared_columns(in_pass[p]));
-    }
-    return static_cast<double>(std::count(used.begin(), used.end(), 1) -
-                               std::accumulate(shared.begin(), shared.end(), Index{0}));
   }
 
   /// Whether residuals are significantly smaller than the noise floor; false if the floor is not
@@ -244,7 +231,7 @@ class Judge {
   }
 
   bool lowers(const std::string& name) const {
-    return candidate(name).rms < falls_to * f_.of_model.fit.rms;
+    return candidate(name).rms < falls_to * rms_of_model_;
   }
 
   const std::vector<double>* part_of(const std::string& name) const {
@@ -588,6 +575,7 @@ class Judge {
   }
 
   const Finding& f_;
+  const double rms_of_model_;
   Explanation& out_;
   PassZeros passes_{f_};
   mutable std::optional<FactorsOf> factors_{};
@@ -595,6 +583,8 @@ class Judge {
 
 }  // namespace
 
-void judge(const Finding& finding, Explanation& out) { Judge(finding, out).run(); }
+void judge(const Finding& finding, double rms_of_model, Explanation& out) {
+  Judge(finding, rms_of_model, out).run();
+}
 
 }  // namespace nonio::model

@@ -23,7 +23,8 @@ inline bool too_many(std::size_t suspects, std::size_t readings) {
 }
 
 /// Sets the verdict, its rate of false alarms, significant and canceling effects, places and plans.
-/// Moves the effect of the verdict to the front of `out.candidates`.
-void judge(const Finding& finding, Explanation& out);
+/// Moves the effect of the verdict to the front of `out.candidates`. `rms_of_model`: RMS with the
+/// weights of the RMS of the candidates, m or rad.
+void judge(const Finding& finding, double rms_of_model, Explanation& out);
 
 }  // namespace nonio::model

@@ -134,7 +134,7 @@ class ForeignMethod(unittest.TestCase):
 
     def test_effects_do_not_apply_where_no_axis_moved(self):
         plugins = self.plugins_with("apart", "m.motion = nonio::Measurement::Motion::none;")
-        self.assertIn("this campaign has readings of another kind: lever-gauge",
+        self.assertIn("this campaign has other readings: lever-gauge",
                       self.nonio("model", "compare", self.campaign(manifest()), plugins=plugins, status=1))
 
     def test_the_history_has_its_values(self):
