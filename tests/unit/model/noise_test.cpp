@@ -220,8 +220,11 @@ TEST(Noise, repeats_of_a_part_of_the_targets_give_the_scatter_of_the_readings) {
         const auto c = compare(table.part, {});
         ASSERT_TRUE(c) << c.error().message;
         if (!c->floor) continue;  // too few repeats
-        EXPECT_GT(c->floor->s, 0.2 * scatter) << targets << " targets, " << share << " of them";
-        EXPECT_LT(c->floor->s, 3.0 * scatter) << targets << " targets, " << share << " of them";
+        // Far limits: a floor of few cells, or one with a correlation, varies by factors.
+        const double least = std::min(0.1, std::exp(-20.0 / c->floor->dof));
+        const double most = 8.0;
+        EXPECT_GT(c->floor->s, least * scatter) << targets << " targets, " << share << " of them";
+        EXPECT_LT(c->floor->s, most * scatter) << targets << " targets, " << share << " of them";
         double largest = 0.0;
         for (const double x : table.part.table.deviation) largest = std::max(largest, std::fabs(x));
         EXPECT_LT(c->fit.rms, 100.0 * largest);
