@@ -50,8 +50,7 @@ class Clock {
 
 int update(const std::string& what, const char* out, const std::vector<std::string>& campaigns) {
   const Clock clock;
-  const auto done = what == "rebuild" ? nonio::store::rebuild(out, {}, [] {})
-                                      : nonio::store::update(out, false, campaigns, {}, [] {});
+  const auto done = nonio::store::update(out, what == "rebuild", campaigns, {}, [] {});
   const std::string took = clock.text();
   if (!done) return complain(done.error());
   std::printf("%s: %llu evaluations in %s%s, %zu left out\n", what.c_str(),
