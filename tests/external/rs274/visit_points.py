@@ -333,7 +333,7 @@ class SignProbe(unittest.TestCase):
             (folder / "c").mkdir()
             (folder / "c" / "campaign.toml").write_text(
                 'format = 1\n[campaign]\nid = "c"\n[machine]\nmodel = "FP 12"\ncontrol = "linuxcnc"\n'
-                '[machine.axes.X]\nkind = "linear"\ntravel = [-10, 410]\n'
+                '[machine.axes.X]\nkind = "linear"\ntravel = [-10, 410]\nactive_table = "none"\n'
                 '[[measurement]]\nid = "X"\nkind = "axis"\naxis = "X"\nfile = "X.csv"\n')
             rows = ["run,direction,target_mm,deviation_um"]
             rows += [f"{r},{d},{50 * i},{(i * i) % 7}" for r in (1, 2) for d in "+-" for i in range(9)]
