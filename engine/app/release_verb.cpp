@@ -147,7 +147,7 @@ int release(const ReleaseVerbWish& wish, const Common& common) {
     const std::size_t equals = given.find('=');
     if (equals == std::string::npos || equals == 0)
       return complain("--reason wants FINDING=TEXT, found \"" + given + "\"");
-    wanted.reasons[given.substr(0, equals)] = given.substr(equals + 1);
+    wanted.reasons.emplace(given.substr(0, equals), given.substr(equals + 1));
   }
   if (!wish.user.empty()) {
     auto password = read_password(wish.user);

@@ -17,8 +17,8 @@ struct ReleaseRequest {
   /// Author or authoriser; empty for the default of the site: author if it requires two persons.
   std::string role;
   /// By finding_key or by id of the finding. FINDING=TEXT of a command is divided at the first "=",
-  /// which may be in the finding.
-  std::map<std::string, std::string> reasons;
+  /// which may be in the finding, so several can begin alike.
+  std::multimap<std::string, std::string> reasons;
   /// Output folder of the run; empty for that of the draft.
   std::filesystem::path out;
   /// Account in users.toml with its password, which prove the identity of the person. Without an

@@ -331,7 +331,7 @@ namespace {
 /// Returns the tables by one position of which the sum is a table by two. Error: there are none.
 Expected<Tables> by_one_position(const LoadedTable& t) {
   if (t.input.size() == 1) return Tables{t};
-  const std::size_t n = t.position[0].size(), m = t.position[1].size();
+  const std::size_t m = t.position[1].size();
   Tables parts;
   for (const std::size_t k : {0U, 1U}) {
     LoadedTable part = t;
@@ -349,7 +349,7 @@ Expected<Tables> by_one_position(const LoadedTable& t) {
   const double most = 2.0 * same_within_um * 1e-6;  // of four rounded values
   const auto is_sum = [&](const std::vector<double>& all, const std::vector<double>& first,
                           const std::vector<double>& second) {
-    for (std::size_t i = 0; i < all.size() && n * m == all.size(); ++i)
+    for (std::size_t i = 0; i < all.size(); ++i)
       if (std::fabs(all[i] - first[i / m] - second[i % m]) > most) return false;
     return true;
   };

@@ -117,7 +117,7 @@ class Input(NightTest):
         self.campaign("a")
         for text, line, words in (('[run]\nanalyses = ["iso230-3"]\n', 2, 'nearest: "iso230-2"'),
                                   ('[run]\noutputs = [\n"jsn"]\n', 2, 'nearest: "json"'),
-                                  ("[options.nobody]\nx = 1\n", 2, "there is no plugin"),
+                                  ("[options.absent]\nx = 1\n", 2, "there is no plugin"),
                                   ("[options.iso230-2]\nedition = 2007\n", 2, "expected one of")):
             (self.site / "site.toml").write_text(text)
             done = self.run_nonio(expect=2)

@@ -129,7 +129,8 @@ class Releases(NumberedTest):
             self.release_verb("--by", nobody, expect=2)
         self.release_verb("--by", "B", "--reason", "tolerance.X.E.iso230-2=-", expect=2)
         self.assertEqual(self.entries(), [])
-        self.release_verb("--by", "B", "--reason", "X=0: tolerance.X.E.iso230-2=as found, the customer knows", expect=0)
+        self.release_verb("--by", "B", "--reason", f"X=0: {KNOWN}=it is what was ordered",
+                          "--reason", "X=0: tolerance.X.E.iso230-2=as found, the customer knows", known=(), expect=0)
         issued, = [says for what, _, says in self.journal() if what == "issued"]
         self.assertEqual(issued["released"]["released"]["reasons"],
                          {"X=0: " + KNOWN: "it is what was ordered", "X=0: tolerance.X.E.iso230-2": "as found, the customer knows"})

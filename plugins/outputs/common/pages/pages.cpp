@@ -107,7 +107,7 @@ std::string speeds(const Source& source, const Observations& o) {
     const double rpm = 60.0 * turns / (o.time[i] - o.time[i - 1]);
     low = std::min(low, rpm), high = std::max(high, rpm);
   }
-  if (!(low < high || high != 0.0) || low > high) return {};
+  if (low > high || (low == 0.0 && high == 0.0)) return {};
   const auto text = [&](double rpm) {
     return printed_number(rpm, Quantity::number, 0, source.language());
   };
