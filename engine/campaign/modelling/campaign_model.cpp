@@ -319,21 +319,6 @@ std::vector<std::string> unmeasured(const std::vector<std::string>& effects,
   return out;
 }
 
-std::vector<std::string> below_uncertainty(const model::Fit& fit) {
-  std::vector<std::string> out;
-  for (const model::Term& term : fit.terms) {
-    if (term.effect->is_nuisance) continue;
-    bool any = false, small = true;
-    for (const model::Parameter& p : fit.parameters) {
-      if (p.effect != term.name() || p.shape) continue;
-      any = true;
-      small = small && std::fabs(p.value) < 2.0 * p.u;
-    }
-    if (any && small) out.push_back(term.name());
-  }
-  return out;
-}
-
 Expected<model::Comparison> compare_part(const PartModel& part, const model::Groundwork* known,
                                          const model::Fitted& fitted) {
   if (!part.unfit.empty()) return fail(part.unfit);

@@ -89,9 +89,6 @@ void set_model(PartModel& part, const std::vector<std::string>& effects,
 std::vector<std::string> unmeasured(const std::vector<std::string>& effects,
                                     const std::vector<PartModel>& parts);
 
-/// Returns the effects whose linear parameters are all smaller than 2 u, except the set-up.
-std::vector<std::string> below_uncertainty(const model::Fit& fit);
-
 /// Compares a part with its model. `known` and `fitted`: see model/explain.h.
 Expected<model::Comparison> compare_part(const PartModel& part,
                                          const model::Groundwork* known = nullptr,

@@ -53,7 +53,7 @@ class Findings {
     verdict(e);
     fails(e.comparison);
     suspects(e.comparison);
-    if (const auto small = below_uncertainty(e.comparison.fit); !small.empty())
+    if (const auto small = model::below_uncertainty(e.comparison.fit); !small.empty())
       out_.push_back({"model.below-uncertainty", false, {}, {{"effects", storage::listed(small)}}});
     for (Finding& f : time_constant_findings(part_, e.comparison.fit)) out_.push_back(std::move(f));
     for (Finding& f : out_)

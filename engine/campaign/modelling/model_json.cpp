@@ -187,7 +187,7 @@ void put_after_table(storage::Json& json, const PartModel& part, const model::Fi
 std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,
                                      const ModelWords& words) {
   std::vector<std::string> out;
-  for (const std::string& effect : below_uncertainty(fit))
+  for (const std::string& effect : model::below_uncertainty(fit))
     out.push_back(words.below_uncertainty(effect));
   for (const model::Parameter& p : fit.parameters)
     if (p.quantity == Quantity::deviation_per_kelvin &&

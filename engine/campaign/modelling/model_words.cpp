@@ -389,7 +389,8 @@ std::string ModelWords::candidate(const model::Candidate& c, const PartModel& pa
                                        {"p", c.p, Quantity::probability},
                                        {"detectable", c.minimal_detectable, q}};
   constexpr double worth_saying = 1.05;
-  const char* id = !(c.score > 0.0)               ? "candidate.none"
+  const char* id = !(c.score > 0.0) ? std::isfinite(c.minimal_detectable) ? "candidate.none"
+                                                                          : "candidate.no-size"
                    : !c.with_descriptions.empty() ? "candidate.with-descriptions"
                    : !c.aliases.empty()           ? "candidate.alias"
                                                   : "candidate.evidence";

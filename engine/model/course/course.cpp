@@ -11,10 +11,6 @@
 
 namespace nonio::model {
 
-namespace {
-
-/// A smooth course nearly vanishes in second differences, and outliers hardly affect the median of
-/// their absolute values. Returns nothing for fewer than 20 residuals.
 std::optional<NoiseFloor> floor_of(const std::vector<double>& residual) {
   if (residual.size() < 20) return std::nullopt;
   std::vector<double> d;
@@ -29,6 +25,8 @@ std::optional<NoiseFloor> floor_of(const std::vector<double>& residual) {
   out.u = out.s / std::sqrt(2.0 * out.dof);
   return out;
 }
+
+namespace {
 
 /// F-test between classes. `fewer`: number of readings per independent reading.
 std::optional<Place> place_of(Where where, const std::vector<double>& residual,

@@ -11,6 +11,9 @@ class CourseData;
 /// Fits like `fit` of model/fit.h, but with noise that is correlated in time.
 Expected<Fit> fit_course(const Part& part, const std::vector<Term>& terms);
 Expected<Fit> fit_course(const CourseData& data, const std::vector<Term>& terms);
+/// From the median of the second differences of successive residuals: a smooth course nearly
+/// vanishes in them, and outliers hardly affect their median. Nothing for fewer than 20 residuals.
+std::optional<NoiseFloor> floor_of(const std::vector<double>& residual);
 Comparison comparison_of_course(const Part& part, Fit fit);
 Expected<Comparison> compare_course(const Part& part, const std::vector<Term>& model);
 Expected<Explanation> explain_course(const Part& part, const std::vector<Term>& model,
@@ -19,6 +22,8 @@ Expected<Explanation> explain_course(const Part& part, const std::vector<Term>& 
 /// RMS of cross-validation, m: each block of time is predicted from the other blocks and has a zero
 /// of its own. The shapes of the terms are those of the fit.
 double left_out_rms(const Part& part, const std::vector<Term>& terms);
+/// ln of the same, averaged over the displacements that are fitted together.
+double ln_left_out_rms(const CourseData& data, const std::vector<Term>& terms);
 
 /// Returns std::nullopt if no term depends on a channel.
 std::optional<Sensors> sensors_of(const Part& part, const Fit& fit);

@@ -168,8 +168,9 @@ class CourseFit {
   }
 
   /// A lag smooths the noise of a channel, which generalized least squares rewards even without a
-  /// lag of the machine. A lag must also reduce the RMS of the readings.
+  /// lag of the machine. It is dropped if the RMS of ordinary least squares is clearly smaller.
   bool drop_lags() {
+    constexpr double clearly = 1.05 * 1.05;  // docs/dev/constants.md, M52
     bool any = false;
     for (std::size_t k = 0; k < terms_.size(); ++k)
       for (std::size_t s = 0; searched_[k] != 0 && s < terms_[k].shape.size(); ++s) {
@@ -177,8 +178,8 @@ class CourseFit {
         const std::vector<double> grid = shape.grid(data_.part().table, terms_[k].axis);
         if (!shape.continuous || grid.empty() || grid.front() != 0.0) continue;
         const std::vector<double> none = with(k, s, 0.0);
-        if (terms_[k].shape == none ||
-            squares_with(k, columns_at(terms_[k], none)) > squares_with(k, chosen_[k].columns))
+        if (terms_[k].shape == none || clearly * squares_with(k, columns_at(terms_[k], none)) >
+                                           squares_with(k, chosen_[k].columns))
           continue;
         replace(k, none);
         any = any || terms_[k].shape == none;
@@ -340,17 +341,36 @@ Expected<Fit> fit_course(const Part& part, const std::vector<Term>& terms) {
   return fit_course(CourseData(part), terms);
 }
 
-double left_out_rms(const Part& part, const std::vector<Term>& terms) {
-  const CourseData data(part);
+namespace {
+
+/// For each displacement, m.
+std::vector<double> left_out(const CourseData& data, const std::vector<Term>& terms) {
   CoursePool pool(data, noise_of_fit(data));
   std::vector<Index> places;
   for (const Term& term : terms) {
-    const auto columns = term.effect->columns(part.table, term.axis, term.shape);
+    const auto columns = term.effect->columns(data.part().table, term.axis, term.shape);
     if (!columns) continue;
     for (const Index at : pool.add(data.means(*columns), quantities_of(term))) places.push_back(at);
   }
   pool.finish();
-  return pool.left_out(places, CourseSides(pool, data.displacements().leftCols(1)), 0);
+  const CourseSides sides(pool, data.displacements());
+  std::vector<double> out;
+  for (Index j = 0; j < data.displacements().cols(); ++j)
+    out.push_back(pool.left_out(places, sides, j));
+  return out;
+}
+
+}  // namespace
+
+double left_out_rms(const Part& part, const std::vector<Term>& terms) {
+  return left_out(CourseData(part), terms).front();
+}
+
+double ln_left_out_rms(const CourseData& data, const std::vector<Term>& terms) {
+  const std::vector<double> rms = left_out(data, terms);
+  double sum = 0.0;
+  for (const double one : rms) sum += std::log(one);
+  return sum / static_cast<double>(rms.size());
 }
 
 }  // namespace nonio::model

@@ -63,11 +63,12 @@ void for_each_noise(const CourseData& data, const CourseModel& model, const Matr
                     const Visit& visit) {
   for (const double part_of_test : {96.0, 24.0, 6.0, 1.5})
     for (const double scatter : CoursePool::scatters) {
-      CoursePool pool(data, {data.duration() / part_of_test, scatter});
+      const CourseNoise noise{data.duration() / part_of_test, scatter};
+      CoursePool pool(data, noise);
       const std::vector<Index> at = pool.add(model.columns, model.of);
       pool.finish();
       const CourseSides sides(pool, displacements);
-      visit(pool, at, sides, scatter,
+      visit(pool, at, sides, noise,
             pool.cost(at, sides).mean() + pool.whitening().half_log_determinant());
     }
 }
@@ -99,8 +100,8 @@ double most_likely_scatter(const CourseData& data, const CourseNoise& noise,
 double likely_cost(const CourseData& data, const CourseModel& model) {
   double least = std::numeric_limits<double>::infinity();
   for_each_noise(data, model, data.displacements(),
-                 [&](const CoursePool&, const std::vector<Index>&, const CourseSides&, double,
-                     double cost) { least = std::min(least, cost); });
+                 [&](const CoursePool&, const std::vector<Index>&, const CourseSides&,
+                     const CourseNoise&, double cost) { least = std::min(least, cost); });
   return least;
 }
 
@@ -109,12 +110,14 @@ CourseUncertainty uncertainty_of(const CourseData& data, const CourseModel& mode
   double least = std::numeric_limits<double>::infinity();
   for_each_noise(data, model, data.displacements().leftCols(1),
                  [&](const CoursePool& pool, const std::vector<Index>& at, const CourseSides& sides,
-                     double scatter, double cost) {
+                     const CourseNoise& noise, double cost) {
                    if (out.s > 0.0 && !(cost < least)) return;
                    least = cost;
                    const double variance = pool.variance(at, sides);
                    out.covariance = variance * pool.covariance(at, variance);
-                   out.s = std::sqrt(variance * (1.0 + scatter));
+                   out.s = std::sqrt(variance * (1.0 + noise.scatter));
+                   out.correlated = std::sqrt(variance);
+                   out.correlation_time = noise.correlation_time;
                    out.zero = std::sqrt(variance * pool.whitening().variance_of_zero());
                  });
   return out;

@@ -53,8 +53,10 @@ double most_likely_scatter(const CourseData& data, const CourseNoise& noise,
 double likely_cost(const CourseData& data, const CourseModel& model);
 
 struct CourseUncertainty {
-  double s = 0.0;     ///< standard deviation of what the columns do not explain, m
-  double zero = 0.0;  ///< standard uncertainty of the zero, m
+  double s = 0.0;                 ///< standard deviation of what the columns do not explain, m
+  double correlated = 0.0;        ///< of its part that is correlated in time, m
+  double correlation_time = 0.0;  ///< s
+  double zero = 0.0;              ///< standard uncertainty of the zero, m
   MatrixXd covariance;
 };
 

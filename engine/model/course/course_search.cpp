@@ -151,11 +151,12 @@ class CourseSearch {
       }
   }
 
-  /// Compares the best set of each size under its most likely noise, with a penalty per effect.
-  Set best() const {
-    std::vector<Set> beam{{}};
-    std::vector<std::pair<Set, double>> best{{{}, level_of({})}};
-    for (std::size_t size = 1; size + model_.size() <= most_terms; ++size) {
+  /// Compares the best set of each size under its most likely noise, with a penalty per effect. All
+  /// sets contain `begun`.
+  Set best(const Set& begun = {}) const {
+    std::vector<Set> beam{begun};
+    std::vector<std::pair<Set, double>> best{{begun, level_of(begun)}};
+    for (std::size_t size = begun.size() + 1; size + model_.size() <= most_terms; ++size) {
       std::map<Set, double> grown;
       for (const Set& set : beam)
         for (std::size_t e = 0; e < entries_.size(); ++e)
@@ -166,7 +167,7 @@ class CourseSearch {
               grown.emplace(std::move(more), l);
             }
           }
-      if (size == 2) add_pairs(grown);
+      if (size == 2 && begun.empty()) add_pairs(grown);
       std::vector<std::pair<Set, double>> all(grown.begin(), grown.end());
       if (all.empty()) break;
       const auto last = all.begin() + static_cast<std::ptrdiff_t>(std::min(kept_sets, all.size()));
@@ -357,6 +358,8 @@ class CourseExplanation {
     set_ = search_.found();
     const auto singles = search_.best_with({});
     if (search_.p_of_search() < named_p) {
+      set_ = proven(std::move(set_));
+      begin_with_best_alone(singles);
       judge_members();
     } else {
       set_.clear();
@@ -398,6 +401,78 @@ class CourseExplanation {
     double alone = 0.0;     ///< gain of ln evidence as the only addition to the model
     double predicts = 0.0;  ///< decrease of ln(RMS) of the cross-validation as the only addition
   };
+
+  /// Evidence can increase while blocks of time that are left out are predicted worse. Drops the
+  /// effects whose values are below their uncertainties, and those without which these blocks are
+  /// predicted at least as well, but not those of `kept`.
+  Set proven(Set set, const Set& kept = {}) const {
+    Whole now = whole(set);
+    while (!set.empty()) {
+      Set best;
+      Whole least;
+      for (const std::size_t e : set) {
+        const bool weak = contains(now.weak, search_.term_of(e).name());
+        if ((!weak && !now.weak.empty()) || std::find(kept.begin(), kept.end(), e) != kept.end())
+          continue;
+        Set others = CourseSearch::without(set, e);
+        if (Whole one = whole(others); best.size() != others.size() || one.ln_rms < least.ln_rms)
+          least = std::move(one), best = std::move(others);
+      }
+      if (best.size() + 1 != set.size() || (now.weak.empty() && least.ln_rms > now.ln_rms)) break;
+      now = std::move(least), set = std::move(best);
+    }
+    return set;
+  }
+
+  /// Several sensors can together imitate the one that shows the cause, with less of its noise. The
+  /// effect that alone predicts left-out blocks best is preferred if it leaves only noise, or comes
+  /// closer (in ln RMS) to the whole set than to the best effect of the set alone.
+  void begin_with_best_alone(const std::map<std::size_t, std::pair<std::size_t, double>>& singles) {
+    constexpr double none = std::numeric_limits<double>::infinity();
+    double least = none, least_of_set = none;
+    std::size_t alone = 0;
+    for (const auto& [term, one] : singles) {
+      const double ln_rms = search_.left_out({one.first});
+      if (ln_rms < least) least = ln_rms, alone = one.first;
+      if (search_.has_term(set_, term)) least_of_set = std::min(least_of_set, ln_rms);
+    }
+    if (set_.empty() || !(least < least_of_set)) return;
+    Set other{alone};
+    if (const Whole one = whole(other); !one.only_noise) {
+      if (!(2.0 * one.ln_rms < whole(set_).ln_rms + least_of_set)) return;
+      other = proven(search_.best(other), other);
+    }
+    set_ = std::move(other);
+    first_ = search_.term_of(alone).name();
+  }
+
+  /// A set fitted with its shapes searched again, as in the model that users would get.
+  struct Whole {
+    double ln_rms = std::numeric_limits<double>::infinity();  ///< of the cross-validation
+    std::vector<std::string> weak;  ///< effects of the set with values below their uncertainties
+    bool only_noise = false;        ///< whether successive readings differ as much as all readings
+  };
+
+  Whole whole(const Set& set) const {
+    std::vector<Term> terms = model_;
+    for (const std::size_t e : set) {
+      terms.push_back(search_.term_of(e));
+      terms.back().shape.clear();
+    }
+    Whole out;
+    const auto fit = fit_course(data_, terms);
+    if (!fit) return out;
+    out.ln_rms = ln_left_out_rms(data_, fit->terms);
+    out.only_noise = leaves_only_noise(fit->rms, floor_of(fit->residual));
+    const auto below = below_uncertainty(*fit);
+    for (const std::size_t e : set)
+      if (contains(below, search_.term_of(e).name())) out.weak.push_back(search_.term_of(e).name());
+    return out;
+  }
+
+  static bool contains(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  }
 
   void judge_members() {
     const double all = search_.level_of(set_);
@@ -483,7 +558,7 @@ class CourseExplanation {
         out_.sensors = sensors_of(data_.part(), *fit);
       }
       v.kind = Verdict::Kind::missing;
-      v.effect = certain_.empty() ? best_.second : out_.certain.front();
+      v.effect = !first_.empty() ? first_ : certain_.empty() ? best_.second : out_.certain.front();
       // The verdict and its numbers must be those of the first candidate.
       std::stable_partition(out_.candidates.begin(), out_.candidates.end(),
                             [&](const Candidate& c) { return c.term.name() == v.effect; });
@@ -492,9 +567,13 @@ class CourseExplanation {
       return;
     }
     out_.sensors = sensors_of(data_.part(), out_.comparison.fit);
-    const auto& floor = out_.comparison.floor;
-    v.kind = floor && out_.comparison.fit.rms <= of_floor * floor->s ? Verdict::Kind::nothing
-                                                                     : Verdict::Kind::unknown;
+    v.kind = leaves_only_noise(out_.comparison.fit.rms, out_.comparison.floor)
+                 ? Verdict::Kind::nothing
+                 : Verdict::Kind::unknown;
+  }
+
+  static bool leaves_only_noise(double rms, const std::optional<NoiseFloor>& floor) {
+    return floor && rms <= of_floor * floor->s;
   }
 
   const CourseData& data_;
@@ -503,6 +582,7 @@ class CourseExplanation {
   Set set_;
   std::vector<Member> members_;
   std::vector<std::pair<double, std::string>> certain_;
+  std::string first_;  ///< effect that alone explains most, if the set was begun with it
   std::pair<double, std::string> best_{-std::numeric_limits<double>::infinity(), ""};
   Explanation out_;
 };

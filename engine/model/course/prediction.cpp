@@ -13,15 +13,42 @@ namespace nonio::model {
 
 namespace {
 
-Expected<MatrixXd> columns_in(const Part& part, const std::vector<Term>& terms) {
-  MatrixXd out(static_cast<Index>(part.table.size()), 0);
-  for (const Term& term : terms) {
+/// Columns of the coefficients, and of changes of the searched shapes, for each reading.
+struct Linearised {
+  MatrixXd columns, of_shapes;
+};
+
+void append(MatrixXd& to, const VectorXd& column) {
+  to.conservativeResize(column.size(), to.cols() + 1);
+  to.col(to.cols() - 1) = column;
+}
+
+Expected<Linearised> columns_in(const Part& part, const Fit& fit) {
+  const auto n = static_cast<Index>(part.table.size());
+  Linearised out{MatrixXd(n, 0), MatrixXd(n, 0)};
+  auto parameter = fit.parameters.begin();
+  for (const Term& term : fit.terms) {
     const auto columns = term.effect->columns(part.table, term.axis, term.shape);
     if (!columns) return fail(columns.error());
+    VectorXd predicted = VectorXd::Zero(n);
+    std::vector<double> coefficients;
     for (const auto& column : *columns) {
-      out.conservativeResize(Eigen::NoChange, out.cols() + 1);
-      out.col(out.cols() - 1) =
-          Eigen::Map<const VectorXd>(column.data(), static_cast<Index>(column.size()));
+      const VectorXd one = Eigen::Map<const VectorXd>(column.data(), n);
+      append(out.columns, one);
+      coefficients.push_back(parameter->value);
+      predicted += parameter++->value * one;
+    }
+    for (std::size_t s = 0; s < term.shape.size(); ++s, ++parameter) {
+      if (!(parameter->u > 0.0)) continue;  // given or discrete
+      // A secant over the uncertainty, as a time constant cannot be negative.
+      std::vector<double> shape = term.shape;
+      shape[s] += parameter->u;
+      const auto other = term.effect->columns(part.table, term.axis, shape);
+      if (!other) return fail(other.error());
+      VectorXd change = -predicted;
+      for (std::size_t k = 0; k < other->size(); ++k)
+        change += coefficients[k] * Eigen::Map<const VectorXd>((*other)[k].data(), n);
+      append(out.of_shapes, change / parameter->u);
     }
   }
   return out;
@@ -29,6 +56,21 @@ Expected<MatrixXd> columns_in(const Part& part, const std::vector<Term>& terms) 
 
 void centre(MatrixXd& columns) {
   for (Index k = 0; k < columns.cols(); ++k) columns.col(k).array() -= columns.col(k).mean();
+}
+
+/// Factor of the variance of readings with exponential correlation, minus their mean: for each time.
+std::vector<double> about_mean(const std::vector<double>& time, double correlation_time) {
+  const double duration = time.back() - time.front();
+  std::vector<double> with_mean(time.size(), 0.0);  // correlation of a reading with the mean
+  if (correlation_time > 0.0 && duration > 0.0)
+    for (std::size_t i = 0; i < time.size(); ++i)
+      with_mean[i] = correlation_time / duration *
+                     (2.0 - std::exp((time.front() - time[i]) / correlation_time) -
+                      std::exp((time[i] - time.back()) / correlation_time));
+  double of_mean = 0.0;
+  for (const double c : with_mean) of_mean += c / static_cast<double>(time.size());
+  for (double& c : with_mean) c = std::max(0.0, 1.0 - 2.0 * c + of_mean);
+  return with_mean;
 }
 
 /// Start of the first window (a twentieth, at least 10 readings) with an RMS error above 2 u.
@@ -62,25 +104,28 @@ bool leaves_range(const Part& seen, const Part& unseen) {
   return false;
 }
 
-}  // namespace
-
-Expected<Prediction> predict(const Part& seen, const std::vector<Term>& model, const Part& unseen,
+/// Errors, and u from the scatter and the parameters, of readings that were not used.
+Expected<Prediction> applied(const Part& seen, const std::vector<Term>& model, const Part& unseen,
                              bool zero_kept) {
   const auto fit = fit_course(seen, model);
   if (!fit) return fail(fit.error());
-  const auto known = columns_in(seen, fit->terms), other = columns_in(unseen, fit->terms);
+  const auto known = columns_in(seen, *fit), other = columns_in(unseen, *fit);
   if (!known) return fail(known.error());
   if (!other) return fail(other.error());
   const CourseData data(seen);
-  MatrixXd means(data.size(), known->cols());
-  for (Index k = 0; k < known->cols(); ++k)
-    means.col(k) = data.means(std::vector<double>(known->col(k).begin(), known->col(k).end()));
-  CourseModel columns{means};
+  const auto means = [&](const MatrixXd& columns) {
+    MatrixXd out(data.size(), columns.cols());
+    for (Index k = 0; k < columns.cols(); ++k)
+      out.col(k) = data.means(std::vector<double>(columns.col(k).begin(), columns.col(k).end()));
+    return out;
+  };
+  CourseModel columns{means(known->columns)};
   for (const Parameter& p : fit->parameters)
     if (!p.shape) columns.of.push_back(p.quantity);
+  columns.add(means(known->of_shapes), {Quantity::time});
   const CourseUncertainty unknown = uncertainty_of(data, columns);
   Prediction out;
-  VectorXd x(known->cols());
+  VectorXd x(known->columns.cols());
   Index at = 0;
   for (const Parameter& p : fit->parameters)
     if (!p.shape) x(at++) = p.value;
@@ -88,27 +133,82 @@ Expected<Prediction> predict(const Part& seen, const std::vector<Term>& model, c
                                               static_cast<Index>(unseen.table.size()));
   const double mean = error.mean();
   out.sd = std::sqrt((error.array() - mean).square().mean());
-  error -= *other * x;
-  MatrixXd from = *other;
+  error -= other->columns * x;
+  MatrixXd from(error.size(), columns.columns.cols());
+  from << other->columns, other->of_shapes;
   if (!zero_kept) {
     error.array() -= error.mean();
     centre(from);
   } else {
     error.array() -= fit->zero.front();
-    from.rowwise() -= means.colwise().mean();
+    from.rowwise() -= columns.columns.colwise().mean();
   }
-  const double variance = unknown.s * unknown.s + (zero_kept ? unknown.zero * unknown.zero : 0.0);
+  const auto floor = floor_of(fit->residual);
+  // Of one reading, which is more than that of a mean of several.
+  const double correlated = unknown.correlated * unknown.correlated,
+               scatter =
+                   std::max(unknown.s * unknown.s - correlated, floor ? floor->s * floor->s : 0.0),
+               zero = zero_kept ? unknown.zero * unknown.zero : 0.0;
+  const std::vector<double> share = zero_kept
+                                        ? std::vector<double>(unseen.table.size(), 1.0)
+                                        : about_mean(unseen.table.time, unknown.correlation_time);
   const MatrixXd spread = math::product(from, unknown.covariance);
-  std::size_t inside = 0;
   for (Index i = 0; i < error.size(); ++i) {
     out.error.push_back(error(i));
-    out.u.push_back(std::sqrt(variance + spread.row(i).dot(from.row(i))));
-    if (std::fabs(error(i)) <= 2.0 * out.u.back()) ++inside;
+    out.u.push_back(std::sqrt(correlated * share[static_cast<std::size_t>(i)] + scatter + zero +
+                              spread.row(i).dot(from.row(i))));
   }
   out.rms = std::sqrt(error.squaredNorm() / static_cast<double>(error.size()));
-  out.inside = static_cast<double>(inside) / static_cast<double>(error.size());
-  out.fails_from = fails_from(unseen.table.time, out);
-  out.outside = leaves_range(seen, unseen);
+  return out;
+}
+
+Part with_rows(const Part& part, const std::vector<char>& kept) {
+  Part out = part;
+  keep_rows(out.table, kept);
+  for (auto& companion : out.companions) {
+    std::size_t to = 0;
+    for (std::size_t i = 0; i < kept.size(); ++i)
+      if (kept[i] != 0) companion[to++] = companion[i];
+    companion.resize(to);
+  }
+  return out;
+}
+
+/// Ratio of the errors to u in blocks of time that are predicted from the others, at least 1: by as
+/// much a model that does not hold everywhere makes u too small (Birge 1932).
+double error_over_u(const Part& seen, const std::vector<Term>& model) {
+  constexpr std::size_t enough = 6000;  // rows: eight for each mean value of the fit
+  const std::size_t n = seen.table.size(), step = (n + enough - 1) / enough;
+  double errors = 0.0, expected = 0.0;
+  for (std::size_t b = 0; b < CourseData::blocks; ++b) {
+    std::vector<char> inside(n, 0), others(n, 0);
+    for (std::size_t i = 0; i < n; i += step)
+      (i >= n * b / CourseData::blocks && i < n * (b + 1) / CourseData::blocks ? inside
+                                                                               : others)[i] = 1;
+    if (std::count(inside.begin(), inside.end(), 1) < 2) continue;
+    const auto one = applied(with_rows(seen, others), model, with_rows(seen, inside), false);
+    if (!one) continue;  // the other blocks do not determine the model
+    for (std::size_t i = 0; i < one->error.size(); ++i)
+      errors += one->error[i] * one->error[i], expected += one->u[i] * one->u[i];
+  }
+  return expected > 0.0 ? std::max(1.0, std::sqrt(errors / expected)) : 1.0;
+}
+
+}  // namespace
+
+Expected<Prediction> predict(const Part& seen, const std::vector<Term>& model, const Part& unseen,
+                             bool zero_kept) {
+  auto out = applied(seen, model, unseen, zero_kept);
+  if (!out) return out;
+  const double factor = error_over_u(seen, model);
+  std::size_t inside = 0;
+  for (std::size_t i = 0; i < out->u.size(); ++i) {
+    out->u[i] *= factor;
+    if (std::fabs(out->error[i]) <= 2.0 * out->u[i]) ++inside;
+  }
+  out->inside = static_cast<double>(inside) / static_cast<double>(out->u.size());
+  out->fails_from = fails_from(unseen.table.time, *out);
+  out->outside = leaves_range(seen, unseen);
   return out;
 }
 

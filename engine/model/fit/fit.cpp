@@ -554,6 +554,21 @@ Expected<Fit> fit_at(const Observations& o, std::vector<Term> terms,
   return out;
 }
 
+std::vector<std::string> below_uncertainty(const Fit& fit) {
+  std::vector<std::string> out;
+  for (const Term& term : fit.terms) {
+    if (term.effect->is_nuisance) continue;
+    bool any = false, small = true;
+    for (const Parameter& p : fit.parameters) {
+      if (p.effect != term.name() || p.shape) continue;
+      any = true;
+      small = small && std::fabs(p.value) < 2.0 * p.u;
+    }
+    if (any && small) out.push_back(term.name());
+  }
+  return out;
+}
+
 Expected<std::vector<double>> said_by(const Observations& o, const Term& term, double value) {
   NONIO_TRY(const auto columns, columns_of(o, term, term.shape));
   const VectorXd says = columns.col(0) * value;

@@ -138,6 +138,7 @@ const effects = (() => {
     if (candidate && shown.fit && !shown.explainIsOld && !shown.learning) {
       const rms = field(shown.fit.compare, "rms");
       evidence.push(candidate.score > 0 ? say("about.evidence", {effect, from: short(rms), to: short(field(candidate, "rms")), cv: short(field(candidate, "cv_rms")), unit: shown.unit, p: candidate.p < 1e-4 ? "< " + local("0.0001") : "= " + short(candidate.p), evidence: short(candidate.score)})
+        : !finite(field(candidate, "minimum_detectable_rms")) ? candidate.says
         : say("about.no_evidence", {effect, size: short(field(candidate, "minimum_detectable_rms")), unit: shown.unit}));
       if (candidate.aliases.length) evidence.push(say("about.aliases", {others: candidate.aliases.join(", ")}));
       if (finite(candidate.bias)) evidence.push(say("about.bias", {factor: short(candidate.bias)}));

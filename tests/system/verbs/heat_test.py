@@ -2,10 +2,16 @@
 """Displacements over time: the effects of channels in compare, explain and model add."""
 import json
 import math
+import pathlib
 import random
+import sys
+import tempfile
 import unittest
 
-from verbs import VerbTest
+from verbs import NONIO, VerbTest
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[3] / "bench"))
+import heat_stories  # noqa: E402
 
 MANIFEST = """format = 1
 [campaign]
@@ -112,6 +118,35 @@ class Heat(VerbTest):
             part, = self.json("compare", folder)["parts"]
             tau, = (p["value"] for p in part["model"]["parameters"] if p["name"] == "tau")
             self.assertLess(abs(tau - lag), 0.05 * lag + 25, f"seed {seed}")
+
+    def test_several_sensors_do_not_replace_the_one_that_shows_the_cause(self):
+        """The nose of a rod: other sensors together follow it nearly, with less noise."""
+        seed, runs = random.randrange(10**6), 8
+        with tempfile.TemporaryDirectory() as top:
+            named = [heat_stories.explain(NONIO, pathlib.Path(top) / str(k), "nose", seed * 1000 + k, False)
+                     for k in range(runs)]
+        right = sum(answer["verdict"].get("effect") in causes for answer, causes in named)
+        self.assertGreaterEqual(right, 6, f"seed {seed}: {[answer['verdict'] for answer, _ in named]}")
+
+    def test_effects_found_predict_left_out_blocks_better_and_are_not_below_their_uncertainty(self):
+        """Channels that wander alike, each with a lag of its own, and a cause that was not recorded."""
+        for seed in [random.randrange(10**6) for _ in range(4)]:
+            rng = random.Random(seed)
+            bodies = [follow([row[2] for row in record(seed, [0.0])], tau) for tau in (400, 1500, 2600, 5000)]
+            hidden = follow(bodies[3], 9000)
+            y = [2.5 * (b - 20) - 1.5 * (c - 20) + 0.8 * (h - 20) for b, c, h in zip(bodies[0], follow(bodies[1], 1800), hidden)]
+            text = "time_s,y_um," + ",".join(f"t{k}_c" for k in range(4)) + "\n" + "".join(
+                f"{i * STEP:g},{v + rng.gauss(0, 0.05):.4f}," + ",".join(f"{b[i] + rng.gauss(0, 0.02):.4f}" for b in bodies) + "\n"
+                for i, v in enumerate(y))
+            folder = self.write(f"d{seed}", MANIFEST.format(id="d", more=""), **{"warm.csv": text})
+            before = self.json("compare", folder)["parts"][0]["cv_rms_um"]
+            together = self.json("explain", folder)["parts"][0]["together"]
+            self.write(f"e{seed}", MANIFEST.format(id="e", more=f"[model]\neffects = {json.dumps(together)}\n"), **{"warm.csv": text})
+            part, = self.json("compare", self.site / f"e{seed}")["parts"]
+            with self.subTest(seed=seed):
+                self.assertTrue(together)
+                self.assertLess(part["cv_rms_um"], before)
+                self.assertFalse([w for w in part["warnings"] if "below its uncertainty" in w], part["warnings"])
 
     def test_displacements_that_move_together_share_their_effects_and_others_do_not(self):
         rows = record(5, [3.0, -1.5])

@@ -121,6 +121,9 @@ Expected<Fit> fit(const Observations& observations, std::vector<Term> terms,
                   std::vector<double> weight = {}, const Noise& noise = {},
                   const Observations* thin = nullptr);
 
+/// Returns the effects whose linear parameters are all smaller than 2 u, except the set-up.
+std::vector<std::string> below_uncertainty(const Fit& fit);
+
 /// Prediction for each reading, m or rad, of a term that has one parameter with this value, SI.
 Expected<std::vector<double>> said_by(const Observations& observations, const Term& term,
                                       double value);
