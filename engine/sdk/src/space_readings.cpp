@@ -89,8 +89,8 @@ std::vector<double> places_of(const SpaceReadings& s, std::size_t k) {
 
 std::vector<double> knots_over(const std::vector<double>& places) {
   std::vector<double> knots;
-  for (std::size_t k = 3; k < std::min<std::size_t>(places.size() / 2, 11); ++k)
-    knots.push_back(static_cast<double>(k));
+  const std::size_t end = places.size() < 6 ? 3 : std::clamp<std::size_t>(places.size() / 2, 4, 11);
+  for (std::size_t k = 3; k < end; ++k) knots.push_back(static_cast<double>(k));
   return knots;
 }
 

@@ -12,7 +12,7 @@ namespace nonio::pitch_curve {
 /// cannot follow single targets. `explain` omits curves that need more than half of the targets.
 static std::vector<double> grid(const Observations& o, const Axis& axis) {
   constexpr int fewest = 3, most = 10;
-  constexpr std::size_t fewest_targets = 8;
+  constexpr std::size_t fewest_targets = 6;
   const auto r = readings_of(o, axis);
   if (!r) return {};
   const std::vector<double> targets = targets_of(*r);

@@ -357,7 +357,8 @@ TEST(Effects, KnotsLeaveThreeTargetsForTwoFreeValues) {
     return effect("pitch-curve").shapes[0].grid(campaign(linear(), targets, 0.1, 2), linear());
   };
   using Grid = std::vector<double>;
-  EXPECT_EQ(knots(7), Grid{});
+  EXPECT_EQ(knots(5), Grid{});
+  EXPECT_EQ(knots(6), Grid{3});
   EXPECT_EQ(knots(8), (Grid{3, 4}));
   EXPECT_EQ(knots(13), (Grid{3, 4, 5, 6, 7}));
   EXPECT_EQ(knots(60), (Grid{3, 4, 5, 6, 7, 8, 9, 10}));
