@@ -174,24 +174,35 @@ Part with_rows(const Part& part, const std::vector<char>& kept) {
   return out;
 }
 
-/// Ratio of the errors to u in blocks of time that are predicted from the others, at least 1: by as
-/// much a model that does not hold everywhere makes u too small (Birge 1932).
-double error_over_u(const Part& seen, const std::vector<Term>& model) {
+/// Ratio of the errors to u of rows from `from` to `to`, predicted from the others; 0 if the others
+/// do not determine the model.
+double ratio(const Part& seen, const std::vector<Term>& model, std::size_t from, std::size_t to) {
   constexpr std::size_t enough = 6000;  // rows: eight for each mean value of the fit
   const std::size_t n = seen.table.size(), step = (n + enough - 1) / enough;
+  std::vector<char> inside(n, 0), others(n, 0);
+  for (std::size_t i = 0; i < n; i += step) (i >= from && i < to ? inside : others)[i] = 1;
+  if (std::count(inside.begin(), inside.end(), 1) < 2) return 0.0;
+  const auto one = applied(with_rows(seen, others), model, with_rows(seen, inside), false);
+  if (!one) return 0.0;
   double errors = 0.0, expected = 0.0;
+  for (std::size_t i = 0; i < one->error.size(); ++i)
+    errors += one->error[i] * one->error[i], expected += one->u[i] * one->u[i];
+  return expected > 0.0 ? std::sqrt(errors / expected) : 0.0;
+}
+
+/// Ratio of the errors to u where parts of the time are predicted from the others, at least 1: by as
+/// much a model that does not hold everywhere makes u too small (Birge 1932). Root mean square over
+/// blocks, or over the two ends, whichever is larger: the use of a model is mostly extrapolation.
+double error_over_u(const Part& seen, const std::vector<Term>& model) {
+  const std::size_t n = seen.table.size();
+  double blocks = 0.0;
   for (std::size_t b = 0; b < CourseData::blocks; ++b) {
-    std::vector<char> inside(n, 0), others(n, 0);
-    for (std::size_t i = 0; i < n; i += step)
-      (i >= n * b / CourseData::blocks && i < n * (b + 1) / CourseData::blocks ? inside
-                                                                               : others)[i] = 1;
-    if (std::count(inside.begin(), inside.end(), 1) < 2) continue;
-    const auto one = applied(with_rows(seen, others), model, with_rows(seen, inside), false);
-    if (!one) continue;  // the other blocks do not determine the model
-    for (std::size_t i = 0; i < one->error.size(); ++i)
-      errors += one->error[i] * one->error[i], expected += one->u[i] * one->u[i];
+    const double one =
+        ratio(seen, model, n * b / CourseData::blocks, n * (b + 1) / CourseData::blocks);
+    blocks += one * one / static_cast<double>(CourseData::blocks);
   }
-  return expected > 0.0 ? std::max(1.0, std::sqrt(errors / expected)) : 1.0;
+  const double first = ratio(seen, model, 0, n * 2 / 5), last = ratio(seen, model, n * 3 / 5, n);
+  return std::max({1.0, std::sqrt(blocks), std::sqrt((first * first + last * last) / 2.0)});
 }
 
 }  // namespace
