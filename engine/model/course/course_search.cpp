@@ -104,9 +104,9 @@ class CourseExplanation {
   }
 
   /// Several sensors can together imitate the one that shows the cause, with less of its noise. The
-  /// effect that alone predicts left-out blocks best is preferred if it leaves only noise, if it
-  /// comes closer (in ln RMS) to the whole set than to the best effect of the set alone, or if a set
-  /// with it predicts about as well.
+  /// effect that alone predicts left-out blocks best is preferred if it leaves only noise. It is
+  /// also preferred if it leaves less than half of what the best effect of the set alone leaves, and
+  /// comes closer (in ln RMS) to the whole set than to this, or is in a set that predicts as well.
   void begin_with_best_alone(const std::map<std::size_t, std::pair<std::size_t, double>>& singles) {
     constexpr double none = std::numeric_limits<double>::infinity();
     double least = none, least_of_set = none;
@@ -119,6 +119,7 @@ class CourseExplanation {
     if (set_.empty() || !(least < least_of_set)) return;
     CourseSet other{alone};
     if (const Whole one = whole(other); !one.only_noise) {
+      if (least > least_of_set - std::numbers::ln2) return;
       const double of_set = whole(set_).ln_rms;
       other = proven(search_.best(other), other);
       if (2.0 * one.ln_rms > of_set + least_of_set &&
