@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -8,6 +9,10 @@
 #include "common.h"
 
 namespace nonio::app {
+
+/// Returns the language of the nearest folder at or above the path that contains a site, the
+/// results of a campaign or those of a run; English without such a folder.
+std::string language_at(const std::filesystem::path& path);
 
 /// Texts for the terminal: English until the site is read, then in the language of the site. The
 /// texts are copied, because the templates of a run are destroyed at its end.
