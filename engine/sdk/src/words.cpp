@@ -75,6 +75,21 @@ bool is_joined(std::string_view joined, std::string_view name, std::string_view 
          joined.ends_with(suffix);
 }
 
+/// Replaces the decimal points between digits.
+std::string with_local_numbers(std::string text, std::string_view language) {
+  const auto is_digit = [&](std::size_t i) { return text[i] >= '0' && text[i] <= '9'; };
+  for (std::size_t i = 1; i + 1 < text.size(); ++i)
+    if (text[i] == '.' && is_digit(i - 1) && is_digit(i + 1)) text[i] = localised(".", language)[0];
+  return text;
+}
+
+/// Whether the text contains numbers, such as "1.00 EYZ.2" or the positions of readings, and not the
+/// name of a measurement.
+bool has_numbers(std::string_view key, const std::string& text) {
+  return key == "combinations" || key == "weakest" ||
+         (key == "which" && (text.find(" mm") != text.npos || text.find(" deg") != text.npos));
+}
+
 std::string filled(std::string_view text, const std::vector<Number>& evidence, const Texts& texts,
                    std::string_view language) {
   std::string out;
@@ -98,7 +113,8 @@ std::string filled(std::string_view text, const std::vector<Number>& evidence, c
         value =
             localised(evidence_text(n), language) + " " + std::string(unit_of(n.quantity).symbol);
     for (const auto& [key, words_of] : texts)
-      if (name == key) value = words_of;
+      if (name == key)
+        value = has_numbers(key, words_of) ? with_local_numbers(words_of, language) : words_of;
     out += value;
     i = close + 1;
   }
@@ -124,8 +140,6 @@ Texts said(const Templates& templates, std::string_view language, Texts texts) {
     if (std::string term = words(templates, language, "term." + key + "." + text); !term.empty())
       out = std::move(term);
     text = std::move(out);
-    // Errors with their sizes, such as "EYY 1.00, EXX -0.75".
-    if (key == "combinations") text = localised(std::move(text), language);
   }
   return texts;
 }
