@@ -25,8 +25,8 @@ BRACKETED = re.compile(r"\(U (= )?-?[\d.,]+( \S+)?\)")  # a value has its U afte
 
 
 def english_in(line, language):
-    words = set(re.findall(r"[a-z]+", SAME.sub(" ", line).lower()))
-    return words & ENGLISH - (ITALIAN if language == "it" else set())
+    words = re.findall(r"\b[A-Z]?[a-z]+\b", SAME.sub(" ", line))
+    return {word.lower() for word in words} & ENGLISH - (ITALIAN if language == "it" else set())
 
 
 def rtl(values):
