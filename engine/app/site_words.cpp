@@ -26,11 +26,13 @@ std::string language_at(const fs::path& path) {
   return "en";
 }
 
-SiteWords::SiteWords(const Common& common, const std::string& language) {
+SiteWords::SiteWords(const Common& common, const std::string& language, const std::string& more) {
   std::string digest;
-  if (auto read = config::read_templates(common.template_folders(), digest, nullptr, {},
-                                         {"words/en/terminal", "words/" + language + "/terminal",
-                                          "words/en/site", "words/" + language + "/site"}))
+  std::vector<std::string> files;
+  for (const std::string& folder : {std::string("words/en/"), "words/" + language + "/"})
+    for (const std::string& file : {std::string("terminal"), std::string("site"), more})
+      files.push_back(folder + file);
+  if (auto read = config::read_templates(common.template_folders(), digest, nullptr, {}, files))
     templates_ = std::move(*read);
   words_.emplace(templates_,
                  templates_.tables.contains("words/" + language + "/terminal") ? language : "en");

@@ -18,8 +18,10 @@ std::string language_at(const std::filesystem::path& path);
 /// texts are copied, because the templates of a run are destroyed at its end.
 class SiteWords {
  public:
-  /// Uses English if there are no texts in `language`.
-  explicit SiteWords(const Common& common, const std::string& language = "en");
+  /// Uses English if there are no texts in `language`. Reads the files terminal and site of the
+  /// words, and the file `more`.
+  explicit SiteWords(const Common& common, const std::string& language = "en",
+                     const std::string& more = "site");
   SiteWords(const SiteWords&) = delete;
   SiteWords& operator=(const SiteWords&) = delete;
 

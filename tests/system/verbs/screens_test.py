@@ -161,6 +161,8 @@ class Screens(VerbTest):
             see("certificate", "list", site)
             see("certificate", "withdraw", site, "S-0001", "--why", "X", "--by", "B")
             see("certificate", "audit", site)
+            for verbose in ([], ["--verbose"]):
+                see("certificate", "verify", "--site", site, out / "adjusted/certificate.pdf", *verbose, expect=5)
 
     def test_import(self):
         for language in ("de", "it"):
