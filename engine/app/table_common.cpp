@@ -41,16 +41,16 @@ TableJson difference_json(const tables::TableDifference& d) {
 static void print_shape(const char* name, const std::optional<tables::TableShape>& s, bool rotary,
                         const config::TerminalWords& say) {
   const std::size_t width =
-      std::max(columns_of(say("table.present")), columns_of(say("table.new")));
+      std::max(columns_of(say("compared.present")), columns_of(say("compared.new")));
   std::string text = padded(say(name), width) + ": ";
-  if (!s) return sentence(std::cout, 2, text + say("table.none"));
+  if (!s) return sentence(std::cout, 2, text + say("compared.none"));
   const Quantity q = deviation_of(rotary);
-  text += say("table.shape", {{"largest", with_unit(s->largest, q, say)},
-                              {"step", with_unit(s->step, q, say)},
-                              {"from", with_unit(s->step_at, position_of(rotary), say)},
-                              {"slope", with_unit(s->slope, slope_of(rotary), say)}});
+  text += say("compared.shape", {{"largest", with_unit(s->largest, q, say)},
+                                 {"step", with_unit(s->step, q, say)},
+                                 {"from", with_unit(s->step_at, position_of(rotary), say)},
+                                 {"slope", with_unit(s->slope, slope_of(rotary), say)}});
   if (s->backlash)
-    text += ", " + say("table.backlash", {{"value", with_unit(*s->backlash, q, say)}});
+    text += ", " + say("compared.backlash", {{"value", with_unit(*s->backlash, q, say)}});
   sentence(std::cout, 2, text);
 }
 
@@ -58,15 +58,15 @@ void print_difference(const tables::TableDifference& d, const config::TerminalWo
                       bool compared) {
   std::string text = say("head.axis") + " " + d.output;
   if (d.input.size() != 1 || d.input.front() != d.output)
-    text += " " + say("table.by", {{"axes", storage::listed(d.input)}});
+    text += " " + say("compared.by", {{"axes", storage::listed(d.input)}});
   const Quantity q = deviation_of(d.rotary);
   if (compared)
-    text += ": " + say("table.differ", {{"largest", with_unit(d.largest, q, say)},
-                                        {"at", with_unit(d.at, position_of(d.rotary), say)},
-                                        {"range", with_unit(d.range, q, say)}});
+    text += ": " + say("compared.differ", {{"largest", with_unit(d.largest, q, say)},
+                                           {"at", with_unit(d.at, position_of(d.rotary), say)},
+                                           {"range", with_unit(d.range, q, say)}});
   sentence(std::cout, 0, text);
-  print_shape("table.present", d.present, d.rotary, say);
-  if (compared) print_shape("table.new", d.next, d.rotary, say);
+  print_shape("compared.present", d.present, d.rotary, say);
+  if (compared) print_shape("compared.new", d.next, d.rotary, say);
 }
 
 TableJson forecast_json(const tables::TableForecast& f) {
@@ -91,14 +91,14 @@ void print_forecast(const tables::TableForecast& f, const config::TerminalWords&
     if (!std::isfinite(v[0]) || !std::isfinite(v[1])) continue;
     const std::string after = with_unit(v[1], q, say);
     text += std::string("  ") + name + " " + with_unit(v[0], q, say) + " -> " +
-            (f.U_known ? after : say("table.at-least", {{"value", after}}));
+            (f.U_known ? after : say("compared.at-least", {{"value", after}}));
   }
-  if (!f.U_known) text += "; " + say("table.no-U");
-  if (std::isnan(f.E[0])) text += " " + say("table.unpredicted");
+  if (!f.U_known) text += "; " + say("compared.no-U");
+  if (std::isnan(f.E[0])) text += " " + say("compared.unpredicted");
   if (f.scatter > 0.0)
-    text += "; " + say("table.scatter", {{"value", with_unit(f.E[1] + f.scatter, q, say)}});
+    text += "; " + say("compared.scatter", {{"value", with_unit(f.E[1] + f.scatter, q, say)}});
   sentence(std::cout, 0, text);
-  if (f.worse()) sentence(std::cout, 2, say("error") + ": " + say("table.worse"));
+  if (f.worse()) sentence(std::cout, 2, say("error") + ": " + say("compared.worse"));
 }
 
 Expected<Loaded> load(const loader::Plugins& plugins, const std::string& files,

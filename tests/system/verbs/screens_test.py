@@ -10,8 +10,9 @@ import tempfile
 import tomllib
 import unittest
 
-from verbs import NONIO, VerbTest
+from verbs import VerbTest
 
+os.environ["NONIO_ALLOW_ROOT"] = "1"  # its warning is English
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 ENGLISH = {"the", "of", "and", "is", "are", "with", "without", "not", "for", "from", "by", "to", "that", "this", "which", "because", "has",
            "have", "been", "than", "its", "only", "when", "between", "written", "measurement", "reading", "readings",
