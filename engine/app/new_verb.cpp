@@ -147,7 +147,8 @@ using Values = std::map<std::string, std::string>;
 
 Expected<void> ask_for(const Setting& one, const std::string& otherwise, Values& values,
                        Questions& ask) {
-  const std::string question = *one.question != '\0' ? one.question : ask.say.of("new.ask", one.key);
+  const std::string question =
+      *one.question != '\0' ? one.question : ask.say.of("new.ask", one.key);
   if (auto done = ask.text(question, values[one.key], otherwise); !done) return done;
   return one_line(one.key, values[one.key]);
 }

@@ -90,7 +90,10 @@ class Screens(VerbTest):
         for language in ("de", "it"):
             site, out = self.copy("site", language), self.root / f"out-{language}"
             see = lambda *args, **more: self.screen(language, *args, **more)
-            see("run", site, "--out", out)
+            shown = see("run", site, "--out", out)
+            lines = re.findall(r"^(?:Handlung erforderlich|azione richiesta)  ", shown, re.M)
+            self.assertGreater(len(lines), 10)
+            self.assertIn(f"; {len(lines)} {'mit Handlungsbedarf' if language == 'de' else 'con azione richiesta'}; ", shown)
             see("run", site, "--out", out, "--dry-run")
             see("status", out)
             see("check", site)
