@@ -18,6 +18,9 @@ struct OpenCampaign {
   std::unique_ptr<reading::Workplace> place;
   reading::ReadCampaign read;
   const Campaign& campaign() const { return read.manifest->campaign; }
+  config::TerminalWords words() const {
+    return {place->context.templates, place->context.site.language};
+  }
 };
 
 /// Reads the campaign and prints its errors on stderr. The error is the exit status: 2 for a wrong

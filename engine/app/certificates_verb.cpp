@@ -6,6 +6,7 @@
 
 #include "certificates/certificate_list.h"
 #include "platform/storage/json_values.h"
+#include "site_words.h"
 #include "text_layout.h"
 #include "verbs.h"
 
@@ -39,22 +40,24 @@ Json to_json(const RegisterEntry& e) {
 }
 
 /// Example: "  approved by B. Sample (user sample, account lab@room-3)".
-std::string person_text(const char* what, const std::string& by, const std::string& account,
-                        const std::string& user = {}) {
+std::string person_text(const config::TerminalWords& say, const char* what, const std::string& by,
+                        const std::string& account, const std::string& user = {}) {
   if (by.empty() && account.empty()) return {};
-  return std::string("  ") + what + (by.empty() ? "" : " by " + by) +
-         (account.empty()
-              ? ""
-              : " (" + (user.empty() ? "" : "user " + user + ", ") + "account " + account + ")");
+  std::string in = user.empty() ? "" : say("certificate.user", {{"user", user}});
+  if (!account.empty())
+    in += (in.empty() ? "" : ", ") + say("certificate.account", {{"account", account}});
+  const std::string person = by.empty() ? in : in.empty() ? by : by + " (" + in + ")";
+  return "  " + say(what, {{"person", person}});
 }
 
-void print(const RegisterEntry& e) {
-  std::string line = e.number + "  " + (e.state == "drawn" ? "reserved" : e.state);
+void print(const RegisterEntry& e, const config::TerminalWords& say) {
+  std::string line = e.number + "  " + say.of("certificate.state", e.state);
   if (!e.replaced_by.empty())
-    line += (e.state == "amended" ? " by " : ", replaced by ") + e.replaced_by;
-  line += "  " + e.campaign + "  " + e.date + (e.reason.empty() ? "" : "  " + e.reason) +
-          person_text("approved", e.released_by, e.released_account, e.released_user) +
-          person_text("withdrawn", e.withdrawn_by, e.withdrawn_account);
+    line += ", " + say("certificate.replaced-by", {{"number", e.replaced_by}});
+  line +=
+      "  " + e.campaign + "  " + e.date + (e.reason.empty() ? "" : "  " + e.reason) +
+      person_text(say, "certificate.approved", e.released_by, e.released_account, e.released_user) +
+      person_text(say, "certificate.withdrawn", e.withdrawn_by, e.withdrawn_account);
   std::cout << wrapped(line, 0, sentence_width(STDOUT_FILENO), 4);
 }
 
@@ -75,12 +78,16 @@ int audit(const CertificateWish& wanted, const config::Numbering& numbering, con
                     {"last_sha256", a.last_sha256},
                     {"wrong", a.wrong}});
   } else {
-    for (const std::string& what : a.wrong) std::cout << "error: " << what << "\n";
-    std::cout << (a.wrong.empty() ? "unchanged" : "changed after it was written") << ": register "
-              << a.id << " (entries: " << a.entries << ", certificates: " << a.certificates
-              << ", files: " << a.files << ")\n"
-              << "last entry " << a.last_at << ", SHA-256 " << a.last_sha256
-              << ": keep it, because a removal of the newest entries shows only by it\n";
+    const SiteWords words(common, language_at(wanted.site));
+    const config::TerminalWords& say = words.get();
+    for (const std::string& what : a.wrong) std::cout << say("error") << ": " << what << "\n";
+    std::cout << say(a.wrong.empty() ? "audit.unchanged" : "audit.changed") << ": "
+              << say("audit.register", {{"id", a.id},
+                                        {"entries", std::to_string(a.entries)},
+                                        {"certificates", std::to_string(a.certificates)},
+                                        {"files", std::to_string(a.files)}})
+              << "\n"
+              << say("audit.last", {{"at", a.last_at}, {"sha256", a.last_sha256}}) << "\n";
   }
   return a.wrong.empty() ? exit_done : exit_failed;
 }
@@ -107,8 +114,9 @@ int certificates(const CertificateWish& wanted, const Common& common) {
     for (const RegisterEntry& e : *entries) all.push_back(to_json(e));
     print_json(Json{{"schema", "nonio-certificates/1"}, {"certificates", std::move(all)}});
   } else {
-    for (const RegisterEntry& e : *entries) print(e);
-    if (entries->empty() && !common.quiet) std::cout << "the register has no certificate yet\n";
+    const SiteWords words(common, language_at(wanted.site));
+    for (const RegisterEntry& e : *entries) print(e, words.get());
+    if (entries->empty() && !common.quiet) std::cout << words.get()("certificate.none") << "\n";
   }
   return exit_done;
 }

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <sstream>
@@ -88,8 +89,11 @@ CLI::Validator within(double least, double most) {
             const auto [at, error] = std::from_chars(found.data(), end, value);
             if (error == std::errc() && at == end && value >= least && value <= most)
               return std::string();
-            return "expected a number from " + short_text(least, 9) + " to " + short_text(most, 9) +
-                   ", found \"" + found + "\"";
+            const auto text = [](double x) {
+              return x == std::floor(x) ? fixed_text(x, 0) : short_text(x, 9);
+            };
+            return "expected a number from " + text(least) + " to " + text(most) + ", found \"" +
+                   found + "\"";
           },
           ""};
 }
@@ -407,6 +411,27 @@ void print_help(const Program& program, const Found& found, std::ostream& out, i
   found.path == program.name ? page.program(program) : page.command(found);
 }
 
+/// Names the argument that is missing or lacks its value, what it means, and an example.
+std::string message_of(const CLI::ParseError& e, const Found& found) {
+  const std::string raw = e.what();
+  if (dynamic_cast<const CLI::ExtrasError*>(&e) != nullptr) {
+    const Words extra = split(raw.substr(raw.find(": ") + 2));  // in reversed order
+    return "unexpected argument \"" + extra.back() + "\"; expected " +
+           HelpPage::synopsis(found.path, *found.verb);
+  }
+  const bool is_missing = dynamic_cast<const CLI::RequiredError*>(&e) != nullptr;
+  if (!is_missing && dynamic_cast<const CLI::ArgumentMismatch*>(&e) == nullptr) return raw;
+  const std::string name = raw.substr(0, raw.find_first_of(": "));
+  std::string text = raw;
+  for (const Argument& a : found.verb->arguments)
+    if (a.name == name)
+      text = (is_missing ? left_column(a) + " is missing"
+                         : name + " requires a value, " + left_column(a)) +
+             ": " + a.help;
+  if (!found.verb->examples.empty()) text += "\nExample: " + found.verb->examples.front();
+  return text;
+}
+
 int parse(const Found& found, const Words& options) {
   CLI::App cli;
   for (const Argument& a : found.verb->arguments) check(*bind(cli, a), a);
@@ -414,7 +439,8 @@ int parse(const Found& found, const Words& options) {
   try {
     cli.parse(std::move(reversed));
   } catch (const CLI::ParseError& e) {
-    std::cerr << found.typed << ": " << e.what() << "\nSee `" << found.path << " --help`.\n";
+    std::cerr << found.typed << ": " << message_of(e, found) << "\nSee `" << found.path
+              << " --help`.\n";
     return exit_usage;
   }
   for (const Argument& a : found.verb->arguments)

@@ -12,6 +12,7 @@
 #include "platform/storage/json_values.h"
 #include "platform/storage/packed_results.h"
 #include "results_folder.h"
+#include "site_words.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -59,7 +60,8 @@ Expected<std::vector<evaluation::RecordedFile>> files_of(const GetWish& wish, co
 }
 
 void print_list(const std::string& id, const fs::path& folder,
-                const std::vector<evaluation::RecordedFile>& files, bool each_file, bool json) {
+                const std::vector<evaluation::RecordedFile>& files, bool each_file, bool json,
+                const config::TerminalWords& say) {
   std::uint64_t bytes = 0;
   for (const auto& f : files) bytes += f.size;
   if (json) {
@@ -70,9 +72,14 @@ void print_list(const std::string& id, const fs::path& folder,
     print_json(line, -1);
     return;
   }
-  std::cout << id << ": " << files.size() << " files, " << bytes << " bytes, "
-            << (is_packed(folder) ? "pack " + storage::stored_in(folder).filename().string()
-                                  : "folder " + folder.string())
+  const fs::path stored = storage::stored_in(folder);
+  const std::string place = is_packed(folder)
+                                ? say("export.pack", {{"name", stored.filename().string()}})
+                                : say("export.folder", {{"name", folder.string()}});
+  std::cout << say("export.listed", {{"id", id},
+                                     {"count", std::to_string(files.size())},
+                                     {"bytes", std::to_string(bytes)},
+                                     {"place", place}})
             << "\n";
   if (!each_file) return;
   for (const auto& f : files)
@@ -108,11 +115,12 @@ Expected<std::size_t> write_out(const fs::path& from, const fs::path& to,
 }
 
 /// Returns false, after printing an error, if a file is damaged or would replace a different file.
-bool get_one(const GetWish& wish, const std::string& id, const Common& common) {
+bool get_one(const GetWish& wish, const std::string& id, const config::TerminalWords& say,
+             const Common& common) {
   fs::path folder;
   const auto files = files_of(wish, id, folder);
   if (!files) return complain(files.error().message), false;
-  if (wish.list) return print_list(id, folder, *files, !wish.ids.empty(), common.json), true;
+  if (wish.list) return print_list(id, folder, *files, !wish.ids.empty(), common.json, say), true;
   const fs::path to = wish.to.empty() ? storage::own_folder(wish.out, id) : fs::path(wish.to) / id;
   std::error_code error;
   const bool in_place = to == folder || fs::equivalent(to, folder, error);
@@ -126,8 +134,10 @@ bool get_one(const GetWish& wish, const std::string& id, const Common& common) {
                     {"written", *written}},
                -1);
   else if (!common.quiet)
-    std::cout << to.string() << ": " << *written << " of " << files->size() << " files written"
-              << (in_place ? ": this is the folder of the results" : "") << "\n";
+    std::cout << say("export.written", {{"folder", to.string()},
+                                        {"count", std::to_string(*written)},
+                                        {"all", std::to_string(files->size())}})
+              << (in_place ? ": " + say("export.in-place") : "") << "\n";
   return true;
 }
 
@@ -228,8 +238,9 @@ int get(const GetWish& wish, const Common& common) {
     if (!taken) return complain(taken.error().message);
     lock.emplace(std::move(*taken));
   }
+  const SiteWords words(common, language_at(wish.out));
   bool well = true;
-  for (const std::string& id : *ids) well = get_one(wish, id, common) && well;
+  for (const std::string& id : *ids) well = get_one(wish, id, words.get(), common) && well;
   return well ? exit_done : exit_failed;
 }
 

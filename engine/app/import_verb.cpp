@@ -10,6 +10,7 @@
 #include "laboratory/store/identity.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
+#include "site_words.h"
 #include "text_layout.h"
 #include "verbs.h"
 
@@ -75,51 +76,46 @@ void print_line(std::size_t indent, const std::string& text) {
   std::cout << wrapped(text, indent, sentence_width(STDOUT_FILENO), 2);
 }
 
-void print(const char* title, const std::vector<importing::ImportReport::Passed>& list) {
+void print(const char* title, const std::vector<importing::ImportReport::Passed>& list,
+           const config::TerminalWords& say) {
   constexpr std::size_t most = 20;
-  if (!list.empty()) print_line(0, title);
+  if (!list.empty()) print_line(0, say(title));
   for (std::size_t i = 0; i < std::min(list.size(), most); ++i)
     print_line(2, list[i].file + ": " + list[i].why);
   if (list.size() > most)
-    print_line(2, "and " + std::to_string(list.size() - most) + " more (--json lists them all)");
+    print_line(2, say("import.more", {{"count", std::to_string(list.size() - most)}}));
 }
 
-void print(const importing::ImportReport& report) {
+const char* state_of(const importing::ImportedCampaign& c) {
+  if (c.there) return "there";
+  if (c.whole()) return c.written ? "written" : "complete";
+  return c.written ? "partly" : "lacking";
+}
+
+void print(const importing::ImportedFile& f, const config::TerminalWords& say) {
+  if (!f.same_as.empty()) return print_line(2, f.file + ": " + f.lacks.front());
+  print_line(2, say("import.file", {{"file", f.file},
+                                    {"measurement", f.measurement},
+                                    {"axis", f.axis.empty() ? "?" : f.axis},
+                                    {"reader", f.reader.empty() ? "?" : f.reader},
+                                    {"readings", std::to_string(f.readings)},
+                                    {"missing", std::to_string(f.missing)}}));
+  for (const std::string& what : f.assumed) print_line(4, say("import.assumed", {{"what", what}}));
+  for (const std::string& lack : f.lacks) print_line(4, say("import.expected", {{"what", lack}}));
+}
+
+void print(const importing::ImportReport& report, const config::TerminalWords& say) {
   for (const importing::ImportedCampaign& c : report.campaigns) {
-    if (c.there) {
-      print_line(0, c.id + ": imported before, nothing to do");
-      continue;
-    }
-    print_line(0, c.id +
-                      (c.written   ? ": written"
-                       : c.whole() ? ": complete"
-                                   : ": not written") +
-                      (c.whole() ? "" : ", something is missing"));
-    for (const std::string& lack : c.lacks) print_line(2, "expected: " + lack);
-    if (machine_name(c).empty())
-      print_line(
-          2, "belongs to no machine, so it has no history: state --asset, or --maker and --serial");
-    for (const importing::ImportedFile& f : c.files) {
-      if (!f.same_as.empty()) {
-        print_line(2, f.file + ": " + f.lacks.front());
-        continue;
-      }
-      print_line(2, f.file + ": measurement " + f.measurement + ", axis " +
-                        (f.axis.empty() ? "?" : f.axis) + ", reader " +
-                        (f.reader.empty() ? "?" : f.reader) + ", " + std::to_string(f.readings) +
-                        " readings, " + std::to_string(f.missing) + " not taken");
-      for (const std::string& what : f.assumed) print_line(4, "assumed: " + what);
-      for (const std::string& lack : f.lacks) print_line(4, "expected: " + lack);
-    }
+    print_line(0, c.id + ": " + say.of("import.state", state_of(c)));
+    if (c.there) continue;
+    for (const std::string& lack : c.lacks) print_line(2, say("import.expected", {{"what", lack}}));
+    if (machine_name(c).empty()) print_line(2, say("import.no-machine"));
+    for (const importing::ImportedFile& f : c.files) print(f, say);
   }
-  print("The same as another, left out:", report.duplicates);
-  print("Excluded by the rule:", report.excluded);
-  print("Not imported:", report.unmatched);
-  if (!report.campaigns.empty())
-    print_line(
-        0,
-        "Axes are taken from the file names and signs from the files: verify both on the machine "
-        "before a table is loaded.");
+  print("import.duplicates", report.duplicates, say);
+  print("import.excluded", report.excluded, say);
+  print("import.unmatched", report.unmatched, say);
+  if (!report.campaigns.empty()) print_line(0, say("import.verify"));
 }
 
 int import_files(const ImportArguments& arguments, const Common& common) {
@@ -133,15 +129,16 @@ int import_files(const ImportArguments& arguments, const Common& common) {
   loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   for (const std::string& conflict : plugins.conflicts()) return complain(conflict);
+  const SiteWords words(common, common.json ? "en" : language_at(arguments.out));
   const auto report = importing::import_folder(
-      {arguments.folder, fs::absolute(arguments.out), *rule, arguments.asset, arguments.maker,
-       arguments.serial, arguments.partial, arguments.dry_run},
+      {arguments.folder, fs::absolute(arguments.out), *rule, words.get(), arguments.asset,
+       arguments.maker, arguments.serial, arguments.partial, arguments.dry_run},
       plugins);
   if (!report) return complain(report.error().message);
   if (common.json)
     print_import_json(*report, arguments.dry_run);
   else if (!common.quiet)
-    print(*report);
+    print(*report, words.get());
   bool whole = !report->campaigns.empty();
   for (const importing::ImportedCampaign& c : report->campaigns) whole = whole && c.whole();
   if (report->campaigns.empty()) complain("no file follows the pattern " + rule->pattern);

@@ -147,13 +147,14 @@ int insert_set(const SetWish& w, const Loaded& present, const Settings& options,
     print_json(json);
     return exit_done;
   }
-  for (const auto& d : merged->differences) print_difference(d);
-  for (const auto& f : merged->forecast) print_forecast(f);
+  const config::TerminalWords say = open.words();
+  for (const auto& d : merged->differences) print_difference(d, say);
+  for (const auto& f : merged->forecast) print_forecast(f, say);
   for (const auto& line : merged->lines)
     sentence(std::cout, 0,
-             "diagonal " + line.measurement + ": range " +
-                 with_unit(line.before, Quantity::deviation) + " -> " +
-                 with_unit(line.after, Quantity::deviation));
+             say("session.set.line", {{"line", line.measurement},
+                                      {"before", with_unit(line.before, Quantity::deviation, say)},
+                                      {"after", with_unit(line.after, Quantity::deviation, say)}}));
   for (const std::string& file : written) std::cout << file << "\n";
   if (!recorded->empty()) std::cout << *recorded << "\n";
   return exit_done;

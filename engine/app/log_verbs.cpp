@@ -7,9 +7,11 @@
 #include "campaign/config/site_logs.h"
 #include "laboratory/assessment/last_run.h"
 #include "laboratory/store/query.h"
+#include "nonio/sdk/format.h"
 #include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
 #include "printable.h"
+#include "site_words.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -43,12 +45,16 @@ void say(const Common& common, const std::string& site, const char* file, const 
   if (common.json)
     print_json(entry);
   else if (!common.quiet)
-    std::cout << "entered in " << printable(site) << "/" << file << "\n";
+    std::cout << SiteWords(common, language_at(site))
+                     .get()("entered", {{"file", printable(site) + "/" + file}})
+              << "\n";
 }
 
 int list_events(const EventWish& wish, const Common& common) {
   const auto logs = config::read_site_logs(wish.site);
   if (!logs) return refuse_all(logs.error());
+  const SiteWords words(common, language_at(wish.site));
+  const config::TerminalWords& say = words.get();
   Json all = Json::array();
   for (const config::Event& e : logs->events) {
     if (!wish.event.machine.empty() && e.machine != wish.event.machine) continue;
@@ -61,13 +67,14 @@ int list_events(const EventWish& wish, const Common& common) {
                    {"line", e.line}});
     if (common.json) continue;
     std::cout << e.date << "  " << printable(e.machine) << "  "
-              << (e.axis.empty() ? "" : printable(e.axis) + "  ") << e.kind << "  "
+              << (e.axis.empty() ? "" : printable(e.axis) + "  ")
+              << nonio::words(say.templates(), say.language(), "site.event." + e.kind) << "  "
               << printable(e.text) << (e.by.empty() ? "" : "  (" + printable(e.by) + ")") << "\n";
   }
   if (common.json)
     print_json(Json{{"schema", "nonio-events/1"}, {"events", std::move(all)}});
   else if (all.empty() && !common.quiet)
-    std::cout << "no events yet\n";
+    std::cout << say("events.none") << "\n";
   return exit_done;
 }
 
@@ -107,6 +114,8 @@ void put_number(Json& json, const char* name, const std::optional<double>& value
 int list_acknowledged(const AckWish& wish, const Common& common) {
   const auto logs = config::read_site_logs(wish.site);
   if (!logs) return refuse_all(logs.error());
+  const SiteWords words(common, language_at(wish.site));
+  const config::TerminalWords& say = words.get();
   Json all = Json::array();
   for (const config::Acknowledgement& a : logs->acknowledged) {
     if (!wish.known.machine.empty() && a.machine != wish.known.machine) continue;
@@ -117,14 +126,15 @@ int list_acknowledged(const AckWish& wish, const Common& common) {
     put_number(one, "U", a.U);
     all.push_back(std::move(one));
     if (common.json) continue;
-    std::cout << a.date << " to " << a.until << "  " << printable(a.machine) << "  "
-              << (a.axis.empty() ? "" : printable(a.axis) + "  ") << printable(a.finding) << "  "
-              << printable(a.why) << "  (" << printable(a.by) << ")\n";
+    std::cout << say("run.range", {{"least", a.date}, {"most", a.until}}) << "  "
+              << printable(a.machine) << "  " << (a.axis.empty() ? "" : printable(a.axis) + "  ")
+              << printable(a.finding) << "  " << printable(a.why) << "  (" << printable(a.by)
+              << ")\n";
   }
   if (common.json)
     print_json(Json{{"schema", "nonio-acknowledged/1"}, {"acknowledged", std::move(all)}});
   else if (all.empty() && !common.quiet)
-    std::cout << "nothing is acknowledged\n";
+    std::cout << say("acknowledged.none") << "\n";
   return exit_done;
 }
 

@@ -8,7 +8,6 @@
 
 #include "axis_argument.h"
 #include "campaign/config/table_files.h"
-#include "campaign/config/terminal_words.h"
 #include "campaign/planning/plan.h"
 #include "campaign/tables/control_state.h"
 #include "insert.h"
@@ -114,8 +113,9 @@ int tell_merged(const tables::MergedTables& merged, const Loaded& present, const
     print_json(json);
     return exit_done;
   }
-  for (const auto& d : merged.differences) print_difference(d);
-  for (const auto& f : merged.forecast) print_forecast(f);
+  const config::TerminalWords say = open.words();
+  for (const auto& d : merged.differences) print_difference(d, say);
+  for (const auto& f : merged.forecast) print_forecast(f, say);
   for (const std::string& file : written) std::cout << file << "\n";
   if (!recorded.empty()) std::cout << recorded << "\n";
   return exit_done;
@@ -136,10 +136,10 @@ Expected<double> backlash_of(std::string text) {
 /// if there is none.
 Expected<tables::StateAnswer> ask_for_state(OpenCampaign& open, const Controller& control,
                                             const std::string& name) {
-  const config::TerminalWords say(open.place->context.templates, open.place->context.site.language);
+  const config::TerminalWords say = open.words();
   const Axis* const axis = open.campaign().machine.axis(name);
   const bool rotary = axis != nullptr && axis->rotary;
-  Questions ask(true);
+  Questions ask(true, say);
   std::string table, backlash;
   const auto question = [&](const char* key) {
     return say(key, {{"axis", name},
@@ -147,7 +147,7 @@ Expected<tables::StateAnswer> ask_for_state(OpenCampaign& open, const Controller
                      {"unit", rotary ? "deg" : "mm"},
                      {"parameter", control.table.backlash}});
   };
-  if (auto done = ask.text(question("insert.ask.table").c_str(), table, ""); !done)
+  if (auto done = ask.text(question("insert.ask.table"), table, ""); !done)
     return fail(done.error());
   if (table.empty()) return fail(say("insert.ask.unanswered"));
   tables::StateAnswer answer;
@@ -156,7 +156,7 @@ Expected<tables::StateAnswer> ask_for_state(OpenCampaign& open, const Controller
     answer.table = table;
   }
   if (!control.table.backlash.empty() && axis != nullptr && !axis->active_backlash) {
-    if (auto done = ask.text(question("insert.ask.backlash").c_str(), backlash, ""); !done)
+    if (auto done = ask.text(question("insert.ask.backlash"), backlash, ""); !done)
       return fail(done.error());
     if (backlash.empty()) return fail(say("insert.ask.unanswered"));
     NONIO_TRY(const auto value, backlash_of(backlash));

@@ -19,6 +19,7 @@
 #include "platform/storage/nearest.h"
 #include "platform/storage/scratch_folder.h"
 #include "questions.h"
+#include "site_words.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -76,10 +77,10 @@ std::vector<std::string> split(const std::string& text) {
       words.push_back(std::exchange(word, {}));
   return words;
 }
-Expected<void> one_line(const char* option, const std::string& text) {
+Expected<void> one_line(const std::string& option, const std::string& text) {
   for (const char c : text)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-      return fail(std::string(option) + ": expected a text of one line");
+      return fail(option + ": expected a text of one line");
   return {};
 }
 
@@ -124,7 +125,9 @@ Expected<void> take_file(const std::string& text, std::vector<NewAxis>& axes) {
 }
 
 struct Setting {
-  const char *key, *question;
+  const char* key;
+  /// English, because a new site has no language yet; empty for `new.ask.` and the key in the words.
+  const char* question = "";
 };
 
 /// Keys that a certificate requires, except the contributions to the uncertainty, which a person
@@ -135,21 +138,18 @@ constexpr Setting signing_settings[] = {
     {"signing.pkcs12", "Key that signs certificates, a PKCS#12 file (empty: none)"},
     {"signing.password_file", "File with the password of the key"},
     {"signing.trust", "PEM file with the root of the signer's certificate"}};
-constexpr Setting campaign_settings[] = {{"campaign.customer_address", "Customer, address"},
-                                         {"campaign.site", "Location of the machine"}};
-constexpr Setting instrument_settings[] = {
-    {"instrument.maker", "Instrument, maker"},
-    {"instrument.serial", "Instrument, serial number"},
-    {"instrument.calibrated", "Instrument, day of its calibration"},
-    {"instrument.certificate", "Instrument, number of its calibration certificate"},
-    {"instrument.U_fixed_um", "Instrument, U (k = 2): fixed part in um"},
-    {"instrument.U_per_m_um", "Instrument, U (k = 2): part per metre in um"}};
+constexpr Setting campaign_settings[] = {{"campaign.customer_address"}, {"campaign.site"}};
+constexpr Setting instrument_settings[] = {{"instrument.maker"},      {"instrument.serial"},
+                                           {"instrument.calibrated"}, {"instrument.certificate"},
+                                           {"instrument.U_fixed_um"}, {"instrument.U_per_m_um"}};
 
 using Values = std::map<std::string, std::string>;
 
 Expected<void> ask_for(const Setting& one, const std::string& otherwise, Values& values,
                        Questions& ask) {
-  if (auto done = ask.text(one.question, values[one.key], otherwise); !done) return done;
+  const std::string question =
+      *one.question != '\0' ? one.question : ask.say.of("new.ask", one.key);
+  if (auto done = ask.text(question, values[one.key], otherwise); !done) return done;
   return one_line(one.key, values[one.key]);
 }
 
@@ -211,8 +211,7 @@ Expected<void> ask_for_certificate(const NewCampaign& c, const fs::path& site, V
 Expected<std::string> id_of(const NewWish& wish, const fs::path& folder, Questions& ask) {
   std::string id = wish.id, near = valid_id(folder.filename().string());
   if (!config::is_campaign_id(near)) near = "campaign-" + near;
-  if (auto done = ask.text("Id of the campaign (a-z 0-9 . _ -)", id, near); !done)
-    return fail(done.error());
+  if (auto done = ask.text(ask.say("new.ask.id"), id, near); !done) return fail(done.error());
   if (!config::is_campaign_id(id)) {
     const std::string nearest = valid_id(id);
     return fail(
@@ -230,8 +229,7 @@ Expected<std::vector<NewAxis>> axes_with_files(const NewWish& wish, Questions& a
   const bool asks = texts.empty() && files.empty();
   if (asks) {
     std::string typed;
-    if (auto done = ask.text("Axes with their travel in mm, or deg for A B C", typed, "X=0:500");
-        !done)
+    if (auto done = ask.text(ask.say("new.ask.axes"), typed, "X=0:500"); !done)
       return fail(done.error());
     texts = split(typed);
   }
@@ -240,8 +238,8 @@ Expected<std::vector<NewAxis>> axes_with_files(const NewWish& wish, Questions& a
   if (asks && ask.asks())
     for (const NewAxis& a : *axes) {
       std::string path;
-      const std::string question = "File of axis " + a.axis.name + " (empty: example readings)";
-      if (auto done = ask.text(question.c_str(), path, ""); !done) return fail(done.error());
+      const std::string question = ask.say("new.ask.file", {{"axis", a.axis.name}});
+      if (auto done = ask.text(question, path, ""); !done) return fail(done.error());
       if (!path.empty()) files.push_back(a.axis.name + "=" + path);
     }
   for (const std::string& file : files)
@@ -268,18 +266,17 @@ Expected<NewCampaign> settled(const NewWish& wish, const fs::path& folder, Quest
                 .axes = {}};
   NONIO_TRY(auto id, id_of(wish, folder, ask));
   c.id = std::move(id);
-  for (const auto& [option, question, to, otherwise] :
-       {std::tuple{"--customer", "Customer", &c.customer, std::string()},
-        {"--operator", "Operator", &c.operator_name, std::string()},
-        {"--date", "Day of the measurement", &c.date, today()},
-        {"--maker", "Machine, maker", &c.maker, std::string()},
-        {"--machine", "Machine, model", &c.machine, std::string()},
-        {"--serial", "Machine, serial number", &c.serial, std::string()},
-        {"--asset", "Machine, its name in the laboratory (empty: maker and serial number)",
-         &c.asset, std::string()},
-        {"--instrument", "Instrument, model", &c.instrument, std::string()}}) {
-    if (auto done = ask.text(question, *to, otherwise); !done) return fail(done.error());
-    if (auto done = one_line(option, *to); !done) return fail(done.error());
+  for (const auto& [name, to, otherwise] : {std::tuple{"customer", &c.customer, std::string()},
+                                            {"operator", &c.operator_name, std::string()},
+                                            {"date", &c.date, today()},
+                                            {"maker", &c.maker, std::string()},
+                                            {"machine", &c.machine, std::string()},
+                                            {"serial", &c.serial, std::string()},
+                                            {"asset", &c.asset, std::string()},
+                                            {"instrument", &c.instrument, std::string()}}) {
+    if (auto done = ask.text(ask.say.of("new.ask", name), *to, otherwise); !done)
+      return fail(done.error());
+    if (auto done = one_line("--" + std::string(name), *to); !done) return fail(done.error());
   }
   if (auto done = one_line("--control", c.control); !done) return fail(done.error());
   if (!is_day(c.date))
@@ -345,7 +342,7 @@ std::string in_the_way(const fs::path& folder) {
 }
 
 int write_new(const std::vector<NewFiles>& all, const NewWish& wish, const std::string& what,
-              bool example, const Common& common) {
+              bool example, const config::TerminalWords& say, const Common& common) {
   std::vector<std::string> written;
   for (const NewFiles& one : all) {
     if (auto done = storage::publish(one.folder, one.files); !done)
@@ -362,12 +359,10 @@ int write_new(const std::vector<NewFiles>& all, const NewWish& wish, const std::
   }
   if (common.quiet) return exit_done;
   for (const std::string& file : written) std::cout << file << "\n";
-  if (example)
-    std::cout
-        << "The readings are an EXAMPLE: they were not measured. Put your own into the CSV.\n";
+  if (example) std::cout << say("new.example") << "\n";
   if (what == "machine") return exit_done;
   const bool is_empty_site = what == "site" && !example;
-  std::cout << "Next:  nonio "
+  std::cout << say("new.next") << "  nonio "
             << (is_empty_site    ? "new campaign "
                 : what == "site" ? "run "
                                  : "show ")
@@ -416,9 +411,10 @@ Expected<void> settle_certificates(const fs::path& folder, Values& values, Quest
   return {};
 }
 
-int new_site(const NewWish& wish, const fs::path& folder, const Common& common) {
+int new_site(const NewWish& wish, const fs::path& folder, const config::TerminalWords& say,
+             const Common& common) {
   NewSite site{wish.laboratory, wish.address, wish.country};
-  Questions ask(!wish.defaults && Questions::on_terminal());
+  Questions ask(!wish.defaults && Questions::on_terminal(), say);
   for (const auto& [question, to] : {std::pair{"Laboratory, name", &site.laboratory},
                                      {"Laboratory, address", &site.address},
                                      {"Country (two letters)", &site.country}}) {
@@ -435,8 +431,8 @@ int new_site(const NewWish& wish, const fs::path& folder, const Common& common) 
   if (const auto read = config::parse_site(text, config::site_name); !read)
     return complain(text_of(read.error().front()) + "; nothing was written");
   std::vector<NewFiles> all{{folder, {{config::site_name, text}}}};
-  if (wish.empty) return write_new(all, wish, "site", false, common);
-  Questions silent(false);
+  if (wish.empty) return write_new(all, wish, "site", false, say, common);
+  Questions silent(false, say);
   bool example = false;
   NewWish first = wish;
   first.settings.clear();
@@ -444,18 +440,20 @@ int new_site(const NewWish& wish, const fs::path& folder, const Common& common) 
       campaign_files(first, folder / "first-campaign", {}, silent, example, common);
   if (!campaign) return complain(campaign.error().message);
   all.push_back(*campaign);
-  return write_new(all, wish, "site", example, common);
+  return write_new(all, wish, "site", example, say, common);
 }
 
-int new_campaign(const NewWish& wish, const fs::path& folder, const Common& common) {
-  Questions ask(!wish.defaults && Questions::on_terminal());
+int new_campaign(const NewWish& wish, const fs::path& folder, const config::TerminalWords& say,
+                 const Common& common) {
+  Questions ask(!wish.defaults && Questions::on_terminal(), say);
   bool example = false;
   const auto campaign = campaign_files(wish, folder, site_above(folder), ask, example, common);
   if (!campaign) return complain(campaign.error().message, ask.status());
-  return write_new({*campaign}, wish, "campaign", example, common);
+  return write_new({*campaign}, wish, "campaign", example, say, common);
 }
 
-int new_machine(const NewWish& wish, const fs::path& path, const Common& common) {
+int new_machine(const NewWish& wish, const fs::path& path, const config::TerminalWords& say,
+                const Common& common) {
   NewMachine machine{path.stem().string(), wish.maker, wish.machine, wish.serial, wish.control, {}};
   if (path.extension() != ".toml" || path.parent_path().filename() != config::machines_folder)
     return complain("expected SITE/machines/<asset>.toml, found " + wish.folder);
@@ -468,7 +466,7 @@ int new_machine(const NewWish& wish, const fs::path& path, const Common& common)
     return complain(text_of(read.error().front()) + "; nothing was written");
   if (!storage::is_artifact_name(file)) return complain("expected a plain name, found " + file);
   std::vector<NewFiles> all{{path.parent_path(), {{file, text}}}};
-  return write_new(all, wish, "machine", false, common);
+  return write_new(all, wish, "machine", false, say, common);
 }
 
 int make_new(NewWish wish, const Common& common) {
@@ -484,12 +482,13 @@ int make_new(NewWish wish, const Common& common) {
   if (!folder.has_filename()) folder = folder.parent_path();
   if (const std::string why = in_the_way(folder); !why.empty()) return complain(why);
   if (wish.what.empty()) wish.what = site_above(folder) ? "campaign" : "site";
-  if (wish.what == "machine") return new_machine(wish, folder, common);
-  if (wish.what == "site") return new_site(wish, folder, common);
+  const SiteWords words(common, wish.what == "site" ? "en" : language_at(folder));
+  if (wish.what == "machine") return new_machine(wish, folder, words.get(), common);
+  if (wish.what == "site") return new_site(wish, folder, words.get(), common);
   if (wish.empty || !(wish.laboratory + wish.address + wish.country).empty())
     return complain(
         "--empty, --laboratory, --address and --country are for a site, not a campaign");
-  return new_campaign(wish, folder, common);
+  return new_campaign(wish, folder, words.get(), common);
 }
 
 }  // namespace

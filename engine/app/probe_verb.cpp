@@ -159,22 +159,24 @@ Json probe_json(const tables::SignProbe& p, const std::string& file) {
   return json;
 }
 
-void print_probe(const tables::SignProbe& p, const std::string& file) {
+void print_probe(const tables::SignProbe& p, const std::string& file,
+                 const config::TerminalWords& say) {
   const Quantity q = deviation_of(p.rotary), at = position_of(p.rotary);
-  std::cout << "axis " << p.axis << ", measurement " << p.measurement << "\n";
+  std::cout << say("head.axis") << " " << p.axis << ", "
+            << say("head.from.one", {{"ids", p.measurement}}) << "\n";
   sentence(std::cout, 2,
-           "move to " + with_unit(p.from, at) + " coming from " + with_unit(p.start, at) +
-               ", set the instrument to zero, move to " + with_unit(p.to, at) +
-               " and read actual - nominal:");
-  std::cout << "    " << with_unit(p.difference, q) << "  no table is active\n"
-            << "    " << with_unit(0.0, q) << "  the table has the right sign\n"
-            << "    " << with_unit(2.0 * p.difference, q) << "  the table has the wrong sign\n";
-  if (std::fabs(p.as_measured - p.difference) > 1e-12)
-    std::cout << "    " << with_unit(p.as_measured, q)
-              << "  the table of the measurement is still active\n";
+           say("probe.moves", {{"from", with_unit(p.from, at, say)},
+                               {"start", with_unit(p.start, at, say)},
+                               {"to", with_unit(p.to, at, say)}}));
+  const auto shown = [&](double value, const char* means) {
+    std::cout << "    " << with_unit(value, q, say) << "  " << say(means) << "\n";
+  };
+  shown(p.difference, "probe.none");
+  shown(0.0, "probe.right");
+  shown(2.0 * p.difference, "probe.wrong");
+  if (std::fabs(p.as_measured - p.difference) > 1e-12) shown(p.as_measured, "probe.still");
   if (!p.shows())
-    std::cout << "  too little to show a sign: readings scatter by " << with_unit(p.scatter, q)
-              << "\n";
+    std::cout << "  " << say("probe.small", {{"scatter", with_unit(p.scatter, q, say)}}) << "\n";
   if (!file.empty()) std::cout << "  " << file << "\n";
 }
 
@@ -216,7 +218,7 @@ int probe(const ProbeWish& w, const Common& common) {
     }
     good = good && p->shows();
     all.push_back(probe_json(*p, file));
-    if (!common.json) print_probe(*p, file);
+    if (!common.json) print_probe(*p, file, open.words());
   }
   if (!files.empty())
     if (auto done = storage::publish(std::filesystem::absolute(w.out), files); !done)

@@ -9,6 +9,7 @@
 #include "nonio/sdk/format.h"
 #include "platform/storage/json_values.h"
 #include "printable.h"
+#include "site_words.h"
 #include "text_layout.h"
 #include "verbs.h"
 
@@ -106,12 +107,12 @@ void print_rows(const std::vector<std::vector<std::string>>& rows, const std::st
   }
 }
 
-std::pair<std::string, std::string> shown_result(const Point& p) {
+std::pair<std::string, std::string> shown_result(const Point& p, const config::TerminalWords& say) {
   const double value = std::strtod(p.value.c_str(), nullptr);
   const double U = std::strtod(p.expanded.c_str(), nullptr);
   if (const auto rounded = rounded_result(value, U); U > 0.0 && rounded)
-    return {rounded->value, rounded->U};
-  return {short_text(value), ""};
+    return {say.number(rounded->value), say.number(rounded->U)};
+  return {say.number(short_text(value)), ""};
 }
 
 /// Returns U = 2 u_repeat for the comparison of campaigns, rounded to two significant digits; empty
@@ -122,14 +123,18 @@ std::string shown_comparison(const Point& p) {
   return p.source == "followed" && u > 0.0 && rounded ? rounded->U : "";
 }
 
-void print_table(const std::vector<Point>& points) {
-  std::vector<std::vector<std::string>> rows{{"machine", "axis", "quantity", "day", "state",
-                                              "value", "U", "unit", "U of comparison", "campaign"}};
+void print_table(const std::vector<Point>& points, const config::TerminalWords& say) {
+  std::vector<std::vector<std::string>> rows{
+      {say("list.machine"), say("head.axis"), say("list.quantity"), say("list.day"),
+       say("list.state"), say("value"), "U", say("unit"), say("list.U"), say("list.campaign")}};
   for (const Point& p : points) {
-    const auto [value, U] = shown_result(p);
-    rows.push_back({p.machine, p.axis, p.quantity, p.day, p.state, value, U, p.unit,
-                    shown_comparison(p),
-                    p.campaign + (p.superseded_by.empty() ? "" : " (superseded)")});
+    const auto [value, U] = shown_result(p, say);
+    const std::string state =
+        nonio::words(say.templates(), say.language(), "site.state." + p.state);
+    rows.push_back(
+        {p.machine, p.axis, p.quantity, p.day, state.empty() ? p.state : state, value, U, p.unit,
+         say.number(shown_comparison(p)),
+         p.campaign + (p.superseded_by.empty() ? "" : " (" + say("list.superseded") + ")")});
     for (std::string& cell : rows.back()) cell = printable(cell);
   }
   print_rows(rows, "lllllrrlrl");
@@ -149,14 +154,21 @@ int print_machines(const QueryWish& wish, const Common& common) {
                     {"spellings", to_json(*spellings)}});
     return exit_done;
   }
-  std::vector<std::vector<std::string>> rows{{"machine", "campaigns"}};
+  const SiteWords words(common, language_at(wish.out));
+  const config::TerminalWords& say = words.get();
+  std::vector<std::vector<std::string>> rows{{say("list.machine"), say("list.campaigns")}};
   for (const NamedMachine& m : *machines)
-    rows.push_back({m.name.empty() ? "(not stated, or the campaign failed)" : printable(m.name),
+    rows.push_back({m.name.empty() ? "(" + say("list.unnamed") + ")" : printable(m.name),
                     std::to_string(m.campaigns)});
   print_rows(rows, "lr");
-  for (const Spelling& s : *spellings)
-    std::cout << "one machine? \"" << printable(s.one) << "\" and \"" << printable(s.other)
-              << "\": " << s.why << "; if so, state it in site.toml: [[alias]] name, asset, why\n";
+  for (const Spelling& s : *spellings) {
+    const Finding alike{
+        .id = "worklist.spelling",
+        .texts = {{"one", printable(s.one)}, {"other", printable(s.other)}, {"alike", s.key()}}};
+    for (const char* part : {"says", "advice"})
+      std::cout << finding_text(say.templates(), say.language(), alike, part)
+                << (part == std::string_view("says") ? " " : "\n");
+  }
   return exit_done;
 }
 
@@ -174,9 +186,10 @@ int query(const QueryWish& wish, const Common& common) {
   } else if (wish.csv) {
     print_csv(*points);
   } else if (points->empty()) {
-    if (!common.quiet) std::cout << "no such result in the history\n";
+    if (!common.quiet)
+      std::cout << SiteWords(common, language_at(wish.out)).get()("list.none") << "\n";
   } else {
-    print_table(*points);
+    print_table(*points, SiteWords(common, language_at(wish.out)).get());
   }
   return exit_done;
 }

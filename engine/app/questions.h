@@ -6,6 +6,7 @@
 #include <iostream>
 #include <string>
 
+#include "campaign/config/terminal_words.h"
 #include "common.h"
 
 namespace nonio::app {
@@ -14,13 +15,13 @@ namespace nonio::app {
 /// object without prompts, gives the default. An error if the input has ended (^D).
 class Questions {
  public:
-  explicit Questions(bool asks) : asks_(asks) {}
+  Questions(bool asks, const config::TerminalWords& words) : say(words), asks_(asks) {}
   static bool on_terminal() { return ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1; }
   bool asks() const { return asks_; }
   /// Returns the exit status after an error: interrupted if the input has ended, otherwise usage.
   int status() const { return ended_ ? exit_interrupted : exit_usage; }
 
-  Expected<void> text(const char* question, std::string& to, const std::string& otherwise) {
+  Expected<void> text(const std::string& question, std::string& to, const std::string& otherwise) {
     if (!to.empty()) return {};
     to = otherwise;
     if (!asks_) return {};
@@ -35,6 +36,8 @@ class Questions {
     if (!line.empty()) to = line;
     return {};
   }
+
+  const config::TerminalWords& say;
 
  private:
   bool asks_, ended_ = false;

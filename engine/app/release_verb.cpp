@@ -7,6 +7,8 @@
 #include "password_input.h"
 #include "platform/storage/json_values.h"
 #include "progress.h"
+#include "site_words.h"
+#include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -51,16 +53,17 @@ Json draft_json(const WaitingDraft& draft, bool waits = true) {
   return json;
 }
 
-void print(std::ostream& out, const WaitingDraft& draft) {
+void print(std::ostream& out, const WaitingDraft& draft, const config::TerminalWords& say) {
   out << draft.campaign << "  " << batch::file_of(draft).string();
-  if (!draft.replaces.empty()) out << "  replaces " << draft.replaces;
-  if (draft.author) out << "  approved by " << draft.author->by << " " << draft.author->at;
+  if (!draft.replaces.empty()) out << "  " << say("replaces", {{"number", draft.replaces}});
+  if (draft.author)
+    out << "  "
+        << say("certificate.approved", {{"person", draft.author->by + " " + draft.author->at}});
   out << "\n";
-  if (const std::string why = batch::why_stale(draft); !why.empty())
-    out << "  stale: " << why << "\n";
+  if (!batch::why_stale(draft).empty()) out << "  " << say("approve.stale") << "\n";
   for (const evaluation::KnownFinding& f : draft.findings) {
-    out << "  " << (f.attention ? "warning    " : "info       ") << certificates::finding_key(f)
-        << "  " << f.title;
+    out << "  " << padded(say.of("severity", f.attention ? "attention" : "info"), 11)
+        << certificates::finding_key(f) << "  " << f.heading();
     if (const std::string reason = reason_of(draft, f); !reason.empty())
       out << "  (" << reason << ")";
     out << "\n";
@@ -80,10 +83,9 @@ int list_drafts(const ReleaseVerbWish& wish, const Common& common) {
     std::cout << dumped({{"schema", "nonio-drafts/1"}, {"drafts", std::move(all)}}) << "\n";
     return exit_done;
   }
-  for (const WaitingDraft& d : *drafts) print(std::cout, d);
-  if (drafts->empty() && !common.quiet)
-    std::cout << "no draft waits for approval; `nonio run` makes drafts of campaigns "
-                 "with the output certificate\n";
+  const SiteWords words(common, language_at(wish.folder));
+  for (const WaitingDraft& d : *drafts) print(std::cout, d, words.get());
+  if (drafts->empty() && !common.quiet) std::cout << words.get()("approve.none") << "\n";
   return exit_done;
 }
 
@@ -104,6 +106,8 @@ Json released_json(const Released& done) {
 
 int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common) {
   using State = Released::State;
+  const SiteWords words(common, language_at(wish.folder));
+  const config::TerminalWords& say = words.get();
   if (common.json) std::cout << dumped(released_json(done)) << "\n";
   for (const std::string& note : done.notes)
     if (!common.quiet) complain(note);
@@ -111,17 +115,17 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
     case State::refused:
       return complain(done.why);
     case State::lacking:
-      if (!common.json) print(std::cerr, *done.draft);
+      if (!common.json) print(std::cerr, *done.draft, say);
       for (const std::string& key : done.without_reason)
-        complain(key + " requires a reason for accepting it");
-      complain("repeat with --reason \"" + done.without_reason.front() +
-               "=TEXT\" and so on: one --reason for each of these findings");
+        complain(say("approve.needs-reason", {{"finding", key}}));
+      complain(say("approve.repeat", {{"finding", done.without_reason.front()}}));
       return exit_failed;
     case State::approved:
       if (!common.json)
-        std::cout << done.draft->campaign << " approved by " << done.by
-                  << "; an authoriser approves it with nonio certificate approve " << wish.folder
-                  << " --by NAME (with users.toml: --user ACCOUNT) --as authoriser\n";
+        std::cout << say("approve.signed-off", {{"campaign", done.draft->campaign},
+                                                {"by", done.by},
+                                                {"folder", wish.folder}})
+                  << "\n";
       return exit_done;
     case State::failed:
       return complain(done.why + " (nothing was issued by this command)", exit_failed);
@@ -129,8 +133,10 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
       break;
   }
   if (!common.json) {
-    std::cout << done.entry.number << " issued for " << done.draft->campaign << ", approved by "
-              << done.by << "\n";
+    std::cout << say("approve.issued", {{"number", done.entry.number},
+                                        {"campaign", done.draft->campaign},
+                                        {"by", done.by}})
+              << "\n";
     for (const fs::path& f : done.files) std::cout << "  " << f.string() << "\n";
   }
   if (!done.why.empty())

@@ -32,10 +32,13 @@ std::string judged_value(const Json& line, const std::string& language) {
   return " " + localised(shown, language) + (unit.empty() ? "" : " " + unit);
 }
 
-void print_actions(const std::string& actions, const config::TerminalWords& words) {
+/// Prints one line per campaign or machine that requires action, except failed campaigns, which are
+/// printed before. Returns the number of campaigns and machines, including those without a line.
+std::size_t print_actions(const std::string& actions, const fs::path& out,
+                          const config::TerminalWords& words) {
   constexpr std::size_t most_campaigns = 20;
   const Json lines = storage::parse_or_discard(actions);
-  if (!lines.is_array()) return;
+  if (!lines.is_array()) return 0;
   struct Campaign {
     std::string id, says;
     std::vector<std::string> of{};
@@ -43,9 +46,9 @@ void print_actions(const std::string& actions, const config::TerminalWords& word
   };
   std::vector<Campaign> campaigns;
   for (const Json& line : lines) {
-    const std::string kind = line.value("kind", ""), id = line.value("campaign", "");
-    if (line.value("state", "") != "new" || id.empty() || kind == "failed" || kind == "information")
-      continue;
+    const std::string campaign = line.value("campaign", ""),
+                      id = campaign.empty() ? line.value("machine", "") : campaign;
+    if (line.value("kind", "") == "failed") continue;
     const std::string axis = line.value("axis", ""), quantity = line.value("quantity", ""),
                       of = axis + (axis.empty() || quantity.empty() ? "" : " ") + quantity +
                            judged_value(line, words.language()),
@@ -65,9 +68,11 @@ void print_actions(const std::string& actions, const config::TerminalWords& word
         0, sentence_width(STDOUT_FILENO), 4);
   }
   if (campaigns.size() > most_campaigns)
-    std::cout << words("run.more_campaigns",
-                       {{"count", std::to_string(campaigns.size() - most_campaigns)}})
+    std::cout << words("run.more-actions",
+                       {{"count", std::to_string(campaigns.size() - most_campaigns)},
+                        {"out", out.string()}})
               << "\n";
+  return campaigns.size();
 }
 
 }  // namespace
@@ -92,7 +97,7 @@ void print_summary(const batch::RunResult& run, const fs::path& out,
     print_json(end, -1);
     return;
   }
-  if (run.asking && *run.asking > 0) print_actions(run.actions, words);
+  const std::size_t acting = run.asking ? print_actions(run.actions, out, words) : 0;
   const auto count = [](std::size_t n) { return std::to_string(n); };
   std::cout << words("counts", {{"done", count(done)},
                                 {"unchanged", count(unchanged)},
@@ -101,7 +106,7 @@ void print_summary(const batch::RunResult& run, const fs::path& out,
             << (run.vanished.empty()
                     ? ""
                     : words("vanished", {{"count", count(run.vanished.size())}}) + "; ")
-            << (run.asking ? words("run.actions", {{"count", count(*run.asking)}}) + "; " : "")
+            << (run.asking ? words.counted("attention", acting) + "; " : "")
             << (out / "summary.txt").string() << "\n";
 }
 

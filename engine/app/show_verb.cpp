@@ -460,7 +460,7 @@ int show(const ShowWish& wish, const Common& common) {
   if (!shown) return complain(text_of(shown.error()));
   const bool is_stored = holds == Holds::results && storage::stored_in(folder) == folder;
   try {
-    const Json results = storage::parse(shown->text);
+    const Json results = results_of(*shown);
     if (common.json)
       std::cout << shown->text;
     else

@@ -28,20 +28,42 @@ Expected<Shown> evaluated_now(const fs::path& folder, const Common& common, Docu
   const evaluation::Evaluated evaluated =
       evaluation::write_documents(std::move(analysed), nullptr, context, stage);
   std::string text = evaluation::results_json(evaluated, context);
+  std::vector<std::string> notes;
+  if (const std::string& language = context.site.language; language != "en")
+    notes = evaluation::notes_in(language, evaluated.results, context.templates);
   return Shown{std::move(text), std::move((*place)->context.templates), context.site.language,
-               std::move(observations)};
+               std::move(observations), std::move(notes)};
 }
 
 Expected<Shown> of_run(const fs::path& folder, const Common& common) {
   auto text = storage::read_file(folder / evaluation::results_name);
   if (!text) return fail(text.error());
   std::string language = "en", digest;
-  if (const auto record = evaluation::read_record(folder); record && !record->language.empty())
+  std::vector<std::string> notes;
+  if (auto record = evaluation::read_record(folder); record && !record->language.empty()) {
     language = record->language;
+    notes = std::move(record->notes);
+  }
   auto templates = config::read_templates(common.template_folders(), digest, nullptr, {},
                                           config::words_in(language));
   if (!templates) return fail(templates.error());
-  return Shown{std::move(*text), std::move(*templates), language, {}};
+  return Shown{std::move(*text), std::move(*templates), language, {}, std::move(notes)};
+}
+
+Json results_of(const Shown& shown) {
+  Json results = storage::parse(shown.text);
+  std::vector<Json*> notes;
+  const auto collect = [&](Json& of) {
+    if (of.contains("notes"))
+      for (Json& note : of.at("notes")) notes.push_back(&note);
+  };
+  for (const char* list : {"analyses", "tables"})
+    if (results.contains(list))
+      for (Json& one : results.at(list)) collect(one);
+  collect(results);
+  if (notes.size() == shown.notes.size())  // not so for records of earlier versions
+    for (std::size_t i = 0; i < notes.size(); ++i) *notes[i] = shown.notes[i];
+  return results;
 }
 
 Finding finding_of(const Json& json) {

@@ -18,7 +18,12 @@ struct Shown {
   Templates templates;
   std::string language = "en";
   std::vector<Observations> observations{};
+  /// Notes of the results in `language`, in their order; empty for English.
+  std::vector<std::string> notes{};
 };
+
+/// Returns the results with their notes in the language of the site.
+nlohmann::ordered_json results_of(const Shown& shown);
 
 enum class Documents { written, left_out };
 

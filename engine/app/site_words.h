@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -9,12 +10,18 @@
 
 namespace nonio::app {
 
+/// Returns the language of the nearest folder at or above the path that contains a site, the
+/// results of a campaign or those of a run; English without such a folder.
+std::string language_at(const std::filesystem::path& path);
+
 /// Texts for the terminal: English until the site is read, then in the language of the site. The
 /// texts are copied, because the templates of a run are destroyed at its end.
 class SiteWords {
  public:
-  /// Uses English if there are no texts in `language`.
-  explicit SiteWords(const Common& common, const std::string& language = "en");
+  /// Uses English if there are no texts in `language`. Reads the files terminal and site of the
+  /// words, and the file `more`.
+  explicit SiteWords(const Common& common, const std::string& language = "en",
+                     const std::string& more = "site");
   SiteWords(const SiteWords&) = delete;
   SiteWords& operator=(const SiteWords&) = delete;
 

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "table_common.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
 #include "campaign/config/table_files.h"
 #include "campaign/planning/plan.h"
 #include "nonio/sdk/format.h"
+#include "platform/storage/nearest.h"
 #include "tables.h"
+#include "text_layout.h"
 
 namespace nonio::app {
 
@@ -35,30 +38,35 @@ TableJson difference_json(const tables::TableDifference& d) {
   return json;
 }
 
-static void print_shape(const char* name, const std::optional<tables::TableShape>& s, bool rotary) {
-  std::string text = std::string(name) + ": ";
-  if (!s) return sentence(std::cout, 2, text + "no table");
-  text += "adds up to " + with_unit(s->largest, deviation_of(rotary)) + ", largest step " +
-          with_unit(s->step, deviation_of(rotary)) + " from " +
-          with_unit(s->step_at, position_of(rotary)) + " on, largest slope " +
-          with_unit(s->slope, slope_of(rotary));
-  if (s->backlash) text += ", backlash " + with_unit(*s->backlash, deviation_of(rotary));
+static void print_shape(const char* name, const std::optional<tables::TableShape>& s, bool rotary,
+                        const config::TerminalWords& say) {
+  const std::size_t width =
+      std::max(columns_of(say("compared.present")), columns_of(say("compared.new")));
+  std::string text = padded(say(name), width) + ": ";
+  if (!s) return sentence(std::cout, 2, text + say("compared.none"));
+  const Quantity q = deviation_of(rotary);
+  text += say("compared.shape", {{"largest", with_unit(s->largest, q, say)},
+                                 {"step", with_unit(s->step, q, say)},
+                                 {"from", with_unit(s->step_at, position_of(rotary), say)},
+                                 {"slope", with_unit(s->slope, slope_of(rotary), say)}});
+  if (s->backlash)
+    text += ", " + say("compared.backlash", {{"value", with_unit(*s->backlash, q, say)}});
   sentence(std::cout, 2, text);
 }
 
-void print_difference(const tables::TableDifference& d, bool compared) {
-  std::string text = "axis " + d.output;
-  if (d.input.size() != 1 || d.input.front() != d.output) {
-    text += " by the position of";
-    for (const std::string& in : d.input) text += " " + in;
-  }
+void print_difference(const tables::TableDifference& d, const config::TerminalWords& say,
+                      bool compared) {
+  std::string text = say("head.axis") + " " + d.output;
+  if (d.input.size() != 1 || d.input.front() != d.output)
+    text += " " + say("compared.by", {{"axes", storage::listed(d.input)}});
+  const Quantity q = deviation_of(d.rotary);
   if (compared)
-    text += ": they differ by up to " + with_unit(d.largest, deviation_of(d.rotary)) + " (at " +
-            with_unit(d.at, position_of(d.rotary)) + "), range " +
-            with_unit(d.range, deviation_of(d.rotary));
+    text += ": " + say("compared.differ", {{"largest", with_unit(d.largest, q, say)},
+                                           {"at", with_unit(d.at, position_of(d.rotary), say)},
+                                           {"range", with_unit(d.range, q, say)}});
   sentence(std::cout, 0, text);
-  print_shape("present", d.present, d.rotary);
-  if (compared) print_shape("new    ", d.next, d.rotary);
+  print_shape("compared.present", d.present, d.rotary, say);
+  if (compared) print_shape("compared.new", d.next, d.rotary, say);
 }
 
 TableJson forecast_json(const tables::TableForecast& f) {
@@ -75,20 +83,22 @@ TableJson forecast_json(const tables::TableForecast& f) {
   return json;
 }
 
-void print_forecast(const tables::TableForecast& f) {
+void print_forecast(const tables::TableForecast& f, const config::TerminalWords& say) {
   const Quantity q = deviation_of(f.rotary);
-  std::string text = "axis " + f.axis + ", measurement " + f.measurement + ":";
-  for (const auto& [name, v] : {std::pair{"E", f.E}, {"B", f.B}, {"M", f.M}})
-    if (std::isfinite(v[0]) && std::isfinite(v[1]))
-      text += std::string("  ") + name + " " + with_unit(v[0], q) + " -> " +
-              (f.U_known ? "" : "at least ") + with_unit(v[1], q);
-  if (!f.U_known) text += "; U is not known";
-  if (std::isnan(f.E[0])) text += " not predicted, because targets were left out";
+  std::string text =
+      say("head.axis") + " " + f.axis + ", " + say("head.from.one", {{"ids", f.measurement}}) + ":";
+  for (const auto& [name, v] : {std::pair{"E", f.E}, {"B", f.B}, {"M", f.M}}) {
+    if (!std::isfinite(v[0]) || !std::isfinite(v[1])) continue;
+    const std::string after = with_unit(v[1], q, say);
+    text += std::string("  ") + name + " " + with_unit(v[0], q, say) + " -> " +
+            (f.U_known ? after : say("compared.at-least", {{"value", after}}));
+  }
+  if (!f.U_known) text += "; " + say("compared.no-U");
+  if (std::isnan(f.E[0])) text += " " + say("compared.unpredicted");
   if (f.scatter > 0.0)
-    text +=
-        "; E up to " + with_unit(f.E[1] + f.scatter, q) + " because the readings scatter (95 %)";
+    text += "; " + say("compared.scatter", {{"value", with_unit(f.E[1] + f.scatter, q, say)}});
   sentence(std::cout, 0, text);
-  if (f.worse()) sentence(std::cout, 2, "error: E would grow");
+  if (f.worse()) sentence(std::cout, 2, say("error") + ": " + say("compared.worse"));
 }
 
 Expected<Loaded> load(const loader::Plugins& plugins, const std::string& files,

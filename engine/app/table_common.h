@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "campaign/config/terminal_words.h"
 #include "campaign/tables/table_check.h"
 #include "campaign_verb.h"
 #include "platform/storage/json_values.h"
@@ -20,10 +21,11 @@ using Texts = std::map<std::string, std::string>;
 void put(TableJson& json, const std::string& name, double si, Quantity q);
 TableJson difference_json(const tables::TableDifference& d);
 /// `compared` is false if `d` describes a single table instead of a difference.
-void print_difference(const tables::TableDifference& d, bool compared = true);
+void print_difference(const tables::TableDifference& d, const config::TerminalWords& say,
+                      bool compared = true);
 
 TableJson forecast_json(const tables::TableForecast& f);
-void print_forecast(const tables::TableForecast& f);
+void print_forecast(const tables::TableForecast& f, const config::TerminalWords& say);
 
 struct Loaded {
   const Controller* control = nullptr;

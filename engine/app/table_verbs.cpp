@@ -15,6 +15,7 @@
 #include "nonio/sdk/format.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
+#include "site_words.h"
 #include "table_common.h"
 #include "tables.h"
 #include "verbs.h"
@@ -48,13 +49,13 @@ void number_axes(const std::vector<std::string>& names, Settings& options) {
 }
 
 int tell_differences(const std::string& control, const std::vector<tables::TableDifference>& all,
-                     const Common& common, bool compared = true) {
+                     const config::TerminalWords& say, const Common& common, bool compared = true) {
   if (common.json) {
     Json json = {{"schema", "nonio-diff/1"}, {"control", control}, {"tables", Json::array()}};
     for (const auto& d : all) json["tables"].push_back(difference_json(d));
     print_json(json);
   } else {
-    for (const auto& d : all) print_difference(d, compared);
+    for (const auto& d : all) print_difference(d, say, compared);
   }
   return exit_done;
 }
@@ -82,7 +83,7 @@ int diff_with_campaign(const std::string& backup, const std::string& folder, con
   if (next->tables.empty()) return complain("the campaign has no table", exit_failed);
   auto all = tables::differences(present->tables, next->tables);
   std::erase_if(all, [](const tables::TableDifference& d) { return !d.next; });
-  return tell_differences(present->control->info.name, all, common);
+  return tell_differences(present->control->info.name, all, open.words(), common);
 }
 
 /// A file without the name of an axis names its table after the file. If each side has one such
@@ -158,15 +159,16 @@ int diff(const TableWish& w, const Common& common) {
   };
   auto was = load(plugins, w.table, w.control, campaign, *settings, options);
   if (!was) return complain(text_of(was.error()));
+  const SiteWords words(common, language_at(w.table.substr(0, w.table.find(','))));
   if (w.other.empty())
-    return tell_differences(was->control->info.name, tables::differences(was->tables, {}), common,
-                            false);
+    return tell_differences(was->control->info.name, tables::differences(was->tables, {}),
+                            words.get(), common, false);
   auto will = load(plugins, w.other, was->control->info.name, campaign, *settings, options);
   if (!will) return complain(text_of(will.error()));
   join_unnamed(*was, *will);
   if (auto ok = axes.join(was->tables, will->tables); !ok) return complain(ok.error().message);
   return tell_differences(was->control->info.name, tables::differences(was->tables, will->tables),
-                          common);
+                          words.get(), common);
 }
 
 struct Applied {
@@ -189,8 +191,9 @@ int tell(const Applied& a, const std::string& control, const OpenCampaign& open,
     if (!a.files.empty()) json["files"] = a.files;
     print_json(json);
   } else {
-    for (const auto& d : a.differences) print_difference(d);
-    for (const auto& f : a.forecast) print_forecast(f);
+    const config::TerminalWords say = open.words();
+    for (const auto& d : a.differences) print_difference(d, say);
+    for (const auto& f : a.forecast) print_forecast(f, say);
     for (const std::string& file : a.files) std::cout << file << "\n";
   }
   tell_findings(open, a.findings);

@@ -9,10 +9,12 @@
 
 #include "certificates/trust.h"
 #include "certificates/verify.h"
+#include "nonio/sdk/format.h"
 #include "platform/process/apart.h"
 #include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
 #include "printable.h"
+#include "site_words.h"
 #include "text_layout.h"
 #include "verbs.h"
 
@@ -86,6 +88,64 @@ int exit_of(const std::vector<Verdict>& verdicts) {
   return exit_failed;
 }
 
+/// Verdicts and checks in the words of the page on certificates.
+class CheckWords {
+ public:
+  explicit CheckWords(const config::TerminalWords& say) : say_(say) {}
+
+  std::string verdict(const sign::Verified& v) const {
+    const Verdict verdict = certificates::verdict_of(v);
+    std::string out = text("verify.verdict_", certificates::id_of(verdict));
+    if (verdict != Verdict::incomplete) return out;
+    std::vector<std::string> names;
+    for (const std::string& id : certificates::not_made(v))
+      if (std::find(names.begin(), names.end(), name(id)) == names.end()) names.push_back(name(id));
+    return out + ": " + storage::listed(names);
+  }
+  std::string signer(const std::string& subject) const {
+    Finding of;
+    of.texts = {{"signer", subject}};
+    return filled(text("verify.", "signer"), of, say_.language());
+  }
+  std::string check(const sign::Check& c) const {
+    const bool fails = c.state == sign::Check::State::fails;
+    const std::string meaning = fails ? first("failing.", c.id) : "";
+    return name(c.id) + ": " + text("verify.is_", to_text(c.state)) +
+           (meaning.empty() ? "" : ". " + meaning);
+  }
+
+ private:
+  std::string text(const char* group, std::string id) const {
+    std::replace_if(
+        id.begin(), id.end(), [](char c) { return c == '.' || c == '-' || c == ' '; }, '_');
+    return words(say_.templates(), say_.language(), group + id);
+  }
+  /// A DCC in a PDF has the checks of a DCC in its own file.
+  std::string first(const char* group, const std::string& id) const {
+    if (id == "dcc") return text(group, "dcc_none");
+    if (!id.starts_with("dcc.")) return text(group, id);
+    for (const char* kind : {"dcc.", "xml.", "certificate.", "signer."})
+      if (std::string found = text(group, kind + id.substr(4)); !found.empty()) return found;
+    return {};
+  }
+  std::string name(const std::string& id) const {
+    const std::string found = first("check.", id);
+    return (id.starts_with("dcc.") ? "DCC: " : "") + (found.empty() ? id : found);
+  }
+
+  const config::TerminalWords& say_;
+};
+
+void print(std::ostream& out, const std::string& file, const sign::Verified& v, bool quiet,
+           bool verbose, const CheckWords& say) {
+  out << printable(file) << ": " << say.verdict(v);
+  if (!quiet && !v.subject.empty()) out << ". " << say.signer(printable(v.subject));
+  out << "\n";
+  for (const sign::Check& c : v.checks)
+    if (!quiet && (verbose || c.state == sign::Check::State::fails))
+      out << wrapped(say.check(c), 2, sentence_width(STDOUT_FILENO), 2);
+}
+
 /// The verdict is printed first, so that no text of the file can precede or imitate it. `quiet`
 /// omits the checks, `verbose` includes those that passed.
 void print(std::ostream& out, const std::string& file, const sign::Verified& v, bool quiet,
@@ -119,6 +179,8 @@ int verify(const VerifyWish& wanted, const Common& common) {
   // The register is read before the process is confined, because a confined process cannot connect
   // to a server.
   const auto rows = certificates::register_rows(wanted.site);
+  const SiteWords words(common, wanted.site.empty() ? "en" : language_at(wanted.site),
+                        "workbench-site");
   process::step_aside();  // an untrusted file is read in a confined process, like plugin code
   std::unique_ptr<reading::Workplace> place;
   std::ostringstream early;  // output is delayed, because loading plugins may restart this process
@@ -139,8 +201,10 @@ int verify(const VerifyWish& wanted, const Common& common) {
     std::ostream& out = place ? std::cout : early;
     if (common.json)
       out << to_json(file, *v).dump(-1, ' ', true, Json::error_handler_t::replace) << "\n";
-    else
+    else if (words.get().language() == "en")
       print(out, file, *v, common.quiet, wanted.verbose);
+    else
+      print(out, file, *v, common.quiet, wanted.verbose, CheckWords(words.get()));
   }
   if (!place) std::cout << early.str();
   return exit_of(verdicts);

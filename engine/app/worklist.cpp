@@ -99,6 +99,15 @@ int print(const Expected<std::string>& text, int status = exit_done) {
   return status;
 }
 
+/// Replaces the signs of the pages by those of the terminal: "um" and "-".
+std::string plain_signs(std::string text) {
+  for (const auto& [printed, plain] :
+       {std::pair{"µ", "u"}, {"\u2212", "-"}, {" °C", " degC"}, {"°", " deg"}})
+    for (std::size_t at = 0; (at = text.find(printed, at)) != std::string::npos;)
+      text.replace(at, std::string_view(printed).size(), plain);
+  return text;
+}
+
 int status_of(const reports::SiteHistory& site) {
   return std::any_of(site.lines.begin(), site.lines.end(), reports::asks) ? exit_failed : exit_done;
 }
@@ -162,7 +171,7 @@ int print_worklist(const WorklistWish& wish, const Common& common) {
   if (site.lines.empty()) site.hidden = all;
   const auto text = reports::worklist_text(site, *templates, language, site.lines.size());
   if (!text) return complain(text.error().message);
-  std::cout << wrapped(*text, 0, sentence_width(STDOUT_FILENO), 4);
+  std::cout << wrapped(plain_signs(*text), 0, sentence_width(STDOUT_FILENO), 4);
   return status_of(site);
 }
 

@@ -29,8 +29,10 @@ std::string one_reason(const std::string& text, const config::TerminalWords& wor
   if (std::string whole = words.of("reason", text); whole != text) return whole;
   for (const char* what : {" changed", " is missing from the output", " was changed in the output"})
     if (text.ends_with(what))
-      return words(std::string("reason.*") + what,
-                   {{"what", text.substr(0, text.size() - std::string_view(what).size())}});
+      return words(
+          std::string("reason.*") + what,
+          {{"what",
+            words.of("input", text.substr(0, text.size() - std::string_view(what).size()))}});
   return text;
 }
 

@@ -72,7 +72,10 @@ Expected<void> stage(const fs::path& out, const evaluation::Evaluated& e,
   record.history = e.history;
   record.errors = e.results.errors;
   const std::string& language = context.site.language;
-  if (language != "en") record.language = language;
+  if (language != "en") {
+    record.language = language;
+    record.notes = evaluation::notes_in(language, e.results, context.templates);
+  }
   record.findings = evaluation::known_findings(e.results, context.templates, language);
 
   std::vector<Artifact> files;

@@ -81,6 +81,8 @@ Record record_of(dom::object json) {
     r.inputs.emplace_back(name, text(digest));
   if (dom::element e; json["certificate"].get(e) == simdjson::SUCCESS) r.certificate = text(e);
   if (dom::element e; json["language"].get(e) == simdjson::SUCCESS) r.language = text(e);
+  if (dom::array notes; json["notes"].get(notes) == simdjson::SUCCESS)
+    for (const dom::element note : notes) r.notes.push_back(text(note));
   if (bool draft = false; json["draft"].get(draft) == simdjson::SUCCESS) r.draft = draft;
   for (const auto [name, size_and_digest] : dom::object(json["files"]))
     r.files.push_back({std::string(name), size_and_digest.at(0), text(size_and_digest.at(1))});
@@ -130,6 +132,7 @@ std::string to_json(const Record& r) {
   if (!r.certificate.empty()) json.member("certificate", r.certificate);
   if (r.draft) json.member("draft", true);
   if (!r.language.empty()) json.member("language", r.language);
+  if (!r.notes.empty()) json.member("notes", r.notes);
   put_files(json, r.files);
   if (r.history) {
     json.key("history");
@@ -222,6 +225,23 @@ std::vector<KnownFinding> known_findings(const Results& results, const Templates
                ? c.name + ": " + decision
                : words("tolerance", {{"name", c.name}, {"axis", c.axis}, {"decision", decision}})});
     }
+  return out;
+}
+
+std::vector<std::string> notes_in(const std::string& language, const Results& results,
+                                  const Templates& templates) {
+  const config::TerminalWords words(templates, language);
+  std::vector<std::string> out;
+  const auto take = [&](const std::vector<Remark>& notes) {
+    for (const Remark& note : notes)
+      out.push_back((note.measurement.empty()
+                         ? ""
+                         : words("head.from.one", {{"ids", note.measurement}}) + ": ") +
+                    remark_text(templates, language, note));
+  };
+  for (const auto& a : results.analyses) take(a.evaluation.notes);
+  for (const auto& o : results.outputs) take(o.result.notes);
+  take(results.notes);
   return out;
 }
 

@@ -61,6 +61,8 @@ struct Record {
   std::optional<ShownHistory> history{};
   std::vector<Error> errors;
   std::string language{};  ///< language of the site; empty for English
+  /// Notes of results.json in `language`, in the order of that file; empty for English.
+  std::vector<std::string> notes{};
   /// `previous`: findings of the previous run.
   std::vector<KnownFinding> findings, previous;
 };
@@ -89,5 +91,9 @@ Expected<std::optional<Record>> staged_record(const std::filesystem::path& campa
 /// indeterminate. Titles are in English and in `language`.
 std::vector<KnownFinding> known_findings(const Results& results, const Templates& templates,
                                          const std::string& language = "en");
+
+/// Returns all notes in the order of results.json.
+std::vector<std::string> notes_in(const std::string& language, const Results& results,
+                                  const Templates& templates);
 
 }  // namespace nonio::evaluation

@@ -98,6 +98,10 @@ class Importer {
   }
 
  private:
+  std::string say(const char* name, const config::TerminalWords::Parts& parts = {}) const {
+    return request_.say(name, parts);
+  }
+
   Expected<std::vector<std::string>> files() const {
     std::error_code error;
     const fs::path root = fs::canonical(request_.folder, error);
@@ -124,21 +128,21 @@ class Importer {
           std::find_if(request_.rule.exclude.begin(), request_.rule.exclude.end(),
                        [&](const std::string& part) { return name.find(part) != name.npos; });
       if (excluded != request_.rule.exclude.end()) {
-        report_.excluded.push_back({name, "its path holds \"" + *excluded + "\""});
+        report_.excluded.push_back({name, say("import.why.excluded", {{"text", *excluded}})});
         continue;
       }
       const auto ways = readings_of_name(request_.rule, name);
       if (ways.size() != 1) {
         report_.unmatched.push_back(
-            {name, ways.empty() ? "its name does not follow the pattern"
-                                : "its name can be read in two ways by the pattern"});
+            {name, say(ways.empty() ? "import.why.no-match" : "import.why.two-ways")});
         continue;
       }
       const auto path = storage::path_inside(request_.folder, name);
       NONIO_TRY(auto bytes, path ? storage::read_file(*path) : fail(path.error()));
       const auto [same, fresh] = first.try_emplace(storage::sha256(bytes), name);
       if (!fresh) {
-        report_.duplicates.push_back({name, "the same bytes as " + same->second});
+        report_.duplicates.push_back(
+            {name, say("import.why.same-bytes", {{"file", same->second}})});
         continue;
       }
       campaigns_[campaign_of(request_.rule, ways[0])].push_back({name, std::move(bytes), ways[0]});
@@ -150,8 +154,7 @@ class Importer {
     ImportedCampaign campaign;
     campaign.id = id;
     if (!config::is_campaign_id(id))
-      campaign.lacks.push_back("expected an id of a-z 0-9 . _ -, found \"" + id +
-                               "\"; state it in the rule: campaign = \"{date}-{machine}\"");
+      campaign.lacks.push_back(say("import.lack.id", {{"found", id}}));
     std::set<std::string> names, ids;
     for (const Found& f : found) campaign.files.push_back(file_of(f, names, ids));
     if (config::is_campaign_id(id) && is_there(request_.out / id, campaign, found)) {
@@ -164,7 +167,7 @@ class Importer {
     std::error_code error;
     const fs::path folder = request_.out / id;
     if (config::is_campaign_id(id) && fs::exists(fs::symlink_status(folder, error)))
-      campaign.lacks.push_back(folder.string() + " exists and is not changed");
+      campaign.lacks.push_back(say("import.lack.exists", {{"folder", folder.string()}}));
     const bool may = config::is_campaign_id(id) && !fs::exists(fs::symlink_status(folder, error));
     if (may && !request_.dry_run && (campaign.whole() || request_.partial)) {
       std::vector<Artifact> artifacts;
@@ -213,27 +216,23 @@ class Importer {
     file.reader = request_.rule.reader;
     const std::string name = fs::path(f.file).filename().string();
     if (!storage::is_artifact_name(name) || name == config::manifest_name)
-      file.lacks.push_back("expected a plain file name, found \"" + name + "\"");
+      file.lacks.push_back(say("import.lack.plain-name", {{"name", name}}));
     else if (!names.insert(name).second)
-      file.lacks.push_back("another file of this campaign is called " + name);
+      file.lacks.push_back(say("import.lack.same-name", {{"name", name}}));
     else
       file.name = name;
     if (const auto axis = f.places.find("axis"); axis != f.places.end())
       take_axis(axis->second, file);
     else if (!request_.rule.axis.empty())
       file.axis = request_.rule.axis,
-      file.assumed.push_back("axis " + file.axis + ", as the rule states");
+      file.assumed.push_back(say("import.axis.rule", {{"name", file.axis}}));
     else if (request_.rule.kind != "observations")
-      file.lacks.push_back(
-          "axis: which axis of the machine was measured, because the rule has no placeholder "
-          "{axis}; add it, or state axis in a file of rules");
+      file.lacks.push_back(say("import.lack.axis"));
     const auto own = f.places.find("id");
     file.measurement = own != f.places.end() ? own->second : file.axis;
     if (file.measurement.empty()) file.measurement = fs::path(f.file).stem().string();
     if (!ids.insert(file.measurement).second)
-      file.lacks.push_back("id: another file is measurement \"" + file.measurement +
-                           "\" of this campaign; exclude one of them, or separate them by a "
-                           "place {id}");
+      file.lacks.push_back(say("import.lack.same-id", {{"measurement", file.measurement}}));
     return file;
   }
 
@@ -244,8 +243,9 @@ class Importer {
     else if (file.axis[0] >= 'a' && file.axis[0] <= 'z')
       file.axis[0] = static_cast<char>(file.axis[0] - 32);
     if (file.axis != word)
-      file.assumed.push_back("axis " + file.axis + " for \"" + word + "\" in its name" +
-                             (request_.rule.axes.empty() ? "" : ", as the rule states"));
+      file.assumed.push_back(
+          say(request_.rule.axes.empty() ? "import.axis.name" : "import.axis.name-rule",
+              {{"name", file.axis}, {"word", word}}));
   }
 
   std::string manifest_of(const ImportedCampaign& campaign, const Places& places) const {
@@ -311,8 +311,8 @@ class Importer {
         const auto [same, fresh] = first.try_emplace(digest, file.file);
         if (fresh) continue;
         file.same_as = same->second;
-        file.lacks = {"the same readings as " + file.same_as +
-                      "; exclude one of them, in the rule: exclude = [\"" + file.file + "\"]"};
+        file.lacks = {
+            say("import.lack.same-readings", {{"file", file.same_as}, {"own", file.file}})};
       }
     }
     const bool asked = std::any_of(campaign.files.begin(), campaign.files.end(),

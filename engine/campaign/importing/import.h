@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "campaign/config/manifest.h"
+#include "campaign/config/terminal_words.h"
 #include "campaign/loader/plugins.h"
 
 namespace nonio::importing {
@@ -69,6 +70,7 @@ struct ImportReport {
 struct ImportRequest {
   std::filesystem::path folder, out;
   ImportRule rule;
+  const config::TerminalWords& say;
   /// For the machine of all campaigns; empty if not stated.
   std::string asset{}, maker{}, serial{};
   /// Whether incomplete campaigns are also written.

@@ -172,7 +172,7 @@ std::vector<WorkItem> of_site(const Known& known) {
     out.back().machine = s.one;
     put_text(out.back(), "one", s.one);
     put_text(out.back(), "other", s.other);
-    put_text(out.back(), "alike", s.why == "spelled alike" ? "alike" : "numbered");
+    put_text(out.back(), "alike", s.key());
   }
   std::string scatter;
   double most = 1.0;

@@ -16,6 +16,8 @@ std::string machine_of(const MachineAsStated& machine);
 struct Spelling {
   std::string one, other;  ///< `one` is the name that more campaigns state
   std::string why;
+  /// Returns the key of `why` in the table term.alike of the words.
+  const char* key() const { return why == "spelled alike" ? "alike" : "numbered"; }
 };
 
 struct NamedMachine {

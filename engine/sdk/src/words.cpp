@@ -75,6 +75,52 @@ bool is_joined(std::string_view joined, std::string_view name, std::string_view 
          joined.ends_with(suffix);
 }
 
+/// Replaces the decimal points between digits.
+std::string with_local_numbers(std::string text, std::string_view language) {
+  const auto is_digit = [&](std::size_t i) { return text[i] >= '0' && text[i] <= '9'; };
+  for (std::size_t i = 1; i + 1 < text.size(); ++i)
+    if (text[i] == '.' && is_digit(i - 1) && is_digit(i + 1)) text[i] = localised(".", language)[0];
+  return text;
+}
+
+/// Whether the text contains numbers, such as "1.00 EYZ.2" or the positions of readings, and not the
+/// name of a measurement.
+bool has_numbers(std::string_view key, const std::string& text) {
+  return key == "combinations" || key == "weakest" ||
+         (key == "which" && (text.find(" mm") != text.npos || text.find(" deg") != text.npos));
+}
+
+/// The evidence `{value} ± {U}` at the beginning of the text, and the length of its placeholders.
+struct ValueWithU {
+  std::string text;
+  std::size_t length = 0;
+};
+
+/// Empty unless the text begins with two numbers of one quantity. They are rounded together, so that
+/// a value has the same digits as in the tables of results.
+ValueWithU value_with_U(std::string_view text, const std::vector<Number>& evidence) {
+  const auto number_at = [&](std::size_t open, std::size_t& end) -> const Number* {
+    end = open < text.size() && text[open] == '{' ? text.find('}', open) : text.npos;
+    if (end == text.npos) return nullptr;
+    const std::string_view name = text.substr(open + 1, end++ - open - 1);
+    for (const Number& n : evidence)
+      if (n.name == name) return &n;
+    return nullptr;
+  };
+  constexpr std::string_view between = " ± ";
+  std::size_t end = 0, last = 0;
+  const Number* const value = number_at(0, end);
+  if (value == nullptr || !text.substr(end).starts_with(between)) return {};
+  const Number* const U = number_at(end + between.size(), last);
+  if (U == nullptr || U->quantity != value->quantity) return {};
+  const Unit unit = unit_of(U->quantity);
+  const auto rounded = rounded_result(value->value * unit.per_si, U->value * unit.per_si);
+  if (!rounded) return {};
+  return {rounded->value + std::string(between) + rounded->U +
+              (unit.symbol.empty() ? "" : " " + std::string(unit.symbol)),
+          last};
+}
+
 std::string filled(std::string_view text, const std::vector<Number>& evidence, const Texts& texts,
                    std::string_view language) {
   std::string out;
@@ -84,6 +130,11 @@ std::string filled(std::string_view text, const std::vector<Number>& evidence, c
     out += text.substr(i, open - i);
     i = open;
     if (i == text.size()) break;
+    if (const auto [both, length] = value_with_U(text.substr(i), evidence); length > 0) {
+      out += localised(both, language);
+      i += length;
+      continue;
+    }
     const std::size_t close = text.find('}', i);
     if (close == std::string_view::npos) {
       out += text[i++];
@@ -98,7 +149,8 @@ std::string filled(std::string_view text, const std::vector<Number>& evidence, c
         value =
             localised(evidence_text(n), language) + " " + std::string(unit_of(n.quantity).symbol);
     for (const auto& [key, words_of] : texts)
-      if (name == key) value = words_of;
+      if (name == key)
+        value = has_numbers(key, words_of) ? with_local_numbers(words_of, language) : words_of;
     out += value;
     i = close + 1;
   }
@@ -124,8 +176,6 @@ Texts said(const Templates& templates, std::string_view language, Texts texts) {
     if (std::string term = words(templates, language, "term." + key + "." + text); !term.empty())
       out = std::move(term);
     text = std::move(out);
-    // Errors with their sizes, such as "EYY 1.00, EXX -0.75".
-    if (key == "combinations") text = localised(std::move(text), language);
   }
   return texts;
 }

@@ -74,7 +74,7 @@ class Certificates(NumberedTest):
         self.certificates("--out", self.root / "all")
         self.assertEqual((self.root / "all" / f"{number(1)}.pdf").read_bytes(), first)
         self.assertEqual((self.root / "all" / f"{number(2)}.pdf").read_bytes(), self.pdf("c1").read_bytes())
-        self.assertIn("amended by " + number(2), self.certificates().stdout)
+        self.assertIn("amended, replaced by " + number(2), self.certificates().stdout)
         # A key without effect on the results changes nothing; one with effect makes an amendment.
         self.site_with(extra='[limits]\nseconds = 100\n')
         self.night()

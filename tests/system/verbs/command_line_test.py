@@ -72,6 +72,32 @@ class Table(VerbTest):
             self.assertLessEqual(len(positional), len(places))
         self.assertLessEqual({a["name"] for a in options.values() if a["required"]}, given)
 
+    def test_a_missing_argument_or_value_is_named_with_its_meaning_and_an_example(self):
+        missing, valueless = 0, 0
+        for command in table()["commands"]:
+            words = command["command"].split()[1:]
+            needed = [a for a in command["arguments"] if a["required"]]
+            wrong = []
+            if needed:
+                wrong.append((words, f"{needed[0]['name']}.* is missing: ", needed[0]))
+                missing += 1
+            for a in command["arguments"]:
+                if a["name"].startswith("--") and a["kind"] != "flag" and "value_of_bare" not in a:
+                    wrong.append(([*words, a["name"]], f"{a['name']} requires a value, {a['name']} [A-Z|a-z0-9-]+: ", a))
+                    valueless += 1
+                    break
+            for given, pattern, a in wrong:
+                said = self.nonio(*given, expect=2).stderr
+                self.assertRegex(said, f"^nonio {' '.join(words)}: {pattern}", given)
+                self.assertIn(a["help"], said)
+                self.assertEqual("examples" in command and bool(command["examples"]), "\nExample: nonio " in said, said)
+        self.assertGreater(missing, 25)
+        self.assertGreater(valueless, 30)
+
+    def test_one_argument_too_many_is_named(self):
+        said = self.nonio("run", self.site, "--out", "x", "one", "two", expect=2).stderr
+        self.assertIn('unexpected argument "one"; expected nonio run SITE --out FOLDER [OPTIONS]', said)
+
     def test_former_names(self):
         known = {c["command"] for c in table()["commands"]}
         for alias in table()["aliases"]:

@@ -51,6 +51,30 @@ TEST(Words, EachOfAListHasItsTerm) {
   EXPECT_EQ(text("x, "), "the X axis, ");
 }
 
+TEST(Words, AValueHasTheDigitsOfItsU) {
+  const Finding f{.evidence = {{"x", -0.3e-6, Quantity::deviation},
+                               {"U", 0.238e-6, Quantity::deviation},
+                               {"angle", 1e-6, Quantity::angular_deviation},
+                               {"zero", 0.0, Quantity::deviation},
+                               {"time", 197.4, Quantity::number},
+                               {"U_time", 12.3, Quantity::number}}};
+  EXPECT_EQ(filled("by {x} ± {U}: no", f, "de"), "by -0,30 ± 0,24 um: no");
+  EXPECT_EQ(filled("{time} ± {U_time} min", f, "en"), "197 ± 12 min");
+  EXPECT_EQ(filled("{x} ± {zero}", f, "en"), "-0.300 um ± 0.000 um");
+  EXPECT_EQ(filled("{angle} ± {U}", f, "en"), filled("{angle}", f, "en") + " ± 0.238 um");
+  EXPECT_EQ(filled("{x} ± {other} ± {", f, "en"), "-0.300 um ± {other} ± {");
+}
+
+TEST(Words, OnlyNumbersOfATextHaveTheDecimalSignOfTheLanguage) {
+  const auto text = [](const char* key, const char* of) {
+    return filled(std::string("{") + key + "}", Finding{.texts = {{key, of}}}, "de");
+  };
+  EXPECT_EQ(text("weakest", "1.00 EYZ.2 - 0.637 EYX.2"), "1,00 EYZ.2 - 0,637 EYX.2");
+  EXPECT_EQ(text("which", "580.178 mm (4, +)"), "580,178 mm (4, +)");
+  EXPECT_EQ(text("which", "x1.2"), "x1.2");  // a measurement
+  EXPECT_EQ(text("file", "1.2"), "1.2");
+}
+
 TEST(Words, GatheredTheySayTheSame) {
   Templates t = two_files();
   expect_what_is_said(t);

@@ -241,9 +241,11 @@ constexpr Choice terminal_languages[] = {{"de"}, {"en"}, {"it"}};
 constexpr Key site_file_keys[] = {
     format_key,
     {"language", into<&SiteFile::language>,
-     "Language of summary.txt, the pages, and what run, check, status, show, model, plan, machine "
-     "history and table session print. JSON, --help, error messages and the other commands are "
-     "English.",
+     "Language of summary.txt, the pages and what commands print. English in every language are "
+     "JSON, --help, messages of errors (also where a screen quotes them), `check "
+     "--only-templates`, `certificate extend` and `send`, `model simulate`, `table controls`, "
+     "`plugin`, `schema`, `serve`, `upgrade`, `backup` and `restore`, `certificate verify` without "
+     "--site, and commands that find no site or results.",
      otherwise("en"), terminal_languages},
     {"laboratory", nested<&SiteFile::laboratory>, "The calibration laboratory.", laboratory_keys},
     {"limits", nested<&SiteFile::limits>, "Limits for one campaign.", limits_keys},
