@@ -176,7 +176,7 @@ inline constexpr const char* machines_folder = "machines";
 /// Machines whose series index.html shows: those of the first lines.
 std::vector<std::string> drawn_first(const SiteHistory&);
 
-/// index.html, due.html, due.ics, instruments.html, compare.html. Only series of `drawn_first` are
+/// index.html, due.html, due.ics, instruments.html, compare.html, charts.js. Only series of `drawn_first` are
 /// needed.
 Expected<std::vector<Artifact>> site_lists(const SiteHistory&, const Templates&,
                                            const std::string& language);
