@@ -38,14 +38,17 @@ Json to_json(const RegisterEntry& e) {
   return json;
 }
 
-/// Example: "  approved by B. Sample (user sample, account lab@room-3)".
+/// Examples: "  approved by B. Sample (user sample, account lab@room-3)", "  withdrawn by B. Sample
+/// (name not authenticated, account lab@room-3)".
 std::string person_text(const char* what, const std::string& by, const std::string& account,
                         const std::string& user = {}) {
   if (by.empty() && account.empty()) return {};
-  return std::string("  ") + what + (by.empty() ? "" : " by " + by) +
-         (account.empty()
-              ? ""
-              : " (" + (user.empty() ? "" : "user " + user + ", ") + "account " + account + ")");
+  const std::string proof = by.empty()     ? ""
+                            : user.empty() ? "name not authenticated"
+                                           : "user " + user;
+  return std::string("  ") + what + (by.empty() ? "" : " by " + by) + " (" + proof +
+         (proof.empty() || account.empty() ? "" : ", ") +
+         (account.empty() ? "" : "account " + account) + ")";
 }
 
 void print(const RegisterEntry& e) {

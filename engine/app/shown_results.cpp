@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shown_results.h"
 
+#include "batch/state/run_state.h"
 #include "campaign/config/template_files.h"
 #include "campaign/evaluation/evaluation.h"
 #include "campaign/evaluation/record.h"
 #include "campaign/evaluation/results_json.h"
+#include "certificates/certificate_list.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_numbers.h"
 #include "results_folder.h"
@@ -42,6 +44,17 @@ Expected<Shown> of_run(const fs::path& folder, const Common& common) {
                                           config::words_in(language));
   if (!templates) return fail(templates.error());
   return Shown{std::move(*text), std::move(*templates), language, {}};
+}
+
+bool is_out_of_force(const fs::path& results, const std::string& number) {
+  const fs::path above = fs::absolute(results).lexically_normal().parent_path();
+  for (const fs::path& out : {above, above.parent_path()}) {  // OUT/<id> or OUT/ab/<id>
+    const std::string site = batch::site_of(out);
+    if (site.empty()) continue;
+    const auto numbers = certificates::out_of_force(site);
+    return numbers && numbers->contains(number);
+  }
+  return false;
 }
 
 Finding finding_of(const Json& json) {

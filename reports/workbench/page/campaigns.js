@@ -147,13 +147,15 @@ const campaigns = (() => {
     let shown = all.flatMap(([a, values]) => values.filter(([name]) => decisionOf(a, name) || (a.values.A && a.values.R && ["A", "B", "E", "R"].includes(name))).map(([name, v]) => [a, name, v]));
     const ofOneDirection = (a, name) => /.[+-]$/.test(name) && name.slice(0, -1) in a.values, ofTest = (name) => name.startsWith("lack_of_fit") || name === "redundancy";
     if (shown.length === 0) shown = all.flatMap(([a, values]) => values.filter(([name]) => !ofOneDirection(a, name) && !ofTest(name)).slice(0, most).map(([name, v]) => [a, name, v]));
+    const columns = decided.size ? ["value", "result", "limit", "decision"] : ["value", "result"];
     const rows = shown.map(([a, name, v]) => {
       const d = decisionOf(a, name), unit = shownUnit(v.unit || "");
       const number = !finite(v.value) ? "\u2013" : finite(v.U) && v.U > 0 ? withExpanded(v.value, v.U).join(" \u00B1 ") : !unit && Number.isInteger(v.value) ? String(v.value) : short(v.value);
-      return el("tr", {}, el("th", {scope: "row"}, `${a.measurement ? entries.visible(a.measurement) + ": " : ""}${name}`), el("td", {class: "number"}, `${number} ${unit}`), el("td", {class: "number"}, d ? `${local(String(d.tolerance))} ${unit}` : "\u2013"), el("td", {}, d ? badge(d.decision) : "\u2013"));
+      const of = a.part || a.measurement, limit = d ? `${local(String(d.tolerance))} ${unit}` : "\u2013";
+      return el("tr", {}, el("th", {scope: "row"}, `${of ? entries.visible(of) + ": " : ""}${words["one.value_" + name] || name}`), el("td", {class: "number"}, `${number} ${unit}`), ...(decided.size ? [el("td", {class: "number"}, limit), el("td", {}, d ? badge(d.decision) : "\u2013")] : []));
     });
     return [decided.size === 0 ? el("p", {}, say("one.no_limits")) : null, rows.length === 0 ? null :
-      el("div", {class: "scroll", role: "group", tabindex: 0, "aria-label": say("one.verdict")}, el("table", {id: "decisions"}, el("thead", {}, el("tr", {}, ...["value", "result", "limit", "decision"].map((w) => el("th", {scope: "col"}, say("one." + w))))), el("tbody", {}, ...rows)))];
+      el("div", {class: "scroll", role: "group", tabindex: 0, "aria-label": say("one.verdict")}, el("table", {id: "decisions"}, el("thead", {}, el("tr", {}, ...columns.map((w) => el("th", {scope: "col"}, say("one." + w))))), el("tbody", {}, ...rows)))];
   }
   /// An error with its file, line and column.
   const errorText = (e) => entries.visible([[[e.file, e.line].filter(Boolean).join(":"), e.column ? `(${e.column})` : ""].filter(Boolean).join(" "), e.message].filter(Boolean).join(": "));
@@ -165,6 +167,14 @@ const campaigns = (() => {
     const names = new Set(keys.map((key) => fieldName(key.replace(/ \(.*/, ""))));
     return names.size ? el("div", {class: "note", id: "missing"}, el("p", {}, say("one.missing")), el("ul", {}, ...[...names].map((n) => el("li", {}, n)))) : null;
   }
+  /// Findings with sentence and action as on a terminal; those of severity info are closed.
+  function findings(all) {
+    const head = (f) => entries.visible(f.title + (f.measurements.length ? ` (${f.measurements.join(", ")})` : ""));
+    const shownText = (s) => entries.visible(typeset(s)), is_syntax = (s) => /\bnonio |\[\[?[a-z]|\.toml|\w_\w|`/.test(s);
+    const texts = (f) => [...f.says.map((s) => el("p", {}, shownText(s))), ...f.advice.map((s) => (is_syntax(s) ? el("details", {}, el("summary", {}, say("one.advice_files")), el("p", {}, shownText(s))) : el("p", {}, el("b", {}, say("one.advice")), " ", shownText(s))))];
+    const rows = all.map((f) => (f.severity === "attention" ? el("li", {class: "attention"}, el("h3", {}, head(f)), ...texts(f)) : el("li", {}, el("details", {}, el("summary", {}, head(f)), ...texts(f)))));
+    return rows.length ? [el("section", {"aria-labelledby": "found-title"}, el("h2", {id: "found-title"}, say("one.found")), el("ul", {id: "found", class: "plain"}, ...rows))] : [];
+  }
   function fieldName(key) {
     const plain = key.replace(/^machine\.axes\.\w+\./, "axis.").replace(/[^A-Za-z0-9]/g, "_").toLowerCase();
     return words["field." + plain] || say("one.other_key");
@@ -175,15 +185,15 @@ const campaigns = (() => {
     const back = el("a", {href: "#to=campaigns", "data-key": "back-to-list"}, say("one.back"));
     if (!c) return [el("h1", {tabindex: -1}, entries.visible(folder)), el("p", {}, back), el("p", {}, say("one.no_such"))];
     const has = c.files.includes("results.json");
-    const [results, drafts] = await Promise.all([has ? json(c.id, "results.json") : {}, c.draft ? net.ask("/api/drafts") : {drafts: []}]);
+    const [results, drafts, found_] = await Promise.all([has ? json(c.id, "results.json") : {}, c.draft ? net.ask("/api/drafts") : {drafts: []}, has ? net.ask("/api/findings?" + new URLSearchParams({campaign: c.id})) : {findings: []}]);
     const draft = drafts.drafts.find((d) => d.folder === folder);
     const errors = (results.errors || []).map(errorText);
-    return [el("h1", {tabindex: -1}, `${entries.visible(nameOf(c))}${c.day ? ", " + c.day : ""}`),
+    return [el("h1", {tabindex: -1}, entries.visible(nameOf(c)), c.day ? [", ", el("span", {class: "day"}, c.day)] : null),
       el("p", {id: "one-state"}, badge(c.state), " ", badge(c.verdict), " ", entries.visible([c.customer, c.place].filter(Boolean).join(", "))),
       ...(errors.length ? errors : c.message ? [entries.visible(c.message)] : []).map((text) => el("p", {class: "flag"}, text)), c.changed ? el("p", {class: "note"}, say("list.changed")) : null,
       el("div", {class: "acts wide"}, back, ...tools.buttons(folder, folder)),
       el("div", {class: "answer"}, fitted.places(folder), errors.length ? null : has ? el("section", {id: "verdict-of", "aria-labelledby": "verdict-title"}, el("h2", {id: "verdict-title"}, say("one.verdict")), ...decisions(results)) : el("p", {}, say("one.not_yet"))),
-      c.findings.length ? el("section", {"aria-labelledby": "found-title"}, el("h2", {id: "found-title"}, say("one.found")), el("ul", {id: "found"}, ...c.findings.map((f) => el("li", {}, entries.visible(f))))) : null,
+      ...findings(found_.findings),
       missing(results),
       c.files.length ? el("section", {"aria-labelledby": "documents-title"}, el("h2", {id: "documents-title"}, say("list.documents")), el("div", {class: "acts wide"}, ...documents(c, tools))) : null,
       tools.released && tools.released.folder === folder ? tools.releasedNote() : null,

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -152,6 +153,7 @@ struct SiteHistory {
   std::vector<MachineHistory> machines;         ///< by id
   std::vector<MonthOfMachine> months;
   std::vector<InstrumentUse> instruments;
+  std::set<std::string> out_of_force{};  ///< numbers of certificates no longer in force
   std::vector<ModelComparison> comparisons;
   bool judged = true;      ///< whether some campaign states a limit
   std::size_t hidden = 0;  ///< lines excluded by the request
