@@ -88,8 +88,10 @@ CLI::Validator within(double least, double most) {
             const auto [at, error] = std::from_chars(found.data(), end, value);
             if (error == std::errc() && at == end && value >= least && value <= most)
               return std::string();
-            return "expected a number from " + short_text(least, 9) + " to " + short_text(most, 9) +
-                   ", found \"" + found + "\"";
+            std::string text = "expected a number from ";
+            append_shortest(text, least);
+            append_shortest(text += " to ", most);
+            return text + ", found \"" + found + "\"";
           },
           ""};
 }
@@ -407,6 +409,18 @@ void print_help(const Program& program, const Found& found, std::ostream& out, i
   found.path == program.name ? page.program(program) : page.command(found);
 }
 
+/// The parser's own message, unless its words are those of a programmer.
+std::string in_words(const CLI::ParseError& e) {
+  std::string text = e.what();
+  for (const auto& [before, after] :
+       {std::pair<std::string, std::string>{": 1 required TEXT missing", ": expected a value"},
+        {"The following argument was not expected: ", "unexpected argument: "},
+        {"The following arguments were not expected: ", "unexpected arguments: "}})
+    if (const std::size_t at = text.find(before); at != std::string::npos)
+      text.replace(at, before.size(), after);
+  return text;
+}
+
 int parse(const Found& found, const Words& options) {
   CLI::App cli;
   for (const Argument& a : found.verb->arguments) check(*bind(cli, a), a);
@@ -414,7 +428,7 @@ int parse(const Found& found, const Words& options) {
   try {
     cli.parse(std::move(reversed));
   } catch (const CLI::ParseError& e) {
-    std::cerr << found.typed << ": " << e.what() << "\nSee `" << found.path << " --help`.\n";
+    std::cerr << found.typed << ": " << in_words(e) << "\nSee `" << found.path << " --help`.\n";
     return exit_usage;
   }
   for (const Argument& a : found.verb->arguments)

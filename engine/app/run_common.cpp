@@ -43,7 +43,8 @@ void print_actions(const std::string& actions, const config::TerminalWords& word
   };
   std::vector<Campaign> campaigns;
   for (const Json& line : lines) {
-    const std::string kind = line.value("kind", ""), id = line.value("campaign", "");
+    const std::string kind = line.value("kind", ""), campaign = line.value("campaign", ""),
+                      id = campaign.empty() ? line.value("machine", "") : campaign;
     if (line.value("state", "") != "new" || id.empty() || kind == "failed" || kind == "information")
       continue;
     const std::string axis = line.value("axis", ""), quantity = line.value("quantity", ""),

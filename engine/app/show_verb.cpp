@@ -274,8 +274,8 @@ class Page {
     });
     std::string text;
     for (std::size_t i = 0; i < std::min(rest.size(), most_values); ++i)
-      text += (i == 0 ? "" : ", ") +
-              glued(name_of_value(rest[i].first) + " " + result(rest[i].second));
+      text +=
+          (i == 0 ? "" : ", ") + glued(name_of_value(rest[i].first) + " " + result(rest[i].second));
     if (rest.size() > most_values)
       text += ", " + say_("show.more", {{"count", std::to_string(rest.size() - most_values)}});
     text = wrapped(text, 4, width_);
@@ -420,7 +420,8 @@ class Page {
       });
       if (files == 0 && !all_) continue;
       if (std::exchange(is_first, false)) heading(say_("compensation"));
-      out_ << "  " << plugin << ": " << say_("files") << " " << files << "\n";
+      out_ << "  " << plugin << ": " << say_.counted("show.files", static_cast<std::size_t>(files))
+           << "\n";
       std::string last;
       std::vector<std::string> parts;
       const auto flush = [&] {
@@ -433,10 +434,13 @@ class Page {
         const auto three = [&](const char* key) {
           return local(short_text(p.at(key).get<double>(), 3));
         };
-        parts.push_back(p.value("name", "") + " " +
-                        say_("predicted", {{"before", three("before")},
-                                           {"after", three("predicted")},
-                                           {"unit", p.value("unit", "")}}));
+        parts.push_back(
+            p.value("name", "") + " " +
+            say_("predicted", {{"before", three("before")},
+                               {"after", three("predicted")},
+                               {"unit", p.value("unit", "")}}) +
+            // A prediction is never below U.
+            (three("before") == three("predicted") ? " (" + say_("not-below-U") + ")" : ""));
       }
       flush();
       if (all_)

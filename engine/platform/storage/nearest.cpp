@@ -13,7 +13,7 @@ std::string suggestion(std::string_view found, const std::vector<std::string>& c
   std::size_t least = std::max<std::size_t>(2, found.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
     const std::size_t distance = readers::edit_distance(found, candidate);
-    if (distance < least) {
+    if (distance < least && 2 * distance <= std::max(found.size(), candidate.size())) {
       least = distance;
       best = &candidate;
     }

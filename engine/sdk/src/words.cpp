@@ -75,6 +75,26 @@ bool is_joined(std::string_view joined, std::string_view name, std::string_view 
          joined.ends_with(suffix);
 }
 
+constexpr std::string_view plus_minus = "\u00b1";
+
+/// "{value\u00b1U}": a value with its U, both in the unit of the value and rounded to the second digit of
+/// U. With a name such as "value_ms" there is no unit.
+std::optional<std::string> with_U(const std::vector<Number>& evidence, std::string_view name,
+                                  std::string_view name_of_U, std::string_view language) {
+  const auto found = [&](std::string_view wanted) {
+    return std::find_if(evidence.begin(), evidence.end(),
+                        [&](const Number& n) { return n.name == wanted; });
+  };
+  const auto value = found(name), U = found(name_of_U);
+  if (value == evidence.end() || U == evidence.end()) return std::nullopt;
+  const std::string symbol(unit_of(value->quantity).symbol);
+  const auto both =
+      rounded_result(printed(value->value, value->quantity), printed(U->value, value->quantity));
+  const std::string text =
+      both ? both->value + " " + std::string(plus_minus) + " " + both->U : evidence_text(*value);
+  return localised(text, language) + (symbol.empty() ? "" : " " + symbol);
+}
+
 std::string filled(std::string_view text, const std::vector<Number>& evidence, const Texts& texts,
                    std::string_view language) {
   std::string out;
@@ -91,6 +111,9 @@ std::string filled(std::string_view text, const std::vector<Number>& evidence, c
     }
     const std::string_view name = text.substr(i + 1, close - i - 1);
     std::string value(text.substr(i, close + 1 - i));
+    if (const std::size_t at = name.find(plus_minus); at != std::string_view::npos)
+      value = with_U(evidence, name.substr(0, at), name.substr(at + plus_minus.size()), language)
+                  .value_or(value);
     for (const Number& n : evidence)
       if (is_joined(name, n.name, unit_of(n.quantity).suffix))
         value = localised(evidence_text(n), language);
