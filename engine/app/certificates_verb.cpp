@@ -79,11 +79,16 @@ int audit(const CertificateWish& wanted, const config::Numbering& numbering, con
                     {"wrong", a.wrong}});
   } else {
     for (const std::string& what : a.wrong) std::cout << "error: " << what << "\n";
-    std::cout << (a.wrong.empty() ? "unchanged" : "changed after it was written") << ": register "
-              << a.id << " (entries: " << a.entries << ", certificates: " << a.certificates
-              << ", files: " << a.files << ")\n"
-              << "last entry " << a.last_at << ", SHA-256 " << a.last_sha256
-              << ": keep it, because a removal of the newest entries shows only by it\n";
+    const std::size_t width = sentence_width(STDOUT_FILENO);
+    std::cout << wrapped(
+                     std::string(a.wrong.empty() ? "unchanged" : "changed after it was written") +
+                         ": register " + a.id + " (entries: " + std::to_string(a.entries) +
+                         ", certificates: " + std::to_string(a.certificates) +
+                         ", files: " + std::to_string(a.files) + ")",
+                     0, width, 2)
+              << wrapped("last entry " + a.last_at + ", SHA-256 " + a.last_sha256 +
+                             ": keep it, because a removal of the newest entries shows only by it",
+                         0, width, 2);
   }
   return a.wrong.empty() ? exit_done : exit_failed;
 }

@@ -261,6 +261,8 @@ std::string value_of(const Argument& a) {
       return "NUMBER";
     case Argument::Takes::day:
       return "DAY";
+    case Argument::Takes::control:
+      return "CONTROL";
     case Argument::Takes::anything:
       break;
   }

@@ -155,8 +155,10 @@ int print_machines(const QueryWish& wish, const Common& common) {
                     std::to_string(m.campaigns)});
   print_rows(rows, "lr");
   for (const Spelling& s : *spellings)
-    std::cout << "one machine? \"" << printable(s.one) << "\" and \"" << printable(s.other)
-              << "\": " << s.why << "; if so, state it in site.toml: [[alias]] name, asset, why\n";
+    std::cout << wrapped("one machine? \"" + printable(s.one) + "\" and \"" + printable(s.other) +
+                             "\": " + s.why +
+                             "; if so, state it in site.toml: [[alias]] name, asset, why",
+                         0, sentence_width(STDOUT_FILENO), 2);
   return exit_done;
 }
 

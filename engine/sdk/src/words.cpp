@@ -117,6 +117,8 @@ std::string filled(std::string_view text, const std::vector<Number>& evidence, c
     for (const Number& n : evidence)
       if (is_joined(name, n.name, unit_of(n.quantity).suffix))
         value = localised(evidence_text(n), language);
+      else if (is_joined(name, n.name, "%"))  // a ratio
+        value = localised(short_text(100.0 * n.value, 2), language) + " %";
       else if (name == n.name)
         value =
             localised(evidence_text(n), language) + " " + std::string(unit_of(n.quantity).symbol);

@@ -289,7 +289,6 @@ void spikes(Work& w, double total) {
                               .evidence = {{"value", worst.height, Quantity::deviation},
                                            {"alone", alone, Quantity::deviation},
                                            {"share", share, Quantity::ratio},
-                                           {"percent", 100.0 * share, Quantity::number},
                                            {"at", worst.at, Quantity::angle},
                                            {"width", worst.width, Quantity::angle}},
                               .texts = {{"axis", w.circle.axis[k]}}});
@@ -314,8 +313,7 @@ void causes(Work& w, const Wish& wish) {
         .evidence = {{"value", v.value, v.quantity},
                      {"U", U, v.quantity},
                      {"alone", v.alone, Quantity::deviation},
-                     {"share", share, Quantity::ratio},
-                     {"percent", 100.0 * share, Quantity::number}},
+                     {"share", share, Quantity::ratio}},
         .texts = {{"name", v.name}, {"first", w.circle.axis[0]}, {"second", w.circle.axis[1]}}};
     if (!v.axis.empty()) f.texts.emplace_back("axis", v.axis);
     if (v.quantity == Quantity::time) {  // the message needs 0.42 ms, not 0.00042 s

@@ -8,7 +8,7 @@ const campaigns = (() => {
   const nameOf = (c) => c.machine || c.model || c.id || c.folder;
 
   /// State and verdict: in words, and by a mark that is readable without color.
-  const marks = {new: "\u25CB", failed: "\u2716", attention: "!", ok: "\u2714", "does not conform": "\u2716", conforms: "\u2714"};
+  const marks = {new: "\u25CB", failed: "\u2716", attention: "!", changed: "!", overdue: "!", ok: "\u2714", "does not conform": "\u2716", conforms: "\u2714"};
   function badge(state) {
     return state ? el("span", {class: "badge " + state.replace(/ /g, "-")}, `${marks[state] || "?"} ${wordOf(state)}`) : null;
   }
@@ -18,10 +18,10 @@ const campaigns = (() => {
     for (const file of c.files) {
       const word = file === "certificate.pdf" ? "list.certificate" : file === "certificate-draft.pdf" ? "list.draft" : /report.*\.pdf$/.test(file) ? "list.report" : null;
       if (word) first.push(link(`get-${c.folder}-${file}`, say(word), get(file)));
-      if (word && word !== "list.draft" && send) first.push(link(`send-${c.folder}-${file}`, say("mail.short"), () => send(id, file), {"aria-label": `${say("mail.title")}: ${say(word)}`}));
       else if (file !== "run.json") rest.push(el("li", {}, link(`get-${c.folder}-${file}`, file, get(file))));
+      if (word && word !== "list.draft" && send) first.push(link(`send-${c.folder}-${file}`, say("mail.short"), () => send(id, file), {"aria-label": `${say("mail.title")}: ${say(word)}`}));
     }
-    return [...first, rest.length ? el("details", {}, el("summary", {}, say("list.files", {n: rest.length})), el("ul", {class: "plain"}, ...rest)) : null].filter(Boolean);
+    return [...first, rest.length ? el("details", {}, el("summary", {}, say(first.length ? "list.files" : "list.only_files", {n: rest.length})), el("ul", {class: "plain"}, ...rest)) : null].filter(Boolean);
   }
   function row(c, tools) {
     return el("tr", {"data-folder": c.folder}, el("td", {class: "day"}, c.day || "\u2013"),
@@ -87,23 +87,25 @@ const campaigns = (() => {
       el("p", {class: "muted", role: "status", id: "campaign-count"}, answer.all === 0 && answer.complete ? "" : count(answer)), el("div", {id: "campaign-list"}, ...table(answer, {...tools, again}).filter(Boolean))].filter(Boolean);
   }
 
-  async function machines(complain) {
+  /// lines: the worklist, which states what the newest campaign alone does not.
+  async function machines(complain, lines) {
     const load_ = () => net.ask("/api/machines?" + new URLSearchParams({search: ofMachines.search, page: ofMachines.page, size}));
     const first = await load_();
     ofMachines.page = first.page;
     const again = async () => {
       try {
         const next = await load_();
-        if (by("machine-list")) fill(by("machine-list"), ...machineTable(next, again));
+        if (by("machine-list")) fill(by("machine-list"), ...machineTable(next, again, lines));
       } catch (e) {
         complain(e);
       }
     };
     const search = el("input", {type: "search", id: "machine-filter", "data-key": "machine-filter", value: ofMachines.search, oninput: () => setQuery(ofMachines, "search", search.value, again)});
     return [el("h1", {tabindex: -1}, say("site.machines")), first.all === 0 ? el("p", {}, say("list.no_machines")) : el("p", {class: "filters"}, el("label", {}, say("list.search") + " ", search)),
-      el("div", {id: "machine-list"}, ...machineTable(first, again))];
+      el("div", {id: "machine-list"}, ...machineTable(first, again, lines))];
   }
-  function machineTable(answer, again) {
+  function machineTable(answer, again, lines) {
+    const also = (m) => ["changed", "overdue"].filter((kind) => lines.some((l) => l.machine === m && l.kind === kind && l.state === "new")).flatMap((kind) => [" ", badge(kind)]);
     const columns = ["machine", "model", "customer", "last", "state", "number_of", "history"];
     if (answer.found === 0) return answer.all === 0 ? [] : [el("p", {role: "status"}, say("list.no_such_machine"))];
     return [el("div", {class: "scroll", role: "group", tabindex: 0, "aria-label": say("site.machines")}, el("table", {class: "lines machines-table"}, el("thead", {}, el("tr", {}, ...columns.map((w) => el("th", {scope: "col"}, say("list." + w))))),
@@ -111,7 +113,7 @@ const campaigns = (() => {
           return el("tr", {}, el("td", {}, link("machine-" + m.machine, entries.visible(m.machine), () => {
             Object.assign(query, {search: m.machine, state: "", page: 0});
             location.hash = "#to=campaigns";
-          })), el("td", {}, entries.visible(m.model)), el("td", {}, entries.visible(m.customer)), el("td", {class: "day"}, m.day || "\u2013"), el("td", {}, badge(m.state), " ", badge(m.verdict)),
+          })), el("td", {}, entries.visible(m.model)), el("td", {}, entries.visible(m.customer)), el("td", {class: "day"}, m.day || "\u2013"), el("td", {}, badge(m.state), " ", badge(m.verdict), ...also(m.machine)),
           el("td", {class: "number", "data-label": say("list.number_of")}, m.campaigns), el("td", {}, m.page ? el("a", {href: "#to=" + encodeURIComponent(m.page), "data-key": "history-" + m.machine}, say("list.history")) : "\u2013"));
         })))), pager(answer, ofMachines, again)].filter(Boolean);
   }
@@ -130,7 +132,7 @@ const campaigns = (() => {
   /// The settings of the site, read-only.
   async function settings() {
     const all = await net.ask("/api/settings");
-    const shownAs = (name, v) => (v === null ? say("set.all") : v === true ? say("set.yes") : v === false ? say("set.no") : Array.isArray(v) ? v.join(", ") : name === "seconds" ? `${v} s` : name === "numbering" ? String(v).replace("{year}", "2026").replace(/\{number(?::(\d+))?\}/, (all_, digits) => "1".padStart(Number(digits || 1), "0")) : String(v)) || "\u2013";
+    const shownAs = (name, v) => (v === null ? say("set.all") : v === true ? say("set.yes") : v === false ? say("set.no") : name === "languages" && v.length === 0 ? say("set.default", {value: "en"}) : name === "decision_rule" && v === "" ? say("set.default", {value: "ISO 14253-1:2017"}) : Array.isArray(v) ? v.join(", ") || say("set.none") : name === "seconds" ? `${v} s` : name === "numbering" ? String(v).replace("{year}", "2026").replace(/\{number(?::(\d+))?\}/, (all_, digits) => "1".padStart(Number(digits || 1), "0")) : String(v)) || "\u2013";
     return [el("h1", {tabindex: -1}, say("site.settings")), el("p", {class: "muted"}, say("set.what")), ...["laboratory", "certificate", "run"].map((part) => el("section", {"aria-labelledby": "set-" + part}, el("h2", {id: "set-" + part}, say("set.of_" + part)),
       el("dl", {class: "settings"}, ...Object.entries(all[part]).flatMap(([name, v]) => [el("dt", {}, say("set." + `${part}_${name}`)), el("dd", {}, entries.visible(shownAs(name, v)))])))),
     all.users ? el("section", {"aria-labelledby": "set-users"}, el("h2", {id: "set-users"}, say("set.of_users")), entries.table({label: say("set.of_users"), columns: ["user.account", "set.name", "set.role", "set.password"]}, all.users.map((u) => el("tr", {}, el("th", {scope: "row"}, entries.visible(u.account)), el("td", {}, entries.visible(u.name)), el("td", {}, say("user.may_" + u.role)), el("td", {}, shownAs("", u.password)))))) : null].filter(Boolean);

@@ -277,7 +277,7 @@
     const name = view();
     if (name === "index.html" && state.night.last === 0) return put([el("h1", {tabindex: -1}, say("site.worklist")), el("p", {}, say("night.none"))], name, moved);
     if (name === "new" && shown === "new" && !moved) return;
-    const content = name === "campaigns" ? await campaigns.list(tools()) : name === "machines" ? await campaigns.machines(complain) : name === "instruments" ? await campaigns.instruments(links.some(([to]) => to === "instruments.html")) : name === "settings" ? await campaigns.settings() : name === "new" ? measure.view({out: state.out, created}) :
+    const content = name === "campaigns" ? await campaigns.list(tools()) : name === "machines" ? await campaigns.machines(complain, lines) : name === "instruments" ? await campaigns.instruments(links.some(([to]) => to === "instruments.html")) : name === "settings" ? await campaigns.settings() : name === "new" ? measure.view({out: state.out, created}) :
       name.startsWith("campaign/") ? await campaigns.one(name.slice("campaign/".length), tools()) : name === "certificates" ? await certificatesView() : name === "entries" ? await entriesView() : await pageOfRun(name);
     if (name !== view()) return;
     put(content, name, moved);

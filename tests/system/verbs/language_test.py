@@ -82,11 +82,11 @@ class Languages(VerbTest):
                 self.nonio("model", "drop", self.folder, "backlash:X", "--quiet")
 
     def test_run_and_check_speak_the_language(self):
-        said = {"de": ("1 Kampagne, 1 auszuwerten", "1 ausgewertet, 0 unverändert, 0 fehlgeschlagen; Handlung erforderlich: ",
+        said = {"de": ("1 Kampagne, 1 auszuwerten", "1 ausgewertet, 0 unverändert, 0 fehlgeschlagen; Handlung erforderlich, Zeilen der Arbeitsliste: ",
                        "unverändert  c: nichts geändert", "1 Kampagne geprüft: kein Fehler"),
-                "en": ("1 campaign, 1 to do", "1 done, 0 unchanged, 0 failed; actions required: ", "unchanged  c: nothing changed",
+                "en": ("1 campaign, 1 to do", "1 done, 0 unchanged, 0 failed; actions required in the worklist: ", "unchanged  c: nothing changed",
                        "1 campaign checked: no error"),
-                "it": ("1 campagna, 1 da elaborare", "elaborate: 1, invariate: 0, non riuscite: 0; azioni richieste: ",
+                "it": ("1 campagna, 1 da elaborare", "elaborate: 1, invariate: 0, non riuscite: 0; azioni richieste nella lista di lavoro: ",
                        "invariata  c: nessuna modifica", "1 campagna controllata: nessun errore")}
         for language, (planned, counts, unchanged, checked) in said.items():
             with self.subTest(language):
