@@ -223,7 +223,9 @@ class Page {
     if (!of.contains(key)) return {};
     const double value = of.at(key), U = of.value("U", 0.0);
     if (of.at(key).is_number_integer()) return std::to_string(of.at(key).get<std::int64_t>());
-    if (!(U > 0.0)) return local(fixed_text(value, of.value("unit", "").empty() ? 7 : 3));
+    if (!(U > 0.0) && of.value("unit", "").empty())
+      return local(fixed_text(value, value == std::floor(value) ? 0 : 7));
+    if (!(U > 0.0)) return local(fixed_text(value, 3));
     constexpr int most = 12;
     int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(U))), 0, most);
     // As many as show on which side of its tolerance limit the value is.
@@ -263,6 +265,7 @@ class Page {
     std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) {
       return rank_of(a.second) < rank_of(b.second);
     });
+    for (auto& [name, v] : rows) name = name_of_value(name);
     table(rows);
     // Values of a single direction are shown only with --all, if the bidirectional value exists.
     std::erase_if(rest, [&](const auto& row) {

@@ -334,6 +334,18 @@ class Certificates(LiveTest):
             self.assertEqual((answer["state"], set(answer["without_reason"])), ("lacking", asking))
             answer = s.post("/api/release", {"campaign": "adjusted", "by": "B. Sample", "reasons": {key: "as found" for key in asking}})
             self.assertEqual((answer["state"], answer["number"]), ("issued", "S-0001"))
+            # Names without a password prove nothing.
+            self.assertIn("B. Sample (name not authenticated, account", " ".join(nonio("certificate", "list", self.lab).stdout.split()))
+            told = s.get("/api/findings?campaign=adjusted")
+            shown = " ".join(nonio("show", self.out / "adjusted").stdout.split())
+            # A draft has the decisions, too.
+            warnings = lambda findings: {f["title"] for f in findings if f["severity"] == "attention"}
+            self.assertTrue(warnings(told["findings"]))
+            self.assertLessEqual(warnings(told["findings"]), warnings(drafts[0]["findings"]))
+            for f in told["findings"]:
+                for sentence in [f["title"]] + (f["says"] + f["advice"] if f["severity"] == "attention" else []):
+                    self.assertIn(" ".join(sentence.split()), shown)
+            self.assertEqual("no_result", s.get("/api/findings?campaign=../adjusted", expect=404)["id"])
             next(e for e in stream.events() if e[1] == "drafts")
             stream.close()
             self.assertEqual(s.get("/api/drafts")["drafts"], [])
@@ -369,8 +381,11 @@ class Certificates(LiveTest):
             self.assertEqual((copy["state"], copy.get("certificate"), copy["files"]), ("failed", None, []))
             self.assertIn("adjusted", copy["message"])
             shutil.rmtree(self.lab / "copy")
+            instruments = lambda: s.request("GET", "/site/instruments.html")[2].decode()
+            self.assertIn("<td>S-0001</td>", instruments())
             nonio("certificate", "withdraw", self.lab, "S-0001", "--why", "wrong machine", "--by", "B. Sample")
             listed("search=S-0001", found=0)
+            self.assertIn("<td>S-0001 (not in force)</td>", instruments())
             drafts = [d["campaign"] for d in s.get("/api/drafts")["drafts"]]
             s.until("/api/site", lambda a: [x["campaigns"] for x in a["lines"] if x["id"].startswith("worklist.draft")] == ([drafts] if drafts else []), f"drafts {drafts}")
 
