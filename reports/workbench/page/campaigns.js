@@ -172,8 +172,13 @@ const campaigns = (() => {
   /// Findings with sentence and action as on a terminal; those of severity info are closed.
   function findings(all) {
     const head = (f) => entries.visible(f.title + (f.measurements.length ? ` (${f.measurements.join(", ")})` : ""));
-    const shownText = (s) => entries.visible(typeset(s)), is_syntax = (s) => /\bnonio |\[\[?[a-z]|\.toml|\w_\w|`/.test(s);
-    const texts = (f) => [...f.says.map((s) => el("p", {}, shownText(s))), ...f.advice.map((s) => (is_syntax(s) ? el("details", {}, el("summary", {}, say("one.advice_files")), el("p", {}, shownText(s))) : el("p", {}, el("b", {}, say("one.advice")), " ", shownText(s))))];
+    const shownText = (s) => entries.visible(typeset(s)), is_syntax = (s) => /\bnonio |\[\[?[a-z]|\.toml|[a-z]{2}_[a-z]{2}|_(um|mm|deg|K)\b|`/.test(s);
+    /// Sentences with keys or commands are in a drawer.
+    const texts = (f) => {
+      const made = [...f.says.map((s) => [s, el("p", {}, shownText(s))]), ...f.advice.map((s) => [s, el("p", {}, el("b", {}, say("one.advice")), " ", shownText(s))])];
+      const drawer = made.filter(([s]) => is_syntax(s)).map(([, p]) => p);
+      return [...made.filter(([s]) => !is_syntax(s)).map(([, p]) => p), drawer.length ? el("details", {}, el("summary", {}, say("one.advice_files")), ...drawer) : null];
+    };
     const rows = all.map((f) => (f.severity === "attention" ? el("li", {class: "attention"}, el("h3", {}, head(f)), ...texts(f)) : el("li", {}, el("details", {}, el("summary", {}, head(f)), ...texts(f)))));
     return rows.length ? [el("section", {"aria-labelledby": "found-title"}, el("h2", {id: "found-title"}, say("one.found")), el("ul", {id: "found", class: "plain"}, ...rows))] : [];
   }

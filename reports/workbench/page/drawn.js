@@ -37,7 +37,7 @@ function nonioDrawn({tip, words}) {
         at.forEach((p, i) => hits.push([...p, read(values[i])]));
         frame.series.push([about, values.map((v) => v[0]), values.map((v) => v[1])]);
       }
-      item.setAttribute("aria-label", about);
+      if (item.tagName === "a") item.setAttribute("aria-label", about);
       title.remove();
     }
     const inside = "drawn-" + ++clips;
