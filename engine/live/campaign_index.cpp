@@ -281,7 +281,8 @@ void CampaignIndex::look_at_site() {
         if (e.in_force()) now->certificate_in_force[e.campaign] = e.number;
   }
   const std::lock_guard lock(mutex_);
-  for (auto& [folder, seen] : seen_) {
+  for (auto& entry : seen_) {
+    Seen& seen = entry.second;
     const auto of = [&](const SiteFacts& facts) {
       const auto found = facts.certificate_in_force.find(seen.campaign.id);
       return found == facts.certificate_in_force.end() ? std::string() : found->second;
