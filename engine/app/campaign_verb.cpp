@@ -16,9 +16,11 @@ tl::expected<OpenCampaign, int> open_campaign(const std::string& folder, const C
     for (const std::string& note : open.place->notes) complain(note);
   open.read = reading::read_campaign(open.folder, open.place->context, [](const std::string&) {});
   for (const Error& e : open.read.errors) complain(text_of(e));
+  const reading::Context& context = open.place->context;
+  const config::TerminalWords words(context.templates, context.site.language);
   if (!common.quiet)
     for (const Remark& note : open.read.notes)
-      complain(remark_text(open.place->context.templates, open.place->context.site.language, note));
+      complain(words("note", {{"text", remark_text(context.templates, words.language(), note)}}));
   if (!open.read.manifest) return tl::unexpected(exit_usage);
   for (const Observations& o : open.read.observations)
     if (o.size() > 0) return open;

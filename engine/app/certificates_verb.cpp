@@ -39,15 +39,17 @@ Json to_json(const RegisterEntry& e) {
   return json;
 }
 
-/// Example: "  approved by B. Sample (user sample, account lab@room-3)".
+/// Examples: "  approved by B. Sample (user sample, account lab@room-3)", "  withdrawn by B. Sample
+/// (name not authenticated, account lab@room-3)".
 std::string person_text(const config::TerminalWords& say, const char* what, const std::string& by,
                         const std::string& account, const std::string& user = {}) {
   if (by.empty() && account.empty()) return {};
-  std::string in = user.empty() ? "" : say("certificate.user", {{"user", user}});
+  std::string in = by.empty()     ? ""
+                   : user.empty() ? say("certificate.not-authenticated")
+                                  : say("certificate.user", {{"user", user}});
   if (!account.empty())
     in += (in.empty() ? "" : ", ") + say("certificate.account", {{"account", account}});
-  const std::string person = by.empty() ? in : in.empty() ? by : by + " (" + in + ")";
-  return "  " + say(what, {{"person", person}});
+  return "  " + say(what, {{"person", by.empty() ? in : by + " (" + in + ")"}});
 }
 
 void print(const RegisterEntry& e, const config::TerminalWords& say) {
@@ -80,14 +82,16 @@ int audit(const CertificateWish& wanted, const config::Numbering& numbering, con
   } else {
     const SiteWords words(common, language_at(wanted.site));
     const config::TerminalWords& say = words.get();
+    const std::size_t width = sentence_width(STDOUT_FILENO);
     for (const std::string& what : a.wrong) std::cout << say("error") << ": " << what << "\n";
-    std::cout << say(a.wrong.empty() ? "audit.unchanged" : "audit.changed") << ": "
-              << say("audit.register", {{"id", a.id},
-                                        {"entries", std::to_string(a.entries)},
-                                        {"certificates", std::to_string(a.certificates)},
-                                        {"files", std::to_string(a.files)}})
-              << "\n"
-              << say("audit.last", {{"at", a.last_at}, {"sha256", a.last_sha256}}) << "\n";
+    std::cout << wrapped(say(a.wrong.empty() ? "audit.unchanged" : "audit.changed") + ": " +
+                             say("audit.register", {{"id", a.id},
+                                                    {"entries", std::to_string(a.entries)},
+                                                    {"certificates", std::to_string(a.certificates)},
+                                                    {"files", std::to_string(a.files)}}),
+                         0, width, 2)
+              << wrapped(say("audit.last", {{"at", a.last_at}, {"sha256", a.last_sha256}}), 0, width,
+                         2);
   }
   return a.wrong.empty() ? exit_done : exit_failed;
 }

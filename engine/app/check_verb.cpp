@@ -102,6 +102,10 @@ class Check {
     const evaluation::Evaluated evaluated =
         evaluation::evaluate(folder, id, place_->context, [](const std::string&) {});
     for (const Error& e : evaluated.results.errors) found(e, folder.string());
+    for (const auto& analysis : evaluated.results.analyses)
+      findings_ += static_cast<std::size_t>(
+          std::count_if(analysis.evaluation.findings.begin(), analysis.evaluation.findings.end(),
+                        [](const Finding& f) { return f.attention; }));
     for (const Remark& note : evaluated.results.notes)
       if (note.id == reading::former_key_note) warn(folder.string() + "/" + note.english);
     invalid_ += count_ > before ? 1 : 0;
@@ -118,6 +122,7 @@ class Check {
       std::cout << words_.get().counted("check.campaigns", campaigns_) << ": "
                 << (count_ == 0 ? words_.get()("check.none")
                                 : words_.get().counted("check.errors", count_))
+                << (findings_ == 0 ? "" : ", " + words_.get().counted("check.warnings", findings_))
                 << "\n";
     return count_ == 0 ? exit_done : exit_failed;
   }
@@ -127,7 +132,7 @@ class Check {
   std::unique_ptr<reading::Workplace> place_{};
   std::map<std::string, fs::path> folders_{};
   Json errors_ = Json::array(), warnings_ = Json::array();
-  std::size_t campaigns_ = 0, invalid_ = 0, count_ = 0;
+  std::size_t campaigns_ = 0, invalid_ = 0, count_ = 0, findings_ = 0;
 };
 
 }  // namespace

@@ -89,11 +89,10 @@ CLI::Validator within(double least, double most) {
             const auto [at, error] = std::from_chars(found.data(), end, value);
             if (error == std::errc() && at == end && value >= least && value <= most)
               return std::string();
-            const auto text = [](double x) {
-              return x == std::floor(x) ? fixed_text(x, 0) : short_text(x, 9);
-            };
-            return "expected a number from " + text(least) + " to " + text(most) + ", found \"" +
-                   found + "\"";
+            std::string text = "expected a number from ";
+            append_shortest(text, least);
+            append_shortest(text += " to ", most);
+            return text + ", found \"" + found + "\"";
           },
           ""};
 }
@@ -263,6 +262,8 @@ std::string value_of(const Argument& a) {
       return "NUMBER";
     case Argument::Takes::day:
       return "DAY";
+    case Argument::Takes::control:
+      return "CONTROL";
     case Argument::Takes::anything:
       break;
   }

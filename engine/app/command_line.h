@@ -22,7 +22,7 @@ using Target = std::variant<bool*, std::string*, std::vector<std::string>*, std:
                             std::uint64_t*, double*>;
 
 struct Argument {
-  enum class Takes { anything, folder, file, path, number, day };
+  enum class Takes { anything, folder, file, path, number, day, control };
 
   std::string name;  ///< option ("--out") or positional argument ("SITE")
   Target target;

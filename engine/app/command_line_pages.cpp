@@ -83,6 +83,8 @@ std::string bash_values(const Argument& a) {
     case Argument::Takes::file:
     case Argument::Takes::path:
       return "-f";
+    case Argument::Takes::control:
+      return "-W '$(nonio table controls 2> /dev/null | sed '1d;s/ .*//')'";
     case Argument::Takes::number:
     case Argument::Takes::day:
     case Argument::Takes::anything:
@@ -156,6 +158,7 @@ std::string zsh_values(const Argument& a) {
     case Argument::Takes::file:
     case Argument::Takes::path:
       return "_files";
+    case Argument::Takes::control:
     case Argument::Takes::number:
     case Argument::Takes::day:
     case Argument::Takes::anything:

@@ -83,6 +83,12 @@ std::string cell(std::string text, std::size_t width) {
   return text + " ";
 }
 
+/// Without an exponent.
+std::string step_text(double mm) {
+  std::string text = fixed_text(mm, 9);
+  return text.erase(text.find_last_not_of('0') + 1);
+}
+
 void print_head() {
   for (const auto& [head, width] : {std::pair{"control", 18},
                                     {"points", 6},
@@ -97,13 +103,23 @@ void print_head() {
   std::cout << "backlash\n";
 }
 
+/// Descriptions may begin with the confidence that the line states before them.
+std::string without_confidence(const ControlTable::Fact& f) {
+  const std::string confidence = std::string(to_text(f.confidence)) + ": ";
+  const auto same = [](char a, char b) { return std::tolower(a) == std::tolower(b); };
+  const bool repeats =
+      f.description.size() > confidence.size() &&
+      std::equal(confidence.begin(), confidence.end(), f.description.begin(), same);
+  return repeats ? f.description.substr(confidence.size()) : f.description;
+}
+
 void print_control(const Controller& o, bool facts) {
   const ControlTable& t = o.table;
   const auto yes = [](bool is, std::size_t width) { return cell(is ? "yes" : "-", width); };
   std::cout << cell(o.info.name, 18) << cell(t.points > 0 ? std::to_string(t.points) : "any", 6)
             << yes(t.bidirectional, 9) << yes(t.straightness, 8) << yes(t.squareness, 6)
             << yes(t.volumetric, 6) << cell(sign_unknown(t) ? "not known" : to_text(t.sign), 11)
-            << cell(to_text(t.entry), 9) << cell(short_text(t.value_step.linear * 1e3, 3), 9)
+            << cell(to_text(t.entry), 9) << cell(step_text(t.value_step.linear * 1e3), 9)
             << (t.backlash.empty() ? "-" : "yes") << "\n";
   if (!facts) return;
   const std::size_t width = line_width(STDOUT_FILENO);
@@ -112,7 +128,7 @@ void print_control(const Controller& o, bool facts) {
                            (t.backlash.empty() ? "" : "; backlash parameter: " + t.backlash),
                        4, width, 2);
   for (const ControlTable::Fact& f : t.facts)
-    std::cout << wrapped(cell(to_text(f.confidence), 11) + f.description, 4, width, 12);
+    std::cout << wrapped(cell(to_text(f.confidence), 11) + without_confidence(f), 4, width, 12);
 }
 
 int list_controls(const std::vector<std::string>& names, const Common& common) {

@@ -168,6 +168,8 @@ int acknowledge(AckWish& wish, const Common& common) {
                                    {"--by", &a.by},
                                    {"--why", &a.why}})
     if (text->empty()) return complain(std::string(name) + " is missing");
+  if (a.until < a.date)
+    return complain("--until: expected a day not before " + a.date + ", found \"" + a.until + "\"");
   if (!take_number(wish.value, a.value) || !take_number(wish.U, a.U))
     return complain("--value and --U: expected a number with a decimal point");
   for (const char* kind : {"worklist.failed", "worklist.lost", "worklist.history"})

@@ -260,7 +260,8 @@ Verb insert_verb(Common& common) {
                 "YYYY-MM-DD: the new table was loaded on this day. Records it in "
                 "machines/<asset>.toml, "
                 "and what was active during the measurement"}),
-           {"--control", &w->control, "The control of the files (`nonio table controls`)"},
+           takes(Argument::Takes::control,
+                 {"--control", &w->control, "The control of the files (`nonio table controls`)"}),
            settings_argument(w->settings,
                              "NAME=VALUE: an option of that control; may be given several times")},
           common_arguments(common)),

@@ -516,7 +516,8 @@ Verb new_verb(Common& common) {
            {"--machine", &wish->machine, "Model of the machine"},
            {"--serial", &wish->serial, "Its serial number; with the maker it names the machine"},
            {"--asset", &wish->asset, "Its name in the laboratory, in place of maker and serial"},
-           {"--control", &wish->control, "Its control (`nonio table controls`)"},
+           takes(Argument::Takes::control,
+                 {"--control", &wish->control, "Its control (`nonio table controls`)"}),
            {"--instrument", &wish->instrument, "Model of the instrument"},
            {"--axis", &wish->axes,
             "NAME=FROM:TO, travel in mm, for A, B and C in deg; may be given several times "

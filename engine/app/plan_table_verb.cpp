@@ -255,8 +255,10 @@ Verb plan_table_verb(Common& common) {
            within(1, 100, {"--runs", &wish->runs, "Runs there and back, for the cost (default 5)"}),
            takes(Argument::Takes::folder,
                  {"--program", &wish->out, "Folder for the part programs: a folder for each row"}),
-           {"--control", &wish->control,
-            "Writer of part programs: gcode, siemens, heidenhain or a plugin's whole name"},
+           offering(
+               {"gcode", "siemens", "heidenhain"},
+               {"--control", &wish->control,
+                "Writer of part programs: gcode, siemens, heidenhain or a plugin's whole name"}),
            settings_argument(wish->settings, "NAME=VALUE: an option of that writer")},
           joined(sheet_arguments(wish->sheet, common), common_arguments(common))),
       .footer =

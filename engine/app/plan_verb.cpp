@@ -221,8 +221,9 @@ int plan_program(const ProgramWish& p, const Common& common) {
 
 std::vector<Argument> program_arguments(Programs& p) {
   return {
-      {"--control", &p.control,
-       "Writer of part programs: gcode, siemens, heidenhain or a plugin's whole name"},
+      offering({"gcode", "siemens", "heidenhain"},
+               {"--control", &p.control,
+                "Writer of part programs: gcode, siemens, heidenhain or a plugin's whole name"}),
       settings_argument(p.settings,
                         "NAME=VALUE: an option of that writer (`nonio plugin list program-siemens` "
                         "lists them), such as "

@@ -241,9 +241,10 @@ Verb probe_verb(Common& common) {
           {{"--axis", &w->axis, "Only this axis"},
            takes(Argument::Takes::folder, {"--out", &w->out, "Folder for the part programs"}),
            {"--feed", &w->feed, "Feed of the programs, mm/min or deg/min (default 1000)"},
-           {"--control", &w->control,
-            "Writer of part programs: gcode, siemens, heidenhain or a plugin's whole name "
-            "(default: that of the campaign's control)"},
+           offering({"gcode", "siemens", "heidenhain"},
+                    {"--control", &w->control,
+                     "Writer of part programs: gcode, siemens, heidenhain or a plugin's whole name "
+                     "(default: that of the campaign's control)"}),
            settings_argument(w->settings,
                              "NAME=VALUE: an option of that writer, such as dwell_s=3; may be "
                              "given several times")}),

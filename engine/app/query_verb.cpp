@@ -165,9 +165,9 @@ int print_machines(const QueryWish& wish, const Common& common) {
     const Finding alike{
         .id = "worklist.spelling",
         .texts = {{"one", printable(s.one)}, {"other", printable(s.other)}, {"alike", s.key()}}};
-    for (const char* part : {"says", "advice"})
-      std::cout << finding_text(say.templates(), say.language(), alike, part)
-                << (part == std::string_view("says") ? " " : "\n");
+    std::cout << wrapped(finding_text(say.templates(), say.language(), alike, "says") + " " +
+                             finding_text(say.templates(), say.language(), alike, "advice"),
+                         0, sentence_width(STDOUT_FILENO), 2);
   }
   return exit_done;
 }

@@ -46,9 +46,10 @@ std::size_t print_actions(const std::string& actions, const fs::path& out,
   };
   std::vector<Campaign> campaigns;
   for (const Json& line : lines) {
-    const std::string campaign = line.value("campaign", ""),
+    const std::string kind = line.value("kind", ""), campaign = line.value("campaign", ""),
                       id = campaign.empty() ? line.value("machine", "") : campaign;
-    if (line.value("kind", "") == "failed") continue;
+    if (line.value("state", "") != "new" || id.empty() || kind == "failed" || kind == "information")
+      continue;
     const std::string axis = line.value("axis", ""), quantity = line.value("quantity", ""),
                       of = axis + (axis.empty() || quantity.empty() ? "" : " ") + quantity +
                            judged_value(line, words.language()),

@@ -557,7 +557,8 @@ Verb session_verb(Common& common) {
            day({"--checked", &w->checked, "YYYY-MM-DD: the day of --check (default: today)"}),
            takes(Takes::folder,
                  {"--out", &w->out, "Folder for the files to load (default: CAMPAIGN/load)"}),
-           {"--control", &w->control, "The control of the files (`nonio table controls`)"},
+           takes(Argument::Takes::control,
+                 {"--control", &w->control, "The control of the files (`nonio table controls`)"}),
            settings_argument(w->settings,
                              "NAME=VALUE: an option of that control; may be given several times")}),
       .footer =

@@ -27,7 +27,7 @@ namespace {
 
 struct ShowWish {
   std::string folder, out = "out";
-  bool all = false, opens = false;
+  bool all = false, opens = false, only_findings = false;
 };
 
 std::string joined_text(const std::vector<std::string>& parts, const char* between) {
@@ -73,6 +73,7 @@ class Page {
     if (results.contains("conformity")) undecided(results.at("conformity"));
     const Json tables = results.value("tables", Json::array());
     for (const Json& t : tables) collect(t, "");
+    sort_findings();
     findings();
     compensation(tables, results.at("outputs"));
     if (results.contains("notes")) {
@@ -84,6 +85,22 @@ class Page {
       out_ << wrapped(say_("show.failed"), 0, width_);
     else if (!all_)
       out_ << wrapped(say_("show.all"), 0, width_);
+  }
+
+  Json findings_json(const Json& results) {
+    for (const Json& a : results.at("analyses")) collect(a, a.value("measurement", ""));
+    for (const Json& t : results.value("tables", Json::array())) collect(t, "");
+    sort_findings();
+    Json all = Json::array();
+    for (Grouped& g : findings_) {
+      if (is_of_one(g)) g.says.front() = without_measurement(g);
+      all.push_back({{"severity", g.severity},
+                     {"title", g.title},
+                     {"measurements", g.measurements},
+                     {"says", g.says},
+                     {"advice", g.advice}});
+    }
+    return {{"schema", "nonio-findings/1"}, {"language", say_.language()}, {"findings", all}};
   }
 
  private:
@@ -130,11 +147,13 @@ class Page {
     if (!results.contains("certificate")) return;
     const Json& issued = results.at("certificate");
     if (issued.value("number", "").empty()) return;  // a draft has no number
-    const std::string replaced = issued.value("replaces", "");
+    const std::string replaced = issued.value("replaces", ""), number = issued.value("number", "");
     out_ << "  " << say_("campaign.certificate") << " "
-         << say_("certificate-of",
-                 {{"number", issued.value("number", "")}, {"date", issued.value("date", "")}})
-         << (replaced.empty() ? "" : ", " + say_("replaces", {{"number", replaced}})) << "\n";
+         << say_("certificate-of", {{"number", number}, {"date", issued.value("date", "")}})
+         << (replaced.empty() ? "" : ", " + say_("replaces", {{"number", replaced}}))
+         << (!folder_.empty() && is_out_of_force(folder_, number) ? ", " + say_("out-of-force")
+                                                                  : "")
+         << "\n";
   }
 
   void error(const Json& e) {
@@ -187,7 +206,7 @@ class Page {
                   {a.at("plugin").get<std::string>(), a.value("version", ""), a.value("part", "")},
                   " ")
            << "\n";
-    values(results);
+    values(results, a.value("part", ""));
     collect(a, measurement);
     if (!all_) return;
     if (a.contains("series"))
@@ -204,7 +223,9 @@ class Page {
     if (!of.contains(key)) return {};
     const double value = of.at(key), U = of.value("U", 0.0);
     if (of.at(key).is_number_integer()) return std::to_string(of.at(key).get<std::int64_t>());
-    if (!(U > 0.0)) return local(fixed_text(value, of.value("unit", "").empty() ? 7 : 3));
+    if (!(U > 0.0) && of.value("unit", "").empty())
+      return local(fixed_text(value, value == std::floor(value) ? 0 : 7));
+    if (!(U > 0.0)) return local(fixed_text(value, 3));
     constexpr int most = 12;
     int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(U))), 0, most);
     // As many as show on which side of its tolerance limit the value is.
@@ -232,13 +253,19 @@ class Page {
     return joined_text({number(v, "value"), U.empty() ? "" : "± " + U, unit}, " ");
   }
 
-  void values(const Json& all) {
+  /// `part`: part of a model; that of a displacement over time has blocks of time instead of runs.
+  void values(const Json& all, const std::string& part) {
+    const auto name_of_value = [&](const std::string& name) {
+      const bool is_over_time = name == "cv_rms" && part.find('/') != std::string::npos;
+      return say_.of("value", is_over_time ? "cv_rms_over_time" : name);
+    };
     std::vector<std::pair<std::string, Json>> rows, rest;
     for (const auto& [name, v] : all.items())
       (all_ || v.contains("decision") ? rows : rest).emplace_back(name, v);
     std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) {
       return rank_of(a.second) < rank_of(b.second);
     });
+    for (auto& [name, v] : rows) name = name_of_value(name);
     table(rows);
     // Values of a single direction are shown only with --all, if the bidirectional value exists.
     std::erase_if(rest, [&](const auto& row) {
@@ -250,8 +277,8 @@ class Page {
     });
     std::string text;
     for (std::size_t i = 0; i < std::min(rest.size(), most_values); ++i)
-      text += (i == 0 ? "" : ", ") +
-              glued(say_.of("value", rest[i].first) + " " + result(rest[i].second));
+      text +=
+          (i == 0 ? "" : ", ") + glued(name_of_value(rest[i].first) + " " + result(rest[i].second));
     if (rest.size() > most_values)
       text += ", " + say_("show.more", {{"count", std::to_string(rest.size() - most_values)}});
     text = wrapped(text, 4, width_);
@@ -335,12 +362,22 @@ class Page {
     }
   }
 
+  static bool is_of_one(const Grouped& g) {
+    return g.says.size() == 1 && g.measurements.size() == 1 && !g.measurements.front().empty();
+  }
+  static std::string without_measurement(const Grouped& g) {
+    return g.says.front().substr(g.measurements.front().size() + 2);
+  }
+
+  void sort_findings() {
+    std::stable_partition(findings_.begin(), findings_.end(),
+                          [](const Grouped& g) { return g.severity == "attention"; });
+  }
+
   /// Prints only the titles of findings of severity info, unless --all is given.
   void findings() {
     if (findings_.empty()) return;
     heading(say_("findings"));
-    std::stable_partition(findings_.begin(), findings_.end(),
-                          [](const Grouped& g) { return g.severity == "attention"; });
     for (const Grouped& g : findings_) {
       const bool is_warning = g.severity == "attention";
       const std::string severity = padded(say_.of("severity", g.severity), 9);
@@ -350,9 +387,7 @@ class Page {
            << wrapped(g.title + where, 11, width_).substr(11);
       if (!is_warning && !all_) continue;
       for (const std::string& says : g.says) {
-        const bool is_only = g.says.size() == 1 && g.measurements.size() == 1;
-        out_ << wrapped(is_only ? says.substr(g.measurements.front().size() + 2) : says, 11,
-                        width_);
+        out_ << wrapped(is_of_one(g) ? without_measurement(g) : says, 11, width_);
       }
       for (const std::string& advice : g.advice)
         out_ << wrapped(say_("advice") + ": " + advice, 11, width_);
@@ -388,7 +423,8 @@ class Page {
       });
       if (files == 0 && !all_) continue;
       if (std::exchange(is_first, false)) heading(say_("compensation"));
-      out_ << "  " << plugin << ": " << say_("files") << " " << files << "\n";
+      out_ << "  " << plugin << ": " << say_.counted("show.files", static_cast<std::size_t>(files))
+           << "\n";
       std::string last;
       std::vector<std::string> parts;
       const auto flush = [&] {
@@ -401,10 +437,13 @@ class Page {
         const auto three = [&](const char* key) {
           return local(short_text(p.at(key).get<double>(), 3));
         };
-        parts.push_back(p.value("name", "") + " " +
-                        say_("predicted", {{"before", three("before")},
-                                           {"after", three("predicted")},
-                                           {"unit", p.value("unit", "")}}));
+        parts.push_back(
+            p.value("name", "") + " " +
+            say_("predicted", {{"before", three("before")},
+                               {"after", three("predicted")},
+                               {"unit", p.value("unit", "")}}) +
+            // A prediction is never below U.
+            (three("before") == three("predicted") ? " (" + say_("not-below-U") + ")" : ""));
       }
       flush();
       if (all_)
@@ -417,12 +456,15 @@ class Page {
   void outputs(const Json& results) {
     const Json& all = results.at("outputs");
     if (all_ && !all.empty()) heading(say_("files"));
-    std::string report;
+    std::string report, draft;
     for (const Json& o : all) {
       const std::string file = o.at("file");
       if (all_) out_ << "  " << padded(file, 34) << " " << o.value("plugin", "") << "\n";
       if (report.empty() && file.starts_with("report") && file.ends_with(".pdf")) report = file;
+      if (file == "certificate-draft.pdf") draft = file;
     }
+    if (!draft.empty() && !folder_.empty())
+      out_ << "\n" << say_("draft", {{"file", (fs::path(folder_) / draft).string()}}) << "\n";
     if (!report.empty() && !folder_.empty())
       out_ << "\n" << say_("report") << ": " << (fs::path(folder_) / report).string() << "\n";
     else if (!all_)
@@ -461,10 +503,13 @@ int show(const ShowWish& wish, const Common& common) {
   const bool is_stored = holds == Holds::results && storage::stored_in(folder) == folder;
   try {
     const Json results = results_of(*shown);
-    if (common.json)
+    Page page(*shown, wish.all, is_stored ? folder.string() : "", std::cout);
+    if (wish.only_findings)
+      print_json(page.findings_json(results));
+    else if (common.json)
       std::cout << shown->text;
     else
-      Page(*shown, wish.all, is_stored ? folder.string() : "", std::cout).print(results);
+      page.print(results);
     return results.at("status") == "failed" ? exit_failed : exit_done;
   } catch (const Json::exception& e) {
     return complain((folder / evaluation::results_name).string() +
@@ -486,6 +531,8 @@ Verb show_verb(Common& common) {
                   "A campaign (evaluated now, nothing is written), its results from a run, or the "
                   "name of a machine"}),
            {"--all", &wish->all, "All values, curves, findings with their texts, notes and files"},
+           {"--findings", &wish->only_findings,
+            "Only the findings as JSON, with their texts in the language of the results"},
            {"--open", &wish->opens,
             "Open the report on the desktop, or else the page or results.json, and print its path. "
             "Of a run: the first campaign that requires action. Without CAMPAIGN: what the current "

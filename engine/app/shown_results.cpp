@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shown_results.h"
 
+#include "batch/state/run_state.h"
 #include "campaign/config/template_files.h"
 #include "campaign/evaluation/evaluation.h"
 #include "campaign/evaluation/record.h"
 #include "campaign/evaluation/results_json.h"
+#include "certificates/certificate_list.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_numbers.h"
 #include "results_folder.h"
@@ -64,6 +66,17 @@ Json results_of(const Shown& shown) {
   if (notes.size() == shown.notes.size())  // not so for records of earlier versions
     for (std::size_t i = 0; i < notes.size(); ++i) *notes[i] = shown.notes[i];
   return results;
+}
+
+bool is_out_of_force(const fs::path& results, const std::string& number) {
+  const fs::path above = fs::absolute(results).lexically_normal().parent_path();
+  for (const fs::path& out : {above, above.parent_path()}) {  // OUT/<id> or OUT/ab/<id>
+    const std::string site = batch::site_of(out);
+    if (site.empty()) continue;
+    const auto numbers = certificates::out_of_force(site);
+    return numbers && numbers->contains(number);
+  }
+  return false;
 }
 
 Finding finding_of(const Json& json) {

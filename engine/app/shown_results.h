@@ -33,6 +33,9 @@ Expected<Shown> evaluated_now(const std::filesystem::path& folder, const Common&
 /// Reads stored results and their language. An error if the folder contains no results.json.
 Expected<Shown> of_run(const std::filesystem::path& folder, const Common& common);
 
+/// Whether the site of these results states that the certificate is no longer in force.
+bool is_out_of_force(const std::filesystem::path& results, const std::string& number);
+
 /// Converts a finding of results.json. The values of its evidence are converted to SI units.
 Finding finding_of(const nlohmann::ordered_json& json);
 

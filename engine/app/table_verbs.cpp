@@ -330,9 +330,10 @@ int apply(const TableWish& w, const Common& common) {
 
 std::vector<Argument> table_arguments(TableWish& w) {
   return {
-      {"--control", &w.control,
-       "The control of the files (`nonio table controls`); else as the files are called, or the "
-       "only one that can read them"},
+      takes(Argument::Takes::control,
+            {"--control", &w.control,
+             "The control of the files (`nonio table controls`); else as the files are called, or "
+             "the only one that can read them"}),
       settings_argument(w.settings,
                         "NAME=VALUE: an option of that control, such as type=1 or \"axes=X "
                         "number=1,Y number=2\"; may be given several times")};

@@ -153,14 +153,15 @@ void print(std::ostream& out, const std::string& file, const sign::Verified& v, 
   const std::string name = printable(file);
   const Verdict verdict = certificates::verdict_of(v);
   const auto not_made = check_names(certificates::not_made(v));
-  out << name << ": ";
+  std::string line = name + ": ";
   if (verdict == Verdict::incomplete)
-    out << "VALID (" << not_made.size() << (not_made.size() == 1 ? " check" : " checks")
-        << " not made: " << storage::listed(not_made) << ")";
+    line += "VALID (" + std::to_string(not_made.size()) +
+            (not_made.size() == 1 ? " check" : " checks") +
+            " not made: " + storage::listed(not_made) + ")";
   else
-    out << certificates::text_of(verdict);
-  if (!quiet && !v.subject.empty()) out << "; signed by \"" << printable(v.subject) << "\"";
-  out << "\n";
+    line += certificates::text_of(verdict);
+  if (!quiet && !v.subject.empty()) line += "; signed by \"" + printable(v.subject) + "\"";
+  out << wrapped(line, 0, sentence_width(STDOUT_FILENO), 2);
   if (quiet) return;
   for (const sign::Check& c : v.checks)
     if (verbose || c.state == sign::Check::State::fails)

@@ -51,6 +51,7 @@ void take_entered(const std::string& site, const config::SiteLogs& entered,
   });
   if (const auto drafts = certificates::waiting_campaigns(site))  // else the drafts of the run
     last_run.waiting.assign(drafts->begin(), drafts->end());
+  last_run.out_of_force = certificates::out_of_force(site).value_or(std::set<std::string>());
 }
 
 /// With --page, the JSON also contains the pages about all machines.

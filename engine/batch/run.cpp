@@ -84,8 +84,10 @@ Expected<void> note_certificates(RunResult& run, const RunOptions& options,
   const std::uint64_t before = state.issued_before.value_or(0);
   state.issued_at_begin = before;
   state.issued_before = issued_so_far(known->numbers);
-  for (certificates::RegisterEntry& e : known->numbers)
+  for (certificates::RegisterEntry& e : known->numbers) {
+    if (!e.in_force()) run.out_of_force.insert(e.number);
     if (e.order > before) run.issued.push_back(std::move(e));
+  }
   for (certificates::WaitingDraft& draft : known->drafts) {
     const auto here = std::find_if(run.campaigns.begin(), run.campaigns.end(),
                                    [&](const CampaignState& c) { return c.id == draft.campaign; });

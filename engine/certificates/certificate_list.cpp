@@ -27,6 +27,15 @@ Expected<std::set<std::string>> waiting_campaigns(const fs::path& site) {
   return campaigns;
 }
 
+Expected<std::set<std::string>> out_of_force(const fs::path& site) {
+  NONIO_TRY(const auto numbering, numbering_of(site));
+  NONIO_TRY(const auto entries, Register::entries(site, numbering));
+  std::set<std::string> numbers;
+  for (const RegisterEntry& e : entries)
+    if (!e.in_force()) numbers.insert(e.number);
+  return numbers;
+}
+
 Expected<void> not_out_of_force(const fs::path& site, const std::string& sha256) {
   NONIO_TRY(const auto numbering, numbering_of(site));
   NONIO_TRY(const auto entries, Register::entries(site, numbering));

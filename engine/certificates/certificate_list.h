@@ -15,6 +15,9 @@ Expected<config::Numbering> numbering_of(const std::filesystem::path& site);
 /// Returns the campaigns whose drafts wait for an approval now.
 Expected<std::set<std::string>> waiting_campaigns(const std::filesystem::path& site);
 
+/// Returns the numbers that are no longer in force.
+Expected<std::set<std::string>> out_of_force(const std::filesystem::path& site);
+
 /// Returns an error if the file was issued under a number that is no longer in force.
 Expected<void> not_out_of_force(const std::filesystem::path& site, const std::string& sha256);
 

@@ -165,9 +165,6 @@ bool take_record(const fs::path& site, const fs::path& results, const std::strin
   c.certificate = record->certificate;
   c.draft = record->draft;
   for (const evaluation::RecordedFile& file : record->files) c.files.push_back(file.name);
-  for (const evaluation::KnownFinding& f : record->findings)
-    if (f.attention)
-      c.findings.push_back((f.measurement.empty() ? "" : f.measurement + ": ") + f.heading());
   if (!record->errors.empty()) c.message = record->errors.front().message;
   for (const auto& [name, digest] : record->inputs)
     if (name == config::manifest_name) c.changed = digest != manifest_sha256;
@@ -284,7 +281,8 @@ void CampaignIndex::look_at_site() {
         if (e.in_force()) now->certificate_in_force[e.campaign] = e.number;
   }
   const std::lock_guard lock(mutex_);
-  for (auto& [folder, seen] : seen_) {
+  for (auto& entry : seen_) {
+    Seen& seen = entry.second;
     const auto of = [&](const SiteFacts& facts) {
       const auto found = facts.certificate_in_force.find(seen.campaign.id);
       return found == facts.certificate_in_force.end() ? std::string() : found->second;

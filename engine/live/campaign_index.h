@@ -29,7 +29,6 @@ struct ListedCampaign {
   /// Whether campaign.toml has changed since the results were stored.
   bool changed = false;
   std::vector<std::string> files{};
-  std::vector<std::string> findings{};
   std::vector<std::string> columns{};  ///< reader option `columns` in campaign.toml
   /// Values for the forms by key of campaign.toml; the keys contain the units.
   std::map<std::string, std::string> values{};

@@ -34,7 +34,6 @@ Json to_json(const ListedCampaign& c) {
   json["draft"] = c.draft;
   json["changed"] = c.changed;
   json["files"] = c.files;
-  json["findings"] = c.findings;
   return json;
 }
 

@@ -240,6 +240,13 @@ Answer SiteService::result(const std::string& campaign, const std::string& file)
   return {200, "application/octet-stream", *bytes, {}};
 }
 
+/// Findings of a campaign with their texts.
+Answer SiteService::findings(const std::string& campaign) {
+  const fs::path results = result_file(campaign, evaluation::results_name);
+  if (results.empty()) return refused(404, "no_result");
+  return of_verb(with_places({"show", "--findings", results.parent_path().string()}));
+}
+
 Answer SiteService::open(const std::string& campaign) {
   const auto folder = folder_of(campaign);
   if (!folder) return refused(404, "no_campaign", {{"campaign", campaign.substr(0, 200)}});

@@ -37,8 +37,8 @@ void SiteService::add_routes() {
   routes_.push_back({Method::get, "/c/{campaign}/", true, false, ""});
   for (const char* path :
        {"/api/site", "/api/site/state", "/api/settings", "/api/site/events", "/api/drafts",
-        "/api/ack", "/api/event", "/api/audit", "/metrics", "/site/{page}", "/site/machines/{page}",
-        "/site/results/{campaign}/{file}"})
+        "/api/ack", "/api/event", "/api/audit", "/api/findings", "/metrics", "/site/{page}",
+        "/site/machines/{page}", "/site/results/{campaign}/{file}"})
     routes_.push_back({Method::get, path, false, false, ""});
   routes_.push_back({Method::post, "/api/open", false, false, of_json});
   routes_.push_back({Method::post, "/api/verify", false, false,
@@ -254,6 +254,7 @@ Answer SiteService::get(const std::string& path, const Request& request, const U
   if (path == "/api/site/events") return events(request);
   if (path == "/api/drafts")
     return of_verb({"certificate", "approve", "--list", "--json", wish_.folder.string()});
+  if (path == "/api/findings") return findings(request.query("campaign").value_or(""));
   if (path == "/api/ack") return of_verb({"machine", "ack", "--json", wish_.folder.string()});
   if (path == "/api/event") return of_verb({"machine", "event", "--json", wish_.folder.string()});
   if (path == "/site/{page}") return page(request.names.back());
@@ -266,9 +267,12 @@ Answer SiteService::post(const std::string& what, const Request& request, const 
   Json body = storage::parse_once(request.body.empty() ? "{}" : request.body);
   if (!body.is_object()) return refused(400, "no_object");
   // Users make entries and approve under their own name.
-  if (user != nullptr && (what == "ack" || what == "event" || what == "release"))
-    body["by"] = user->name;
+  const bool is_entry = what == "ack" || what == "event";
+  if (user != nullptr && (is_entry || what == "release")) body["by"] = user->name;
   try {
+    // Who has the token can state any name.
+    if (user == nullptr && is_entry && !body.value("by", "").empty())
+      body["by"] = shells_.sentences({"entry.not_authenticated", {{"name", body["by"]}}});
     if (what == "open") return open(body.at("campaign").get<std::string>());
     if (what == "ack") return acknowledge(body);
     if (what == "event") return event(body);

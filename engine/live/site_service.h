@@ -98,6 +98,7 @@ class SiteService : public Starting {
   Answer state(const User* user);
   Answer settings(const User* user) const;
   Answer events(const Request& request);
+  Answer findings(const std::string& campaign);
   Answer open(const std::string& campaign);
   Answer acknowledge(const storage::Json& body);
   Answer event(const storage::Json& body);

@@ -55,11 +55,21 @@ Style style() {
 
 /// For screen readers, a chart is one image or, if it has links, a group, so that these are
 /// accessible.
-Html picture(const Page& page, const std::string& label, const Plot& plot) {
+///
+/// `across`: what the horizontal axis has: days, names, turn (degrees) or "".
+Html picture(const Page& page, const std::string& label, const Plot& plot, const char* across) {
   const Drawing drawn = drawing_of(plot, width, style(), *page.fonts, named);
-  return {"<svg class=\"chart\" role=\"" + std::string(drawn.has_links ? "group" : "img") +
-          "\" viewBox=\"0 0 " + fixed_text(width, 0) + ' ' + fixed_text(drawn.height, 0) +
-          "\" aria-label=\"" + html_of(label).text + "\">" + drawn.elements + "</svg>\n"};
+  std::string frame;
+  for (const double v : drawn.frame)
+    append_shortest(frame.empty() ? frame : frame += ' ', std::round(v * 1e6) / 1e6);
+  const auto attribute = [](const char* name, const std::string& value) {
+    return std::string(" ") + name + "=\"" + html_of(value).text + "\"";
+  };
+  return {"<svg class=\"chart\"" + attribute("role", drawn.has_links ? "group" : "img") +
+          attribute("viewBox", "0 0 " + fixed_text(width, 0) + ' ' + fixed_text(drawn.height, 0)) +
+          attribute("aria-label", label) + (frame.empty() ? "" : attribute("data-frame", frame)) +
+          attribute("data-across", across) + attribute("data-x", plot.x_title) +
+          attribute("data-y", plot.y_title) + ">" + drawn.elements + "</svg>\n"};
 }
 
 double days(Day day) { return static_cast<double>(day.time_since_epoch().count()); }
@@ -125,7 +135,7 @@ class HistoryPlot {
     add_points();
     return picture(page_,
                    machine_.id + ' ' + series_.axis + ' ' + quantity_text(page_, series_.quantity),
-                   plot_);
+                   plot_, "days");
   }
 
   Html spark() const {
@@ -319,7 +329,8 @@ Html curves_chart(const Page& page, const MachineHistory& machine, const std::st
     curve.titles = {c->date + ' ' + c->campaign};
     curves.plot.curves.push_back(std::move(curve));
   }
-  return picture(page, page.words.get("site.curves", {{"axis", axis}}), curves.plot);
+  return picture(page, page.words.get("site.curves", {{"axis", axis}}), curves.plot,
+                 curves.plot.degrees ? "turn" : "");
 }
 
 Html difference_chart(const Page& page, const MachineHistory& machine, const std::string& axis) {
@@ -339,7 +350,8 @@ Html difference_chart(const Page& page, const MachineHistory& machine, const std
   }
   curves.plot.zero_line = true;
   curves.plot.curves = {std::move(area), std::move(line)};
-  return picture(page, page.words.get("site.difference", {{"axis", axis}}), curves.plot);
+  return picture(page, page.words.get("site.difference", {{"axis", axis}}), curves.plot,
+                 curves.plot.degrees ? "turn" : "");
 }
 
 Html comparison_chart(const Page& page, const ModelComparison& comparison) {
@@ -368,7 +380,7 @@ Html comparison_chart(const Page& page, const ModelComparison& comparison) {
   if (std::none_of(bars.y.begin(), bars.y.end(), [](double v) { return std::isfinite(v); }))
     return {};
   plot.curves = {std::move(bars), std::move(inside), std::move(far)};
-  return picture(page, comparison.model + ' ' + comparison.axis, plot);
+  return picture(page, comparison.model + ' ' + comparison.axis, plot, "names");
 }
 
 }  // namespace nonio::reports::site

@@ -33,12 +33,6 @@ function nonioLines(root, until = {}) {
     addEventListener("hashchange", readAddress, until);
     readAddress();
   }
-  // Export of charts, with the numbers of the table below.
-  for (const svg of root.querySelectorAll("svg.chart")) {
-    const table = svg.parentNode.querySelector("table"), box = Object.assign(document.createElement("div"), {className: "save"});
-    box.append(...nonioSave.buttons(svg, table && (() => [...table.rows].map((row) => [...row.cells].map((cell) => cell.textContent)))));
-    svg.after(box);
-  }
   // j and k select the next or previous line, Enter opens it.
   addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey || event.target.closest("select, input, textarea, dialog")) return;

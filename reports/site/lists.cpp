@@ -111,7 +111,10 @@ Expected<std::string> instruments_page(const Page& page) {
     for (const auto& on : i.results) {
       View& result = instrument.add("result");
       result.set("date", with_whole_days(on.date)).set("machine", on.machine);
-      result.set("campaign", on.campaign).set("link", on.link).set("number", on.number);
+      result.set("campaign", on.campaign).set("link", on.link);
+      result.set("number", page.site.out_of_force.contains(on.number)
+                               ? page.words.get("site.out_of_force", {{"number", on.number}})
+                               : on.number);
     }
   }
   return written(page, "instruments", view);

@@ -3,6 +3,10 @@
 
 #include <array>
 
+#include "embedded.h"
+#include "nonio/reports/drawing.h"
+#include "nonio/sdk/json_writer.h"
+
 namespace nonio::reports {
 
 namespace {
@@ -19,6 +23,15 @@ Expected<std::shared_ptr<const Fonts>> fonts_of(const Templates& templates) {
   return shared_fonts(files[0], files[1]);
 }
 
+std::string charts_script(const Templates& templates, const std::string& language) {
+  const Wording words(templates, language, {"pictures"});
+  JsonWriter json(JsonWriter::Layout::in_script);
+  json.begin_object();
+  for (const char* key : chart_words) json.member(key, words.get(key));
+  json.end_object();
+  return "const nonioWords = " + json.take() + ";\n" + std::string(site::charts_script);
+}
+
 }  // namespace
 
 Expected<std::vector<Artifact>> site_lists(const SiteHistory& history, const Templates& templates,
@@ -31,7 +44,8 @@ Expected<std::vector<Artifact>> site_lists(const SiteHistory& history, const Tem
                                                        {"due.html", site::due_page},
                                                        {"instruments.html", site::instruments_page},
                                                        {"compare.html", site::compare_page}};
-  std::vector<Artifact> out{{"due.ics", site::due_calendar(root)}};
+  std::vector<Artifact> out{{"due.ics", site::due_calendar(root)},
+                            {"charts.js", charts_script(templates, language)}};
   for (const auto& [name, write] : pages) {
     NONIO_TRY(auto bytes, write(root));
     out.push_back({name, std::move(bytes)});

@@ -72,6 +72,7 @@ Expected<void> draw_axis_text(Canvas& canvas, const Context& context, const Axis
                               std::string_view title, double left, double width, double top,
                               double size, std::string_view field) {
   double free_from = -1e9;
+  canvas.begin_part("across");
   for (std::size_t i = 0; i < scale.ticks.size(); ++i) {
     NONIO_TRY(auto text, set_line(context, scale.labels[i], false, size, width, field));
     const double x = left + width * scale.at(scale.ticks[i]), half = text.lines[0].width * size / 2;
@@ -79,6 +80,7 @@ Expected<void> draw_axis_text(Canvas& canvas, const Context& context, const Axis
     free_from = x + half + 3;
     text.draw(canvas, 0, x - 50, top, 100, 0.5);
   }
+  canvas.end_item();
   // A title in two languages is reduced to the first one if it is too wide.
   constexpr std::string_view between = " · ";
   if (const auto whole = shape(title, context.fonts, false, field, context.medium);

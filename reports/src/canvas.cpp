@@ -9,6 +9,7 @@ namespace nonio::reports {
 
 void Canvas::begin_item(std::string_view, std::string_view) {}
 void Canvas::end_item() {}
+void Canvas::begin_part(const char*) {}
 
 void PdfCanvas::number(double value) { pdf::append_real(ops, value, ' '); }
 

@@ -50,6 +50,8 @@ class Canvas {
   /// Groups drawing until `end_item`, with a tooltip and a link (may be empty); no effect in a PDF.
   virtual void begin_item(std::string_view title, std::string_view link);
   virtual void end_item();
+  /// Names what is drawn until `end_item`, for scripts of a page; no effect in a PDF.
+  virtual void begin_part(const char* name);
 };
 
 /// Writes PDF operators, omitting state changes without effect.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "nonio/reports/drawing.h"
@@ -275,6 +276,8 @@ class PlotSetter {
     return height;
   }
 
+  const std::optional<Frame>& drawn() const { return drawn_; }
+
   Expected<double> draw_top() {
     if (plot_.only_legend) return draw_legend(0);
     const auto title = draw_title();
@@ -387,7 +390,9 @@ class PlotSetter {
     if (!plot_.lanes.empty()) frame.across = lanes();
     if (!plot_.ticks.empty()) frame.across = own_ticks(frame.across);
     if (auto ok = draw_axes(frame, labels, up_title); !ok) return ok;
+    drawn_ = frame;
     canvas_.clip(frame.x, frame.y, frame.w, frame.h);
+    canvas_.begin_part("drawn");
     canvas_.round_joins();
     if (auto ok = draw_events(frame); !ok) return ok;
     for (const auto& [at, colour] : plot_.limits) {
@@ -406,6 +411,7 @@ class PlotSetter {
       if (titled) canvas_.end_item();
       if (curve.kind == Curve::Kind::points) draw_points(canvas_, frame, curve);
     }
+    canvas_.end_item();
     canvas_.leave();
     return draw_spans(frame);
   }
@@ -444,10 +450,12 @@ class PlotSetter {
     canvas_.stroke_colour(style_.rule);
     canvas_.line(style_.rule_width);
     for (const double tick : f.up.ticks) canvas_.segment(f.x, f.py(tick), f.x + f.w, f.py(tick));
+    canvas_.begin_part("across");
     for (const double tick : f.across.ticks) {
       const double at = plot_.lanes.empty() ? tick : tick + 0.5;
       canvas_.segment(f.px(at), f.y, f.px(at), f.y + f.h);
     }
+    canvas_.end_item();
     canvas_.stroke_colour(style_.muted);
     canvas_.line(0.5);
     if (plot_.zero_line) canvas_.segment(f.x, f.py(0), f.x + f.w, f.py(0));
@@ -539,6 +547,7 @@ class PlotSetter {
   const Style& style_;
   std::string_view field_;
   double size_;
+  std::optional<Frame> drawn_{};
 };
 
 }  // namespace
@@ -562,8 +571,13 @@ Drawing drawing_of(const Plot& plot, double width, const Style& style, const Fon
   Used none;
   const Context context{style, fonts, style.page_height, none, Medium::screen};
   SvgCanvas canvas(colours, style.see_through);
-  const auto height = PlotSetter(plot, width, context, "", canvas).set();
-  return {height.value(), std::move(canvas.elements), canvas.has_links};
+  PlotSetter setter(plot, width, context, "", canvas);
+  const auto height = setter.set();
+  Drawing out{height.value(), std::move(canvas.elements), canvas.has_links, {}};
+  if (const auto& f = setter.drawn())
+    out.frame = {f->x,           -f->y - f->h, f->w,       f->h,
+                 f->across.from, f->across.to, f->up.from, f->up.to};
+  return out;
 }
 
 }  // namespace nonio::reports

@@ -99,7 +99,13 @@ std::string FollowedNumbers::difference(double size, double u) const {
 
 std::string FollowedNumbers::size(double size) const {
   if (is_scatter_) return "× " + factor_text(site_, std::fabs(size));
-  std::string out = localised(short_text(size * unit_of(quantity_).per_si), site_.language());
+  const double shown = size * unit_of(quantity_).per_si, magnitude = std::fabs(shown);
+  constexpr double least = 1e-8, exponent_below = 1e-4;  // two digits instead of an exponent
+  const bool is_tiny = magnitude >= least && magnitude < exponent_below;
+  std::string out =
+      localised(is_tiny ? fixed_text(shown, 1 - static_cast<int>(std::floor(std::log10(magnitude))))
+                        : short_text(shown),
+                site_.language());
   if (out.starts_with('-')) out.replace(0, 1, "\u2212");
   return with_unit(out, quantity_);
 }

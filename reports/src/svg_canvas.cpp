@@ -108,6 +108,11 @@ void SvgCanvas::begin_item(std::string_view title, std::string_view link) {
   if (!title.empty()) elements += "<title>" + escaped_markup(title, Markup::attribute) + "</title>";
 }
 
-void SvgCanvas::end_item() { elements += linked_ ? "</a>" : "</g>"; }
+void SvgCanvas::end_item() {
+  elements += linked_ ? "</a>" : "</g>";
+  linked_ = false;
+}
+
+void SvgCanvas::begin_part(const char* name) { elements += "<g" + attribute("class", name) + '>'; }
 
 }  // namespace nonio::reports

@@ -43,6 +43,7 @@ class SvgCanvas final : public Canvas {
   void text_upwards(double x, double y, bool bold, double size, std::span<const Glyph>) override;
   void begin_item(std::string_view title, std::string_view link) override;
   void end_item() override;
+  void begin_part(const char* name) override;
 
  private:
   void point(char command, double x, double y);

@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 
+#include "nonio/reports/drawing.h"
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/json_writer.h"

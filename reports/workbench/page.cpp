@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "embedded.h"
+#include "nonio/reports/drawing.h"
 #include "nonio/reports/page.h"
 #include "nonio/sdk/json_writer.h"
 #include "nonio/workbench/data.h"

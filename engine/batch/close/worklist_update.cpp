@@ -233,6 +233,7 @@ assessment::LastRun last_run_of(const RunResult& run, const fs::path& out,
     last_run.vanished.push_back({v.id, v.folder, v.run, v.why});
   for (const auto& entry : run.issued) last_run.issued.push_back(entry.number);
   for (const auto& draft : run.waiting) last_run.waiting.push_back(draft.campaign);
+  last_run.out_of_force = run.out_of_force;
   last_run.history_error = run.history_error;
   return last_run;
 }

@@ -253,7 +253,8 @@ class Releaser {
     const auto first = opened.approval_of(last.number).value_or(std::nullopt);
     return "no draft of campaign " + id_ + " waits for approval; " + last.number + " of " +
            last.date + " is its last certificate" +
-           (first ? ", approved by " + first->by + " at " + first->at : "");
+           (first ? ", approved by " + first->by + " at " + first->at : "") +
+           "; if its files are missing, the next run writes them";
   }
 
   /// Checks that the draft file is that of the register, locks the output folder, and reads from

@@ -101,13 +101,16 @@ std::string temporary(const fs::path& path, const User& own) {
   return path.string() + "-" + own.boot.substr(0, own.boot.find('-')) + "-";
 }
 
-/// Removes temporary files of processes that were killed since the last boot of this host. The
-/// caller must have the flock.
+/// Removes temporary files of killed processes of this host. The caller must have the flock.
 void sweep(const fs::path& path, const User& own) {
-  const std::string front = temporary(path, own);
+  const std::string front = temporary(path, own), all = path.string() + "-";
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(path.parent_path(), error))
-    if (entry.path().string().starts_with(front)) ::unlink(entry.path().c_str());
+  for (const auto& entry : fs::directory_iterator(path.parent_path(), error)) {
+    const std::string file = entry.path().string();
+    if (!file.starts_with(all)) continue;
+    const auto text = storage::read_small_file(entry.path());  // of an earlier boot, if whole
+    if (file.starts_with(front) || (text && is_gone(user_in(*text), own))) ::unlink(file.c_str());
+  }
 }
 
 void remove_temporary(const std::string& path) {

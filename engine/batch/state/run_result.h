@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -73,6 +74,7 @@ struct RunResult {
   std::vector<CampaignState> campaigns;  ///< sorted by id
   std::vector<std::string> notes;
   std::vector<certificates::RegisterEntry> issued;
+  std::set<std::string> out_of_force{};             ///< numbers of certificates no longer in force
   std::vector<certificates::WaitingDraft> waiting;  ///< drafts that wait for approval
   std::vector<Vanished> vanished;                   ///< sorted by id
   std::size_t failed() const;                       ///< includes folders that could not be listed

@@ -156,6 +156,11 @@ Expected<void> check_site(const storage::Json& json, const std::string& site, co
 
 }  // namespace
 
+std::string site_of(const fs::path& out) {
+  const auto state = read_state(out);
+  return state && *state ? known_text(**state, "site") : "";
+}
+
 Expected<RunState> reopen_run(const RunOptions& options, const std::string& site) {
   NONIO_TRY(const auto state, read_state(options.out));
   if (!state || known_text(*state, "state") != "complete")

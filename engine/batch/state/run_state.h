@@ -52,6 +52,8 @@ Expected<RunState> reopen_run(const RunOptions& options, const std::string& site
 /// not in progress, or if it is of another site.
 Expected<RunState> planned_run(const RunOptions& options, const std::string& site,
                                std::uint64_t number);
+/// Returns the site of the runs into this folder; empty if it is not known.
+std::string site_of(const std::filesystem::path& out);
 /// Marks the run as complete. The next run continues from `run.issued_before`.
 Expected<void> end_run(const std::filesystem::path& out, const RunState& run, const RunEnd& end);
 

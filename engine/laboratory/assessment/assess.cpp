@@ -428,6 +428,7 @@ class Assessment::State {
         lines_of({last_run_, standings, *machine_of_campaign, spellings, learned_.of, unknown_});
     for (const reports::WorkItem& l : site.lines) lines_[l.machine].push_back(l);
     site.instruments = joined(instruments);
+    site.out_of_force = last_run_.out_of_force;
     std::vector<ComparedMachine> compared;
     for (const Standing* s : standings)
       if (!s->alone) compared.push_back({&s->shown, &s->compared});

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,10 +26,11 @@ struct LastRun {
   std::uint64_t run = 0;
   std::string date;  ///< YYYY-MM-DD; replaces the clock
   std::uint64_t campaigns = 0, done = 0, unchanged = 0;
-  std::vector<Failed> failed{};        ///< sorted by campaign
-  std::vector<Vanished> vanished{};    ///< sorted by campaign, without those removed on purpose
-  std::vector<std::string> issued{};   ///< numbers of certificates
-  std::vector<std::string> waiting{};  ///< campaigns whose drafts wait for approval
+  std::vector<Failed> failed{};          ///< sorted by campaign
+  std::vector<Vanished> vanished{};      ///< sorted by campaign, without those removed on purpose
+  std::vector<std::string> issued{};     ///< numbers of certificates
+  std::vector<std::string> waiting{};    ///< campaigns whose drafts wait for approval
+  std::set<std::string> out_of_force{};  ///< numbers of certificates no longer in force
   std::string language = "en";
   /// Reason why the store lacks this run.
   std::string history_error{};

@@ -90,35 +90,24 @@ bool has_numbers(std::string_view key, const std::string& text) {
          (key == "which" && (text.find(" mm") != text.npos || text.find(" deg") != text.npos));
 }
 
-/// The evidence `{value} ± {U}` at the beginning of the text, and the length of its placeholders.
-struct ValueWithU {
-  std::string text;
-  std::size_t length = 0;
-};
+constexpr std::string_view plus_minus = "\u00b1";
 
-/// Empty unless the text begins with two numbers of one quantity. They are rounded together, so that
-/// a value has the same digits as in the tables of results.
-ValueWithU value_with_U(std::string_view text, const std::vector<Number>& evidence) {
-  const auto number_at = [&](std::size_t open, std::size_t& end) -> const Number* {
-    end = open < text.size() && text[open] == '{' ? text.find('}', open) : text.npos;
-    if (end == text.npos) return nullptr;
-    const std::string_view name = text.substr(open + 1, end++ - open - 1);
-    for (const Number& n : evidence)
-      if (n.name == name) return &n;
-    return nullptr;
+/// "{value\u00b1U}": a value with its U, both in the unit of the value and rounded to the second digit of
+/// U. With a name such as "value_ms" there is no unit.
+std::optional<std::string> with_U(const std::vector<Number>& evidence, std::string_view name,
+                                  std::string_view name_of_U, std::string_view language) {
+  const auto found = [&](std::string_view wanted) {
+    return std::find_if(evidence.begin(), evidence.end(),
+                        [&](const Number& n) { return n.name == wanted; });
   };
-  constexpr std::string_view between = " ± ";
-  std::size_t end = 0, last = 0;
-  const Number* const value = number_at(0, end);
-  if (value == nullptr || !text.substr(end).starts_with(between)) return {};
-  const Number* const U = number_at(end + between.size(), last);
-  if (U == nullptr || U->quantity != value->quantity) return {};
-  const Unit unit = unit_of(U->quantity);
-  const auto rounded = rounded_result(value->value * unit.per_si, U->value * unit.per_si);
-  if (!rounded) return {};
-  return {rounded->value + std::string(between) + rounded->U +
-              (unit.symbol.empty() ? "" : " " + std::string(unit.symbol)),
-          last};
+  const auto value = found(name), U = found(name_of_U);
+  if (value == evidence.end() || U == evidence.end()) return std::nullopt;
+  const std::string symbol(unit_of(value->quantity).symbol);
+  const auto both =
+      rounded_result(printed(value->value, value->quantity), printed(U->value, value->quantity));
+  const std::string text =
+      both ? both->value + " " + std::string(plus_minus) + " " + both->U : evidence_text(*value);
+  return localised(text, language) + (symbol.empty() ? "" : " " + symbol);
 }
 
 std::string filled(std::string_view text, const std::vector<Number>& evidence, const Texts& texts,
@@ -130,11 +119,6 @@ std::string filled(std::string_view text, const std::vector<Number>& evidence, c
     out += text.substr(i, open - i);
     i = open;
     if (i == text.size()) break;
-    if (const auto [both, length] = value_with_U(text.substr(i), evidence); length > 0) {
-      out += localised(both, language);
-      i += length;
-      continue;
-    }
     const std::size_t close = text.find('}', i);
     if (close == std::string_view::npos) {
       out += text[i++];
@@ -142,9 +126,14 @@ std::string filled(std::string_view text, const std::vector<Number>& evidence, c
     }
     const std::string_view name = text.substr(i + 1, close - i - 1);
     std::string value(text.substr(i, close + 1 - i));
+    if (const std::size_t at = name.find(plus_minus); at != std::string_view::npos)
+      value = with_U(evidence, name.substr(0, at), name.substr(at + plus_minus.size()), language)
+                  .value_or(value);
     for (const Number& n : evidence)
       if (is_joined(name, n.name, unit_of(n.quantity).suffix))
         value = localised(evidence_text(n), language);
+      else if (is_joined(name, n.name, "%"))  // a ratio
+        value = localised(short_text(100.0 * n.value, 2), language) + " %";
       else if (name == n.name)
         value =
             localised(evidence_text(n), language) + " " + std::string(unit_of(n.quantity).symbol);

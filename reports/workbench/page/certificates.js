@@ -102,7 +102,7 @@ const certificates = (() => {
     ...asking.map((f) => el("label", {class: "wide"}, el("span", {}, el("b", {}, entries.visible(f.said || f.title)), " ", el("span", {class: "muted"}, keyOf(f))), given.get(keyOf(f)))),
     el("label", {class: "wide"}, el("span", {}, say("release.by")), by_), el("label", {class: "wide"}, el("span", {}, say("release.as")), as),
     password ? el("label", {class: "wide"}, el("span", {}, say("release.password")), password) : null, confirmed ? el("label", {class: "wide"}, el("span", {}, say("release.confirm", {name: entries.visible(entries.me())})), confirmed) : null,
-    el("p", {class: "muted"}, say("release.what")), problem, el("div", {class: "buttons"}, go));
+    el("p", {class: "muted"}, `${say("release.what")} ${entries.confirms() ? "" : say("release.name_not_checked")}`), problem, el("div", {class: "buttons"}, go));
   }
   /// One draft; with `edit` it can be approved.
   function draft(one, edit, fetchFile, act) {

@@ -166,7 +166,7 @@ function nonioCharts({tip, words, number, zoomed, about, pick, brushed, said}) {
       button.addEventListener("click", () => move_axis(svg, name));
       group.append(button);
     }
-    group.append(...nonioSave.buttons(svg, () => numbers(svg)));
+    group.append(...nonioSave.buttons(svg, frame.table || (() => numbers(svg))));
     box.append(summary, group);
     svg.after(box);
   }
@@ -237,7 +237,7 @@ function nonioCharts({tip, words, number, zoomed, about, pick, brushed, said}) {
     tip.hidden = true;
     if (marked >= 0) mark(-1);
   }
-  const svg_of = (event) => event.target.closest && event.target.closest("figure svg");
+  const svg_of = (event) => event.target.closest && event.target.closest("svg");
   function under(event, reach) {
     const svg = svg_of(event), own = svg ? frames.filter((f) => f.svg === svg) : [];
     if (own.length === 0) return [null, null];
@@ -251,8 +251,8 @@ function nonioCharts({tip, words, number, zoomed, about, pick, brushed, said}) {
     return [frame, best];
   }
   function inside(frame, event) {
-    const box = frame.svg.getBoundingClientRect(), scale = frame.svg.viewBox.baseVal.width / box.width;
-    return [(event.clientX - box.left) * scale, (event.clientY - box.top) * scale];
+    const at = frame.svg.getScreenCTM();
+    return [(event.clientX - at.e) / at.a, (event.clientY - at.f) / at.d];
   }
   function hover(event) {
     by_key = false;
@@ -311,9 +311,9 @@ function nonioCharts({tip, words, number, zoomed, about, pick, brushed, said}) {
     if (axis) move_axis(svg, axis);
     else if (to !== undefined && last >= 0) {
       const point = order[Math.min(Math.max(to, 0), last)];
-      const box = svg.getBoundingClientRect(), scale = box.width / svg.viewBox.baseVal.width;
+      const screen = svg.getScreenCTM();
       by_key = true;
-      show(point, box.left + point[0] * scale, box.top + point[1] * scale);
+      show(point, screen.e + point[0] * screen.a, screen.f + point[1] * screen.d);
       if (said) said(lines_of(point));
     } else if (event.key === "Enter" && marked >= 0 && pick) pick(marked);
     else if (event.key === "Escape" && tip.hidden && brushed) {

@@ -39,7 +39,7 @@ const entries = (() => {
     const first = body.querySelector("input, select");
     if (first) first.focus();
   }
-  const who = () => field("by", "entry.by", {required: true, maxlength: 100, ...mine()});
+  const who = () => field("by", "entry.by", {required: true, maxlength: 100, ...mine()}, account ? null : say("entry.name_not_checked"));
 
   /// `line`: an element of `nonio status --actions --json`.
   function acknowledge(line, told, act) {

@@ -1,9 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Numbers for the figures of draw.js: ticks of a scale, quantiles of the normal distribution.
 "use strict";
+/// Ticks of an axis of days since 1970-01-01: beginnings of years or months, or days.
+function nonioDays(low, high) {
+  const span = high - low, day = 864e5, months = span > 1095 ? 12 : span > 500 ? 6 : span > 200 ? 3 : 1, list = [];
+  if (span < 60) return nonioTicks((v) => new Date(v * day).toISOString().slice(0, 10), low, high, 4, "whole");
+  const month = new Intl.DateTimeFormat(document.documentElement.lang, {month: "short", year: "numeric", timeZone: "UTC"});
+  for (let at = new Date(low * day), n = Math.floor(at.getUTCMonth() / months) * months; ; n += months) {
+    const date = new Date(Date.UTC(at.getUTCFullYear(), n)), v = date / day;
+    if (v > high) return list;
+    if (v >= low) list.push({at: v, label: months === 12 ? String(date.getUTCFullYear()) : month.format(date)});
+  }
+}
 /// About `count` ticks at round numbers from low to high, each with number(value, digits) as the label. kind: "turn" for
-/// degrees of a turn, "whole" for integers.
+/// degrees of a turn, "whole" for integers, "days" for days since 1970-01-01.
 function nonioTicks(number, low, high, count, kind) {
+  if (kind === "days") return nonioDays(low, high);
   let raw = (high - low) / count, step = 0;
   if (kind === "turn" && raw > 10)
     step = [15, 30, 45, 60, 90, 180, 360].find((s) => raw <= s) || 0;

@@ -1,6 +1,6 @@
 // ---- the page of a site: the worklist of the last run, and user actions ----
 (() => {
-  let state = null, lines = [], known = [], gone = null, filters = "", drawn = "", asking = false, again = false, stale = true, dismissed = "", shown = "", released = null;
+  let state = null, lines = [], known = [], gone = null, filters = "", drawn = "", asking = false, again = false, stale = true, dismissed = "", shown = "", released = null, drawnCharts = null;
   const own = ["campaigns", "machines", "instruments", "certificates", "entries", "settings"];
   const isOwn = (name) => own.includes(name) || (name === "new" && (!state || state.edit)) || name.startsWith("campaign/");
   const isPage = (name) => /^(index|due|compare|instruments)\.html$|^machines\/[^/]+\.html$/.test(name);
@@ -277,7 +277,7 @@
     const name = view();
     if (name === "index.html" && state.night.last === 0) return put([el("h1", {tabindex: -1}, say("site.worklist")), el("p", {}, say("night.none"))], name, moved);
     if (name === "new" && shown === "new" && !moved) return;
-    const content = name === "campaigns" ? await campaigns.list(tools()) : name === "machines" ? await campaigns.machines(complain) : name === "instruments" ? await campaigns.instruments(links.some(([to]) => to === "instruments.html")) : name === "settings" ? await campaigns.settings() : name === "new" ? measure.view({out: state.out, created}) :
+    const content = name === "campaigns" ? await campaigns.list(tools()) : name === "machines" ? await campaigns.machines(complain, lines) : name === "instruments" ? await campaigns.instruments(links.some(([to]) => to === "instruments.html")) : name === "settings" ? await campaigns.settings() : name === "new" ? measure.view({out: state.out, created}) :
       name.startsWith("campaign/") ? await campaigns.one(name.slice("campaign/".length), tools()) : name === "certificates" ? await certificatesView() : name === "entries" ? await entriesView() : await pageOfRun(name);
     if (name !== view()) return;
     put(content, name, moved);
@@ -300,6 +300,7 @@
     drawn = same;
     main.replaceChildren(...next.childNodes);
     nonioLines(main, {signal: gone.signal});
+    drawnCharts.adopt(main);
     fitted.draw().catch(() => null);
     drawHead();
     document.title = `${main.querySelector("h1").textContent} \u2013 ${state.site} \u2013 Nonio`;
@@ -328,6 +329,7 @@
     el("main", {id: "main"}, el("h1", {}, say("site.reading"))),
     el("footer", {id: "footer", hidden: true}, el("details", {}, el("summary", {id: "command-label"}, say("site.did")), el("code", {id: "command", tabindex: 0, "aria-labelledby": "command-label"}))), el("div", {id: "tip", hidden: true}), ...box.places());
   document.body.className = "site";
+  drawnCharts = nonioDrawn({tip: by("tip"), words});
 
   let soon = 0, all = false;
   function event(e) {

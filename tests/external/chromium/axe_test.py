@@ -91,6 +91,8 @@ class Axe(live_browser.LivePage):
                 self.d.execute_script("document.getElementById('finish').click()")
                 self.wait(lambda: self.d.find_element("id", "save").is_enabled(), "steps are done")
                 self.ready("explained")
+                # Values of the last model are dimmed until those of the new one are there.
+                self.wait(lambda: not self.js("document.querySelectorAll('.old').length"), "the values are new")
                 self.judge(f"{name} finished", language)
                 self.click("save")
                 self.wait(lambda: self.js("document.getElementById('dialog').open"))

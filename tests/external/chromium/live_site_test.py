@@ -163,7 +163,7 @@ class SitePage(live_browser.LivePage):
         self.dialog_closed()
         self.wait(lambda: self.known(line), "the line is known")
         entry = self.acknowledged()["acknowledged"][0]
-        self.assertEqual((line["id"], line["machine"], "B. Sample", "nut is ordered"), (entry["finding"], entry["machine"], entry["by"], entry["why"]))
+        self.assertEqual((line["id"], line["machine"], "B. Sample (not authenticated)", "nut is ordered"), (entry["finding"], entry["machine"], entry["by"], entry["why"]))
         self.assertIn("nonio machine ack", self.text("command"))
         self.assertEqual([l["id"] for l in self.morning()], self.rows(), "in the order of the terminal")
         self.push("withdraw-" + line["id"])
@@ -180,7 +180,7 @@ class SitePage(live_browser.LivePage):
         self.click("dialog-write")
         self.dialog_closed()
         events = tomllib.loads((self.site / "events.toml").read_text())["event"]
-        self.assertEqual((line["machine"], "crash", "tool hit the vice", "B. Sample"), tuple(events[-1][k] for k in ("machine", "kind", "text", "by")))
+        self.assertEqual((line["machine"], "crash", "tool hit the vice", "B. Sample (not authenticated)"), tuple(events[-1][k] for k in ("machine", "kind", "text", "by")))
         self.go("entries")
         self.assertIn("tool hit the vice", self.text("main"))
         # The machine, one of its campaigns, and back.

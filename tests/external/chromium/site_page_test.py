@@ -10,6 +10,7 @@ from browser import SKIPPED, Browser, complaints, program
 from hindrances import HINDRANCES
 
 WIDTHS = (320, 420, 1280, 1920)
+SETTLED = "new Promise((done) => setInterval(() => { if ("
 
 
 def check(browser, page, where):
@@ -30,7 +31,8 @@ def check(browser, page, where):
     assert not bad, where + ", dark:\n  " + "\n  ".join(bad)
     browser.ask("Emulation.setEmulatedMedia", features=[])
     check_print(browser, where)
-    bad = complaints(browser, lambda url: url == page.as_uri())
+    charts = page.parents[page.parent.name == "machines"] / "charts.js"
+    bad = complaints(browser, lambda url: url in (page.as_uri(), charts.as_uri()))
     assert not bad, where + ":\n  " + "\n  ".join(bad)
 
 
@@ -87,6 +89,42 @@ def check_keyboard(browser, index):
     assert reached == ["A", "A", "A", "A", "SELECTkind", "SELECTcustomer"], reached
 
 
+def check_charts(browser, page):
+    """The tools of the charts: zoom by keys and pointer, values, and the same drawing afterwards."""
+    browser.open(page.as_uri(), 1280)
+    first = "document.querySelector('svg.chart')"
+    assert browser.value(f"{SETTLED}document.querySelectorAll('.chart-tools').length === document.querySelectorAll('svg.chart').length) done(true); }}, 20))")
+    drawn = f"{first}.querySelector('.drawn').innerHTML + [...{first}.querySelectorAll('.across')].map((g) => g.innerHTML)"
+    whole = browser.value(drawn)
+    browser.value(f"{first}.focus()")
+    press(browser, "Home")
+    told = browser.value("document.getElementById('tip').textContent")
+    rows = browser.value(f"[...{first}.parentNode.querySelectorAll('tbody tr')].map((r) => [r.cells[0].textContent, r.cells[2].textContent])")
+    assert any(told.startswith(day) and value in told for day, value in rows), (told, rows)
+    press(browser, "+")
+    near = browser.value(drawn)
+    assert near != whole, "the key + does not enlarge"
+    labels = browser.value(f"[...{first}.querySelectorAll('.across text')].map((t) => t.textContent)")
+    assert labels and len(set(labels)) == len(labels), labels
+    press(browser, "0")
+    assert browser.value(drawn) == whole, "the whole axis is not as it was drawn"
+    box = browser.value(f"(({first}.scrollIntoView()), [...['x', 'y', 'width', 'height'].map((k) => {first}.getBoundingClientRect()[k])])")
+    at = {"y": box[1] + box[3] / 2, "button": "left", "clickCount": 1}
+    for kind, part in (("mousePressed", 0.4), ("mouseMoved", 0.5), ("mouseMoved", 0.7), ("mouseReleased", 0.7)):
+        browser.ask("Input.dispatchMouseEvent", type=kind, x=box[0] + part * box[2], **at)
+    assert browser.value(drawn) not in (whole, near), "a range chosen with the pointer does not enlarge"
+
+
+def check_alone(browser, page, folder):
+    """A page that was sent without charts.js has its charts, without tools."""
+    alone = pathlib.Path(folder) / "alone" / page.name
+    alone.parent.mkdir()
+    alone.write_bytes(page.read_bytes())
+    browser.open(alone.as_uri(), 1280)
+    assert browser.value("document.querySelectorAll('svg.chart path').length") > 0
+    assert browser.value("document.querySelectorAll('.chart-tools').length") == 0
+
+
 def check_print(browser, where):
     browser.width(1123 - 76)
     browser.ask("Emulation.setEmulatedMedia", media="print")
@@ -128,6 +166,9 @@ def main():
         check_filters(browser, pages / "en" / "index.html")
         check_keyboard(browser, pages / "en" / "index.html")
         check_without_scripts(browser, pages / "en" / "index.html")
+        for language in ("en", "de"):
+            check_charts(browser, pages / language / "machines" / "S-0042.html")
+        check_alone(browser, pages / "en" / "machines" / "S-0042.html", folder)
         browser.close()
     return 0
 

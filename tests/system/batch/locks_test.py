@@ -59,8 +59,14 @@ class LockTest(NightTest):
         self.left(boot=BOOT)
         (self.out / f".nonio/user-{BOOT.split('-')[0]}-abc").write_text("half")
         (self.out / ".nonio/user-fedcba98-abc").write_text("of another host")
+        machine, host = pathlib.Path("/etc/machine-id"), os.uname().nodename
+        if machine.is_file() and machine.read_text().strip():
+            (self.out / ".nonio/user-01234567-abc").write_text(json.dumps(
+                {"host": host, "pid": 17, "job": "", "machine": machine.read_text().strip(), "boot": "01234567-of-an-earlier-boot"}) + "\n")
+        (self.out / ".nonio/user-89abcdef-abc").write_text(json.dumps(
+            {"host": host, "pid": 17, "job": "", "machine": "m", "boot": "89abcdef-of-another-machine"}) + "\n")
         self.run_nonio(expect=0)
-        self.assertEqual([p.name for p in self.user.parent.iterdir() if "user" in p.name], ["user-fedcba98-abc"])
+        self.assertEqual(sorted(p.name for p in self.user.parent.iterdir() if "user" in p.name), ["user-89abcdef-abc", "user-fedcba98-abc"])
 
     @unittest.skipUnless(MACHINE, "this host has no /etc/machine-id")
     def test_a_lock_of_this_host_before_its_restart_is_stale(self):

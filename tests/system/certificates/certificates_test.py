@@ -10,6 +10,7 @@ import unittest
 import unittest.mock
 
 from numbered import NumberedTest, number
+from signing import NONIO, run
 from nightly import readings
 from signing import NONIO, SIGNER, run
 
@@ -201,7 +202,13 @@ class Certificates(NumberedTest):
         self.night("--jobs", "1")
         for args in (["--withdraw", number(1)], ["--why", "x"], ["--withdraw", number(9), "--why", "x"]):
             self.assertEqual(self.certificates(*args, check=False).returncode, 2)
+        def is_marked(campaign, mark):
+            shown = run(NONIO, "show", self.out / campaign).stdout
+            return mark in next(line for line in shown.splitlines() if line.startswith("  certificate "))
+        self.assertFalse(is_marked("c1", "not in force"))
         self.assertIn("wrong stamp", self.certificates("--withdraw", number(1), "--why", "wrong stamp").stdout)
+        self.assertTrue(is_marked("c1", "not in force"))
+        self.assertFalse(is_marked("c2", "not in force"))
         self.night()
         self.assertEqual(self.ids("done"), ["c1"])
         self.assertIn("withdrawn", self.reason("done", "c1"))

@@ -168,11 +168,13 @@ class Sites(LiveTest):
             self.assertIn("nonio machine event", answer["command"])
             told = s.get("/api/event")["events"]
             self.assertEqual(told, json_of("event", self.small)["events"])
-            self.assertEqual({k: told[0][k] for k in event}, event)
+            # Who has the token can state any name.
+            stated = lambda entry: entry | {"by": entry["by"] + " (not authenticated)"}
+            self.assertEqual({k: told[0][k] for k in event}, stated(event))
             known = {"finding": "reversal.constant", "machine": "S-0102", "until": "2027-01-01", "by": "B. Sample", "why": "nut is ordered"}
             s.post("/api/ack", known)
             self.assertIn("nut is ordered", (self.small / "acknowledged.toml").read_text())
-            self.assertEqual({k: s.get("/api/ack")["acknowledged"][0][k] for k in known}, known)
+            self.assertEqual({k: s.get("/api/ack")["acknowledged"][0][k] for k in known}, stated(known))
             self.assertIn("YYYY-MM-DD", s.post("/api/ack", {"finding": "f", "machine": "m", "until": "soon", "by": "b", "why": "w"}, expect=422)["error"])
             self.assertIn("takes back no", s.post("/api/ack", {"withdraw": True, "finding": "reversal.constant", "machine": "S-0103", "by": "b"}, expect=422)["error"])
             s.post("/api/ack", {"withdraw": True, "finding": "reversal.constant", "machine": "S-0102", "by": "B. Sample"})
@@ -198,7 +200,7 @@ class Sites(LiveTest):
             s.post("/api/ack", {"finding": line["id"], "machine": line["machine"], "until": "2099-01-01", "by": "B. Sample", "why": "nut is ordered"})
             self.assertEqual(next(e for e in events if e[1] == "worklist")[2]["version"], s.get("/api/site/state")["version"])
             now = state()
-            self.assertEqual((now["state"], now["by"], now["until"], now["why"]), ("known", "B. Sample", "2099-01-01", "nut is ordered"))
+            self.assertEqual((now["state"], now["by"], now["until"], now["why"]), ("known", "B. Sample (not authenticated)", "2099-01-01", "nut is ordered"))
             page = s.request("GET", "/site/index.html")[2].decode()
             self.assertIn(f'class="known" data-line="{line["id"]}"', page)
             self.assertIn("nut is ordered", page)
@@ -332,6 +334,18 @@ class Certificates(LiveTest):
             self.assertEqual((answer["state"], set(answer["without_reason"])), ("lacking", asking))
             answer = s.post("/api/release", {"campaign": "adjusted", "by": "B. Sample", "reasons": {key: "as found" for key in asking}})
             self.assertEqual((answer["state"], answer["number"]), ("issued", "S-0001"))
+            # Names without a password prove nothing.
+            self.assertIn("B. Sample (name not authenticated, account", " ".join(nonio("certificate", "list", self.lab).stdout.split()))
+            told = s.get("/api/findings?campaign=adjusted")
+            shown = " ".join(nonio("show", self.out / "adjusted").stdout.split())
+            # A draft has the decisions, too.
+            warnings = lambda findings: {f["title"] for f in findings if f["severity"] == "attention"}
+            self.assertTrue(warnings(told["findings"]))
+            self.assertLessEqual(warnings(told["findings"]), warnings(drafts[0]["findings"]))
+            for f in told["findings"]:
+                for sentence in [f["title"]] + (f["says"] + f["advice"] if f["severity"] == "attention" else []):
+                    self.assertIn(" ".join(sentence.split()), shown)
+            self.assertEqual("no_result", s.get("/api/findings?campaign=../adjusted", expect=404)["id"])
             next(e for e in stream.events() if e[1] == "drafts")
             stream.close()
             self.assertEqual(s.get("/api/drafts")["drafts"], [])
@@ -367,8 +381,11 @@ class Certificates(LiveTest):
             self.assertEqual((copy["state"], copy.get("certificate"), copy["files"]), ("failed", None, []))
             self.assertIn("adjusted", copy["message"])
             shutil.rmtree(self.lab / "copy")
+            instruments = lambda: s.request("GET", "/site/instruments.html")[2].decode()
+            self.assertIn("<td>S-0001</td>", instruments())
             nonio("certificate", "withdraw", self.lab, "S-0001", "--why", "wrong machine", "--by", "B. Sample")
             listed("search=S-0001", found=0)
+            self.assertIn("<td>S-0001 (not in force)</td>", instruments())
             drafts = [d["campaign"] for d in s.get("/api/drafts")["drafts"]]
             s.until("/api/site", lambda a: [x["campaigns"] for x in a["lines"] if x["id"].startswith("worklist.draft")] == ([drafts] if drafts else []), f"drafts {drafts}")
 

@@ -40,6 +40,20 @@ void expect_what_is_said(const Templates& t) {
   EXPECT_EQ(words(t, "en", "effect.other.name"), "");
 }
 
+TEST(Words, AValueHasItsUInTheSameUnitAndRounding) {
+  const Finding f{.id = "f",
+                  .evidence = {{"value", 0.00005188, Quantity::length},
+                               {"U", 8.3e-7, Quantity::deviation},
+                               {"none", 0.0, Quantity::deviation},
+                               {"share", 0.25254, Quantity::ratio}}};
+  EXPECT_EQ(filled("{value\u00b1U}", f, "en"), "0.05188 \u00b1 0.00083 mm");
+  EXPECT_EQ(filled("{value\u00b1U}", f, "de"), "0,05188 \u00b1 0,00083 mm");
+  EXPECT_EQ(filled("{value\u00b1none}", f, "en"), "0.0519 mm");
+  EXPECT_EQ(filled("{value\u00b1other} {other\u00b1U}", f, "en"),
+            "{value\u00b1other} {other\u00b1U}");
+  EXPECT_EQ(filled("{share%}, {other%}", f, "en"), "25 %, {other%}");
+}
+
 TEST(Words, EachOfAListHasItsTerm) {
   const Templates t = two_files();
   const auto text = [&](const std::string& what) {

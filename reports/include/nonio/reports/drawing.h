@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "nonio/reports/document.h"
 
@@ -20,7 +22,14 @@ struct Drawing {
   double height = 0.0;
   std::string elements;
   bool has_links = false;
+  /// x, y, width and height of the frame; first and last value on its horizontal and on its
+  /// vertical axis. Empty without axes.
+  std::vector<double> frame{};
 };
+
+/// Names of the texts of templates/words/<language>/pictures.toml that page/chart.js uses.
+inline constexpr std::array<const char*, 6> chart_words = {
+    "chart.in", "chart.out", "chart.left", "chart.right", "chart.all", "chart.tools"};
 
 /// `width` and lengths of the style are in px. Colors without a name are written as values.
 Drawing drawing_of(const Plot&, double width, const Style&, const Fonts&,

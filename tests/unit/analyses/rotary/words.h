@@ -11,10 +11,10 @@
 /// The words of findings and notes, enough of TOML for templates/words/<language>/rotary.toml.
 namespace nonio::turntable {
 
-/// Places ({name}) in the words of each finding and note, by its id.
+/// Names in the places of the words of each finding and note, by its id: {name}, {name\u00b1U}, {name%}.
 inline std::map<std::string, std::set<std::string>> word_places(const std::string& language) {
   std::ifstream in(std::filesystem::path(NONIO_WORDS) / language / "rotary.toml");
-  static const std::regex place("\\{([^}]*)\\}");
+  static const std::regex place("(?:\\{|\u00b1)([^{}%\xC2]*)%?(?=\\}|\u00b1)");
   std::map<std::string, std::set<std::string>> out;
   std::string id;
   for (std::string line; std::getline(in, line);) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -152,6 +153,7 @@ struct SiteHistory {
   std::vector<MachineHistory> machines;         ///< by id
   std::vector<MonthOfMachine> months;
   std::vector<InstrumentUse> instruments;
+  std::set<std::string> out_of_force{};  ///< numbers of certificates no longer in force
   std::vector<ModelComparison> comparisons;
   bool judged = true;      ///< whether some campaign states a limit
   std::size_t hidden = 0;  ///< lines excluded by the request
@@ -176,7 +178,7 @@ inline constexpr const char* machines_folder = "machines";
 /// Machines whose series index.html shows: those of the first lines.
 std::vector<std::string> drawn_first(const SiteHistory&);
 
-/// index.html, due.html, due.ics, instruments.html, compare.html. Only series of `drawn_first` are
+/// index.html, due.html, due.ics, instruments.html, compare.html, charts.js. Only series of `drawn_first` are
 /// needed.
 Expected<std::vector<Artifact>> site_lists(const SiteHistory&, const Templates&,
                                            const std::string& language);

@@ -25,10 +25,6 @@ struct Drawn {
 /// Circles have separate figures (page/polar.js).
 bool has_circles(const Campaign&, const ModelFit&);
 
-/// Names of the texts that page/chart.js uses.
-inline constexpr std::array<const char*, 6> chart_words = {
-    "chart.in", "chart.out", "chart.left", "chart.right", "chart.all", "chart.tools"};
-
 inline constexpr std::size_t most_readings = 20000;
 
 /// The readings on a page: all, or a sample of many plus those with the largest values. The latter
