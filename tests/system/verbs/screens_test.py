@@ -19,7 +19,7 @@ ENGLISH = {"the", "of", "and", "is", "are", "with", "without", "not", "for", "fr
            "axis", "machine", "file", "files", "warning", "error", "value", "table"}
 ITALIAN = {"file"}  # is also a word of this language
 # Words of commands, options, keys and names, which are the same in every language.
-SAME = re.compile(r"`[^`]*`|\"[^\"]*\"|\[\[?\S+\]|\{[\w-]+\}|nonio( [a-z]+)+|--[a-z-]+|[a-z_.]+ = |\w+([.-][a-z]\w*)+|\S*[/_:=]\S*")
+SAME = re.compile(r"`[^`]*`|\"[^\"]*\"|\[\[?\S+\]|\{[\w±%-]+\}|nonio( [a-z]+)+|--[a-z-]+|[a-z_.]+ = |\w+([.-][a-z]\w*)+|\S*[/_:=]\S*")
 MICRO = "\N{MICRO SIGN}"
 POINT = re.compile(r"(?<![\w.,-])-?\d+\.\d+(?![\w.]|-\d{4})")  # not of a version or of the number of a standard
 BRACKETED = re.compile(r"\(U (= )?-?[\d.,]+( \S+)?\)")  # a value has its U after the sign of plus and minus
