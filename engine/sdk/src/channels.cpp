@@ -74,6 +74,7 @@ std::vector<double> lagged(const Observations& o, std::string_view name, double 
 
 std::vector<double> time_constants_for(const std::vector<double>& time) {
   constexpr std::size_t least_times = 12, most = 18;
+  constexpr double usual = 7200.0;  // s; docs/dev/constants.md, M53
   std::vector<double> t = time;
   std::sort(t.begin(), t.end());
   t.erase(std::unique(t.begin(), t.end()), t.end());
@@ -81,8 +82,8 @@ std::vector<double> time_constants_for(const std::vector<double>& time) {
   const double duration = t.back() - t.front();
   const double interval = duration / static_cast<double>(t.size() - 1);
   std::vector<double> out;
-  for (double tau = duration / 12.0; tau >= 4.0 * interval && out.size() + 1 < most;
-       tau *= std::sqrt(0.5))
+  for (double tau = std::max(duration / 12.0, std::min(duration / 4.0, usual));
+       tau >= 4.0 * interval && out.size() + 1 < most; tau *= std::sqrt(0.5))
     out.push_back(tau);
   out.push_back(0.0);
   std::reverse(out.begin(), out.end());

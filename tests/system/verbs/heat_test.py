@@ -173,6 +173,28 @@ class Heat(VerbTest):
         usual = self.campaign("usual", record(11, [3.0]), more='[model]\neffects = ["heat:bearing"]\n')
         self.assertFalse([s for s in self.json("compare", usual)["parts"][0]["warnings"] if "aluminium" in s])
 
+    def test_a_temperature_that_no_machine_has_is_refused(self):
+        rows = record(12, [3.0])
+        for row in rows[700:]:
+            row[2] = -273.15  # a broken wire
+        folder = self.campaign("broken", rows)
+        self.assertIn("warm.csv:1 (bearing_c): expected -60 to 150 degC, or nothing where it was not measured; found -273.15 at "
+                      "time_s = 21000", self.nonio("check", folder, expect=1).stdout)
+
+    def test_a_lag_of_a_tenth_of_a_short_test_is_found(self):
+        """Four hours are usual, and time constants of half an hour too."""
+        seed = random.randrange(10**6)
+        rng = random.Random(seed)
+        body = follow([row[2] for row in record(seed, [0.0])][:480], 600.0)
+        late = follow(body, 1500.0)
+        text = "time_s,y_um,body_c\n" + "".join(f"{i * STEP:g},{3 * (v - late[0]) + rng.gauss(0, 0.05):.4f},{b + rng.gauss(0, 0.01):.4f}\n"
+                                               for i, (v, b) in enumerate(zip(late, body)))
+        folder = self.write("short", MANIFEST.format(id="short", more='[model]\neffects = ["heat:body"]\n'), **{"warm.csv": text})
+        part, = self.json("compare", folder)["parts"]
+        found = {p["name"]: p["value"] for p in part["model"]["parameters"]}
+        self.assertLess(abs(found["tau"] - 1500), 100, f"seed {seed}")
+        self.assertLess(abs(found["g"] - 3), 0.2, f"seed {seed}")
+
     def test_noise_is_complete_and_an_unrecorded_cause_unknown(self):
         noise = self.campaign("noise", record(7, [0.0]))
         self.assertEqual(self.json("explain", noise)["verdict"]["kind"], "nothing")

@@ -456,8 +456,18 @@ Expected<void> possible_air(const Observations& o, const std::string& file) {
     const std::vector<double>& values;
     double least, most;
   };
-  for (const Column& c : {Column{"material_c", "degC", o.material, -60.0, 150.0},
-                          Column{"air_c", "degC", o.air, -60.0, 150.0},
+  constexpr double coldest = -60.0, hottest = 150.0;  // degC
+  for (const Observations::Channel& c : o.channels)
+    for (std::size_t i = 0; c.is_temperature() && i < c.value.size(); ++i) {
+      if (c.value[i] >= coldest && c.value[i] <= hottest) continue;
+      Error error{"expected -60 to 150 degC, or nothing where it was not measured; found " +
+                  shortest(c.value[i]) + " at time_s = " + shortest(c.time[i])};
+      error.file = file;
+      error.column = c.name + "_c";
+      return fail(std::move(error));
+    }
+  for (const Column& c : {Column{"material_c", "degC", o.material, coldest, hottest},
+                          Column{"air_c", "degC", o.air, coldest, hottest},
                           Column{"pressure_hpa", "hPa", o.pressure, 300.0, 1200.0},
                           Column{"humidity_pct", "%", o.humidity, 0.0, 105.0}})
     for (std::size_t i = 0; i < c.values.size(); ++i) {
