@@ -45,7 +45,8 @@ std::vector<Spike> reversal_spikes(std::span<const CircleReading> readings,
   for (const int direction : {1, -1})
     for (int q = 0; q < 4; ++q) {
       const double reversal = q * full_turn / 4.0;
-      const auto residuals = behind(readings, model, fit, direction, reversal, from, to);
+      auto residuals = behind(readings, model, fit, direction, reversal, from, to);
+      residuals.erase(0.0);  // a reading at the reversal may be before it or after it
       if (residuals.size() < 3) continue;
       Spike spike{reversal, direction, q % 2 == 1};
       double n = 1.0, peak = 0.0;

@@ -154,6 +154,42 @@ TEST(Circle, TheZoneIsAsWideAsItsSpikesAsk) {
   EXPECT_NEAR(zone(2.0, 4.0), 4.0, 1e-9);
 }
 
+TEST(Circle, AReadingAtTheReversalIsNoSpike) {
+  constexpr double turn = 360.0 * exact::deg;
+  for (const double side : {-1.0, 1.0}) {  // as just before the reversal, as just after it
+    std::mt19937_64 random(12);
+    exact::Mill m = mill();
+    m.axis[0].stick = m.axis[1].stick = 0.0, m.axis[0].play = m.axis[1].play = 4e-6;
+    std::vector<CircleReading> readings = exact::circle(m, {0.05e-6, 0.0, 0.0}, random), added;
+    for (const int direction : {1, -1})
+      for (int q = 0; q < 4; ++q) {
+        const double reversal = q * turn / 4.0;
+        const CircleReading* next = nullptr;
+        double least = turn;
+        for (const CircleReading& r : readings) {
+          const double off = direction * side * (r.angle - reversal),
+                       way = off - turn * std::floor(off / turn);
+          if (r.direction == direction && way > 1e-3 && way < least) next = &r, least = way;
+        }
+        ASSERT_NE(next, nullptr);
+        added.push_back(*next);
+        added.back().angle = reversal;
+        std::erase_if(readings, [&](const CircleReading& r) {
+          return r.direction == direction && std::fabs(r.angle - reversal) < 1e-3;
+        });
+      }
+    const CircleModel model = exact::model(m);
+    const auto fit = fit_causes(readings, model);
+    ASSERT_TRUE(fit);
+    const auto without = reversal_spikes(readings, model, *fit);
+    readings.insert(readings.end(), added.begin(), added.end());
+    const auto with = reversal_spikes(readings, model, *fit);
+    ASSERT_EQ(with.size(), without.size());
+    for (std::size_t i = 0; i < with.size(); ++i)
+      EXPECT_EQ(with[i].height, without[i].height) << "at " << with[i].at << ", " << side;
+  }
+}
+
 TEST(Circle, WithoutNoiseTheCausesAreWhatWasPutIn) {
   std::mt19937_64 random(7);
   for (int i = 0; i < 3; ++i) {
