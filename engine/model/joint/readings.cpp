@@ -16,15 +16,11 @@ namespace {
 /// Smallest share of a column that remains without the zeros and the own model of the member.
 constexpr double shown = 1e-4;
 
-/// Range of all members. `with_ends` appends its ends as two readings, so that the knots of a curve
-/// and the grid of a period are the same in each member.
-struct Stretch {
-  double low = 0.0, high = 0.0;
-};
-
-Observations with_ends(const Observations& o, const Stretch& stretch) {
+/// Appends a reading at each of these places. If they are the places of all members, the knots of a
+/// curve, its missing constant and slope, and the grid of a period are the same in each member.
+Observations with_places(const Observations& o, const std::vector<double>& places) {
   Observations out = o;
-  for (const double end : {stretch.low, stretch.high}) {
+  for (const double place : places) {
     const std::size_t row = 0;
     const auto again = [&](auto& column) {
       if (!column.empty()) column.push_back(column[row]);
@@ -34,7 +30,7 @@ Observations with_ends(const Observations& o, const Stretch& stretch) {
     again(out.u);
     for (auto& axis : out.axes) again(axis.position), again(axis.approach);
     again(out.sense);
-    out.axes.front().position.back() = end;
+    out.axes.front().position.back() = place;
   }
   return out;
 }
@@ -68,7 +64,7 @@ class Reader {
   explicit Reader(const std::vector<Member>& members) : members_(members) {}
 
   Expected<JointReadings> run() {
-    measure_stretch();
+    list_places();
     list_blocks();
     for (const Member& member : members_) {
       auto read = of_member(member);
@@ -87,11 +83,20 @@ class Reader {
   }
 
  private:
-  void measure_stretch() {
-    stretch_ = {1e300, -1e300};
-    for (const Member& m : members_)
-      for (const double x : m.part->table.axes.front().position)
-        stretch_.low = std::min(stretch_.low, x), stretch_.high = std::max(stretch_.high, x);
+  /// Places of all members, or evenly spaced ones if these are many.
+  void list_places() {
+    constexpr std::size_t most = 200;
+    for (const Member& m : members_) {
+      const auto& own = m.part->table.axes.front().position;
+      places_.insert(places_.end(), own.begin(), own.end());
+      std::sort(places_.begin(), places_.end());
+      places_.erase(std::unique(places_.begin(), places_.end()), places_.end());
+    }
+    if (places_.size() <= most) return;
+    const double low = places_.front(), high = places_.back();
+    places_.assign(most, low);
+    for (std::size_t i = 0; i < most; ++i)
+      places_[i] += (high - low) * static_cast<double>(i) / static_cast<double>(most - 1);
   }
 
   /// Effects that no member has in its model, with the shapes of the member with the most readings.
@@ -108,7 +113,7 @@ class Reader {
       }
     for (const std::string& name : order) {
       const auto [term, member] = all[name];
-      const auto shapes = shapes_of(with_ends(member->part->table, stretch_), *term);
+      const auto shapes = shapes_of(with_places(member->part->table, places_), *term);
       const auto tried = static_cast<double>(shapes.size());
       const bool curve = term->effect->curve;
       for (const auto& shape : shapes) {
@@ -246,7 +251,7 @@ class Reader {
     out.y = whitened(Eigen::Map<const VectorXd>(o.deviation.data(), static_cast<Index>(o.size())))
                 .col(0) /
             out.s;
-    const Observations wide = with_ends(o, stretch_);
+    const Observations wide = with_places(o, places_);
     std::vector<MatrixXd> parts;
     Index columns = 0;
     out.first.assign(out_.blocks.size(), -1);
@@ -294,7 +299,7 @@ class Reader {
   // smallest degrees of freedom of a noise floor that is used
   static constexpr double least_dof = 8.0;
   const std::vector<Member>& members_;
-  Stretch stretch_;
+  std::vector<double> places_;
   std::vector<Kept> grounds_;
   double offsets_ = 0.0, differences_ = 0.0;
   JointReadings out_;

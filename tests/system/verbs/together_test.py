@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`nonio model explain` of several campaigns together: effects below the noise of each, by which campaigns they have."""
 import json
+import math
 import os
 import pathlib
 import random
@@ -67,6 +68,30 @@ class Together(unittest.TestCase):
         alone = [json.loads(explain(c, "--json", "--quiet").stdout)["verdict"]["kind"] for c in sorted(self.site.iterdir())]
         self.assertLess(alone.count("missing"), 24)
         self.assertEqual([e["effect"] for e in self.answer()["effects"]], ["periodic:X"])
+
+    def test_other_targets_are_no_other_machine(self):
+        """A curve has another straight line through 11 targets than through 41: its slope is no scale that differs."""
+        right = 0
+        for n in range(3):
+            site = self.site / str(n)
+            for k, targets in enumerate((21, 11, 26, 41)):
+                rows = ["run,direction,target_mm,deviation_um"]
+                for run in range(1, 6):
+                    for way in "+-":
+                        for i in range(targets):
+                            x = 1000.0 * i / (targets - 1)
+                            at = x / 500 - 1
+                            y = 3.0 * at + 4.0 * (at ** 3 - at) + 2.0 * math.cos(3 * at) + (-2 if way == "+" else 2) + self.rng.gauss(0, 0.3)
+                            rows.append(f"{run},{way},{x:.3f},{y:.4f}")
+                folder = site / f"n{k}"
+                folder.mkdir(parents=True)
+                (folder / "x.csv").write_text("\n".join(rows) + "\n")
+                (folder / "campaign.toml").write_text(
+                    f'format = 1\n[campaign]\nid = "n{k}"\ndate = 202{k}-03-11\n[machine]\nserial = "1"\n[machine.axes.X]\nkind = "linear"\n'
+                    '[[measurement]]\nid = "x"\nkind = "axis"\naxis = "X"\nfile = "x.csv"\n')
+            verdict = self.answer(site)["verdict"]
+            right += {"pitch-curve:X", "scale:X"} <= set(verdict["same"]) and not verdict["differs"]
+        self.assertGreaterEqual(right, 2)
 
     def test_an_effect_that_appears(self):
         right = 0  # each decision errs in one of a hundred fleets by its level: in two of three fleets it may not
