@@ -34,10 +34,11 @@ std::map<std::string, std::string> sections(const fs::path& file) {
 }
 
 std::set<std::string> places(const std::string& text) {
-  static const std::regex place("\\{([^}]*)\\}");
+  static const std::regex place("\\{([\\w-]*)(?:±(\\w*))?%?\\}");
   std::set<std::string> out;
   for (std::sregex_iterator it(text.begin(), text.end(), place), end; it != end; ++it)
-    out.insert((*it)[1]);
+    for (const int of : {1, 2})
+      if ((*it)[of].matched) out.insert((*it)[of]);
   return out;
 }
 

@@ -44,13 +44,15 @@ TEST(Lagged, SamplesOnceMoreChangeNothing) {
 }
 
 TEST(TimeConstants, LieBetweenTheSamplingAndTheDuration) {
-  std::vector<double> time;
-  for (int i = 0; i < 1000; ++i) time.push_back(30.0 * i);
-  const auto all = time_constants_for(time);
-  ASSERT_GE(all.size(), 3U);
-  EXPECT_EQ(all.front(), 0.0);
-  EXPECT_GE(all[1], 4.0 * 30.0);
-  EXPECT_NEAR(all.back(), 30.0 * 999 / 12.0, 1e-9);
+  for (const auto& [hours, longest] : {std::pair{4.0, 1.0}, {20.0, 2.0}, {48.0, 4.0}}) {
+    std::vector<double> time;
+    for (int i = 0; i <= 1000; ++i) time.push_back(3.6 * hours * i);
+    const auto all = time_constants_for(time);
+    ASSERT_GE(all.size(), 3U);
+    EXPECT_EQ(all.front(), 0.0);
+    EXPECT_GE(all[1], 4.0 * 3.6 * hours);
+    EXPECT_NEAR(all.back(), 3600.0 * longest, 1e-9) << hours;
+  }
   EXPECT_TRUE(time_constants_for({0.0, 1.0, 2.0}).empty());
 }
 
