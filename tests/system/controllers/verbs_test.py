@@ -234,6 +234,13 @@ class Tables(BenchTest):
         self.assertAlmostEqual(found["tables"][0]["largest_um"], max(abs(whole(x) + 0.5 * wave(x)) for x in TARGETS),
                                delta=0.01)
         self.nonio("table", "predict", present, self.folder, "--out", new, expect=2)
+        # The campaign may state the same file.
+        self.active_stated = True
+        self.one_axis(TARGETS, lambda x: 0.5 * wave(x), lambda x: 0.5 * wave(x), control="linuxcnc",
+                      extra="[options.linuxcnc]\ntype = 1\n")
+        text = (self.folder / "campaign.toml").read_text()
+        (self.folder / "campaign.toml").write_text(text.replace('active_table = "none"', 'active_table = "%s"' % present))
+        self.assertEqual(self.json_of("apply", present, self.folder, "--active-table")["tables"], found["tables"])
         # The campaign states that none was active: one of the two is wrong.
         self.active_stated = True
         self.one_axis(TARGETS, wave, wave, control="linuxcnc")
