@@ -229,8 +229,8 @@ Expected<std::vector<Law>> laws(const OutputInput& in, std::vector<Finding>& fin
     return stated->contains(displacement_of(*fit));
   });
   std::vector<Law> out;
-  for (const ModelFit* one : fits) {
-    const ModelFit& fit = *one;
+  for (const ModelFit* const of : fits) {
+    const ModelFit& fit = *of;
     const std::size_t slash = fit.part.rfind('/');
     const Axis* runs = in.campaign.machine.axis(fit.part);
     if (slash == std::string::npos && (runs == nullptr || runs->rotary)) continue;
