@@ -267,10 +267,24 @@ Expected<void> settle_backlash(const TableWish& w, const Loaded& present, Settin
   return {};
 }
 
-Expected<void> active_unless_stated(const TableWish& w, const Loaded& present, const Campaign& c) {
+/// Whether the campaign states these files as the active table of the axis.
+bool states_them(const reading::ReadCampaign& read, const std::string& axis,
+                 const std::vector<Artifact>& files) {
+  const auto stated = read.active_tables.find(axis);
+  return stated != read.active_tables.end() &&
+         std::all_of(stated->second.begin(), stated->second.end(), [&](const Artifact& one) {
+           return std::any_of(files.begin(), files.end(),
+                              [&](const Artifact& f) { return f.bytes == one.bytes; });
+         });
+}
+
+Expected<void> active_unless_stated(const TableWish& w, const Loaded& present,
+                                    const OpenCampaign& open) {
   for (const LoadedTable& t : present.tables) {
-    const Axis* axis = c.machine.axis(t.output);
-    if (axis == nullptr || !axis->active_table || t.input != std::vector{t.output}) continue;
+    const Axis* axis = open.campaign().machine.axis(t.output);
+    if (axis == nullptr || !axis->active_table || t.input != std::vector{t.output} ||
+        states_them(open.read, t.output, present.files))
+      continue;
     return fail("--active-table states that " + w.table +
                 " was active, but the campaign states active_table = \"" +
                 (axis->active_table->empty() ? "none" : *axis->active_table) + "\" of axis " +
@@ -309,7 +323,7 @@ int apply(const TableWish& w, const Common& common) {
     a.forecast = tables::forecast(open.read, table->tables, settled, *on);
     return tell(a, table->control->info.name, open, common);
   }
-  if (auto agreed = active_unless_stated(w, *table, open.campaign()); !agreed)
+  if (auto agreed = active_unless_stated(w, *table, open); !agreed)
     return complain(agreed.error().message);
   if (auto stated = settle_backlash(w, *table, settled); !stated)
     return complain(stated.error().message);

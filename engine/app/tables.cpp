@@ -99,6 +99,7 @@ void print_parameter(std::ostream& out, const Json& p, const TerminalWords& say)
     out << say.number(is_count ? fixed_text(value, 0) : short_text(value, 4));
   const std::string unit = p.at("unit");
   out << (unit.empty() ? "" : " ") << unit;
+  if (p.contains("of_manifest")) out << "  " << say("stated.manifest");
   if (p.contains("searched")) out << "  " << say(p.contains("stated") ? "stated" : "searched");
   out << "\n";
 }
@@ -237,7 +238,8 @@ void print_advice(std::ostream& out, const Json& part, const std::string& folder
       sentence(out, 2, say("rare", {{"price", say.number(fixed_text(c.at("prior_price"), 1))}}));
   sentences(out, part.at("next"), say(part.at("plans").empty() ? "next" : "next.apart") + ": ");
   if (verdict.at("kind") == "missing" && !effect.empty())
-    out << "  " << say("command") << ": nonio model add " << folder << " " << effect << "\n";
+    out << "  " << say("command") << ": nonio model add " << folder << " "
+        << text_in(verdict, "entry") << "\n";
 }
 
 void print_limits(std::ostream& out, const Json& part, bool all, const TerminalWords& say) {
@@ -353,7 +355,10 @@ void print_explanation(std::ostream& out, const Json& part, const std::string& f
   print_head(out, part, say);
   line(out, "RMS", with_unit(part.at("model"), "rms", say));
   print_floor(out, part, say);
-  out << "  " << say("verdict") << ": " << say.of("verdict", text_in(verdict, "kind"))
+  // Without repeats the noise is unknown, so that no residuals can show that a model is complete.
+  const bool is_unjudged = verdict.at("kind") == "nothing" && !storage::get(part, "noise_floor");
+  out << "  " << say("verdict") << ": "
+      << say.of("verdict", is_unjudged ? "unjudged" : text_in(verdict, "kind"))
       << (effect.empty() ? "" : " " + effect) << "\n";
   sentence(out, 2, text_in(verdict, "says"));
   print_candidates(out, part, all, say);

@@ -8,6 +8,7 @@
 #include "campaign/modelling/after_table.h"
 #include "campaign/modelling/held_terms.h"
 #include "campaign/modelling/model_history.h"
+#include "nonio/sdk/axis_readings.h"
 
 namespace nonio::modelling {
 
@@ -18,6 +19,16 @@ bool is_stated(const model::Parameter& p, const std::vector<model::Term>& terms)
            return t.name() == p.effect && model::has_stated(t) &&
                   t.effect->shapes[t.stated->shape].parameter.name == p.name;
          });
+}
+
+/// Position of the machine at which the manifest states the fixed point, m. The shape of the effect
+/// is its distance from the middle of the readings.
+std::optional<double> stated_fixed_point(const model::Parameter& p,
+                                         const std::vector<model::Term>& terms) {
+  if (!p.shape || p.name != fixed_point_shape().parameter.name) return std::nullopt;
+  for (const model::Term& t : terms)
+    if (t.name() == p.effect && !t.axis.rotary) return t.axis.fixed_point;
+  return std::nullopt;
 }
 
 std::string written_value(const PartModel& part, const model::Parameter& p) {
@@ -258,7 +269,7 @@ storage::Json candidate_json(const model::Candidate& c, const PartModel& part, d
   storage::put(json, "score_alone", c.alone, Quantity::number);
   storage::put(json, "score_within", c.within, Quantity::number);
   if (c.term.price > 0.0) storage::put(json, "prior_price", c.term.price, Quantity::number);
-  json["parameters"] = parameters_json(c.parameters);
+  json["parameters"] = parameters_json(c.parameters, nullptr, {c.term});
   json["aliases"] = c.aliases;
   if (!c.with_descriptions.empty())
     json["with_descriptions"] = json["beside"] = c.with_descriptions;
@@ -320,6 +331,7 @@ storage::Json verdict_json(const Explained& e, const ModelWords& words) {
   const model::Verdict& v = e.explanation.verdict;
   storage::Json json = {{"kind", to_text(v.kind)}};
   if (!v.effect.empty()) json["effect"] = v.effect;
+  if (!v.effect.empty()) json["entry"] = model::written_for(e.part.part, v.effect);
   const auto& candidates = e.explanation.candidates;
   if (!v.effect.empty() && !candidates.empty() && candidates.front().term.grouping) {
     json["by"] = candidates.front().term.grouping->by;
@@ -484,13 +496,16 @@ storage::Json parameters_json(const std::vector<model::Parameter>& parameters,
     storage::Json one = storage::Json::object();
     if (part != nullptr) one["effect"] = p.effect;
     one["name"] = p.name;
-    const double value = printed(p.value, p.quantity), u = printed(p.u, p.quantity);
+    const auto fixed = stated_fixed_point(p, terms);
+    const double value = printed(fixed.value_or(p.value), p.quantity);
+    const double u = printed(p.u, p.quantity);
     if (std::isfinite(value))
       one["value"] = p.quantity == Quantity::count ? Json(std::llround(value)) : Json(value);
     if (std::isfinite(u)) one["u"] = u;
     one["unit"] = unit_of(p.quantity).symbol;
     if (!p.group.empty()) one["group"] = p.group;
-    if (p.shape) one["searched"] = true;
+    if (p.shape && !fixed) one["searched"] = true;
+    if (fixed) one["of_manifest"] = true;
     if (p.held) one["held"] = true;
     if (p.held && part != nullptr) one["written"] = written_value(*part, p);
     if (is_stated(p, terms)) one["stated"] = true;

@@ -468,8 +468,8 @@ TableForecast forecast_of_axis(const Campaign& campaign, const Measurement& m,
                   [&](double x) { return std::fabs(c(x, 1) - c(x, -1)) > last_digit; });
   const double U_B = measured.bidirectional() && compensates_reversal ? U.B_mean : 0.0;
   f.U_known = !std::isnan(U.E);
-  f.E[1] = math::predicted_after(was.E(), will.E(), std::max(U.E, U_B));
   f.B[1] = math::predicted_after(was.B(), will.B(), U_B);
+  f.E[1] = math::predicted_E_after(was.E(), will.E(), U.E, U_B, f.B[1]);
   f.M[1] = math::predicted_after(was.M(), will.M(), U.M);
   f.scatter = std::max(will.E() + range_of_scatter(test) - f.E[1], 0.0);
   // Values of the axis require all targets.

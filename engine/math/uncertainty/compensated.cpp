@@ -43,4 +43,8 @@ double predicted_after(double before, double after, double U) {
   return after < before && !std::isnan(U) ? std::min(before, std::max(after, U)) : after;
 }
 
+double predicted_E_after(double before, double after, double U, double U_B, double B_after) {
+  return std::max(predicted_after(before, after, std::max(U, U_B)), B_after);
+}
+
 }  // namespace nonio::math

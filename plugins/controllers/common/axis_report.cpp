@@ -159,13 +159,14 @@ void predict(const AxisJob& job, const math::Correction& whole, OutputResult& re
   };
   const bool both = curve.bidirectional();
   const double U_B = both && !job.held ? job.U.B_mean : 0.0;
-  const double E_after = math::predicted_after(was.E(), will.E(), std::max(job.U.E, U_B));
+  const double B_after = math::predicted_after(was.B(), will.B(), U_B);
+  const double E_after = math::predicted_E_after(was.E(), will.E(), job.U.E, U_B, B_after);
   // Without a known scale, the curve is not the axis error, and predictions are made for the
   // diagonals instead.
   // Without all targets, the values of the axis are not known before compensation either.
   if (job.scale_known && curve.left_out == 0) {
     add(both ? "E" : job.from_diagonals ? "M" : curve.plus.empty() ? "E-" : "E+", was.E(), E_after);
-    add("B", was.B(), math::predicted_after(was.B(), will.B(), U_B));
+    add("B", was.B(), B_after);
     add("M", was.M(), math::predicted_after(was.M(), will.M(), job.U.M));
   }
   if (std::isnan(job.U.E) && will.E() < was.E()) {

@@ -201,6 +201,11 @@ Law law_of(const ModelFit& fit, const Observations& readings, const std::string&
   return law;
 }
 
+/// "x1" of the part "warm/x1"; for runs the name of the axis.
+std::string displacement_of(const ModelFit& fit) {
+  return fit.part.substr(fit.part.rfind('/') + 1);
+}
+
 Finding about(const char* id, const std::string& displacement) {
   return {.id = id, .attention = true, .texts = {{"displacement", displacement}}};
 }
@@ -217,15 +222,22 @@ std::string plain(const std::string& name) {
 Expected<std::vector<Law>> laws(const OutputInput& in, std::vector<Finding>& findings) {
   const auto stated = stated_axes(in);
   if (!stated) return fail(stated.error());
+  // Stated displacements come first, because they take precedence over names.
+  std::vector<const ModelFit*> fits;
+  for (const ModelFit& fit : in.results.models) fits.push_back(&fit);
+  std::stable_partition(fits.begin(), fits.end(), [&](const ModelFit* fit) {
+    return stated->contains(displacement_of(*fit));
+  });
   std::vector<Law> out;
-  for (const ModelFit& fit : in.results.models) {
+  for (const ModelFit* const of : fits) {
+    const ModelFit& fit = *of;
     const std::size_t slash = fit.part.rfind('/');
     const Axis* runs = in.campaign.machine.axis(fit.part);
     if (slash == std::string::npos && (runs == nullptr || runs->rotary)) continue;
     const Observations* readings = readings_of(in, fit.measurements.front());
     if (readings == nullptr || fit.effects.empty()) continue;
     if (runs == nullptr && readings->channels.empty()) continue;
-    const std::string displacement = runs != nullptr ? fit.part : fit.part.substr(slash + 1);
+    const std::string displacement = displacement_of(fit);
     const auto entry = stated->find(displacement);
     const std::string axis = runs != nullptr          ? fit.part
                              : entry != stated->end() ? entry->second
@@ -244,6 +256,7 @@ Expected<std::vector<Law>> laws(const OutputInput& in, std::vector<Finding>& fin
     const auto other =
         std::find_if(out.begin(), out.end(), [&](const Law& one) { return one.axis == law.axis; });
     if (other != out.end()) {
+      if (stated->contains(other->displacement) && entry == stated->end()) continue;
       Finding f = about("heat-compensation.two-displacements", displacement);
       f.texts.emplace_back("other", other->displacement);
       f.texts.emplace_back("axis", law.axis);

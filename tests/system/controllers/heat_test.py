@@ -3,6 +3,7 @@
 """Thermal compensations as the program writes them: emulators of their own run the recorded channels through each file, and what
 each makes the axis add is the opposite of what the model says."""
 import csv
+import json
 import math
 import random
 import re
@@ -263,6 +264,12 @@ class HeatCompensation(BenchTest):
         for axis in "YZ":
             block = Block((files / f"heat-twincat-{axis}.st").read_text())
             self.assert_opposite(block.run(self.columns, "correction_mm"), axis.lower(), sign=1.0)
+
+    def test_a_stated_displacement_takes_precedence_over_a_name(self):
+        files = self.write("twincat", effects=("heat:bearing/table_y", "heat:bearing/z"), options='axes = ["table_y = Z"]\n',
+                           names={"y_um": "table_y_um"})
+        self.assertIn("table_y", (files / "heat-twincat-Z.st").read_text())
+        self.assertNotIn("Two displacements", json.dumps(self.answer))
 
     def test_a_sensor_that_counts_against_its_axis(self):
         files = self.write("twincat", effects=("heat:bearing/ch3", "heat-source:spindle/ch3"), options='axes = ["ch3 = -Z"]\n',

@@ -462,7 +462,11 @@ class Explain(VerbTest):
         e = self.explain()
         self.assertEqual(e["verdict"].get("effect"), "warm-up:X")
         fixed = {p["name"]: p for p in e["candidates"][0]["parameters"]}["fixed"]
-        self.assertEqual((fixed["value"], "u" in fixed), (-300, False))
+        # As the manifest states it: a position of the machine.
+        self.assertEqual((fixed["value"], "u" in fixed, "searched" in fixed), (-115, False, False))
+        self.assertTrue(fixed["of_manifest"])
+        self.campaign(known.replace("effects = []", 'effects = ["warm-up:X"]'), x=moved)
+        self.assertRegex(self.nonio("compare", self.folder).stdout, r"fixed +-115(\.0+)? mm +\(stated\)")
 
     def test_growth_and_drift_together_are_one_growth(self):
         table = self.with_columns(growth=lambda t: t / 20).splitlines()

@@ -154,6 +154,9 @@ class Heat(VerbTest):
         for row in rows:
             row.insert(3, rng.gauss(0, 0.05))
         folder = self.campaign("nest", rows, ("x", "y", "z"))
+        entry = self.json("explain", folder)["verdict"]["entry"]
+        self.assertIn("/x+y", entry)
+        self.assertIn(f"nonio model add {folder} {entry}", self.nonio("explain", folder).stdout)
         answer = self.json("explain", folder, "--auto")
         kinds = {p["part"]: p["verdict"]["kind"] for p in answer["parts"]}
         self.assertEqual(kinds, {"warm/x": "nothing", "warm/y": "nothing", "warm/z": "nothing"})

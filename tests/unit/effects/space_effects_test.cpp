@@ -159,6 +159,9 @@ std::vector<Geometry> geometries() {
        {{"squareness", {"XZ", "YZ"}},
         {"straightness", {"EZX", "EZY", "EXZ", "EYZ"}},
         {"pitch", {"X", "Y"}}}},
+      {"plate",
+       plate(),
+       {{"squareness", {"XY"}}, {"straightness", {"EYX", "EXY"}}, {"yaw", {"X"}}}},
       {"step diagonals",
        step_diagonals(),
        {{"squareness", {"XY", "XZ", "YZ"}},
@@ -259,7 +262,7 @@ TEST(SpaceEffects, AnglesAreThoseOfTheExactMachine) {
   const std::vector<Line> across = {sensed(straight("high", {0, 0, 1}, {1, 0, 1}), {0, 1, 0}),
                                     sensed(straight("far", {0, 1, 0}, {1, 1, 0}), {0, 0, 1})};
   for (const auto& lines :
-       {two_diagonals(), axis_runs(), upright_diagonals(), across, step_diagonals()}) {
+       {two_diagonals(), axis_runs(), upright_diagonals(), across, step_diagonals(), plate()}) {
     const Observations o = table(lines);
     for (const std::string kind : {"yaw", "pitch", "roll"})
       for (const std::string& axis : effect(kind).instances(o)) {
@@ -292,6 +295,7 @@ TEST(SpaceEffects, OnASingleColumnTheWayIsTheIntegralOfTheAngle) {
     expect_same(change(e, lines), said(*columns, s.value, o), kind);
   };
   check("yaw", two_diagonals(), "ECX", "EYX", +1.0);
+  check("yaw", plate(), "ECX", "EYX", +1.0);
   check("yaw", step_diagonals(), "ECX", "EYX", +1.0);
   check("pitch", upright, "EBX", "EZX", -1.0);
   check("pitch", step_diagonals(), "EBX", "EZX", -1.0);

@@ -133,6 +133,17 @@ inline std::vector<Line> step_diagonals(int n = 16) {
   return lines;
 }
 
+/// Both coordinates of the holes of a plate: one line each, as a machined part has them.
+inline std::vector<Line> plate(int n = 6) {
+  Line holes{"x", {}, {}};
+  for (int i = 0; i <= n; ++i)
+    for (int k = 0; k <= n; ++k)
+      holes.stops.push_back(corner + Point(i, k, 0).cwiseProduct(travel) / n);
+  Line y = holes;
+  y.name = "y";
+  return {sensed(holes, Point::UnitX()), sensed(y, Point::UnitY())};
+}
+
 inline std::vector<Line> axis_runs() {
   return {straight("X1", {0, 0, 0}, {1, 0, 0}), straight("X2", {0, 1, 0}, {1, 1, 0}),
           straight("Y", {0, 0, 0}, {0, 1, 0})};

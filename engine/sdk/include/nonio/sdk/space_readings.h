@@ -87,9 +87,14 @@ struct SpaceLine {
   static Vector cross(const Vector& a, const Vector& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   }
-  /// Whether the line is a step diagonal: it moves both along the direction of sensing and
-  /// perpendicular to it (along the flat mirror).
-  bool is_stepwise() const { return !straight && std::fabs(dot(farthest, sense)) > 0.5 * length; }
+  /// Whether the line is a step diagonal: sensed across the axes, it moves both along the direction
+  /// of sensing and perpendicular to it (along the flat mirror). A plate, whose coordinates are
+  /// sensed along the axes, has no mirror.
+  bool is_stepwise() const {
+    const bool is_oblique =
+        std::count_if(sense.begin(), sense.end(), [](double n) { return std::fabs(n) > 1e-3; }) > 1;
+    return is_oblique && !straight && std::fabs(dot(farthest, sense)) > 0.5 * length;
+  }
 };
 
 /// `line` is an index into Observations::lines.

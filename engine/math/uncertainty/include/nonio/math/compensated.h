@@ -25,5 +25,8 @@ double compensated_uncertainty_along(const Campaign&, const Measurement&, const 
 /// because errors below U are not known and therefore not compensated. If U is NaN, more than the
 /// returned value may remain.
 double predicted_after(double before, double after, double U);
+/// The same of E, whose U may be unknown while that of B is known: E is never below B. `B_after` is
+/// NaN or 0 without one.
+double predicted_E_after(double before, double after, double U, double U_B, double B_after);
 
 }  // namespace nonio::math
