@@ -84,21 +84,22 @@ int audit(const CertificateWish& wanted, const config::Numbering& numbering, con
     const config::TerminalWords& say = words.get();
     const std::size_t width = sentence_width(STDOUT_FILENO);
     for (const std::string& what : a.wrong) std::cout << say("error") << ": " << what << "\n";
-    std::cout << wrapped(say(a.wrong.empty() ? "audit.unchanged" : "audit.changed") + ": " +
-                             say("audit.register", {{"id", a.id},
-                                                    {"entries", std::to_string(a.entries)},
-                                                    {"certificates", std::to_string(a.certificates)},
-                                                    {"files", std::to_string(a.files)}}),
-                         0, width, 2)
-              << wrapped(say("audit.last", {{"at", a.last_at}, {"sha256", a.last_sha256}}), 0, width,
-                         2);
+    std::cout << wrapped(
+                     say(a.wrong.empty() ? "audit.unchanged" : "audit.changed") + ": " +
+                         say("audit.register", {{"id", a.id},
+                                                {"entries", std::to_string(a.entries)},
+                                                {"certificates", std::to_string(a.certificates)},
+                                                {"files", std::to_string(a.files)}}),
+                     0, width, 2)
+              << wrapped(say("audit.last", {{"at", a.last_at}, {"sha256", a.last_sha256}}), 0,
+                         width, 2);
   }
   return a.wrong.empty() ? exit_done : exit_failed;
 }
 
 int certificates(const CertificateWish& wanted, const Common& common) {
-  if (wanted.withdraw.empty() != wanted.why.empty())
-    return refuse(Error{"--withdraw NUMBER and --why TEXT go together"});
+  if (wanted.withdraw.empty() && !wanted.why.empty())
+    return refuse(Error{"--why: expected the number of the certificate to withdraw"});
   const auto numbering = certificates::numbering_of(wanted.site);
   if (!numbering) return refuse(numbering.error());
   if (wanted.audit) return audit(wanted, *numbering, common);
