@@ -98,8 +98,8 @@ int audit(const CertificateWish& wanted, const config::Numbering& numbering, con
 }
 
 int certificates(const CertificateWish& wanted, const Common& common) {
-  if (wanted.withdraw.empty() != wanted.why.empty())
-    return refuse(Error{"--withdraw NUMBER and --why TEXT go together"});
+  if (wanted.withdraw.empty() && !wanted.why.empty())
+    return refuse(Error{"--why: expected the number of the certificate to withdraw"});
   const auto numbering = certificates::numbering_of(wanted.site);
   if (!numbering) return refuse(numbering.error());
   if (wanted.audit) return audit(wanted, *numbering, common);

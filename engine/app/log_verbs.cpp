@@ -84,6 +84,8 @@ int event(EventWish& wish, const Common& common) {
   if (e.kind.empty() || e.text.empty() || e.machine.empty())
     return complain("expected --machine, --kind and --text together");
   if (e.date.empty()) e.date = today();
+  if (e.date > today())
+    return complain("--date: expected a day not after " + today() + ", found \"" + e.date + "\"");
   if (!wish.out.empty()) {
     store::Query known;
     known.machine = e.machine;
@@ -156,6 +158,14 @@ int withdraw(const AckWish& wish, const Common& common) {
   return exit_done;
 }
 
+/// Whether `finding`, the id of a finding or of a line of the worklist, is one that a run can give.
+bool is_known(const Templates& templates, const std::string& finding) {
+  const std::string id = finding.substr(0, finding.find(':'));
+  return id.starts_with("morning.") ||  // the former name
+         (id.starts_with("worklist.") &&
+          !nonio::words(templates, "en", "finding." + id + ".says").empty());
+}
+
 int acknowledge(AckWish& wish, const Common& common) {
   config::Acknowledgement& a = wish.known;
   if (!wish.withdraw && a.finding.empty() && a.until.empty() && a.why.empty())
@@ -179,6 +189,9 @@ int acknowledge(AckWish& wish, const Common& common) {
                       "what was removed on purpose (nonio machine remove)");
   if (const auto added = config::add_acknowledgement(wish.site, a); !added)
     return refuse_all(added.error());
+  const SiteWords words(common, language_at(wish.site));
+  if (!is_known(words.get().templates(), a.finding))
+    complain(words.get()("acknowledged.unknown", {{"finding", printable(a.finding)}}));
   say(common, wish.site, config::acknowledged_name,
       {{"schema", "nonio-ack/1"},
        {"finding", a.finding},
@@ -256,7 +269,7 @@ Verb ack_verb(Common& common) {
       .summary = "Acknowledges a finding of a machine until a given day",
       .arguments = joined(
           {site_argument(wish->site),
-           {"--finding", &a.finding, "Id of the finding, as printed in the summary of the run"},
+           {"--finding", &a.finding, "Id of the line of the worklist, or of its finding"},
            {"--machine", &a.machine, "As `nonio machine list` names it"},
            {"--axis", &a.axis, "The axis; default: all"},
            {"--quantity", &a.quantity, "The quantity, such as B_mean; default: all"},
@@ -277,7 +290,7 @@ Verb ack_verb(Common& common) {
           "Appends to SITE/acknowledged.toml; comments stay. It hides nothing: the finding stays "
           "in the results and in the history. Withdrawn entries stay in the file.",
       .examples =
-          {"nonio machine ack site --finding reversal.constant --machine S-0042 --axis X --until "
+          {"nonio machine ack site --finding worklist.changed --machine S-0042 --axis X --until "
            "2026-06-30 --by \"B. Sample\" --why \"nut is ordered\""},
       .run = [wish, &common] { return acknowledge(*wish, common); }};
 }

@@ -104,13 +104,33 @@ std::string line_text(const Page& page, const WorkItem& l, const char* part) {
   return reports::line_text(page.templates, page.words.language(), l, part);
 }
 
+namespace {
+
+/// The quantity, with the state of the machine if the values of the line are of several states.
+std::string quantity_of(const Page& page, const WorkItem& l, const std::string& quantity,
+                        std::string state) {
+  const bool mixed = std::any_of(l.also.begin(), l.also.end(), [&](const OpenValue& v) {
+    return v.value && v.state != l.of_state;
+  });
+  std::string name = quantity_text(page, quantity);
+  if (!mixed || state.empty()) return name;
+  std::replace(state.begin(), state.end(), '-', '_');
+  return name + " (" + page.words.get("site.state." + state) + ")";
+}
+
+}  // namespace
+
+std::string quantity_text(const Page& page, const WorkItem& l) {
+  return l.quantity.empty() ? "" : quantity_of(page, l, l.quantity, l.of_state);
+}
+
 std::string also_text(const Page& page, const WorkItem& l) {
   std::string out;
   for (const bool undecided : {false, true}) {
     std::string values;
     for (const OpenValue& v : l.also) {
       if (v.undecided != undecided) continue;
-      std::string name = quantity_text(page, v.quantity);
+      std::string name = quantity_of(page, l, v.quantity, v.state);
       if (v.axis.empty() && !v.measurement.empty()) name = v.measurement + " " + name;
       const std::string limit =
           page.words.get("site.limit", {{"limit", limit_number(page, v.limit, v.unit)}});

@@ -56,6 +56,8 @@ std::string limit_text(const Page&, const WorkItem&);
 std::string since_text(const Page&, const WorkItem&);
 /// Symbol of a quantity if it has no text.
 std::string quantity_text(const Page&, const std::string& quantity);
+/// Name of the quantity of a line, with its state if the line has values of several states.
+std::string quantity_text(const Page&, const WorkItem&);
 /// Three significant digits in the printed unit, without the unit.
 std::string short_number(const Page&, double value, Quantity);
 

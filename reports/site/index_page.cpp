@@ -106,7 +106,7 @@ void add_line(View& view, const Page& page, const WorkItem& l) {
   line.set("where", l.machine.empty() ? l.campaign : l.machine);
   line.set("where_link",
            l.machine.empty() ? from_root(page, l.link) : machine_link(page, l.machine));
-  line.set("quantity", l.quantity.empty() ? "" : quantity_text(page, l.quantity));
+  line.set("quantity", quantity_text(page, l));
   line.set("value", shows_value(l) ? value_text(page, *l.value, l.u, l.unit, l.limit) : "");
   line.set("value_link", l.value ? from_root(page, l.link) : "");
   line.set("limit", l.value ? limit_text(page, l) : "");

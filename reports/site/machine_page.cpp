@@ -35,7 +35,7 @@ void add_open_lines(View& view, const Page& page, const MachineHistory& m) {
     any = true;
     std::string text = page.words.get("site.kind." + std::string(name_of(l.kind))) + ": ";
     if (!l.axis.empty()) text += l.axis + " ";
-    if (!l.quantity.empty()) text += quantity_text(page, l.quantity) + " ";
+    if (!l.quantity.empty()) text += quantity_text(page, l) + " ";
     if (shows_value(l)) text += value_text(page, *l.value, l.u, l.unit, l.limit) + ". ";
     text = html_of(text).text;
     for (const char* part : {"says", "advice"})
@@ -75,8 +75,8 @@ std::string change_text(const Page& page, const FollowedNumbers& numbers, const 
   return page.words.get(
       "site.change." + c.cause,
       {{"size", size},
-       {"after", c.after},
-       {"before", c.before},
+       {"after", c.after_text()},
+       {"before", c.before_text()},
        {"event", event_text(page.words, c.event)},
        {"p", localised(evidence_text({"p", c.p, Quantity::probability}), page.words.language())}});
 }
@@ -90,7 +90,14 @@ void add_changes(View& view, const Page& page, const HistorySeries& s,
                              {"to", short_number(page, over->to, Quantity::length)}}));
   for (const HistoryChange& c : s.changes)
     view.add("change").set("change", with_whole_days(change_text(page, numbers, c)));
-  if (s.changes.empty() && s.smallest_change)
+  const bool drifts = s.model == "drift" && !s.segments.empty();
+  if (drifts)
+    view.add("change").set(
+        "change",
+        page.words.get(
+            "site.change.drift",
+            {{"slope", numbers.difference(s.segments.back().slope, s.segments.back().u_slope)}}));
+  if (s.changes.empty() && s.smallest_change && !drifts)
     view.set("no_change",
              page.words.get("site.no_change", {{"smallest", numbers.size(*s.smallest_change)}}));
 }

@@ -26,8 +26,7 @@ std::string where_of(const WorkItem& l) {
 }
 
 std::string number_of(const Page& page, const WorkItem& l) {
-  std::string out;
-  if (!l.quantity.empty()) out = site::quantity_text(page, l.quantity);
+  std::string out = site::quantity_text(page, l);
   if (!site::shows_value(l)) return out;
   out += (out.empty() ? "" : " ") + site::value_text(page, *l.value, l.u, l.unit, l.limit);
   return out + site::limit_text(page, l);

@@ -104,16 +104,18 @@ void evaluate_iso(const Case& c, const AxisTest& test, Outcome& out) {
     out.values["n+" + at] = static_cast<double>(p.n_plus);
     out.values["n-" + at] = static_cast<double>(p.n_minus);
   }
-  const auto of = uncertainty_budget(c.campaign, c.campaign.environment, "X", test);
+  auto of = uncertainty_budget(c.campaign, c.campaign.environment, "X", test);
+  if (!of.budget) return;
+  put(out, "U_DEV", of.budget->U_DEV, um), put(out, "U_MIS", of.budget->U_MIS, um);
+  put(out, "U_M", of.budget->U_M, um), put(out, "U_E", of.budget->U_E, um);
+  put(out, "U_EVE", of.budget->U_EVE, um);
+  require_repetition(test, of.budget, "", out.findings);
   if (!of.budget) return;
   const auto U = iso230_2_uncertainty(*of.budget, approaches_per_mean(test), k);
   put(out, "U(A)", U.A, um), put(out, "U(A+)", U.A_plus, um), put(out, "U(A-)", U.A_minus, um);
   put(out, "U(E)", U.E, um), put(out, "U(E+)", U.E_plus, um), put(out, "U(E-)", U.E_minus, um);
   put(out, "U(R)", U.R, um), put(out, "U(R+)", U.R_plus, um), put(out, "U(R-)", U.R_minus, um);
   put(out, "U(M)", U.M, um), put(out, "U(B)", U.B, um), put(out, "U(B_mean)", U.B_mean, um);
-  put(out, "U_DEV", of.budget->U_DEV, um), put(out, "U_MIS", of.budget->U_MIS, um);
-  put(out, "U_M", of.budget->U_M, um), put(out, "U_E", of.budget->U_E, um);
-  put(out, "U_EVE", of.budget->U_EVE, um);
 }
 
 void evaluate_vdi(const Case& c, const AxisTest& test, Outcome& out) {

@@ -5,7 +5,7 @@
 //   spindle [axial]          turns, n; wave ORDER AMPLITUDE PHASE (um, rad, orders a turn, also broken)
 //   reversal-of-ball         the same waves for the spindle; ball ORDER AMPLITUDE PHASE
 //   multi-step steps=K       the same
-//   lengths [edition=2001]   limit A K B (um, L in mm); U; error POSITION LENGTH_mm ERROR_um REPEAT
+//   lengths [edition=2001]   limit A K B (um, L in mm); U; error POSITION LENGTH_mm ERROR_um REPEAT [U]
 //   sphere                   point x y z (mm)
 #include "heat.h"
 
@@ -158,7 +158,8 @@ Outcome of_lengths(const Case& c) {
         {e[1] * mm, e[2] * um, static_cast<std::uint32_t>(e[3]), static_cast<std::size_t>(e[0])});
   if (errors.empty()) return out;
   const auto it = c.options.find("edition");
-  const std::vector<double> U(errors.size(), number(c, "U") * um);
+  std::vector<double> U;
+  for (const auto& e : lists(c, "error")) U.push_back((e.size() > 4 ? e[4] : number(c, "U")) * um);
   const auto answer =
       judge_lengths(errors, limit, U, it != c.options.end() && it->second == "2001");
   static constexpr const char* decisions[] = {"conforms", "does_not_conform", "cannot_be_decided"};

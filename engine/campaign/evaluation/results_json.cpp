@@ -201,12 +201,14 @@ void put_findings(JsonWriter& json, const std::vector<Finding>& findings, bool w
   });
 }
 
-void put_analysis(JsonWriter& json, const Results::Analysed& a,
-                  const std::vector<Conformity>& conformity, const Templates& templates) {
+void put_analysis(JsonWriter& json, const Results::Analysed& a, const Evaluated& e,
+                  const Templates& templates) {
   json.begin_object();
   json.member("plugin", a.plugin);
   json.member("version", a.version);
   put_text(json, "measurement", a.measurement);
+  for (const Measurement& m : e.campaign.measurements)
+    if (m.id == a.measurement && m.adjustment == "after") json.member("state", "as-left");
   put_text(json, "part", a.part);
   for (const Remark& note : a.evaluation.notes)
     for (const Number& n : note.evidence)
@@ -215,7 +217,7 @@ void put_analysis(JsonWriter& json, const Results::Analysed& a,
   if (!a.evaluation.uses.empty()) json.member("uses", a.evaluation.uses);
   json.key("values");
   json.begin_object();
-  for (const Value& v : a.evaluation.values) put_value(json, v, a, conformity);
+  for (const Value& v : a.evaluation.values) put_value(json, v, a, e.results.conformity);
   json.end_object();
   put_table(json, a.evaluation.points, "points", "point_units");
   put_point_U(json, a.evaluation.points);
@@ -312,9 +314,8 @@ std::string results_json(const Evaluated& e, const reading::Context& context,
   put_campaign(json, e.campaign, e.purpose);
   json.member("status", to_text(e.status));
   json.list("errors", e.results.errors, [&](const Error& error) { put_error(json, error); });
-  json.list("analyses", e.results.analyses, [&](const Results::Analysed& a) {
-    put_analysis(json, a, e.results.conformity, context.templates);
-  });
+  json.list("analyses", e.results.analyses,
+            [&](const Results::Analysed& a) { put_analysis(json, a, e, context.templates); });
   put_conformity(json, e.results.conformity);
   put_followed(json, e.followed);
   put_control_tables(json, e.control_tables);

@@ -131,8 +131,14 @@ class Describing {
     const bool own = limit && limit->quantity == s.quantity;
     if (own) out.limit = si(limit->limit, q);
     if (!s.ended) out.forecast = forecast(s, q, limit);
-    // The limit is that of B, so B_mean has no probability of being out of tolerance.
-    if (out.forecast && !own) out.forecast->p_out = 0.0, out.forecast->leaves.clear();
+    // The limit is that of B, so B_mean has no probability of being out of tolerance, and only a
+    // value of the axis that is open now requires action.
+    if (out.forecast && !own) {
+      std::string& answer = out.forecast->answer;
+      if (!is_open_now(s.axis, s.quantity) && answer != "overdue" && answer != "cannot-say")
+        answer = name_of(kernel::Answer::keep);
+      out.forecast->p_out = 0.0, out.forecast->leaves.clear();
+    }
     return out;
   }
 
@@ -168,6 +174,9 @@ class Describing {
   }
 
  private:
+  bool is_open_now(const std::string& axis, const std::string& quantity) const {
+    return open_now_.contains(axis_of(axis, quantity));
+  }
   const StoredCampaign& campaign(const FollowedSeries& s, std::size_t point) const {
     return m_.stored.campaigns[m_.stored.results[s.results[point]].campaign];
   }
@@ -228,7 +237,7 @@ class Describing {
       out.leaves = day_text(static_cast<std::int64_t>(std::floor(*f.leaves * days_a_year)));
     if (f.answer == kernel::Answer::watch && !out.leaves.empty() && out.leaves <= today_)
       out.answer = "watch-now";
-    const bool open = open_now_.contains(axis_of(s.axis, s.quantity));
+    const bool open = is_open_now(s.axis, s.quantity);
     if (!open && out.date < today_ && f.answer != kernel::Answer::cannot_say)
       out.answer = "overdue";
     if (!open) return out;

@@ -9,8 +9,9 @@ namespace nonio::storage {
 
 NONIO_MEMBERS(Number, a, b, c)
 NONIO_MEMBERS(Finding, a, b, c, d, e, f)
-NONIO_MEMBERS(reports::OpenValue, a, b, c, d, e, f, g, h, i)
-NONIO_MEMBERS(reports::WorkItem, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v)
+NONIO_MEMBERS(reports::OpenValue, a, b, c, d, e, f, g, h, i, j)
+NONIO_MEMBERS(reports::WorkItem, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v,
+              w)
 NONIO_MEMBERS(reports::IntervalProposal, a, b, c, d, e)
 /// The series of the machine are not stored.
 template <class Archive, class T>

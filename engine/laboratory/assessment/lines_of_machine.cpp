@@ -37,6 +37,22 @@ bool is_correction(const HistoryChange& c) {
   return c.cause == "table" || c.event.starts_with("repair") || c.event.starts_with("compensation");
 }
 
+/// Whether most of the change brought an error nearer to zero. A center or a parameter has no best
+/// value.
+bool is_better(const AxisChange::Seen& seen) {
+  constexpr double most = 0.5;  // by judgement; a change of the sign to the same size is none
+  const HistoryChange& c = *seen.change;
+  const std::string kind = kind_of(seen.series->quantity);
+  if (kind == "scatter") return c.size < 0.0;
+  if (kind == "centre" || kind == "parameter") return false;
+  const auto& all = seen.series->segments;
+  const auto was = std::find_if(all.begin(), all.end(), [&](const auto& g) {
+    return g.to == c.after && g.to_campaign == c.after_campaign;
+  });
+  if (was == all.end() || std::next(was) == all.end()) return false;
+  return std::fabs(was->last) - std::fabs(std::next(was)->first) > most * std::fabs(c.size);
+}
+
 class OfMachine {
  public:
   OfMachine(const AssessedMachine& m, const reports::MachineHistory& d, const LastRun& last_run)
@@ -82,13 +98,29 @@ class OfMachine {
         if (is_correction(c) && !is_fault(s.axis, c)) repaired = std::max(repaired, c.before);
       for (const HistoryChange& c : s.changes)
         if (c.cause != "instrument" && !is_correction(c) && !is_fault(s.axis, c) &&
-            c.before > repaired && !is_repaired(s.axis, c.before))
+            c.before > repaired && !is_repaired(s.axis, c.before) && !is_undone(s, c))
           put_change(axis_of(s.axis, s.quantity), s, c);
     }
     for (auto& [axis, all] : causes_)
       for (AxisChange& cause : all)
         std::stable_sort(cause.seen.begin(), cause.seen.end(),
                          [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  }
+
+  /// Whether the changes from `c` on, or those up to it, cancel within their uncertainty: a step that
+  /// was undone, or the step that undid it, does not explain a value of today.
+  static bool is_undone(const HistorySeries& s, const HistoryChange& c) {
+    const auto cancel = [&](auto from, auto to) {
+      double sum = from->size, squares = from->u * from->u;
+      for (++from; from != to; ++from) {
+        sum += from->size, squares += from->u * from->u;
+        if (std::fabs(sum) <= 2.0 * std::sqrt(squares)) return true;
+      }
+      return false;
+    };
+    const auto index = &c - s.changes.data();
+    return cancel(s.changes.begin() + index, s.changes.end()) ||
+           cancel(s.changes.rend() - index - 1, s.changes.rend());
   }
 
   bool is_fault(const std::string& axis, const HistoryChange& c) const {
@@ -109,7 +141,8 @@ class OfMachine {
   void put_change(const std::string& axis, const HistorySeries& s, const HistoryChange& c) {
     // Changes that overlap in time are one change, because not every campaign has all quantities.
     for (AxisChange& cause : causes_[axis])
-      if (c.after < cause.before && c.before > cause.after) {
+      if ((c.after < cause.before && c.before > cause.after) ||
+          (c.after == cause.after && c.before == cause.before)) {
         cause.after = std::max(cause.after, c.after);
         cause.before = std::min(cause.before, c.before);
         cause.seen.push_back({&s, &c});
@@ -131,8 +164,9 @@ class OfMachine {
       l.finding.evidence.push_back({"U", U, q});
     }
     l.finding.evidence.push_back({"p", first.change->p, Quantity::probability});
-    put_text(l, "after", cause.after);
-    put_text(l, "before", cause.before);
+    const bool same_day = cause.after == cause.before;
+    put_text(l, "after", same_day ? first.change->after_text() : cause.after);
+    put_text(l, "before", same_day ? first.change->before_text() : cause.before);
     put_text(l, "what", kind_of(first.series->quantity));
     put_text(l, "look", kind_of(first.series->quantity));
     std::string event;
@@ -173,6 +207,7 @@ class OfMachine {
                       table != nullptr   ? (table->rms > 0.0 ? "worklist.changed-table-likely"
                                                              : "worklist.changed-table-unknown")
                       : has_event(cause) ? "worklist.changed-event"
+                      : is_better(first) ? "worklist.changed-better"
                                          : "worklist.changed",
                       "");
     if (table != nullptr) put_table(l, *table);
@@ -302,7 +337,7 @@ class OfMachine {
     WorkItem l = line(kind, finding, place_of(last));
     l.axis = first.axis, l.quantity = first.quantity, l.measurement = first.measurement;
     l.unit = first.unit, l.value = first.value, l.u = first.u, l.limit = first.limit;
-    l.campaign = first.campaign;
+    l.campaign = first.campaign, l.of_state = first.state;
     l.since = since(*worst.series, last);
     l.finding.evidence.push_back({"value", *l.value, l.unit});
     l.finding.evidence.push_back({"limit", *l.limit, l.unit});
@@ -320,7 +355,7 @@ class OfMachine {
       first = std::min(first, since(*j.series, m_.stored.results[j.result]));
     AxisChange* explains = nullptr;
     for (AxisChange& cause : causes_[axis]) {
-      if (cause.before < first) continue;
+      if (cause.before < first || (!has_event(cause) && is_better(cause.seen.front()))) continue;
       cause.listed = true;
       if (explains == nullptr || cause.seen.front().size() > explains->seen.front().size())
         explains = &cause;

@@ -103,6 +103,7 @@ reports::OpenValue open_value(const StoredMachine& m, std::size_t result) {
   if (r.expanded) out.u = si(*r.expanded / r.k.value_or(2.0), q);
   out.limit = si(r.tolerance.value_or(0.0), q);
   out.undecided = r.decision != does_not_conform;
+  out.state = r.state;
   return out;
 }
 

@@ -96,7 +96,7 @@ WorkItem line_of_rest(const WorkItem& known, std::vector<reports::OpenValue> res
   l.machine = known.machine, l.customer = known.customer, l.link = known.link;
   l.since = known.since;
   l.axis = v.axis, l.quantity = v.quantity, l.campaign = v.campaign, l.measurement = v.measurement;
-  l.value = v.value, l.u = v.u, l.limit = v.limit, l.unit = v.unit;
+  l.of_state = v.state, l.value = v.value, l.u = v.u, l.limit = v.limit, l.unit = v.unit;
   l.finding.evidence = {{"limit", v.limit, v.unit}};
   l.also.assign(rest.begin() + 1, rest.end());
   return l;
@@ -105,7 +105,7 @@ WorkItem line_of_rest(const WorkItem& known, std::vector<reports::OpenValue> res
 bool is_later(const config::Acknowledgement& a, const WorkItem& l) {
   const auto before = std::find_if(l.finding.texts.begin(), l.finding.texts.end(),
                                    [](const auto& t) { return t.first == "before"; });
-  return before != l.finding.texts.end() && before->second > a.date;
+  return before != l.finding.texts.end() && before->second.substr(0, a.date.size()) > a.date;
 }
 
 /// Marks an acknowledged line as known until the stated date, unless a later campaign showed the

@@ -142,6 +142,8 @@ class EntryReader {
   void read_analysis(dom::object a) {
     const std::string measurement = text_at(a, "measurement");
     const std::string plugin = std::string(std::string_view(a["plugin"]));
+    if (const std::string left = text_at(a, "state"); !left.empty())
+      states_.try_emplace(measurement, state(left));
     dom::object values;
     if (a["values"].get(values) == simdjson::SUCCESS)
       for (const auto [name, value] : values) read_value(a, measurement, plugin, name, value);

@@ -50,8 +50,9 @@ Expected<AxisAnalysis> begin_axis_analysis(const AnalysisInput& in) {
   for (Finding& f : axis_findings(a.test, o, stated != nullptr ? &axis : nullptr, U_mean))
     a.findings.push_back(std::move(f));
   for (Finding& f : limits.findings) a.findings.push_back(std::move(f));
-  a.findings.push_back(budget_finding(of, a.test.rotary));
-  if (of.budget && of.budget->U_EVE == 0.0)
+  require_repetition(a.test, a.budget, "R, R+, R-, A, A+, A-", a.findings);
+  if (a.budget || !of.budget) a.findings.push_back(budget_finding(of, a.test.rotary));
+  if (a.budget && a.budget->U_EVE == 0.0)
     a.findings.push_back({.id = "uncertainty.zero",
                           .attention = true,
                           .texts = {{"missing", a.test.rotary ? "environment.drift_arcsec"

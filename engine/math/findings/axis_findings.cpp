@@ -160,6 +160,14 @@ AxisTest choose_targets(const AxisTest& test, bool leave_out, std::vector<Findin
   return leave_out ? test.only(kept) : test;
 }
 
+void require_repetition(const AxisTest& test, std::optional<Budget>& budget, const char* absent,
+                        std::vector<Finding>& findings) {
+  if (test.most_approaches() != 1) return;
+  findings.push_back(
+      FindingBuilder("runs.single", budget.has_value(), test.rotary).text("absent", absent).done());
+  budget.reset();
+}
+
 Finding budget_finding(const BudgetOrGap& of, bool rotary) {
   if (!of.budget) {
     std::string keys;

@@ -113,11 +113,6 @@ void counts(const AxisTest& test, const Observations& o, std::vector<Finding>& f
                            .count("missing", static_cast<double>(o.missing))
                            .count("taken", number(o.size()))
                            .done());
-  const std::size_t runs = test.most_approaches();
-  if (runs == 1)
-    findings.push_back(FindingBuilder("runs.single", false, test.rotary)
-                           .text("absent", "R, R+, R-, A, A+, A-")
-                           .done());
   if (!is_long(test) && approaches_per_mean(test) < 5)
     findings.push_back(FindingBuilder("plan.too-few-runs", false, test.rotary)
                            .count("runs", number(approaches_per_mean(test)))

@@ -94,4 +94,14 @@ void put_differences(const Campaign& campaign, const std::vector<Difference>& al
   if (model.missing.empty() && !budget.budget().results.empty()) out.budget = budget.budget();
 }
 
+std::optional<Finding> dead_sensor(const std::string& name, std::span<const double> readings) {
+  const auto differs = [&](double d) { return d != readings.front(); };
+  if (readings.size() < 4 || std::any_of(readings.begin(), readings.end(), differs)) return {};
+  return Finding{.id = "sensor.refused-equal",
+                 .attention = true,
+                 .evidence = {{"readings", static_cast<double>(readings.size()), Quantity::count},
+                              {"value", readings.front(), Quantity::deviation}},
+                 .texts = {{"sensor", name}}};
+}
+
 }  // namespace nonio::math

@@ -35,13 +35,11 @@ LengthAnswer judge_lengths(const std::vector<LengthError>& all, const LengthLimi
                            const std::vector<double>& k) {
   constexpr std::size_t most_forgiven = 5;
   LengthAnswer out;
-  double nearest = -INFINITY;
   std::vector<int> verdict(all.size());  // -1 inside, 0 indeterminate, 1 outside
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const double most = limit.at(all[i].L), over = std::fabs(all[i].E) - most;
-    const Decision one = decide(std::fabs(all[i].E), U[i], most, rule, k.empty() ? 2.0 : k[i]);
+    const Decision one =
+        decide(std::fabs(all[i].E), U[i], limit.at(all[i].L), rule, k.empty() ? 2.0 : k[i]);
     verdict[i] = one == Decision::conforms ? -1 : one == Decision::does_not_conform ? 1 : 0;
-    if (over > nearest) nearest = over, out.worst = i;
   }
   std::set<std::size_t> forgiven;
   if (by_2001)
@@ -61,10 +59,16 @@ LengthAnswer judge_lengths(const std::vector<LengthError>& all, const LengthLimi
     }
   if (forgiven.size() > most_forgiven || out.to_repeat + forgiven.size() > most_forgiven)
     forgiven.clear(), out.to_repeat = 0;
+  std::pair<int, double> deciding(-1, -INFINITY);
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (forgiven.contains(i)) continue;
     out.outside += verdict[i] > 0 ? 1 : 0;
     out.undecided += verdict[i] == 0 ? 1 : 0;
+    // The error that decides: beyond its limit, else indeterminate, else with the smallest margin.
+    const double guard = std::isfinite(U[i]) ? guard_band(U[i], rule, k.empty() ? 2.0 : k[i]) : 0.0;
+    const std::pair row(
+        verdict[i], std::fabs(all[i].E) - limit.at(all[i].L) + (verdict[i] > 0 ? -guard : guard));
+    if (row > deciding) deciding = row, out.worst = i;
   }
   out.decision = out.to_repeat > 0 && out.outside == out.to_repeat ? Decision::cannot_be_decided
                  : out.outside > 0                                 ? Decision::does_not_conform

@@ -6,16 +6,19 @@
 
 namespace nonio::math {
 
-Decision decide(double value, double U, double tolerance, std::string_view rule, double k) {
-  const bool simple = rule == "ilac-g8-simple", guarded = rule == "ilac-g8-guarded";
+double guard_band(double U, std::string_view rule, double k) {
+  if (rule == "ilac-g8-simple") return 0.0;
+  if (rule == "ilac-g8-guarded" || rule == "iso14253-1:2013") return U;
   // One-sided 95 % of a normal distribution, in units of u. Of Student's distribution it is at most
   // the same part of U as with k = 2.
-  const double one_sided = 1.65 / std::min(k, 2.0);
-  const double guard = rule == "iso14253-1:2013" ? U : one_sided * U;
+  return 1.65 / std::min(k, 2.0) * U;
+}
+
+Decision decide(double value, double U, double tolerance, std::string_view rule, double k) {
   if (!std::isfinite(value) || !std::isfinite(U)) return Decision::cannot_be_decided;
-  if (simple || guarded)
-    return value <= (guarded ? tolerance - U : tolerance) ? Decision::conforms
-                                                          : Decision::does_not_conform;
+  const double guard = guard_band(U, rule, k);
+  if (rule == "ilac-g8-simple" || rule == "ilac-g8-guarded")
+    return value <= tolerance - guard ? Decision::conforms : Decision::does_not_conform;
   if (value <= tolerance - guard) return Decision::conforms;
   if (value > tolerance + guard) return Decision::does_not_conform;
   return Decision::cannot_be_decided;

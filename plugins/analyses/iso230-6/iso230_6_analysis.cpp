@@ -89,6 +89,7 @@ std::optional<Tested> tested(const AnalysisInput& in, std::size_t i) {
   out.budget = budget_along(in.campaign, limits.environment, m, out.test);
   out.U = iso230_2_uncertainty(out.budget.budget.value_or(Budget{}), out.approaches, k_of_2002);
   out.findings = std::move(limits.findings);
+  require_repetition(out.test, out.budget.budget, "R, R+, R-, A", out.findings);
   return out;
 }
 

@@ -75,13 +75,18 @@ SetUps set_ups_of(const Observations& o) {
     const std::string name = o.lines[line].name.substr(0, o.lines[line].name.find(' '));
     const std::size_t first = rows[line].front(), count = rows[line].size();
     const Place place{rounded(o.axes[1].position[first]), rounded(o.axes[2].position[first])};
-    auto turns = math::turns_of(track_of(o, std::move(rows[line])));
+    const math::SpindleTrack track = track_of(o, std::move(rows[line]));
+    auto turns = math::turns_of(track);
     if (!turns) {
       out.findings.push_back(
           {.id = "spindle.refused-turns",
            .attention = true,
            .evidence = {{"readings", static_cast<double>(count), Quantity::count}},
            .texts = {{"sensor", o.lines[line].name}}});
+      continue;
+    }
+    if (auto dead = math::dead_sensor(name, track.r)) {
+      out.findings.push_back(*dead);
       continue;
     }
     out.resampled = out.resampled || turns->resampled;

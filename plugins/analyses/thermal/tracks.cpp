@@ -6,6 +6,8 @@
 #include <map>
 #include <optional>
 
+#include "nonio/math/differences.h"
+
 namespace nonio::thermal {
 
 namespace {
@@ -108,6 +110,7 @@ Tracks tracks_of(const Measurement& m, const Observations& o) {
   if (!m.axis.empty()) {
     out.test = Test::axis;
     out.visits = math::visits_of(o);
+    if (auto dead = math::dead_sensor(m.axis, o.deviation)) out.findings.push_back(*dead);
     return out;
   }
   const bool spindle = !o.axes.empty() && o.axes.front().approach.size() == o.size() &&
@@ -122,6 +125,10 @@ Tracks tracks_of(const Measurement& m, const Observations& o) {
     if (rows[line].size() < 2) continue;
     auto [kept, track] = math::in_time(o, std::move(rows[line]));
     if (track.size() < 2) continue;
+    if (auto dead = math::dead_sensor(o.lines[line].name, track.d)) {
+      out.findings.push_back(*dead);
+      continue;
+    }
     std::optional<Run> run;
     if (spindle) run = run_of(o, kept, out);
     out.all.push_back(followed(o.lines[line].name, track, run));

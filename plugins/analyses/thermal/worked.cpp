@@ -25,7 +25,7 @@ class Worker {
 
   Worked run() {
     out_.findings = tracks_.findings;
-    if (tracks_.test == Test::axis)
+    if (tracks_.test == Test::axis && tracks_.findings.empty())
       exercised();
     else
       for (const Followed& f : tracks_.all) one(f);

@@ -126,8 +126,8 @@ class HistoryPage {
       return w_.get("history.adjusted",
                     {{"size", numbers(s).difference(c.size, c.u)}, {"date", c.before}});
     return w_.get("history.changed", {{"size", numbers(s).difference(c.size, c.u)},
-                                      {"after", c.after},
-                                      {"before", c.before},
+                                      {"after", c.after_text()},
+                                      {"before", c.before_text()},
                                       {"cause", cause(c)}});
   }
 

@@ -195,6 +195,16 @@ TEST(Thermal, OfOneTargetThereIsNoGrowth) {
   EXPECT_NE(finding(e, "thermal.one-target"), nullptr);
 }
 
+TEST(Thermal, ADeadSensorHasNoValues) {
+  const auto e =
+      evaluated(thermal(), at_rest({"X", "Y"}, 145, 300.0, [](std::size_t sensor, double t) {
+                  return sensor == 0 ? 1e-6 : 1e-6 * std::sin(t / 5000.0);
+                }));
+  EXPECT_EQ(value(e, "range_X"), nullptr);
+  EXPECT_NE(value(e, "range_Y"), nullptr);
+  EXPECT_NE(finding(e, "sensor.refused-equal"), nullptr);
+}
+
 TEST(Thermal, HostileReadingsAreNoCrashAndNoNumber) {
   Made t = at_rest({"X"}, 30, 60.0, [](std::size_t, double) { return 0.0; });
   for (const double d : {0.0, -1e20, 1e300}) {

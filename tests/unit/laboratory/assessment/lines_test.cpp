@@ -115,6 +115,30 @@ TEST(WorklistLines, WhatHasNoAxisIsOneLineForEachAnalysis) {
   EXPECT_EQ(lines[0].axis + lines[1].axis, "");
 }
 
+TEST(WorklistLines, AStepThatWasUndoneIsNotACause) {
+  Laboratory lab;
+  MadeMachine m("S-42");
+  m.follow("X", "B_mean", {-4.0, -3.9, -4.1, -9.0, -9.1, -4.0, -3.9, -4.1}, 0.1);
+  m.judge("X", "R", flat(6.0, 10.0));
+  lab.machines.push_back(std::move(m));
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].finding.id, "worklist.out");
+}
+
+TEST(WorklistLines, AnImprovementIsNotDamage) {
+  for (const double last : {-0.9, 0.5}) {
+    Laboratory lab;
+    MadeMachine m("S-42");
+    m.follow("X", "B_mean", flat(-6.0, last), 0.1);
+    m.judge("X", "B", flat(6.0, 6.0));
+    lab.machines.push_back(std::move(m));
+    const auto lines = lab.lines();
+    ASSERT_EQ(lines.size(), 1U);
+    EXPECT_EQ(lines[0].finding.id, "worklist.changed-better");
+  }
+}
+
 TEST(WorklistLines, WhatConformsAndChangedIsAChange) {
   Laboratory lab;
   lab.machines.push_back(hit(6.0, -5.5));

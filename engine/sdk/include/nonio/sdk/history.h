@@ -41,6 +41,13 @@ struct HistoryChange {
   std::string after_campaign{}, before_campaign{};
   double p_alone = 1.0;  ///< p-value of this test without adjustment
   bool mailed = true;    ///< whether it is significant enough for an email
+
+  /// Day of the campaign; with its id if both campaigns have the same day.
+  std::string after_text() const { return day_text(after, after_campaign); }
+  std::string before_text() const { return day_text(before, before_campaign); }
+  std::string day_text(const std::string& day, const std::string& campaign) const {
+    return after == before && !campaign.empty() ? day + " (" + campaign + ")" : day;
+  }
 };
 
 struct HistoryForecast {

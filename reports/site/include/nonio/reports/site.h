@@ -26,6 +26,7 @@ struct OpenValue {
   double limit = 0.0;
   Quantity unit = Quantity::deviation;
   bool undecided = false;
+  std::string state{};  ///< as-found, as-left or check; empty: not known
 };
 
 /// A line that requires one decision; lines are sorted by the cost of ignoring them.
@@ -38,6 +39,7 @@ struct WorkItem {
   std::string machine, axis, quantity;
   std::string campaign, customer;
   std::string measurement{};
+  std::string of_state{};  ///< state of the machine at the value: as-found, as-left or check
   std::optional<double> value{}, u{}, limit{};
   Quantity unit = Quantity::deviation;
   Finding finding;      ///< texts: says, advice

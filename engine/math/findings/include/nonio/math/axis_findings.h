@@ -55,6 +55,12 @@ Incomplete incomplete_targets(const AxisTest&);
 /// there are at least two. Findings list the other targets.
 AxisTest choose_targets(const AxisTest&, bool leave_out, std::vector<Finding>&);
 
+/// With one approach to each target, the contribution of the scatter to every result is not known.
+/// Then removes the budget, so that no result has a U, and reports `runs.single`. `absent`: results
+/// that do not exist without scatter.
+void require_repetition(const AxisTest&, std::optional<Budget>&, const char* absent,
+                        std::vector<Finding>&);
+
 /// Returns `uncertainty.budget` (`uncertainty.budget-angle` for a rotary axis), or without a budget
 /// `uncertainty.no-data` with the missing keys.
 Finding budget_finding(const BudgetOrGap&, bool rotary);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,5 +35,8 @@ struct Difference {
 /// Adds the values with U, the budget, and a finding about missing data. If instrument.sphere_um is
 /// not stated, values that contain a ball have only a repeatability.
 void put_differences(const Campaign&, const std::vector<Difference>&, Evaluation& out);
+
+/// Returns a finding if all of at least four readings of a sensor are equal.
+std::optional<Finding> dead_sensor(const std::string& name, std::span<const double> readings);
 
 }  // namespace nonio::math

@@ -45,7 +45,7 @@ struct LengthError {
 
 struct LengthAnswer {
   Decision decision = Decision::cannot_be_decided;
-  std::size_t worst = 0;      ///< index of the error closest to its limit, or farthest beyond it
+  std::size_t worst = 0;      ///< index of the error that decides, with its guard band
   std::size_t outside = 0;    ///< number of errors beyond MPE + g, except those permitted in 2001
   std::size_t undecided = 0;  ///< number of errors closer to MPE than g
   /// edition 2001: number of lengths that must be measured ten more times

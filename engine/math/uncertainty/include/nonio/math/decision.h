@@ -15,6 +15,9 @@ namespace nonio::math {
 Decision decide(double value, double U, double tolerance, std::string_view rule = "iso14253-1",
                 double k = 2.0);
 
+/// Guard band of `rule` for U with coverage factor k.
+double guard_band(double U, std::string_view rule, double k);
+
 /// Smallest U (k = 2) that the accreditation covers over `length` (m), SI; 0 without accreditation
 /// or if [laboratory.cmc] states nothing for this quantity. An analysis that decides itself uses at
 /// least this U, because the result gets it too.
