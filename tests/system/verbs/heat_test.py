@@ -188,7 +188,10 @@ class Heat(VerbTest):
         """Four hours are usual, and time constants of half an hour too."""
         seed = random.randrange(10**6)
         rng = random.Random(seed)
-        body = follow([row[2] for row in record(seed, [0.0])][:480], 600.0)
+        speed = []
+        while len(speed) < 480:
+            speed += [9000 if len(speed) % 2 == 0 else 0] * (2 * rng.randint(30, 60) + 1)
+        body = follow([20 + 12 * (n / 9000) ** 2 for n in speed[:480]], 600.0)
         late = follow(body, 1500.0)
         text = "time_s,y_um,body_c\n" + "".join(f"{i * STEP:g},{3 * (v - late[0]) + rng.gauss(0, 0.05):.4f},{b + rng.gauss(0, 0.01):.4f}\n"
                                                for i, (v, b) in enumerate(zip(late, body)))
