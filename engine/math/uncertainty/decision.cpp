@@ -18,7 +18,7 @@ Decision decide(double value, double U, double tolerance, std::string_view rule,
   if (!std::isfinite(value) || !std::isfinite(U)) return Decision::cannot_be_decided;
   const double guard = guard_band(U, rule, k);
   if (rule == "ilac-g8-simple" || rule == "ilac-g8-guarded")
-    return value <= tolerance - guard ? Decision::conforms : Decision::does_not_conform;
+    return value > tolerance - guard ? Decision::does_not_conform : Decision::conforms;
   if (value <= tolerance - guard) return Decision::conforms;
   if (value > tolerance + guard) return Decision::does_not_conform;
   return Decision::cannot_be_decided;
