@@ -427,7 +427,8 @@ def night_of_a_gantry():
         campaign = os.path.join(folder, "site", "c")
         os.makedirs(campaign)
         text = ('format = 1\n[campaign]\nid = "c"\n[machine]\nstructure = "gantry"\ncontrol = "linuxcnc"\n'
-                '[machine.axes.X]\nkind = "linear"\ntravel = [0, 220]\nslave = "X2"\n[machine.axes.X2]\nkind = "linear"\n'
+                '[machine.axes.X]\nkind = "linear"\ntravel = [0, 220]\nslave = "X2"\nactive_table = "none"\nactive_backlash_mm = "none"\n'
+                '[machine.axes.X2]\nkind = "linear"\nactive_table = "none"\nactive_backlash_mm = "none"\n'
                 '[machine.axes.Y]\nkind = "linear"\ntravel = [0, 150]\n[options.linuxcnc]\ntype = 0\n'
                 '[options.linuxcnc.axes.X]\njoint = 0\n[options.linuxcnc.axes.X2]\njoint = 1\n')
         for n, (side, y, of) in enumerate((("master", 0, error), ("slave", 150, error_2)), 1):
@@ -460,7 +461,8 @@ def night_of_a_gantry():
 
 
 def judge_gantry(errors, predicted, result):
-    """E and B of each side after loading, and what the sides rack: as predicted, to 0.1 um"""
+    """E and B of each side after loading, and what the sides rack: as predicted, to 0.1 um. The prediction also contains
+    what the scatter of the readings, 0.3 um, does not exclude."""
     if "problem" in result or result["errors"]:
         return False
     good, means = True, []
@@ -472,7 +474,7 @@ def judge_gantry(errors, predicted, result):
         before = [1e3 * of(x, d) for x in TARGETS for d in (+1, -1)]
         print("side %d: E %.2f um before; predicted E %.4f, B %.4f um, moved E %.4f, B %.4f um" %
               (n + 1, max(before) - min(before), predicted[n]["E"], predicted[n]["B"], E, B))
-        good = good and abs(E - predicted[n]["E"]) < 0.1 and abs(B - predicted[n]["B"]) < 0.1
+        good = good and all(-0.1 < predicted[n][name] - moved < 0.3 for name, moved in (("E", E), ("B", B)))
         means.append([(left[x, +1] + left[x, -1]) / 2 for x in TARGETS])
     apart = [b - a for a, b in zip(*means)]
     print("racking after loading: %.4f um" % (max(apart) - min(apart)))

@@ -61,6 +61,7 @@ int main(int argc, char** argv) {
   nonio::Campaign campaign;
   nonio::Axis axis;
   axis.name = "X";
+  axis.active_table = "", axis.active_backlash = 0.0;  // none, as stated
   campaign.machine.axes.push_back(axis);
   nonio::Measurement measurement;
   measurement.id = measurement.axis = "X";

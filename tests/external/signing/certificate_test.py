@@ -130,9 +130,9 @@ class Certificate(SigningTest):
             *(part for finding in self.findings() for part in ("--reason", f"{finding}=as found")))
         pdf, dcc = (self.out / "40-circles" / f"certificate.{kind}" for kind in ("pdf", "xml"))
         pages = run("pdftotext", "-layout", pdf, "-").stdout.split("\f")
-        for words in ("G ccw", "G b", "17,80", "C0Y", "Percorso circolare", "/ Circular path"):
+        for words in ("G ccw", "G b", "17,8", "C0Y", "Percorso circolare", "/ Circular path"):
             self.assertIn(words, pages[0])
-        for words in ("conforme / conforms", "non conforme / does not conform"):
+        for words in ("conforme / conforms", "non conforme / does not"):
             self.assertIn(words, pages[0])
         self.assertEqual(pages[1].count("1000 mm/min"), 2)  # once in each language
         for words in ("Cause, ciascuna da sola / Causes, each alone", "servo mismatch  ", "Inversione di X / Reversal of X"):
