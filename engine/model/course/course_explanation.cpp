@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "course.h"
-#include "course_sets.h"
+#include "course_search.h"
 
 namespace nonio::model {
 
