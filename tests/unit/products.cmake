@@ -11,7 +11,7 @@ add_executable(test_engine
   campaign/loader/plugins_test.cpp campaign/reading/long_series_test.cpp campaign/reading/turned_test.cpp
   laboratory/store/store_test.cpp
   laboratory/assessment/changes_test.cpp laboratory/assessment/curves_test.cpp laboratory/assessment/fits_test.cpp laboratory/assessment/kept_test.cpp
-  laboratory/assessment/history_so_far_test.cpp laboratory/assessment/lines_test.cpp laboratory/assessment/proposals_test.cpp laboratory/assessment/series_test.cpp laboratory/assessment/site_tables_test.cpp laboratory/assessment/targets_test.cpp
+  laboratory/assessment/history_so_far_test.cpp laboratory/assessment/line_causes_test.cpp laboratory/assessment/lines_test.cpp laboratory/assessment/proposals_test.cpp laboratory/assessment/series_test.cpp laboratory/assessment/site_tables_test.cpp laboratory/assessment/targets_test.cpp
   certificates/recomputed_test.cpp certificates/register_file_test.cpp certificates/register_processes_test.cpp
   certificates/register_test.cpp certificates/users_test.cpp
   simulation/simulate_test.cpp)

@@ -69,7 +69,7 @@ TEST(Words, AllLanguagesSayTheSameFindings) {
     for (const char* key : {"title = ", "says = ", "advice = "})
       EXPECT_NE(text.find(key), std::string::npos) << id;
     const std::string stem = id.substr(0, id.find("-left-out"));
-    EXPECT_NE(sources.find("\"" + stem), std::string::npos) << "nobody gives " << id;
+    EXPECT_NE(sources.find("\"" + stem), std::string::npos) << "no source gives " << id;
     for (const std::string& place : places(text))
       EXPECT_NE(sources.find("\"" + place + "\""), std::string::npos) << id << " {" << place << "}";
   }

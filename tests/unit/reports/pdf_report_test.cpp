@@ -118,7 +118,7 @@ TEST_F(PdfReport, WhatIsForTheLaboratoryIsInItsPartAlone) {
       EXPECT_TRUE(has(laboratory, what)) << what;
     }
   }
-  EXPECT_FALSE(has(all, "Authorised by")) << "nobody has authorised a report";
+  EXPECT_FALSE(has(all, "Authorised by")) << "a report is not authorised";
 }
 
 TEST_F(PdfReport, SaysWhatTheResultsSay) {

@@ -247,7 +247,7 @@ TEST_F(LongTerm, AnswersByOcspServeAsLists) {
   const auto verified = sign::verify_pdf(done->bytes, verifier(long_after));
   EXPECT_TRUE(verified.holds()) << all_of(verified);
   EXPECT_NE(check_of(verified, "certificate.revocation").says.find("OCSP"), std::string::npos);
-  EXPECT_FALSE(with({of_time})) << "nobody says it of Ada";
+  EXPECT_FALSE(with({of_time})) << "no proof is for Ada";
   EXPECT_FALSE(with({of_time, ocsp_answer(authority(), ada, wish)})) << "of a namesake";
   std::string damaged = of_ada;
   damaged[damaged.size() / 2] = static_cast<char>(damaged[damaged.size() / 2] ^ 1);

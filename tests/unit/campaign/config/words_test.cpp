@@ -144,13 +144,13 @@ TEST(WordFiles, EveryFindingIsSaidAndFilled) {
       ++count;
       const std::string id =
           key.starts_with("note.") ? key.substr(5) : key.substr(8, key.find_last_of('.') - 8);
-      EXPECT_TRUE(said(quotes, id)) << file << ": nobody says " << id;
+      EXPECT_TRUE(said(quotes, id)) << file << ": no source gives " << id;
       for (const std::string& place : places(words.text(key))) {
         const bool example = place.find(' ') != std::string::npos;  // of a manifest
         static const std::regex name("[^{}%\xC2\xB1]+");  // {name}, {name\u00b1U}, {name%}
         for (std::sregex_iterator it(place.begin(), place.end(), name), end; it != end; ++it)
           EXPECT_TRUE(example || said(quotes, it->str()))
-              << file << ": nobody fills " << place << " of " << id;
+              << file << ": no source fills " << place << " of " << id;
       }
     }
   EXPECT_GE(count, 300U);

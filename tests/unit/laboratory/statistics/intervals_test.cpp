@@ -89,7 +89,7 @@ TEST(Intervals, TheControlChartEndsWhereTheBoundMeetsTheLimit) {
   ASSERT_EQ(stepped.changes.back().after + 1, last_point);
   EXPECT_EQ(control_chart(crashed, stepped, 50, last_point - 1).why, "change-not-explained");
   EXPECT_TRUE(control_chart(crashed, stepped, 50, last_point - 2).months);
-  EXPECT_TRUE(control_chart(crashed, stepped, 50).months) << "nobody was told of it";
+  EXPECT_TRUE(control_chart(crashed, stepped, 50).months) << "no message was sent";
 }
 
 }  // namespace
