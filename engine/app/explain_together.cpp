@@ -8,6 +8,7 @@
 #include <set>
 
 #include "campaign/config/manifest.h"
+#include "campaign/config/site_files.h"
 #include "campaign/modelling/joint_model.h"
 #include "campaign/modelling/model_json.h"
 #include "campaign_verb.h"
@@ -58,8 +59,11 @@ class ExplainTogether {
     std::vector<const reading::ReadCampaign*> all;
     for (const auto& one : read_) all.push_back(one.get());
     progress("explaining " + std::to_string(all.size()) + " campaigns together");
+    const auto fleet =
+        config::read_fleet(config::site_of(options_.folders.front()), place_->context.site);
+    if (!fleet) return complain(text_of(fleet.error().front()));
     std::vector<std::string> left_out;
-    const auto found = modelling::explain_together(all, seed_, left_out);
+    const auto found = modelling::explain_together(all, *fleet, seed_, left_out);
     if (!found) {
       complain(text_of(found.error()));
       return exit_failed;

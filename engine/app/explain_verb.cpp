@@ -3,6 +3,7 @@
 #include <iostream>
 #include <utility>
 
+#include "campaign/config/site_files.h"
 #include "campaign/modelling/model_json.h"
 #include "campaign/reading/names.h"
 #include "campaign_verb.h"
@@ -38,6 +39,9 @@ class Explain {
     if (!opened) return opened.error();
     open_ = std::move(*opened);
     words_.emplace(words_for(open_, common_));
+    auto fleet = config::read_fleet(config::site_of(options_.folder), open_.place->context.site);
+    if (!fleet) return complain(text_of(fleet.error().front()));
+    fleet_ = std::move(*fleet);
     if (const int status = explain(); status != exit_done && all_.empty()) {
       if (common_.json && status == exit_failed) show();
       return status;
@@ -89,6 +93,9 @@ class Explain {
     warnings_.clear();
     for (const std::string& effect : modelling::unmeasured(open_.campaign().model, *parts))
       warnings_.push_back(words_->unmeasured(effect));
+    for (modelling::PartModel& part : *parts)
+      modelling::use_priors(
+          part, config::priors_of(fleet_, open_.campaign().machine, {open_.campaign().id}));
     if (parts->empty())
       tell(text_of(errors_.emplace_back(modelling::nothing_to_compare(open_.read))));
     for (modelling::PartModel& part : *parts) {
@@ -143,6 +150,7 @@ class Explain {
   const Common& common_;
   OpenCampaign open_;
   std::optional<modelling::ModelWords> words_;
+  config::Fleet fleet_;
   std::vector<modelling::Explained> all_;
   std::vector<modelling::ModelStep> steps_;
   std::optional<modelling::Compared> known_;

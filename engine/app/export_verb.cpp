@@ -4,9 +4,11 @@
 #include <memory>
 
 #include "batch/state/output_lock.h"
+#include "campaign/config/fleet.h"
 #include "campaign/config/manifest.h"
 #include "campaign/evaluation/results_files.h"
 #include "campaign_workbook.h"
+#include "laboratory/assessment/fleet_count.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
@@ -219,7 +221,35 @@ int export_spreadsheets(GetWish wish, const Common& common) {
   return well ? exit_done : exit_failed;
 }
 
+/// Writes the counts of effects over the results as fleet.toml, for `nonio model explain`.
+int export_fleet(const GetWish& wish) {
+  if (wish.list || wish.all || !wish.ids.empty() || wish.out.empty() || wish.to.empty())
+    return complain("expected --out OUT, the folder of a run, and --to SITE, its site");
+  assessment::FleetCount count;
+  bool well = true;
+  const auto take = [&](const fs::path& folder) {
+    if (!storage::is_there(folder / evaluation::results_name).value_or(false)) return;
+    const auto text = storage::read_file(folder / evaluation::results_name);
+    const auto taken = text ? count.add(*text) : tl::unexpected(text.error());
+    if (taken) return;
+    complain(folder.string() + ": " + text_of(taken.error()));
+    well = false;
+  };
+  if (const auto listed = storage::each_results_folder(wish.out, take); !listed)
+    return complain(listed.error().message);
+  const config::Fleet fleet = count.fleet(today());
+  if (fleet.machines.empty())
+    return complain(wish.out +
+                    ": no campaign has results of model-fit; list it in [run] analyses, or give "
+                    "the campaigns a [model]");
+  if (auto put = storage::publish(wish.to, {{config::fleet_name, config::text_of(fleet)}}); !put)
+    return complain(put.error().message);
+  std::cout << (fs::path(wish.to) / config::fleet_name).string() << "\n";
+  return well ? exit_done : exit_failed;
+}
+
 int get(const GetWish& wish, const Common& common) {
+  if (wish.format == "fleet") return export_fleet(wish);
   if (!wish.format.empty()) return export_spreadsheets(wish, common);
   if (wish.out.empty())
     return complain("expected --out OUT, the folder of `nonio run`, or --format xlsx");
@@ -256,11 +286,13 @@ Verb export_verb(Common& common) {
           {{"CAMPAIGN|OUT/ID|ID", &wish->ids,
             "Campaigns, results of a run, or with --out ids of campaigns"},
            existing(Takes::folder, {"--out", &wish->out, "Output folder of `nonio run`"}),
-           one_of({"xlsx"},
+           one_of({"xlsx", "fleet"},
                   {.name = "--format",
                    .target = &wish->format,
                    .help = "Write ID.xlsx for each campaign: summary, charts, points, curves, "
-                           "budget; of a campaign (evaluated now) the readings too"}),
+                           "budget; of a campaign (evaluated now) the readings too. fleet: write "
+                           "fleet.toml, in how many campaigns of --out each effect was found and "
+                           "how large, into the site --to (docs/model.md)"}),
            takes(Takes::folder,
                  {"--to", &wish->to,
                   "Write into FOLDER/ID and leave the output folder unchanged. Without it: OUT/ID, "
@@ -287,6 +319,7 @@ Verb export_verb(Common& common) {
           "or configuration.",
       .examples = {"nonio export samples/site/09-tolerances --format xlsx --to /tmp/to-look-at",
                    "nonio export 09-tolerances --out out --to /tmp/to-look-at",
+                   "nonio export --format fleet --out out --to samples/site",
                    "nonio export --list --out out", "nonio export --all --out out"},
       .run = [wish, &common] { return get(*wish, common); }};
 }

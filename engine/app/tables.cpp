@@ -212,6 +212,16 @@ void print_candidates(std::ostream& out, const Json& part, bool all, const Termi
   if (left > 0) out << "  " << say("show.more", {{"count", std::to_string(left)}}) << " (--all)\n";
 }
 
+/// States the counts that the search used, and that of the effect, or of all effects.
+void print_priors(std::ostream& out, const Json& part, const Json& effects,
+                  const std::string& effect) {
+  if (!part.contains("priors")) return;
+  sentence(out, 2, text_in(part.at("priors"), "says"));
+  for (const Json& e : effects)
+    if (e.contains("prior") && (effect.empty() || e.at("effect") == effect))
+      sentence(out, 4, text_in(e.at("prior"), "says"));
+}
+
 /// Prints the effects that the best explanation adds, if there are several; for the verdict
 /// "unknown" only those that are not significant.
 void print_set(std::ostream& out, const Json& part, const TerminalWords& say) {
@@ -362,6 +372,7 @@ void print_explanation(std::ostream& out, const Json& part, const std::string& f
       << (effect.empty() ? "" : " " + effect) << "\n";
   sentence(out, 2, text_in(verdict, "says"));
   print_candidates(out, part, all, say);
+  print_priors(out, part, effect.empty() ? Json::array() : part.at("candidates"), effect);
   print_set(out, part, say);
   print_advice(out, part, folder, say);
   print_limits(out, part, all, say);
@@ -417,6 +428,7 @@ void print_together(std::ostream& out, const Json& part, const TerminalWords& sa
     if (!e.at("aliases").empty())
       sentence(out, 4, say("joint.aliases", {{"effects", list_in(e, "aliases")}}));
   }
+  print_priors(out, part, part.at("effects"), "");
   for (const Json& plan : part.at("plans"))
     sentence(out, 2,
              say("next.apart") + " (" + text_in(plan, "campaign") + "): " + text_in(plan, "says"));

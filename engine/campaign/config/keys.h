@@ -141,6 +141,8 @@ const Key& acknowledged_file();
 const Key& forgotten_file();
 /// Returns the declaration of causes/*.toml of the templates and of a site.
 const Key& causes_file();
+/// Returns the declaration of SITE/fleet.toml.
+const Key& fleet_file();
 /// Key of conditions on the kind of a test cycle; set with `TableReader::settle`, never in a file.
 inline constexpr std::string_view cycle_axis = "(axis)";
 
@@ -163,6 +165,7 @@ inline constexpr std::string_view reserved_names[] = {"summary.json",
                                                       "events.toml",
                                                       "acknowledged.toml",
                                                       "forgotten.toml",
+                                                      "fleet.toml",
                                                       "templates"};
 /// Rule for the asset number of a machine, which names the file of its record in SITE/machines.
 inline constexpr TextRule asset_rule{.not_letters = "/\\\n\t", .not_first = ". ", .longest = 100};

@@ -168,6 +168,7 @@ struct SiteFile {
   std::vector<DueRule> due{};
   std::optional<DatabaseChoice> database{};
   KeyLines lines;
+  bool priors = true;           ///< whether `explain` uses SITE/fleet.toml
   std::string language = "en";  ///< language of the terminal and of summary.txt
   bool hashed_folders = false;  ///< results are in OUT/ab/<id> (ab from SHA-256), not in OUT/<id>
   std::string settings;         ///< TOML with the keys that certificates depend on

@@ -73,32 +73,17 @@ Expected<void> take_log(const fs::path& site, const char* name,
   return {};
 }
 
-std::string quoted(const std::string& text) {
-  constexpr const char* digits = "0123456789ABCDEF";
-  std::string out = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\')
-      out += std::string("\\") + c;
-    else if (byte < 0x20 || byte == 0x7f)
-      out += std::string("\\u00") + digits[byte >> 4] + digits[byte & 15];
-    else
-      out += c;
-  }
-  return out + "\"";
-}
-
 class Entry {
  public:
   explicit Entry(const char* name) : text_(std::string("[[") + name + "]]\n") {}
   Entry& text(const char* key, const std::string& value) {
-    if (!value.empty()) text_ += std::string(key) + " = " + quoted(value) + "\n";
+    if (!value.empty()) text_ += std::string(key) + " = " + quoted_toml(value) + "\n";
     return *this;
   }
   Entry& date(const char* key, const std::string& value) {
     const bool is_day =
         value.find_first_not_of("0123456789-") == std::string::npos && !value.empty();
-    text_ += std::string(key) + " = " + (is_day ? value : quoted(value)) + "\n";
+    text_ += std::string(key) + " = " + (is_day ? value : quoted_toml(value)) + "\n";
     return *this;
   }
   Entry& number(const char* key, const std::optional<double>& value) {

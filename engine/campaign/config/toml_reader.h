@@ -118,6 +118,9 @@ std::vector<Error> warnings_of(const std::vector<FormerKey>& keys, const std::st
 
 void note_lines(const toml::table& table, const std::string& prefix, KeyLines& lines);
 
+/// Returns the text as a TOML string in quotes.
+std::string quoted_toml(const std::string& text);
+
 std::string type_name(const toml::node& node);
 
 /// Returns nullopt for dates, times, mixed lists, and tables that contain other values than

@@ -240,4 +240,19 @@ std::optional<Setting> to_setting(const toml::node& node) {
   return numbers.empty() ? Setting(std::move(words)) : Setting(std::move(numbers));
 }
 
+std::string quoted_toml(const std::string& text) {
+  constexpr const char* digits = "0123456789ABCDEF";
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\')
+      out += std::string("\\") + c;
+    else if (byte < 0x20 || byte == 0x7f)
+      out += std::string("\\u00") + digits[byte >> 4] + digits[byte & 15];
+    else
+      out += c;
+  }
+  return out + "\"";
+}
+
 }  // namespace nonio::config

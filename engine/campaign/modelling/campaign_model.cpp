@@ -283,6 +283,19 @@ Error nothing_to_compare(const reading::ReadCampaign& read) {
       storage::listed(kinds)};
 }
 
+namespace {
+
+void set_frequency(model::Term& term, const config::Priors& priors) {
+  if (priors.campaigns > 0) term.frequency = priors.frequency(term.effect->info.name);
+}
+
+}  // namespace
+
+void use_priors(PartModel& part, config::Priors priors) {
+  part.priors = std::move(priors);
+  for (model::Term& term : part.catalogue) set_frequency(term, part.priors);
+}
+
 void fill_catalogue(PartModel& part, const reading::ReadCampaign& read) {
   part.catalogue = model::catalogue(part.part, read.effects);
   std::erase_if(part.catalogue, [&](const model::Term& t) {
@@ -344,6 +357,7 @@ std::vector<model::Term> library_of(const PartModel& part, std::shared_ptr<const
   for (model::Term& term : terms) {
     term.price = cause_of(*part.library, term)->price();
     term.library = true;
+    set_frequency(term, part.priors);
   }
   keeps = std::move(effects);
   return terms;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "campaign/config/fleet.h"
 #include "campaign/reading/campaign_reader.h"
 #include "nonio/model/explain.h"
 
@@ -23,6 +24,7 @@ struct PartModel {
   RowsPlace interpolated{};  ///< readings whose temperature is interpolated
   /// Causes of the library; null if the part is not an axis.
   config::Library library{};
+  config::Priors priors{};  ///< counts that the search uses (`use_priors`)
   /// Effects with a stated value. Their prediction is subtracted from the deviations of `part`.
   struct Held {
     model::Term term;
@@ -84,6 +86,10 @@ Expected<void> without_mistakes(const std::vector<std::string>& effects,
 /// `effects` must be free of mistakes. `part.unfit`: why the readings cannot show this model.
 void set_model(PartModel& part, const std::vector<std::string>& effects,
                const reading::ReadCampaign& read);
+
+/// Sets the frequencies of the candidates. Results of a run do not use them, so that a count does
+/// not depend on an earlier count, nor a document on the machines of others.
+void use_priors(PartModel& part, config::Priors priors);
 
 /// Returns the effects of the model that no measurement of the campaign can show.
 std::vector<std::string> unmeasured(const std::vector<std::string>& effects,

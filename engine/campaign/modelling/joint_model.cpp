@@ -281,13 +281,15 @@ std::string sentence_of(const Together& t, const config::TerminalWords& say) {
   return out;
 }
 
-Json effect_json(const model::JointEffect& e, const Together& t, const config::TerminalWords& say) {
+Json effect_json(const model::JointEffect& e, const Together& t, const ModelWords& words) {
+  const config::TerminalWords say = words.terminal();
   const Quantity q = t.deviation();
   Json json = {{"effect", e.effect}, {"per_campaign", name_of(e.holds)}};
   storage::put(json, "rms", e.rms, q);
   storage::put(json, "size", e.size, q);
   json["score"] = e.evidence;
   json["p"] = e.p;
+  put_prior(json, e.effect, e.weight, t.parts.front().priors, words);
   if (e.holds == Holds::shared) {
     json["parameters"] = parameters_json(e.groups.front());
   } else {
@@ -340,10 +342,11 @@ Json part_of_json(const Together& t, const ModelWords& words) {
   json["model"] = std::move(of_model);
   storage::put(json, "noise_floor", x.noise, q);
   storage::put(json, "rms_after", x.rms_after, q);
+  put_priors(json, t.parts.front().priors, words);
   Json candidates = Json::array(), effects = Json::array();
   for (const model::JointEffect& e : x.candidates) {
     if (!(e.evidence > 0.0)) continue;
-    Json one = effect_json(e, t, say);
+    Json one = effect_json(e, t, words);
     if (candidates.size() < most_best) one["best"] = true;
     candidates.push_back(std::move(one));
   }
@@ -351,7 +354,7 @@ Json part_of_json(const Together& t, const ModelWords& words) {
   Json verdict = {{"kind", to_text(x.verdict)}};
   Json same = Json::array(), differs = Json::array();
   for (const model::JointEffect& e : x.effects) {
-    effects.push_back(effect_json(e, t, say));
+    effects.push_back(effect_json(e, t, words));
     (e.holds == Holds::shared ? same : differs).push_back(e.effect);
   }
   if (!x.effects.empty()) verdict["effect"] = x.effects.front().effect;
@@ -409,8 +412,8 @@ std::vector<std::string> each_once(const std::vector<std::string>& names) {
 }
 
 Expected<std::vector<Together>> explain_together(
-    const std::vector<const reading::ReadCampaign*>& campaigns, std::uint64_t seed,
-    std::vector<std::string>& left_out) {
+    const std::vector<const reading::ReadCampaign*>& campaigns, const config::Fleet& fleet,
+    std::uint64_t seed, std::vector<std::string>& left_out) {
   std::vector<const reading::ReadCampaign*> ordered = campaigns;
   std::stable_sort(ordered.begin(), ordered.end(), [](const auto* a, const auto* b) {
     return a->manifest->campaign.date < b->manifest->campaign.date;
@@ -439,6 +442,9 @@ Expected<std::vector<Together>> explain_together(
                     " give its deviation in different units (um and arcsec)");
       t.parts.push_back(std::move(one.part));
     }
+    const config::Priors priors =
+        config::priors_of(fleet, list.front().read->manifest->campaign.machine, t.campaigns);
+    for (PartModel& part : t.parts) use_priors(part, priors);
     t.part = (one_kind ? "" : storage::listed(each_once(t.machines)) + " ") + key.axis +
              (key.side.empty() ? "" : " " + key.side);
     NONIO_TRY(t.explanation, model::explain_together(members_of(t), seed));

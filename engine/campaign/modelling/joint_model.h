@@ -34,8 +34,8 @@ std::vector<std::string> each_once(const std::vector<std::string>& names);
 /// in one campaign only, parts with more than 20000 readings, and parts that cannot show their
 /// model.
 Expected<std::vector<Together>> explain_together(
-    const std::vector<const reading::ReadCampaign*>& campaigns, std::uint64_t seed,
-    std::vector<std::string>& left_out);
+    const std::vector<const reading::ReadCampaign*>& campaigns, const config::Fleet& fleet,
+    std::uint64_t seed, std::vector<std::string>& left_out);
 
 /// Returns the JSON nonio-explain/1 of several campaigns (docs/json.md).
 storage::Json together_json(const std::vector<Together>& all, const ModelWords& words,

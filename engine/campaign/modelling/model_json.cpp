@@ -269,6 +269,7 @@ storage::Json candidate_json(const model::Candidate& c, const PartModel& part, d
   storage::put(json, "score_alone", c.alone, Quantity::number);
   storage::put(json, "score_within", c.within, Quantity::number);
   if (c.term.price > 0.0) storage::put(json, "prior_price", c.term.price, Quantity::number);
+  if (c.term.frequency) put_prior(json, c.term.name(), c.term.weight, part.priors, words);
   json["parameters"] = parameters_json(c.parameters, nullptr, {c.term});
   json["aliases"] = c.aliases;
   if (!c.with_descriptions.empty())
@@ -420,6 +421,7 @@ storage::Json explained_json(const Explained& e, const Campaign& campaign,
   put_noise(json, x.comparison.fit, q);
   put_lack_of_fit(json, x.comparison, q, words);
   json["fails"] = places_json(x.fails, words, q);
+  if (e.part.part.kind != model::Part::Kind::course) put_priors(json, e.part.priors, words);
   storage::Json candidates = storage::Json::array(), unseen = storage::Json::array();
   for (const model::Candidate& c : x.candidates) {
     if (!is_ranked(c)) {
@@ -487,6 +489,42 @@ Json plan_json(const model::Plan& plan, const ModelWords& words) {
   storage::put(one, "power", plan.power, Quantity::number);
   one["says"] = words.plan(plan);
   return one;
+}
+
+void put_priors(Json& part, const config::Priors& priors, const ModelWords& words) {
+  if (priors.campaigns == 0) return;
+  const config::TerminalWords say = words.terminal();
+  Json json = {{"file", config::fleet_name},
+               {"campaigns", priors.campaigns},
+               {"counted", priors.counted},
+               {"from", priors.from},
+               {"until", priors.until}};
+  if (!priors.machines.empty()) json["machines"] = priors.machines;
+  json["says"] = say(priors.machines.empty() ? "priors.all" : "priors.of-model",
+                     {{"machines", priors.machines},
+                      {"count", std::to_string(priors.campaigns)},
+                      {"from", priors.from},
+                      {"until", priors.until}});
+  part["priors"] = std::move(json);
+}
+
+void put_prior(Json& candidate, const std::string& effect, double weight,
+               const config::Priors& priors, const ModelWords& words) {
+  if (priors.campaigns == 0) return;
+  const config::TerminalWords say = words.terminal();
+  const config::Priors::Of of = priors.of(effect.substr(0, effect.find(':')));
+  Json json = {{"found", of.found}, {"weight", printed(weight, Quantity::ratio)}};
+  config::TerminalWords::Parts parts{{"effect", effect},
+                                     {"found", std::to_string(of.found)},
+                                     {"count", std::to_string(priors.campaigns)},
+                                     {"weight", say.number(short_text(weight))}};
+  if (!of.unit.empty()) {
+    json.update({{"median", of.median}, {"spread", of.spread}, {"unit", of.unit}});
+    for (const auto& [name, value] : {std::pair{"median", of.median}, {"spread", of.spread}})
+      parts.emplace_back(name, say.number(short_text(value)) + " " + of.unit);
+  }
+  json["says"] = say(of.unit.empty() ? "prior" : "prior.sized", parts);
+  candidate["prior"] = std::move(json);
 }
 
 storage::Json parameters_json(const std::vector<model::Parameter>& parameters,

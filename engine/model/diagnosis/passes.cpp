@@ -115,7 +115,7 @@ void PassZeros::compare_orders() {
   const Workbench& bench = *f_.bench;
   const std::vector<double> least =
       least_p(bench, others,
-              drawn(bench, others, bench.white()(in_other_orders(f_.of_model.fit.residual))));
+              drawn(bench, others, bench.white()(in_other_orders(f_.of_model.fit.residual))), true);
   const auto share = [&](const auto& which) {
     return static_cast<double>(std::count_if(least.begin(), least.end(), which)) /
            static_cast<double>(least.size());
@@ -127,7 +127,8 @@ void PassZeros::compare_orders() {
   for (std::size_t e = 0; e < bench.instances().size() && !in_time.empty(); ++e) {
     if (bench.holds(others, e)) continue;
     const Workbench::State more = bench.with(others, gains, e);
-    if (more.blocks.size() > others.blocks.size()) own = std::min(own, p_of(bench, more, e));
+    if (more.blocks.size() > others.blocks.size())
+      own = std::min(own, p_of(bench, more, e) / bench.weight(e));
   }
   if (share([&](double p) { return p <= own; }) > as_often) of_any_order_ = std::move(in_time);
 }

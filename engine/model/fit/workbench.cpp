@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "fit/weights.h"
+
 namespace nonio::model {
 
 namespace {
@@ -187,16 +189,24 @@ void Workbench::add(const Observations& o, std::size_t effect, std::vector<Matri
 
 double Workbench::price(const Block& block, Index columns) const {
   return static_cast<double>(columns + block.searched) * std::log(used_) + block.cost_of_shape +
-         instances_[block.effect].term.price +
+         instances_[block.effect].term.price -
+         model::evidence_of_weight(instances_[block.effect].term.weight) +
          2.0 * std::log(static_cast<double>(std::max<std::size_t>(instances_.size(), 2)));
 }
 
-double Workbench::criterion(double squares, double price, Index parameters) const {
+double Workbench::evidence_of_weight(const State& state, std::size_t effect) const {
+  return model::evidence_of_weight(instances_[effect].term.weight) * of_few(state.parameters);
+}
+
+double Workbench::of_few(Index parameters) const {
   // With few readings, chance fits a large share of them (Hurvich and Tsai 1989; they use two
   // readings less, but then effects of 5 times the noise are lost in ten readings, as measured).
   const double free = used_ - static_cast<double>(zeros_ + parameters);
-  if (few_) price *= used_ / std::max(free, 0.5);
-  return used_ * std::log(std::max(squares, 1e-300) / used_) + price;
+  return few_ ? used_ / std::max(free, 0.5) : 1.0;
+}
+
+double Workbench::criterion(double squares, double price, Index parameters) const {
+  return used_ * std::log(std::max(squares, 1e-300) / used_) + price * of_few(parameters);
 }
 
 std::vector<Index> Workbench::columns_of_state(const State& state) const {

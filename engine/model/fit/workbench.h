@@ -112,6 +112,9 @@ class Workbench {
   /// Returns the cost of an effect with these shapes and this number of linear columns.
   double price(const Block& block, Index columns) const;
   double price(const Block& block) const { return price(block, block.count); }
+  /// What the weight of an effect of the state adds to its evidence in the criterion.
+  double evidence_of_weight(const State& state, std::size_t effect) const;
+  double weight(std::size_t effect) const { return instances_[effect].term.weight; }
   static Index unknowns_of(const Block& block) { return block.count + block.searched; }
 
  private:
@@ -150,6 +153,7 @@ class Workbench {
   const MatrixXd& product_of_pair(std::size_t a, std::size_t b) const;
   const MatrixXd& products_of(std::size_t block) const;
   double criterion(double squares, double price, Index parameters) const;
+  double of_few(Index parameters) const;  // factor of the price with few readings
 
   std::vector<Instance> instances_;
   std::vector<Block> blocks_;

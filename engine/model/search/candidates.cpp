@@ -8,6 +8,7 @@
 
 #include "data/pass_zeros.h"
 #include "fit/compare.h"
+#include "fit/weights.h"
 #include "nonio/math/distributions.h"
 
 namespace nonio::model {
@@ -104,7 +105,8 @@ class Sizes {
     if (price == price_ && k == unknowns_ && dof == of_dof_) return wanted_;
     price_ = price, unknowns_ = k, of_dof_ = dof;
     const double by_evidence = dof_ * std::expm1(price / n);
-    const double one_test = -std::expm1(std::log1p(-named_below) / f_.chance.trials);
+    const double one_test =
+        -std::expm1(std::log1p(-named_below) / f_.chance.trials) * f_.bench->weight(block.effect);
     double low = 0.0, high = 1e4;
     for (int step = 0; step < 40; ++step) {
       const double F = (low + high) / 2.0;
@@ -137,19 +139,23 @@ class CandidateOf {
       return c;
     }
     c.alone = f_.start.criterion - alone.criterion;
+    double of_weight = f_.bench->evidence_of_weight(alone, e);
+    const double of_weight_alone = of_weight;
     const bool member = f_.bench->holds(f_.best, e);
     std::size_t block = alone.blocks.back();
     if (member) {
       for (const std::size_t b : f_.best.blocks)
         if (f_.bench->effect_of(b) == e) block = b;
       c.within = f_.bench->settled(f_.bench->without(f_.best, e)).criterion - f_.best.criterion;
-      c.p = f_.chance.corrected(f_.p_of(e));
+      c.p = f_.unweighted.corrected(f_.p_of(e));
+      of_weight = f_.bench->evidence_of_weight(f_.best, e);
       c.aliases = aliases_of(e);
     } else {
       score_outsider(e, c);
       c.within = c.score;
     }
     c.score = c.within > 0.0 && c.alone > 0.0 ? c.alone : c.within;
+    c.alone -= of_weight_alone, c.within -= of_weight;
     if (c.term.library && !member && c.aliases.empty()) {
       c.visible = false;
       return c;
@@ -219,7 +225,7 @@ class CandidateOf {
     const State more = f_.bench->joined(f_.best, f_.bench->gains(f_.best, e), e);
     if (more.blocks.size() > f_.best.blocks.size()) {
       c.score = f_.best.criterion - more.criterion;
-      c.p = f_.chance.corrected(p_of(*f_.bench, more, e));
+      c.p = f_.unweighted.corrected(p_of(*f_.bench, more, e));
     }
     for (const std::size_t b : f_.best.blocks) {
       const std::size_t member = f_.bench->effect_of(b);
@@ -230,7 +236,7 @@ class CandidateOf {
       const double score = rest.criterion - changed.criterion;
       if (score <= c.score) continue;
       c.score = score;
-      c.p = f_.chance.corrected(p_of(*f_.bench, changed, e));
+      c.p = f_.unweighted.corrected(p_of(*f_.bench, changed, e));
       if (as_good(changed)) c.aliases = {f_.terms[member].name()};
     }
   }
@@ -273,7 +279,10 @@ std::vector<Candidate> candidates_of(const Finding& finding, const Ground& groun
 
 void rank(std::vector<Candidate>& candidates) {
   const auto before = [](const Candidate& a, const Candidate& b) {
-    const bool a_shows = a.alone > 0.0 && a.score > 0.0, b_shows = b.alone > 0.0 && b.score > 0.0;
+    const auto shows = [](const Candidate& c) {
+      return c.alone + evidence_of_weight(c.term.weight) > 0.0 && c.score > 0.0;
+    };
+    const bool a_shows = shows(a), b_shows = shows(b);
     return a_shows != b_shows ? a_shows : a.score > b.score;
   };
   std::stable_sort(candidates.begin(), candidates.end(), before);

@@ -8,6 +8,7 @@
 #include "data/noise.h"
 #include "data/pass_zeros.h"
 #include "fit/compare.h"
+#include "fit/weights.h"
 #include "nonio/math/distributions.h"
 #include "nonio/math/statistics.h"
 
@@ -24,6 +25,7 @@ class Finder {
       : f_{part, Repeats(part.table), model, model.size(), seed}, model_(model) {
     for (Term& c : offered_to(model, catalogue))
       (c.effect->description ? f_.descriptions : f_.terms).push_back(std::move(c));
+    set_weights(std::span(f_.terms).subspan(f_.in_model));
   }
 
   Expected<Finding> run() {
@@ -39,9 +41,12 @@ class Finder {
     }
     for (int round = 0; round < 4 && passes_scatter(); ++round)
       if (auto searched = search(); !searched) return fail(searched.error());
-    f_.chance = measure_chance(
-        *f_.bench, f_.best,
-        shuffled(*f_.bench, f_.best, f_.residual(f_.best), f_.repeats.pass, f_.seed));
+    const SignFlips flips =
+        shuffled(*f_.bench, f_.best, f_.residual(f_.best), f_.repeats.pass, f_.seed);
+    f_.chance = f_.unweighted = measure_chance(*f_.bench, f_.best, flips, false);
+    if (std::any_of(f_.terms.begin(), f_.terms.end(),
+                    [](const Term& t) { return t.weight != 1.0; }))
+      f_.chance = measure_chance(*f_.bench, f_.best, flips, true);
     prune();
     if (auto fitted = fit_both(); !fitted) return fail(fitted.error());
     return std::move(f_);
@@ -372,7 +377,7 @@ class Finder {
       for (const std::size_t b : f_.best.blocks) {
         const std::size_t e = f_.bench->effect_of(b);
         if (e < f_.in_model) continue;
-        const double p = f_.chance.corrected(f_.p_of(e));
+        const double p = f_.deciding_p(e);
         const double fall = f_.bench->without(f_.best, e).squares - f_.best.squares;
         const bool small = std::sqrt(fall / f_.bench->readings()) < least_rms * s;
         if ((p >= named_below || small) && p >= largest_p) {
@@ -438,6 +443,10 @@ double Finding::p_of(std::size_t effect) const {
   const double s2 = best.squares / std::max(dof(best), 1.0);
   return std::max(p, math::f_upper((rest.squares - best.squares) / k / s2, k,
                                    std::max(degrees_of_passes(repeats), 1.0)));
+}
+
+double Finding::deciding_p(std::size_t effect) const {
+  return chance.corrected(p_of(effect) / bench->weight(effect));
 }
 
 double Finding::left() const { return std::sqrt(best.squares / std::max(dof(best), 1.0)); }

@@ -38,7 +38,8 @@ struct Finding {
   /// With few readings and no repeats: effects of nearly equal explanations with other suspects.
   std::vector<std::string> otherwise{};
   Workbench::State start{}, best{};  ///< the model alone; the best explanation
-  Chance chance{};
+  Chance chance{};                   ///< for p/weight, which decides whether an effect is named
+  Chance unweighted{};               ///< for printed p
   Comparison of_model{}, of_best{};
 
   std::size_t index_of(const std::string& name) const;
@@ -46,6 +47,9 @@ struct Finding {
   /// Not corrected for the search. If zeros of passes are noise, an effect that is nearly constant
   /// within a pass has only as much evidence as the number of passes allows.
   double p_of(std::size_t effect) const;
+  /// Returns p of an effect of the best explanation as the search decides with it: corrected, by
+  /// its weight.
+  double deciding_p(std::size_t effect) const;
   /// Standard deviation of a reading from the residuals of the best explanation, m or rad.
   double left() const;
   Expected<MatrixXd> columns_of(const std::vector<Term>& some) const;

@@ -294,29 +294,33 @@ SignFlips drawn(const Workbench& bench, const State& complete, MatrixXd noise) {
 }
 
 std::vector<double> least_p(const Workbench& bench, const State& complete,
-                            const SignFlips& shuffles) {
+                            const SignFlips& shuffles, bool weighted) {
   const ChanceOf of(bench, complete, shuffles);
   // The F-test is by far the most expensive step, so only the largest decreases are tested.
-  std::vector<std::map<double, double>> largest(static_cast<std::size_t>(shuffles.squares.size()));
+  std::vector<std::map<std::pair<double, double>, double>> largest(  // by parameters and weight
+      static_cast<std::size_t>(shuffles.squares.size()));
   for (std::size_t e = 0; e < bench.instances().size(); ++e) {
     if (bench.holds(complete, e)) continue;
     const Added added = of.add(e);
+    const double weight = weighted ? bench.weight(e) : 1.0;
     for (Index i = 0; i < added.fall.size(); ++i) {
-      double& fall = largest[static_cast<std::size_t>(i)][added.parameters(i)];
+      double& fall = largest[static_cast<std::size_t>(i)][{added.parameters(i), weight}];
       fall = std::max(fall, added.fall(i));
     }
   }
   std::vector<double> least(largest.size(), 1.0);
   for (std::size_t i = 0; i < largest.size(); ++i)
-    for (const auto& [parameters, fall] : largest[i])
-      least[i] = std::min(least[i], of.p(static_cast<Index>(i), fall, parameters));
+    for (const auto& [of_effect, fall] : largest[i])
+      least[i] =
+          std::min(least[i], of.p(static_cast<Index>(i), fall, of_effect.first) / of_effect.second);
   return least;
 }
 
-Chance measure_chance(const Workbench& bench, const State& complete, const SignFlips& shuffles) {
+Chance measure_chance(const Workbench& bench, const State& complete, const SignFlips& shuffles,
+                      bool weighted) {
   // For the smallest of m independent p, -ln(1 - p) is exponentially distributed with rate m.
   double sum = 0.0;
-  const std::vector<double> least = least_p(bench, complete, shuffles);
+  const std::vector<double> least = least_p(bench, complete, shuffles, weighted);
   for (const double p : least) sum -= std::log1p(-std::min(p, 1.0 - 1e-12));
   return {std::max(static_cast<double>(least.size()) / std::max(sum, 1e-12), 1.0)};
 }
@@ -330,8 +334,8 @@ std::vector<char> named_in(const Workbench& bench, const State& complete, const 
     const Added added = of.add(e);
     for (std::size_t i = 0; i < named.size(); ++i) {
       const auto at = static_cast<Index>(i);
-      if (added.better[i] != 0 &&
-          chance.corrected(of.p(at, added.fall(at), added.parameters(at))) < named_below)
+      if (added.better[i] != 0 && chance.corrected(of.p(at, added.fall(at), added.parameters(at)) /
+                                                   bench.weight(e)) < named_below)
         named[i] = 1;
     }
   }

@@ -40,12 +40,12 @@ SignFlips shuffled(const Workbench& bench, const Workbench::State& complete,
 /// weights of the bench.
 SignFlips drawn(const Workbench& bench, const Workbench::State& complete, MatrixXd noise);
 
-/// Returns for each copy the smallest p of one more effect.
+/// Returns for each copy the smallest p of one more effect, of p/weight if `weighted`.
 std::vector<double> least_p(const Workbench& bench, const Workbench::State& complete,
-                            const SignFlips& shuffles);
+                            const SignFlips& shuffles, bool weighted);
 
 Chance measure_chance(const Workbench& bench, const Workbench::State& complete,
-                      const SignFlips& shuffles);
+                      const SignFlips& shuffles, bool weighted);
 
 /// Returns, for each copy, whether some effect would be named (`named_below`) in this copy.
 std::vector<char> named_in(const Workbench& bench, const Workbench::State& complete,

@@ -105,6 +105,7 @@ def site():
         "limits": {"seconds": 60, "memory_MB": 2000.5, "disk_seconds": 5, "missing_campaigns": 2},
         "results": {"folders": "hashed"},
         "run": {"analyses": ["iso230-2"], "outputs": ["json"]},
+        "explain": {"priors": False},
         "options": {"iso230-2": {"edition": 2006}},
         "alias": [{"name": "N", "asset": "S-1", "why": "W"}],
         "due": [{"machine": "S-1", "months": 6}],

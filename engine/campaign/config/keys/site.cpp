@@ -237,6 +237,13 @@ constexpr Key webhook_keys[] = {
      "the system."},
 };
 
+constexpr Key explain_keys[] = {
+    {"priors", into<&SiteFile::priors>,
+     "Whether it weighs its candidates by how often they were found on other machines "
+     "(fleet.toml). Printed evidence is the same.",
+     otherwise("true")},
+};
+
 constexpr Choice terminal_languages[] = {{"de"}, {"en"}, {"it"}};
 constexpr Key site_file_keys[] = {
     format_key,
@@ -251,6 +258,7 @@ constexpr Key site_file_keys[] = {
     {"limits", nested<&SiteFile::limits>, "Limits for one campaign.", limits_keys},
     {"results", same<SiteFile>, "Layout of the output folder.", results_keys},
     run_key<SiteFile>,
+    {"explain", same<SiteFile>, "Search of `nonio model explain`.", explain_keys},
     options_key<SiteFile>,
     {"alias", checked<check_alias, &SiteFile::aliases>,
      "Two names of one machine, [[alias]]: its campaigns form one history.", alias_keys},

@@ -29,9 +29,9 @@ struct Candidate {
   double rms = 0.0;  ///< rms of the residuals with the effect added to the model, m or rad
   std::optional<double> cv_rms{};
   double p = 1.0;  ///< probability that noise alone gives such a candidate anywhere in this search
-  /// 2 ln of the evidence, by which candidates are ranked after those that have evidence alone;
-  /// <= 0: no evidence. With evidence both
-  /// alone and within the best set, it is `alone` (for a course the larger one).
+  /// 2 ln of the evidence plus that of the weight (`Term::weight`), by which candidates are ranked
+  /// after those that have evidence alone; <= 0: no evidence. With evidence both alone and within
+  /// the best set, it is that of `alone` (for a course the larger one).
   double score = 0.0;
   double alone = 0.0;  ///< 2 ln of the evidence as the only addition to the model
   /// 2 ln of the evidence that the best set loses without this member, or gains if this effect is

@@ -39,6 +39,10 @@ struct Term {
   bool differences = false;
   /// 2 ln of the prior odds against the effect: rare causes need more evidence.
   double price = 0.0;
+  /// Share of earlier campaigns of such machines in which the effect was found, if counted.
+  std::optional<double> frequency{};
+  /// Weight of a candidate by `frequency`, set by the search (fit/weights.h).
+  double weight = 1.0;
   /// Whether the parameters are given: their prediction is subtracted from the readings.
   bool held = false;
   /// For effects of a large library: candidates only within the best set or as replacements in it.

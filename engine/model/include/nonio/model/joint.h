@@ -33,6 +33,7 @@ struct JointEffect {
   /// One list for `shared`, two for `changed`, one per campaign for `own` (empty if its readings do
   /// not determine the effect). Only the first list contains the shapes.
   std::vector<std::vector<Parameter>> groups{};
+  double weight = 1.0;    ///< weight in the search, by its frequency; not in evidence and p
   double evidence = 0.0;  ///< decrease of -2 ln likelihood minus the cost of parameters and names
   double p = 1.0;         ///< p-value of the effect; for named effects corrected for the search
   /// rms with this effect added to the models, for a named effect with all named effects, m or rad
