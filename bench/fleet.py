@@ -2,9 +2,9 @@
 """Many campaigns of one axis, each with one hidden effect of 0.3 to 1 times the noise: what `model explain` finds in all of
 them together. The readings are made here, not by the program.
 
-    python3 bench/fleet.py NONIO [--fleets 20] [--campaigns 20] [--seed 1] [--size 0.5] [--passes 0.0]
+    python3 bench/fleet.py NONIO [--fleets 20] [--campaigns 20] [--seed 1] [--size 0.5] [--passes 0.0] [--travels]
 
---passes: standard deviation of an offset that each pass has, over that of a reading.
+--travels: each campaign measures another part of the travel. --passes: standard deviation of an offset that each pass has, over that of a reading.
 """
 import argparse
 import json
@@ -26,14 +26,18 @@ def shapes():
         "periodic:X": lambda x, d, t: math.sqrt(2) * math.sin(2 * math.pi * x / PITCH + 0.7),
         "pitch-curve:X": lambda x, d, t: math.sqrt(2) * math.cos(2 * math.pi * x / LENGTH),
         "zero-drift:X": lambda x, d, t: math.sqrt(12) * (t - 0.5),
+        "growth-drift:X": lambda x, d, t: (x - mid) / (LENGTH / math.sqrt(12)) * math.sqrt(3) * t,
         "backlash-slope:X": lambda x, d, t: -d * (x - mid) / (LENGTH / math.sqrt(12)),
     }
 
 
-def write(folder, number, parts, noise, passes, rng):
+TRAVELS = ((0.0, 800.0), (0.0, 500.0), (300.0, 800.0), (150.0, 650.0))
+
+
+def write(folder, number, parts, noise, passes, rng, travel=TRAVELS[0]):
     folder.mkdir(parents=True)
-    step = LENGTH / (TARGETS - 1)
-    targets = [round(i * step + (rng.random() - 0.5) * 0.8 * PITCH, 3) for i in range(TARGETS)]
+    step = (travel[1] - travel[0]) / (TARGETS - 1)
+    targets = [round(travel[0] + i * step + (rng.random() - 0.5) * 0.8 * PITCH, 3) for i in range(TARGETS)]
     rows, k, all_readings = ["run,direction,target_mm,deviation_um,time_s"], 0, TARGETS * RUNS * 2
     for run in range(1, RUNS + 1):
         for direction in (1, -1):
@@ -63,7 +67,7 @@ file = "x.csv"
     return date
 
 
-def fleet(root, story, effect, size, campaigns, passes, rng):
+def fleet(root, story, effect, size, campaigns, passes, rng, travels=TRAVELS[:1]):
     """Campaigns with one effect: in all the same ("shared"), from one of them on ("appears"), in one half of them
     ("differs"), or in none ("none"). Returns the first campaign that has it, of "appears"."""
     noise = 10 ** rng.uniform(-0.5, 0.5)
@@ -75,7 +79,7 @@ def fleet(root, story, effect, size, campaigns, passes, rng):
         if story == "appears" and n < first or story == "differs" and n not in having:
             gain = 0.0
         parts = [lambda x, d, t, g=gain: g * shape(x, d, t)] if story != "none" else []
-        write(root / f"c{n:04d}", n, parts, noise, passes, rng)
+        write(root / f"c{n:04d}", n, parts, noise, passes, rng, rng.choice(travels) if len(travels) > 1 else travels[0])
     return first
 
 
@@ -87,18 +91,22 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--size", type=float, help="RMS of the effect over the noise; else 0.3 to 1")
     parser.add_argument("--passes", type=float, default=0.0)
+    parser.add_argument("--travels", action="store_true")
+    parser.add_argument("--stories", nargs="+", default=["shared", "appears", "differs", "none"])
+    parser.add_argument("--effects", nargs="+", default=sorted(shapes()))
     arguments = parser.parse_args()
     rng = random.Random(arguments.seed)
     print(f"seed {arguments.seed}, {arguments.campaigns} campaigns of {TARGETS * RUNS * 2} readings")
-    for story in ("shared", "appears", "differs", "none"):
+    for story in arguments.stories:
         named = holds = wrong = 0
         for _ in range(arguments.fleets):
-            effect = rng.choice(sorted(shapes()))
+            effect = rng.choice(arguments.effects)
             size = arguments.size or rng.uniform(0.3, 1.0)
             with tempfile.TemporaryDirectory() as folder:
-                first = fleet(pathlib.Path(folder), story, effect, size, arguments.campaigns, arguments.passes, rng)
+                first = fleet(pathlib.Path(folder), story, effect, size, arguments.campaigns, arguments.passes, rng,
+                              TRAVELS if arguments.travels else TRAVELS[:1])
                 done = subprocess.run([arguments.nonio, "model", "explain", folder, "--json", "--quiet"],
-                                      capture_output=True, text=True, check=True)
+                                      stdout=subprocess.PIPE, text=True, check=True)
             answer = json.loads(done.stdout)
             found = {e["effect"]: e for e in answer["effects"]}
             named += effect in found and story != "none"

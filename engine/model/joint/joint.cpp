@@ -9,6 +9,7 @@
 
 #include "diagnosis/plans.h"
 #include "diagnosis/verdict.h"
+#include "fit/weights.h"
 #include "joint/system.h"
 #include "nonio/math/distributions.h"
 #include "search/finding.h"
@@ -205,6 +206,8 @@ class JointSearch {
     return choices[i].holds == Holds::changed ? std::min(1.0, dates * p) : p;
   }
 
+  double weight_of(const Choice& choice) const { return r_.blocks[choice.block].weight; }
+
   double size_of(const Choices& choices, std::size_t i) const {
     const double fall = system_.solve(without(choices, i)).squares - system_.solve(choices).squares;
     return std::sqrt(std::max(fall, 0.0) * noise2_ / system_.readings());
@@ -240,7 +243,7 @@ class JointSearch {
 
   /// The largest number of independent tests that gives the observed median or 5 % quantile of the
   /// smallest p of a copy, with flipped stretches or with flipped passes.
-  double trials_of(const JointSystem::Gains& gains) const {
+  double trials_of(const JointSystem::Gains& gains, bool weighted) const {
     std::vector<double> least[2];
     for (Index k = 0; k < shuffles; ++k) {
       double p = 1.0;
@@ -248,7 +251,9 @@ class JointSearch {
         const auto row = static_cast<Index>(b);
         const auto test = [&](double fall, Index parameters) {
           const auto q = static_cast<double>(parameters + r_.blocks[b].searched);
-          if (std::isfinite(fall) && q >= 1.0) p = std::min(p, math::f_upper(fall / q, q, dof_));
+          if (std::isfinite(fall) && q >= 1.0)
+            p = std::min(p,
+                         math::f_upper(fall / q, q, dof_) / (weighted ? r_.blocks[b].weight : 1.0));
         };
         test(gains.shared(row, k), r_.blocks[b].count);
         test(gains.own(row, k), gains.own_parameters[b]);
@@ -269,11 +274,12 @@ class JointSearch {
   /// Removes effects that are not significant or too small.
   void prune() {
     while (true) {
-      chance_.trials = trials_of(system_.gains(choices_, flipped()));
+      const auto gains = system_.gains(choices_, flipped());
+      chance_.trials = trials_of(gains, true), unweighted_.trials = trials_of(gains, false);
       std::size_t weakest = choices_.size();
       double largest = 0.0;
       for (std::size_t i = 0; i < choices_.size(); ++i) {
-        const double p = chance_.corrected(p_of(choices_, i));
+        const double p = chance_.corrected(p_of(choices_, i) / weight_of(choices_[i]));
         const bool small = size_of(choices_, i) < least_joint_rms * std::sqrt(noise2_);
         if ((p >= named_below || small) && p >= largest) weakest = i, largest = p;
       }
@@ -302,13 +308,16 @@ class JointSearch {
 
   void put_candidates(JointExplanation& out) const {
     for (const auto& [effect, one] : scored({})) {
-      if (!(one.evidence > -1e300)) continue;
+      if (!(one.evidence > -1e300) || !system_.solve({one.choice}).sound) continue;
       out.candidates.push_back(described({one.choice}, 0));
-      out.candidates.back().evidence = one.evidence;
+      out.candidates.back().evidence = one.evidence - evidence_of_weight(weight_of(one.choice));
+      out.candidates.back().weight = weight_of(one.choice);
     }
-    std::stable_sort(
-        out.candidates.begin(), out.candidates.end(),
-        [](const JointEffect& a, const JointEffect& b) { return a.evidence > b.evidence; });
+    std::stable_sort(out.candidates.begin(), out.candidates.end(),
+                     [](const JointEffect& a, const JointEffect& b) {
+                       return a.evidence + evidence_of_weight(a.weight) >
+                              b.evidence + evidence_of_weight(b.weight);
+                     });
   }
 
   double rms_of(const std::vector<VectorXd>& left) const {
@@ -354,12 +363,14 @@ class JointSearch {
     const double all = criterion(choices_);
     for (std::size_t i = 0; i < choices_.size(); ++i) {
       JointEffect effect = described(choices_, i);
-      effect.p = chance_.corrected(effect.p);
+      effect.p = unweighted_.corrected(effect.p);
+      effect.weight = weight_of(choices_[i]);
       const Choices rest = without(choices_, i);
       const double before = criterion(rest);
-      effect.evidence = before - all;
+      const double evidence = before - all;
+      effect.evidence = evidence - evidence_of_weight(effect.weight);
       for (const auto& [name, one] : scored(rest))
-        if (name != effect.effect && one.evidence > effect.evidence - alias_evidence)
+        if (name != effect.effect && one.evidence > evidence - alias_evidence)
           effect.aliases.push_back(name);
       out.effects.push_back(std::move(effect));
     }
@@ -381,7 +392,7 @@ class JointSearch {
     out.rms = rms_of(before);
     out.rms_after = rms_of(left);
     out.noise = std::sqrt(noise2_);
-    out.trials = chance_.trials;
+    out.trials = unweighted_.trials;
   }
 
   /// By column of `y`: sum of n times the squared mean over cells with n >= 2 weighted readings.
@@ -488,7 +499,7 @@ class JointSearch {
   std::vector<MatrixXd> y_;
   double dof_ = 0.0, noise2_ = 0.0;
   Choices choices_;
-  Chance chance_;
+  Chance chance_, unweighted_;  // for p/weight, which decides; for printed p
 };
 
 }  // namespace

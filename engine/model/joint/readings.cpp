@@ -8,6 +8,9 @@
 #include "data/repeats.h"
 #include "data/whitening.h"
 #include "fit/compare.h"
+#include "fit/weights.h"
+#include "joint/system.h"
+#include "nonio/sdk/axis_readings.h"
 
 namespace nonio::model {
 
@@ -31,6 +34,26 @@ Observations with_places(const Observations& o, const std::vector<double>& place
     for (auto& axis : out.axes) again(axis.position), again(axis.approach);
     again(out.sense);
     out.axes.front().position.back() = place;
+  }
+  return out;
+}
+
+/// Columns at the places x, from those at evenly spaced places (cubic through the nearest four).
+MatrixXd interpolated(const MatrixXd& of_places, const std::vector<double>& places,
+                      const std::vector<double>& x) {
+  const Index last = of_places.rows() - 1;
+  const double step = (places.back() - places.front()) / static_cast<double>(last);
+  MatrixXd out(static_cast<Index>(x.size()), of_places.cols());
+  for (Index i = 0; i < out.rows(); ++i) {
+    const double at = (x[static_cast<std::size_t>(i)] - places.front()) / step;
+    const Index first = std::clamp<Index>(static_cast<Index>(at) - 1, 0, last - 3);
+    out.row(i).setZero();
+    for (Index k = first; k < first + 4; ++k) {
+      double weight = 1.0;
+      for (Index j = first; j < first + 4; ++j)
+        if (j != k) weight *= (at - static_cast<double>(j)) / static_cast<double>(k - j);
+      out.row(i) += weight * of_places.row(k);
+    }
   }
   return out;
 }
@@ -85,13 +108,13 @@ class Reader {
  private:
   /// Places of all members, or evenly spaced ones if these are many.
   void list_places() {
-    constexpr std::size_t most = 200;
     for (const Member& m : members_) {
       const auto& own = m.part->table.axes.front().position;
       places_.insert(places_.end(), own.begin(), own.end());
       std::sort(places_.begin(), places_.end());
       places_.erase(std::unique(places_.begin(), places_.end()), places_.end());
     }
+    middle_ = places_.empty() ? 0.0 : (places_.front() + places_.back()) / 2.0;
     if (places_.size() <= most) return;
     const double low = places_.front(), high = places_.back();
     places_.assign(most, low);
@@ -111,7 +134,11 @@ class Reader {
         if (known.first == nullptr || m.part->table.size() > known.second->part->table.size())
           known = {&t, &m};
       }
-    for (const std::string& name : order) {
+    std::vector<Term> terms;
+    for (const std::string& name : order) terms.push_back(*all[name].first);
+    set_weights(terms);
+    for (const Term& one : terms) {
+      const std::string name = one.of_all();
       const auto [term, member] = all[name];
       const auto shapes = shapes_of(with_places(member->part->table, places_), *term);
       const auto tried = static_cast<double>(shapes.size());
@@ -119,6 +146,7 @@ class Reader {
       for (const auto& shape : shapes) {
         JointBlock block{name, term->effect, term->axis, shape};
         block.cost = term->price;
+        block.weight = one.weight;
         if (tried > 1.0 && !are_usual(*term, shape)) {
           block.cost += 2.0 * std::log(std::max(curve ? tried : tried / 3.0, 2.0));
           if (!curve) block.searched = static_cast<Index>(shape.size());
@@ -126,6 +154,38 @@ class Reader {
         out_.blocks.push_back(std::move(block));
       }
     }
+  }
+
+  /// The term as this member shows it: a fixed point that is searched, or that does not matter for
+  /// one campaign, is the same place of the machine in all of them.
+  Term at_common_middle(Term term, const std::vector<double>& shape, const Observations& o) const {
+    term.shape = shape;
+    if (term.axis.rotary) return term;
+    const auto read = readings_of(o, term.axis);
+    const double from = read ? middle_ - read->middle : 0.0;
+    for (std::size_t k = 0; k < shape.size(); ++k)
+      if (term.effect->shapes[k].parameter.name == fixed_point_shape().parameter.name)
+        term.shape[k] += from;
+    if (!term.axis.fixed_point) term.axis.fixed_point = middle_;
+    return term;
+  }
+
+  /// Columns of an effect that depends on the place only. The readings of other members decide
+  /// where a curve has its knots; with many places, the curve is made once for all members, because
+  /// the own places of a member would move the knots.
+  Expected<MatrixXd> of_all_places(const Observations& wide, const Term& term, std::size_t b) {
+    const JointBlock& block = out_.blocks[b];
+    if (places_.size() < most || !block.is->curve) return columns_of(wide, term, block.shape);
+    MatrixXd& known = of_places_[b];
+    if (known.rows() == 0) {
+      Observations even;
+      even.angular = wide.angular, even.lines = {{}};
+      even.axes = {
+          {block.axis.name, block.axis.rotary, places_, std::vector<std::int8_t>(most, 1)}};
+      even.deviation.assign(most, 0.0);
+      NONIO_TRY(known, columns_of(even, Term{block.is, block.axis}, block.shape));
+    }
+    return interpolated(known, places_, wide.axes.front().position);
   }
 
   bool in_a_model(const std::string& effect) const {
@@ -251,29 +311,36 @@ class Reader {
     out.y = whitened(Eigen::Map<const VectorXd>(o.deviation.data(), static_cast<Index>(o.size())))
                 .col(0) /
             out.s;
-    const Observations wide = with_places(o, places_);
     std::vector<MatrixXd> parts;
     Index columns = 0;
+    const Observations wide = with_places(o, places_);
     out.first.assign(out_.blocks.size(), -1);
-    out.own.resize(out_.blocks.size());
+    out.own.resize(out_.blocks.size()), out.rank.resize(out_.blocks.size());
     for (std::size_t b = 0; b < out_.blocks.size(); ++b) {
       JointBlock& block = out_.blocks[b];
       const auto term =
           std::find_if(member.catalogue.begin(), member.catalogue.end(),
                        [&](const Term& t) { return joins(t) && t.of_all() == block.effect; });
-      if (term == member.catalogue.end() || is_of_another(o, *term, block.shape)) continue;
-      auto made = columns_of(o, *term, block.shape);
-      if (made && is_of_place(*made, out.cell)) made = columns_of(wide, *term, block.shape);
+      if (term == member.catalogue.end()) continue;
+      const Term local = at_common_middle(*term, block.shape, o);
+      if (is_of_another(o, *term, local.shape)) continue;
+      auto made = columns_of(o, local, local.shape);
+      if (made && is_of_place(*made, out.cell)) made = of_all_places(wide, *term, b);
       if (!made || made->cols() == 0 || (block.count > 0 && made->cols() != block.count)) continue;
       VectorXd before;
       MatrixXd part = whitened(made->topRows(static_cast<Index>(o.size())), &before);
       const VectorXd after = part.colwise().norm().transpose();
-      if (!(after.array() > shown * before.array()).all()) continue;
+      for (Index k = 0; k < part.cols(); ++k)
+        if (!(after(k) > shown * before(k))) part.col(k).setZero();
       part /= out.s;
+      const MatrixXd own = math::transposed_product(part, part);
+      const Index rank = ranked_inverse(own, own.diagonal()).rank;
+      // Readings of a part of the travel determine some shapes of a curve only.
+      if (rank == 0 || (rank < part.cols() && !block.is->curve)) continue;
       block.count = part.cols();
       out.first[b] = columns;
       columns += part.cols();
-      out.own[b] = math::transposed_product(part, part);
+      out.own[b] = own, out.rank[b] = rank;
       parts.push_back(std::move(part));
     }
     out.x.resize(out.y.size(), columns);
@@ -298,8 +365,12 @@ class Reader {
 
   // smallest degrees of freedom of a noise floor that is used
   static constexpr double least_dof = 8.0;
+  static constexpr std::size_t most = 200;  // places that are used, evenly spaced ones if more
   const std::vector<Member>& members_;
   std::vector<double> places_;
+  double middle_ = 0.0;  // of the places of all members, m or rad
+  std::map<std::size_t, MatrixXd>
+      of_places_;  // columns of curves at evenly spaced places, by block
   std::vector<Kept> grounds_;
   double offsets_ = 0.0, differences_ = 0.0;
   JointReadings out_;

@@ -18,6 +18,7 @@ struct JointBlock {
   Index searched = 0;  ///< number of searched shapes
   /// 2 ln of the number of independent values of its shapes, plus its prior cost
   double cost = 0.0;
+  double weight = 1.0;  ///< as `Term::weight`
 };
 
 /// x and y are whitened, in units of the standard deviation of a reading, without the zeros of the
@@ -28,6 +29,7 @@ struct MemberReadings {
   /// first column of each block; -1: not identifiable here, or in fewer than two members
   std::vector<Index> first;
   std::vector<MatrixXd> own;        ///< scalar products of each block's columns
+  std::vector<Index> rank;          ///< number of independent columns of each block
   std::vector<std::uint32_t> pass;  ///< pass of each reading (run in one direction on a line)
   std::vector<std::uint32_t> cell;  ///< cell of each reading: a target approached from one side
   VectorXd scale;                   ///< factor from y to m or rad; 0 for unused readings

@@ -5,6 +5,8 @@
 #include <limits>
 #include <set>
 
+#include "fit/weights.h"
+
 namespace nonio::model {
 
 namespace {
@@ -35,6 +37,23 @@ MatrixXd inverse_of(const MatrixXd& s) {
 
 }  // namespace
 
+RankedInverse ranked_inverse(const MatrixXd& left, const VectorXd& before) {
+  if (is_independent(left, before)) return {inverse_of(left), left.rows()};
+  const VectorXd unit = before.cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const auto [values, vectors] =
+      math::spectrum(math::scaled_columns(math::scaled_rows(unit, left), unit));
+  RankedInverse out{MatrixXd::Zero(left.rows(), left.rows()), 0};
+  for (Index k = 0; k < values.size(); ++k) {
+    if (!(values(k) > least_independent)) continue;
+    const VectorXd v = unit.cwiseProduct(vectors.col(k));
+    out.inverse += v * v.transpose() / values(k);
+    ++out.rank;
+  }
+  return out;
+}
+
+namespace {}  // namespace
+
 double JointSystem::readings() const {
   double n = 0.0;
   for (const MemberReadings& m : r_.members) n += m.readings;
@@ -48,7 +67,8 @@ std::size_t JointSystem::effects() const {
 }
 
 double JointSystem::price_of(const JointBlock& block) const {
-  return block.cost + static_cast<double>(block.searched) * std::log(readings()) +
+  return block.cost - evidence_of_weight(block.weight) +
+         static_cast<double>(block.searched) * std::log(readings()) +
          2.0 * std::log(static_cast<double>(std::max<std::size_t>(effects(), 2)));
 }
 
@@ -66,12 +86,12 @@ std::vector<JointSystem::Place> JointSystem::places(const std::vector<Choice>& c
   for (const Choice& c : choices) {
     const Index count = r_.blocks[c.block].count, first = r_.members[member].first[c.block];
     if (c.holds == Holds::own) {
-      out.push_back({false, own, first, count});
+      out.push_back({false, own, first, count, r_.members[member].rank[c.block]});
       if (first >= 0) own += count;
       continue;
     }
     const bool second = c.holds == Holds::changed && member >= c.after;
-    out.push_back({true, shared + (second ? count : 0), first, count});
+    out.push_back({true, shared + (second ? count : 0), first, count, count});
     shared += c.holds == Holds::changed ? 2 * count : count;
   }
   return out;
@@ -80,9 +100,10 @@ std::vector<JointSystem::Place> JointSystem::places(const std::vector<Choice>& c
 JointSystem::Split JointSystem::split(const std::vector<Choice>& choices,
                                       std::size_t member) const {
   const MatrixXd& x = r_.members[member].x;
-  Split out{MatrixXd(x.rows(), 0), MatrixXd(x.rows(), 0), {}};
+  Split out{MatrixXd(x.rows(), 0), MatrixXd(x.rows(), 0), {}, 0};
   for (const Place& p : places(choices, member)) {
     if (p.column < 0) continue;
+    if (!p.shared) out.rank += p.rank;
     MatrixXd& to = p.shared ? out.shared : out.own;
     to.conservativeResize(Eigen::NoChange, to.cols() + p.count);
     to.rightCols(p.count) = x.middleCols(p.column, p.count);
@@ -102,9 +123,10 @@ JointSystem::Solution JointSystem::solve(const std::vector<Choice>& choices) con
     const VectorXd& y = r_.members[m].y;
     const Split part = split(choices, m);
     const MatrixXd oo = math::transposed_product(part.own, part.own);
-    if (!is_independent(oo, oo.diagonal())) out.sound = false;
+    auto [own_inverse, rank] = ranked_inverse(oo, oo.diagonal());
+    if (rank < part.rank) out.sound = false;
     if (!out.sound) return out;
-    inverse[m] = inverse_of(oo);
+    inverse[m] = std::move(own_inverse);
     with[m] = math::transposed_product(part.own, part.shared);
     const VectorXd oy = math::transposed_times(part.own, y);
     alone[m] = math::times(inverse[m], oy);
@@ -119,8 +141,8 @@ JointSystem::Solution JointSystem::solve(const std::vector<Choice>& choices) con
       for (std::size_t k = 0; k < part.at.size(); ++k)
         s(part.at[i], part.at[k]) += left(static_cast<Index>(i), static_cast<Index>(k));
     }
-    out.parameters += part.own.cols();
-    out.price += static_cast<double>(part.own.cols()) * std::log(r_.members[m].readings);
+    out.parameters += rank;
+    out.price += static_cast<double>(rank) * std::log(r_.members[m].readings);
   }
   out.sound = is_independent(s, before);
   if (!out.sound) return out;
@@ -178,7 +200,7 @@ JointSystem::Gains JointSystem::gains(const std::vector<Choice>& choices,
   struct Sums {
     MatrixXd bb, ba, right, of_own, right_of_own;
     VectorXd before, own;
-    bool any = false;
+    bool any = false, own_possible = true;
   };
   const Index n = shared_columns(choices), columns = y.front().cols();
   const auto blocks = r_.blocks.size();
@@ -199,7 +221,8 @@ JointSystem::Gains JointSystem::gains(const std::vector<Choice>& choices,
     // shared columns and readings, without the own columns
     MatrixXd all(member.y.size(), a + columns);
     all << part.shared, y[m];
-    const MatrixXd inverse = inverse_of(math::transposed_product(part.own, part.own));
+    const MatrixXd oo = math::transposed_product(part.own, part.own);
+    const MatrixXd inverse = ranked_inverse(oo, oo.diagonal()).inverse;
     if (o > 0)
       all -=
           math::product(part.own, math::product(inverse, math::transposed_product(part.own, all)));
@@ -225,11 +248,13 @@ JointSystem::Gains JointSystem::gains(const std::vector<Choice>& choices,
       sum.any = true;
       sum.bb += bb, sum.right += by, sum.before += member.own[b].diagonal();
       put(ba, sum.ba);
-      if (!is_independent(bb, member.own[b].diagonal())) continue;
-      const MatrixXd inner = inverse_of(bb), weighted = math::product(inner, by);
+      const auto [inner, rank] = ranked_inverse(bb, member.own[b].diagonal());
+      if (rank < member.rank[b]) sum.own_possible = false;
+      if (!sum.own_possible) continue;
+      const MatrixXd weighted = math::product(inner, by);
       sum.own += by.cwiseProduct(weighted).colwise().sum().transpose();
-      out.own_parameters[b] += k;
-      out.own_price[b] += static_cast<double>(k) * std::log(member.readings);
+      out.own_parameters[b] += rank;
+      out.own_price[b] += static_cast<double>(rank) * std::log(member.readings);
       if (a == 0) continue;
       const MatrixXd e = math::quadratic_form(inner, ba),
                      r = math::transposed_product(ba, weighted);
@@ -253,7 +278,7 @@ JointSystem::Gains JointSystem::gains(const std::vector<Choice>& choices,
     if (is_independent(bb, sum.before))
       out.shared.row(row) = quadratic(bb, sum.right - math::product(through, right)).transpose();
     const MatrixXd left = s - sum.of_own;
-    if (out.own_parameters[b] > 0 && is_independent(left, s.diagonal()))
+    if (sum.own_possible && out.own_parameters[b] > 0 && is_independent(left, s.diagonal()))
       out.own.row(row) = (sum.own + quadratic(left, right - sum.right_of_own) - base).transpose();
   }
   return out;

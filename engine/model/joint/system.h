@@ -12,6 +12,14 @@ struct Choice {
   std::size_t after = 0;  ///< for `changed`: the first member with the second value
 };
 
+/// Pseudo-inverse without the directions that the readings do not determine, and its rank.
+/// `before`: squared lengths of the columns before others were eliminated.
+struct RankedInverse {
+  MatrixXd inverse;
+  Index rank = 0;
+};
+RankedInverse ranked_inverse(const MatrixXd& left, const VectorXd& before);
+
 /// Normal equations of all members; columns of single members are eliminated member by member.
 class JointSystem {
  public:
@@ -55,13 +63,14 @@ class JointSystem {
  private:
   struct Place {  // index in a solution (`at`), and in x of a member (`column`)
     bool shared;
-    Index at, column, count;
+    Index at, column, count, rank;
   };
   std::vector<Place> places(const std::vector<Choice>& choices, std::size_t member) const;
   Index shared_columns(const std::vector<Choice>& choices) const;
   struct Split {
     MatrixXd own, shared;   // columns of one member: with own and with shared coefficients
     std::vector<Index> at;  // indices of these shared columns among those of all members
+    Index rank;             // number of independent ones of the own columns
   };
   Split split(const std::vector<Choice>& choices, std::size_t member) const;
 

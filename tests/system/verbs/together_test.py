@@ -93,6 +93,17 @@ class Together(unittest.TestCase):
             right += {"pitch-curve:X", "scale:X"} <= set(verdict["same"]) and not verdict["differs"]
         self.assertGreaterEqual(right, 2)
 
+    def test_another_part_of_the_travel_is_no_other_machine(self):
+        """A curve has other knots over another part of the travel, and a growth another middle: neither is a difference."""
+        for effect, size in (("pitch-curve:X", 6.0), ("growth-drift:X", 3.0), ("periodic:X", 1.0)):
+            right = 0
+            for n in range(3):
+                site = self.site / f"{effect[:-2]}{n}"
+                fleet.fleet(site, "shared", effect, size, 12, 0.0, self.rng, fleet.TRAVELS)
+                verdict = self.answer(site)["verdict"]
+                right += verdict["same"] == [effect] and not verdict["differs"]
+            self.assertGreaterEqual(right, 2, effect)
+
     def test_an_effect_that_appears(self):
         right = 0  # each decision errs in one of a hundred fleets by its level: in two of three fleets it may not
         for n in range(3):
