@@ -137,11 +137,35 @@ std::vector<Plan> cheapest(std::vector<Plan> plans) {
 
 }  // namespace
 
+namespace {
+
+/// Returns how well a further measurement separates an effect of the machine from the same error of
+/// the part.
+double from_part(const Part& part, const Further& f, const std::vector<Term>& model,
+                 const MatrixXd& columns, const VectorXd& value, double s) {
+  const MatrixXd of_part = as_error_of_part(part, f, columns);
+  Effect same;
+  same.info.name = "part";
+  same.linear.resize(static_cast<std::size_t>(of_part.cols()));
+  same.columns = [&](const Observations&, const Axis&,
+                     const std::vector<double>&) -> Expected<Effect::Columns> {
+    Effect::Columns out;
+    for (Index k = 0; k < of_part.cols(); ++k)
+      out.emplace_back(of_part.col(k).begin(), of_part.col(k).end());
+    return out;
+  };
+  same.instances = [](const Observations&) { return std::vector<std::string>{""}; };
+  return distance(f.table, model, columns * value, Term{&same, {}}, s);
+}
+
+}  // namespace
+
 std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
                             const Candidate& candidate, const std::vector<Term>& catalogue,
                             double s) {
   std::vector<Plan> plans;
-  if (candidate.aliases.empty() || !(s > 0.0)) return plans;
+  const bool parts_alike = is_of_parts_alike(part);
+  if ((candidate.aliases.empty() && !parts_alike) || !(s > 0.0)) return plans;
   VectorXd value(static_cast<Index>(candidate.parameters.size()));
   Index linear = 0;
   for (const Parameter& p : candidate.parameters)
@@ -153,16 +177,23 @@ std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
     const Observations& o = f.table;
     const auto columns = columns_of(o, candidate.term, candidate.term.shape);
     if (!columns || columns->cols() != linear) continue;
+    const std::vector<Term> known = with_further_part(model, f);
     Plan plan{f.id,      o.size() - part.table.size(), INFINITY, candidate.term.name(), "", f.of,
               f.duration};
+    const auto separates = [&](double d, const std::string& other) {
+      if (d < plan.power) plan.power = d, plan.other = other;
+    };
     for (const std::string& alias : candidate.aliases) {
       const auto other = std::find_if(catalogue.begin(), catalogue.end(),
                                       [&](const Term& t) { return t.name() == alias; });
       if (other == catalogue.end()) continue;
-      const double d = distance(o, model, *columns * value, *other, s);
-      if (d < plan.power) plan.power = d, plan.other = alias;
+      separates(distance(o, known, *columns * value, *other, s), alias);
     }
-    if (std::isfinite(plan.power)) plans.push_back(std::move(plan));
+    if (parts_alike)
+      separates(from_part(part, f, known, *columns, value, s), "part-" + candidate.term.name());
+    // The same part moved along an axis without effect on this error shows nothing new.
+    if (std::isfinite(plan.power) && !(parts_alike && plan.power < 1.0))
+      plans.push_back(std::move(plan));
   }
   return cheapest(std::move(plans));
 }

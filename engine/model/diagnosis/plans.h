@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "data/design.h"
 #include "nonio/model/explain.h"
 
 namespace nonio::model {
@@ -15,6 +16,9 @@ struct Further {
   std::string id, of;  ///< kind and object of the measurement, as `Plan::id` and `Plan::of`
   Observations table;
   std::optional<double> duration{};  ///< as `Plan::duration`
+  /// Rows of the part that is made once more, in the order of the added rows, and its name.
+  std::vector<std::size_t> again{};
+  std::string body{};
 };
 
 /// Repeats the last known values, because weights and columns need an entry for each reading.
@@ -25,6 +29,19 @@ std::vector<Further> further_runs(const Part& part, const Axis& axis);
 
 /// Returns tables with one additional measurement on a machine with several axes, or of a ball.
 std::vector<Further> further_in_space(const Part& part);
+
+/// Added to the names of the part that is made once more, and of its lines.
+inline constexpr const char* further_body = " (again)";
+/// Returns tables with one of the parts made once more: turned by 90 deg, or in another place.
+std::vector<Further> further_parts(const Part& part);
+/// Adds the unknowns of the set-up of the part that is made once more.
+std::vector<Term> with_further_part(std::vector<Term> model, const Further& further);
+/// Converts columns of an effect of the machine to those of the same error in the part, its fixture
+/// or the measuring machine: it moves with the part.
+MatrixXd as_error_of_part(const Part& part, const Further& further, MatrixXd columns);
+/// Whether parts were made without being turned against each other, so that their own errors are
+/// not separable from those of the machine.
+bool is_of_parts_alike(const Part& part);
 
 /// Measurements that would separate a candidate from its aliases. Power: the part of the candidate
 /// that no alias explains, in standard deviations `s` of a reading (m or rad). At most three: those

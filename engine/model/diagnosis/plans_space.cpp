@@ -159,6 +159,9 @@ std::vector<Further> further_in_space(const Part& part) {
     add_smaller_circle(part, out);
     return out;
   }
+  const auto& lines = part.table.lines;
+  if (std::any_of(lines.begin(), lines.end(), [](const auto& l) { return !l.body.empty(); }))
+    return further_parts(part);
   const Volume v = volume_of(part.table);
   add_straight_lines(part, v, out);
   add_other_lines(part, v, out);

@@ -102,6 +102,42 @@ class Part(unittest.TestCase):
         answer = self.explain(folder)
         self.assertEqual(answer["together"], ["part-straightness:EYX"])
 
+    def test_one_plate_has_a_plan_that_separates_machine_and_fixture(self):
+        for story, plans in (("squareness:XY", [("turned-part", None)]),
+                             ("pitch-curve:Y", [("turned-part", None), ("moved-part", "Y")]),
+                             ("straightness:EYX", [("turned-part", None), ("moved-part", "X")])):
+            with self.subTest(story):
+                folder = self.campaign(story.split(":")[0], story, parts=[("P1", 0)])
+                answer = self.explain(folder)
+                self.assertEqual([(p["plan"], p.get("of")) for p in answer["plans"]], plans)
+                for plan in answer["plans"]:
+                    self.assertEqual(plan["separates"], [story, f"part-{story}"])
+                    self.assertEqual(plan["readings"], 200)
+                    self.assertEqual(plan["duration_s"], 1800 + 100 * 60)
+                    self.assertGreater(plan["power"], 4.0)
+                self.assertIn("turned by 90 deg about its middle (200 readings, 130 min)", answer["next"][0])
+
+    def test_the_plan_does_what_it_predicts(self):
+        """With the plate that was planned, the same error of the fixture instead is named as such."""
+        size = 1.0
+        folder = self.campaign("one", "straightness:EYX", size=size, parts=[("P1", 0)])
+        plan = self.explain(folder)["plans"][0]
+        # RMS of the part of two plates that the wrong hypothesis does not explain, from its own fit of noiseless plates.
+        self.assertEqual(plan["plan"], "turned-part")
+        two = self.campaign("two", "straightness:EYX", size=size)
+        answer = self.explain(two)
+        self.assertEqual(answer["together"], ["straightness:EYX"])
+        candidate = next(c for c in answer["candidates"] if c["effect"] == "straightness:EYX")
+        self.assertNotIn("part-straightness:EYX", candidate["aliases"])
+        # Evidence is about the squared distance of the explanations, less the price of the curve.
+        self.assertAlmostEqual(plan["power"], size * math.sqrt(200), delta=0.35 * size * math.sqrt(200))
+
+    def test_no_room_for_another_place(self):
+        folder = self.campaign("a", "pitch-curve:Y", parts=[("P1", 0)])
+        manifest = folder / "campaign.toml"
+        manifest.write_text(manifest.read_text().replace("travel = [-500.0, 500.0]", "travel = [-260.0, 260.0]"))
+        self.assertEqual([p["plan"] for p in self.explain(folder)["plans"]], ["turned-part"])
+
     def test_fixture_and_machine_are_separated_by_turned_plates(self):
         def bent(x, y):
             return -30e-3 * y, 4.0 * (2.0 * x / plates.SIZE) ** 2
