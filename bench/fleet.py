@@ -108,7 +108,7 @@ def main():
                 done = subprocess.run([arguments.nonio, "model", "explain", folder, "--json", "--quiet"],
                                       stdout=subprocess.PIPE, text=True, check=True)
             answer = json.loads(done.stdout)
-            found = {e["effect"]: e for e in answer["effects"]}
+            found = {effect if effect in e["aliases"] else e["effect"]: e for e in answer["effects"]}  # "or the effect" is its name too
             named += effect in found and story != "none"
             wrong += bool(set(found) - ({effect} if story != "none" else set()))
             if story != "none" and effect in found:

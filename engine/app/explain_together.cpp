@@ -12,7 +12,9 @@
 #include "campaign/modelling/joint_model.h"
 #include "campaign/modelling/model_json.h"
 #include "campaign_verb.h"
+#include "laboratory/assessment/residuals.h"
 #include "nonio/sdk/format.h"
+#include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
 #include "tables.h"
@@ -72,6 +74,8 @@ class ExplainTogether {
     const modelling::ModelWords words(context.templates,
                                       common_.json ? "en" : context.site.language);
     const auto document = modelling::together_json(*found, words, seed_, left_out, errors_);
+    if (!options_.page.empty())
+      if (const auto put = write_page(*found, words); !put) return complain(text_of(put.error()));
     if (common_.json)
       std::cout << storage::dump(document);
     else
@@ -83,6 +87,14 @@ class ExplainTogether {
   }
 
  private:
+  Expected<void> write_page(const std::vector<modelling::Together>& found,
+                            const modelling::ModelWords& words) const {
+    NONIO_TRY(auto text, assessment::residuals_page(found, place_->context.templates,
+                                                    words.terminal().language()));
+    const fs::path path = fs::absolute(options_.page);
+    return storage::publish(path.parent_path(), {{path.filename().string(), std::move(text)}});
+  }
+
   void progress(const std::string& text) const {
     if (!common_.quiet) complain(text);
   }

@@ -12,6 +12,7 @@ namespace nonio::app {
 struct TogetherOptions {
   std::vector<std::string> folders;  ///< campaigns, or folders that contain campaigns
   std::string machine;               ///< asset, serial number or model; empty for every machine
+  std::string page;                  ///< file for a page with the residuals; empty: none
   std::string since, until;          ///< closed interval of dates, YYYY-MM-DD; empty if unlimited
 };
 

@@ -166,6 +166,7 @@ int explain(ExplainOptions& options, const Common& common) {
       if (given) return complain(std::string(name) + " is for one campaign; found several");
     return explain_together(options.together, common, options.seed);
   }
+  if (!options.together.page.empty()) return complain("--page is for several campaigns; found one");
   options.folder = options.together.folders.front();
   return Explain(options, common).run();
 }
@@ -189,6 +190,10 @@ Verb explain_verb(Common& common) {
            day({"--since", &options->together.since,
                 "Of several campaigns those from this day on (YYYY-MM-DD)"}),
            day({"--until", &options->together.until, "Of several campaigns those up to this day"}),
+           takes(Argument::Takes::file,
+                 {"--page", &options->together.page,
+                  "Of several campaigns: also write a page with the residuals of all of them over "
+                  "position, time, temperature and order"}),
            {"--all", &options->all, "Every candidate, and why an effect could not be tested"},
            {"--library", &options->library,
             "Accepted and without effect: the library of causes is always searched"},

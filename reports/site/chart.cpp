@@ -383,4 +383,55 @@ Html comparison_chart(const Page& page, const ModelComparison& comparison) {
   return picture(page, comparison.model + ' ' + comparison.axis, plot, "names");
 }
 
+namespace {
+
+/// Means over bins of equal width that have enough readings.
+Curve means_of(const std::vector<double>& x, const std::vector<double>& y) {
+  constexpr std::size_t bins = 24, fewest = 5;
+  Curve out{.x = {}, .y = {}, .colour = ink::text, .width = 1.6};
+  const auto [low, high] = std::minmax_element(x.begin(), x.end());
+  if (low == x.end() || !(*high > *low)) return out;
+  std::array<double, bins> sum{}, at{}, n{};
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const auto bin = std::min(
+        static_cast<std::size_t>((x[i] - *low) / (*high - *low) * static_cast<double>(bins)),
+        bins - 1);
+    sum[bin] += y[i], at[bin] += x[i], ++n[bin];
+  }
+  for (std::size_t b = 0; b < bins; ++b)
+    if (n[b] >= static_cast<double>(fewest))
+      out.x.push_back(at[b] / n[b]), out.y.push_back(sum[b] / n[b]);
+  return out;
+}
+
+}  // namespace
+
+Html residuals_chart(const Page& page, const JointResiduals& part,
+                     const std::vector<std::size_t>& rows, const std::vector<double>& across,
+                     const std::string& heading, const std::string& title) {
+  const Quantity q = deviation_of(part.angular);
+  Plot plot;
+  plot.language = page.words.language();
+  plot.x_title = title;
+  plot.y_title = page.words.get("picture.residual", {{"unit", unit_text(q)}});
+  const double two_s = 2.0 * scaled(part.noise, q);
+  if (two_s > 0.0) plot.belts.push_back({-two_s, two_s, ink::cone});
+  std::vector<double> x, y;
+  std::vector<Curve> of(part.campaigns.size());
+  for (const std::size_t i : rows) {
+    if (!std::isfinite(across[i])) continue;
+    x.push_back(across[i]), y.push_back(scaled(part.residual[i], q));
+    of[part.campaign[i]].x.push_back(x.back()), of[part.campaign[i]].y.push_back(y.back());
+  }
+  for (std::size_t c = 0; c < of.size(); ++c) {
+    if (of[c].x.empty()) continue;
+    of[c].kind = Curve::Kind::points, of[c].marker = Marker::dot, of[c].marker_size = 3.0;
+    of[c].colour = c + 1 == of.size() ? ink::measured : ink::earlier;
+    of[c].titles = {part.campaigns[c]};
+    plot.curves.push_back(std::move(of[c]));
+  }
+  plot.curves.push_back(means_of(x, y));
+  return picture(page, part.name + ": " + heading, plot, "");
+}
+
 }  // namespace nonio::reports::site

@@ -23,4 +23,10 @@ Html difference_chart(const Page&, const MachineHistory&, const std::string& axi
 /// Values of machines of the same model, side by side.
 Html comparison_chart(const Page&, const ModelComparison&);
 
+/// Residuals of several campaigns, the last one colored, with their means and twice the noise;
+/// `rows` of the values are drawn.
+Html residuals_chart(const Page&, const JointResiduals&, const std::vector<std::size_t>& rows,
+                     const std::vector<double>& across, const std::string& heading,
+                     const std::string& title);
+
 }  // namespace nonio::reports::site

@@ -387,7 +387,10 @@ class JointSearch {
       before.push_back(member.y);
       one.rms = member.s * std::sqrt(member.y.squaredNorm() / member.readings);
       one.rms_after = member.s * std::sqrt(left[m].squaredNorm() / member.readings);
-      out.campaigns.push_back(one);
+      for (Index i = 0; i < left[m].size(); ++i)
+        one.residual.push_back(member.scale(i) > 0.0 ? left[m](i) * member.scale(i)
+                                                     : std::numeric_limits<double>::quiet_NaN());
+      out.campaigns.push_back(std::move(one));
     }
     out.rms = rms_of(before);
     out.rms_after = rms_of(left);

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """`nonio model explain` of several campaigns together: effects below the noise of each, by which campaigns they have."""
+import base64
+import hashlib
 import json
 import math
 import os
 import pathlib
 import random
+import re
 import shutil
 import subprocess
 import sys
@@ -220,6 +223,32 @@ class Together(unittest.TestCase):
         self.replace(manifests[4:], 'axis = "X"\n', 'axis = "X"\nside = "slave"\n')
         each = {part["part"]: [c["campaign"] for c in part["campaigns"]] for part in self.answer()["parts"]}
         self.assertEqual(each, {"X master": ["c0001", "c0002", "c0003"], "X slave": ["c0001", "c0004", "c0005"]})
+
+    def test_the_page_shows_all_residuals_over_four_axes(self):
+        fleet.fleet(self.site, "shared", "backlash:X", 2.0, 5, 0.0, random.Random(3))
+        for campaign in self.site.iterdir():  # temperatures in four of five
+            file, warm = campaign / "x.csv", campaign.name != "c0002"
+            head, *rows = file.read_text().splitlines()
+            file.write_text("\n".join([head + ",material_c"] + [f"{row},{20 + 0.01 * i if warm else ''}" for i, row in enumerate(rows)]) + "\n")
+        page = self.site.parent / "residuals.html"
+        answer = self.answer(self.site, "--page", page)
+        text = page.read_text()
+        charts = text.split('<svg class="chart"')[1:]
+        axes = [re.search('data-x="([^"]*)"', chart).group(1) for chart in charts]
+        self.assertEqual(axes, ["Position of X / mm", "Time from the first reading / min", "Material temperature / °C",
+                                "Number of the reading, campaigns in order of date"])
+        for axis, chart in zip(axes, charts):
+            with_readings = [f"c{n:04d}" for n in range(5) if n != 2 or "temperature" not in axis]
+            self.assertEqual(re.findall(r"<title>(c\d{4}) \(20\d\d-\d\d-05\)</title>", chart), with_readings)
+        self.assertIn("1050 readings of 5 campaigns (1050 drawn)", text)
+        script = re.search("<script>(.*?)</script>", text, re.S).group(1)
+        self.assertIn("sha256-" + base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(), text)
+        self.assertNotIn("http://", text.replace("http://www.w3.org", ""))
+        # The frame of the chart contains the residuals: the largest is some 3.5 times the noise, not the effect.
+        low, high = map(float, re.search('data-frame="([^"]*)"', charts[0]).group(1).split()[-2:])
+        self.assertTrue(2.5 * answer["noise_floor_um"] < high < 6 * answer["noise_floor_um"], (low, high))
+        done = explain(self.site / "c0000", "--page", page, status=2)
+        self.assertIn("--page is for several campaigns", done.stderr)
 
     def test_screens_and_refusals(self):
         fleet.fleet(self.site, "shared", "backlash:X", 1.0, 3, 0.0, self.rng)

@@ -55,6 +55,7 @@ struct JointExplanation {
     std::size_t readings = 0;
     double rms = 0.0, rms_after = 0.0;
     std::optional<NoiseFloor> floor;
+    std::vector<double> residual{};  ///< of each reading with the named effects; NaN if not used
   };
   std::vector<Campaign> campaigns;
   std::vector<JointEffect> candidates;  ///< each as the only addition, the best first

@@ -192,4 +192,19 @@ Expected<Artifact> machine_page_of(const SiteHistory& site, const MachineHistory
 Expected<std::vector<Artifact>> site_pages(const SiteHistory&, const Templates&,
                                            const std::string& language);
 
+/// Residuals of one axis in several campaigns, in order of date; one entry per reading, SI and
+/// degC. NaN: not known, or a reading that is not used.
+struct JointResiduals {
+  std::string name, axis;
+  bool rotary = false, angular = false;
+  double noise = 0.0;  ///< standard deviation of a reading, m or rad
+  std::vector<std::string> campaigns;
+  std::vector<std::uint32_t> campaign;  ///< index of the campaign of each reading
+  std::vector<double> position, time, temperature, residual;
+};
+
+/// A page of its own with the residuals over position, time, temperature and order.
+Expected<std::string> residuals_page(const std::vector<JointResiduals>&, const Templates&,
+                                     const std::string& language);
+
 }  // namespace nonio::reports

@@ -1,0 +1,1 @@
+const nonioWords = JSON.parse(document.getElementById("words").textContent);
