@@ -10,6 +10,7 @@
 #include "campaign/config/machines.h"
 #include "campaign/modelling/held_terms.h"
 #include "campaign/modelling/model_json.h"
+#include "campaign/modelling/priors_json.h"
 #include "nonio/math/distributions.h"
 #include "nonio/sdk/format.h"
 

@@ -36,10 +36,6 @@ Json explain_json(const std::vector<Explained>& all, const Campaign& campaign,
                   const std::vector<std::string>& warnings, const std::vector<Error>& errors);
 Json change_json(const Change& change, const Campaign& campaign, const ModelWords& words);
 Json plan_json(const model::Plan& plan, const ModelWords& words);
-/// Adds "priors", the counts of the search, if it used any, and to a candidate its own "prior".
-void put_priors(Json& part, const config::Priors& priors, const ModelWords& words);
-void put_prior(Json& candidate, const std::string& effect, double weight,
-               const config::Priors& priors, const ModelWords& words);
 Json steps_json(const std::vector<ModelStep>& steps);
 /// Returns `parts`; without this member, a list of the document itself.
 Json parts_of(const Json& document);
