@@ -69,19 +69,35 @@ void append(Observations& o, const Course& course, double interval) {
   fill_measured(o);
 }
 
+/// Fits the prediction of one effect with other effects.
+Expected<Fit> imitate(Observations imagined, const VectorXd& said, const std::vector<Term>& terms) {
+  imagined.deviation.assign(said.data(),
+                            said.data() + static_cast<std::ptrdiff_t>(imagined.size()));
+  return fit(imagined, terms);
+}
+
+double squares(const Fit& fit) {
+  return fit.rms * fit.rms * static_cast<double>(fit.residual.size());
+}
+
 /// Distance, in standard deviations, from the prediction of one effect to the nearest prediction
-/// with `other`, whose shapes are searched; 0 if this fit fails.
-double distance(const Observations& o, const std::vector<Term>& model, const VectorXd& said,
-                const Term& other, double s) {
-  Observations imagined = o;
-  imagined.deviation.assign(said.data(), said.data() + said.size());
+/// with `other`, as far as the planned readings add to that of the present ones, which precede them
+/// in `said`. Shapes of `other` are searched for the present readings and for all; 0 if a fit fails.
+double distance(const Observations& present, const Further& planned, const std::vector<Term>& model,
+                const VectorXd& said, const Term& other, double s) {
   std::vector<Term> terms = model;
-  Term free = other;
-  free.shape.clear();
-  terms.push_back(free);
-  const auto fitted = fit(imagined, terms);
-  if (!fitted) return 0.0;
-  return std::sqrt(std::max(fitted->rms * fitted->rms * static_cast<double>(o.size()), 0.0)) / s;
+  terms.push_back(other);
+  terms.back().shape.clear();
+  const auto before = imitate(present, said, terms);
+  if (!before) return 0.0;
+  const auto after_plan = [&](std::vector<Term> all) {
+    all.insert(all.end(), planned.set_up.begin(), planned.set_up.end());
+    return imitate(planned.table, said, all);
+  };
+  const auto searched = after_plan(terms), same = after_plan(before->terms);
+  if (!searched || !same) return 0.0;
+  const double after = std::min(squares(*searched), squares(*same));
+  return std::sqrt(std::max(after - squares(*before), 0.0)) / s;
 }
 
 std::vector<Course> courses_of(const Observations& o, const AxisReadings& r) {
@@ -159,7 +175,7 @@ std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
       const auto other = std::find_if(catalogue.begin(), catalogue.end(),
                                       [&](const Term& t) { return t.name() == alias; });
       if (other == catalogue.end()) continue;
-      const double d = distance(o, model, *columns * value, *other, s);
+      const double d = distance(part.table, f, model, *columns * value, *other, s);
       if (d < plan.power) plan.power = d, plan.other = alias;
     }
     if (std::isfinite(plan.power)) plans.push_back(std::move(plan));
@@ -180,8 +196,8 @@ std::vector<Plan> plans_for_pair(const Part& part, const std::vector<Term>& mode
       if (!columns || at + static_cast<std::size_t>(columns->cols()) > value.size()) return plans;
       for (Index k = 0; k < columns->cols(); ++k) said += value[at++] * columns->col(k);
     }
-    const double power = std::min(distance(f.table, model, said, pair[0], s),
-                                  distance(f.table, model, said, pair[1], s));
+    const double power = std::min(distance(part.table, f, model, said, pair[0], s),
+                                  distance(part.table, f, model, said, pair[1], s));
     plans.push_back({f.id, f.table.size() - part.table.size(), power, pair[0].name(),
                      pair[1].name(), f.of, f.duration});
   }

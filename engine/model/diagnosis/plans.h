@@ -15,6 +15,7 @@ struct Further {
   std::string id, of;  ///< kind and object of the measurement, as `Plan::id` and `Plan::of`
   Observations table;
   std::optional<double> duration{};  ///< as `Plan::duration`
+  std::vector<Term> set_up{};        ///< unknowns that only the planned measurement has
 };
 
 /// Repeats the last known values, because weights and columns need an entry for each reading.
@@ -26,8 +27,9 @@ std::vector<Further> further_runs(const Part& part, const Axis& axis);
 /// Returns tables with one additional measurement on a machine with several axes, or of a ball.
 std::vector<Further> further_in_space(const Part& part);
 
-/// Measurements that would separate a candidate from its aliases. Power: the part of the candidate
-/// that no alias explains, in standard deviations `s` of a reading (m or rad). At most three: those
+/// Measurements that would separate a candidate from its aliases. `model`: the other effects of the
+/// explanation, which are fitted too. Power: the part of the candidate in the planned readings that
+/// no alias explains, in standard deviations `s` of a reading (m or rad). At most three: those
 /// with a power of four by increasing number of readings, then the others by decreasing power.
 std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
                             const Candidate& candidate, const std::vector<Term>& catalogue,
