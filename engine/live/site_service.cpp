@@ -169,14 +169,14 @@ Answer SiteService::answer(const Request& request) {
   if (request.route.open) return shell_file(request, path == "/" ? shells_.site : shells_.campaign);
   if (wish_.user_header.empty() && !wish_.sign_in) {
     // users.toml was added after the start, so requests without a user are rejected
-    return certificates::has_users(wish_.folder) ? refused(503, "users_new")
-                                                 : answer_to(request, nullptr);
+    if (certificates::has_users(wish_.folder)) return refused(503, "users_new");
+    return request.route.writes ? recorded(request, nullptr, true) : answer_to(request, nullptr);
   }
   const auto user = user_of(request.head);
   if (!user) return user.error();
   if (path == "/api/sign-out") return end_session(request, *user);
   const bool may = user->role >= needed(request.route);
-  if (request.route.writes || !may) return recorded(request, *user, may);
+  if (request.route.writes || !may) return recorded(request, &*user, may);
   Request of_user = request;
   of_user.may_write = user->role >= Role::measure;
   Answer out = answer_to(of_user, &*user);
@@ -185,12 +185,11 @@ Answer SiteService::answer(const Request& request) {
 }
 
 /// Records the request in the audit log and carries it out if `may`. A request that cannot be
-/// recorded is rejected.
-Answer SiteService::recorded(const Request& request, const User& user, bool may) {
+/// recorded is rejected. Without users, the entry has no account.
+Answer SiteService::recorded(const Request& request, const User* user, bool may) {
   const std::string& path = request.route.path;
-  Json entry = {{"account", user.account},
-                {"name", user.name},
-                {"request", request.head.target.substr(0, request.head.target.find('?'))}};
+  Json entry = {{"request", request.head.target.substr(0, request.head.target.find('?'))}};
+  if (user != nullptr) entry.update({{"account", user->account}, {"name", user->name}});
   const Json body = storage::parse_once(request.body);
   const auto add = [&entry](const Json& from, std::initializer_list<const char*> names) {
     constexpr std::size_t longest = 500;
@@ -205,8 +204,8 @@ Answer SiteService::recorded(const Request& request, const User& user, bool may)
   // The request is recorded before it is carried out.
   entry["state"] = may ? "begins" : "refused";
   if (!audit_.write(entry)) return refused(503, "audit");
-  if (!may) return refused(403, "role", {{"role", certificates::to_text(user.role)}});
-  Answer out = answer_to(request, &user);
+  if (!may) return refused(403, "role", {{"role", certificates::to_text(user->role)}});
+  Answer out = answer_to(request, user);
   const Json said = storage::parse_or_discard(out.body);
   const std::string result = said.is_object() && said.contains("state") && said["state"].is_string()
                                  ? said["state"].get<std::string>()

@@ -73,7 +73,7 @@ class SiteService : public Starting {
   void add_routes();
   using User = certificates::User;
   Answer answer_to(const Request& request, const User* user);
-  Answer recorded(const Request& request, const User& user, bool may);
+  Answer recorded(const Request& request, const User* user, bool may);
   tl::expected<User, Answer> user_of(const Head& head);
   Answer begin_session(const Request& request);
   Answer end_session(const Request& request, const User& user);

@@ -66,7 +66,7 @@ std::vector<CandidateRow> candidate_rows(const ModelFit& fit, const std::string&
 std::string no_sign(const ModelFit& fit, const Templates& templates, const std::string& language) {
   std::string text;
   for (const Finding& f : fit.no_sign)
-    text += (text.empty() ? "" : ", ") + finding_text(templates, language, f, "says");
+    text += (text.empty() ? "" : "; ") + finding_text(templates, language, f, "says");
   return text.empty() ? text : typeset(text + ".");
 }
 

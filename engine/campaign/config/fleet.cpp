@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// docs/dev/constants.md, M55.
+// docs/dev/constants.md, M56.
 constexpr std::size_t fewest_of_model = 10;
 constexpr double campaigns_assumed = 10.0, finds_assumed = 1.0;
 

@@ -164,6 +164,12 @@ Check counts(Checked<std::vector<T>> (*parse)(std::string_view, const std::strin
 
 }  // namespace
 
+bool Event::concerns(const std::string& of) const {
+  if (axis.empty() || of.empty() || axis == of) return true;
+  return of.starts_with(axis) &&
+         of.find_first_not_of("0123456789", axis.size()) == std::string::npos;
+}
+
 template <class Entry>
 void check_entry(TableReader& reader, Entry& entry) {
   entry.line = reader.line();

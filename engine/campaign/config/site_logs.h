@@ -23,6 +23,9 @@ bool is_site_part(std::string_view path);
 struct Event {
   std::string date, machine, axis, kind, text, by;  ///< `axis` is empty for the whole machine
   std::uint64_t line = 0;
+  /// Whether it concerns the axis; empty: the whole machine. An event of X concerns the sides X1
+  /// and X2 of a gantry.
+  bool concerns(const std::string& of) const;
 };
 
 struct Acknowledgement {

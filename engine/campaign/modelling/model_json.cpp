@@ -443,6 +443,10 @@ storage::Json explained_json(const Explained& e, const Campaign& campaign,
   storage::Json cancelling = storage::Json::array();
   for (const auto& pair : x.cancelling) cancelling.push_back({pair.first, pair.second});
   json["cancelling"] = std::move(cancelling);
+  storage::Json replaceable = storage::Json::array();
+  for (const model::Replaceable& r : x.replaceable)
+    replaceable.push_back({{"effect", r.effect}, {"by", r.by}});
+  json["replaceable"] = std::move(replaceable);
   storage::Json descriptions = storage::Json::array();
   for (const model::Description& d : x.descriptions) {
     storage::Json one = {{"effect", d.term.name()}};

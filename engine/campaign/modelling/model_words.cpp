@@ -102,16 +102,47 @@ Finding false_alarms_finding(const model::Verdict& v) {
           .evidence = {{"times", std::round(1.0 / share), Quantity::count}}};
 }
 
+namespace {
+
+// docs/dev/constants.md, M54.
+// detectable size of an effect that the readings do not determine, in standard deviations
+constexpr double undetermined_above = 10.0;
+
+/// Whether the effect explains the readings as well as one of the model or of the best explanation.
+bool replaces_another(const model::Explanation& e, const model::Candidate& c) {
+  const auto names = [&](const std::vector<std::string>& all) {
+    return std::find(all.begin(), all.end(), c.term.name()) != all.end();
+  };
+  return std::any_of(e.replaceable.begin(), e.replaceable.end(),
+                     [&](const model::Replaceable& r) { return names(r.by); }) ||
+         std::any_of(e.candidates.begin(), e.candidates.end(), [&](const model::Candidate& member) {
+           return std::find(e.together.begin(), e.together.end(), member.term.name()) !=
+                      e.together.end() &&
+                  names(member.aliases);
+         });
+}
+
+}  // namespace
+
 std::vector<Finding> no_sign_findings(const model::Explanation& e, const PartModel& part) {
   std::vector<Finding> out;
   // The detection limit of displacements over time is not known.
   if (part.part.kind == model::Part::Kind::course) return out;
+  std::vector<std::string> undetermined;
   for (const model::Candidate& c : e.candidates) {
     if (!is_ranked(c) || c.score > 0.0) continue;
+    if (replaces_another(e, c) || c.minimal_detectable > undetermined_above * e.comparison.fit.s) {
+      undetermined.push_back(c.term.name());
+      continue;
+    }
     out.push_back({.id = out.empty() ? "no-sign.first" : "no-sign.other",
                    .evidence = {{"size", c.minimal_detectable, part.deviation()}},
                    .texts = {{"effect", c.term.name()}}});
   }
+  if (!undetermined.empty())
+    out.push_back({.id = out.empty() ? "no-sign.undetermined-first" : "no-sign.undetermined",
+                   .evidence = {},
+                   .texts = {{"effects", storage::listed(undetermined)}}});
   return out;
 }
 
@@ -370,6 +401,11 @@ std::string ModelWords::verdict(const model::Explanation& e, const PartModel& pa
   if (e.one_growth && e.verdict.kind == Kind::missing)
     text += " " + says("one-growth", {{"at", e.one_growth->at, Quantity::length}},
                        {{"growth", e.one_growth->growth}, {"drift", e.one_growth->drift}});
+  std::string replaceable;
+  for (const model::Replaceable& r : e.replaceable)
+    replaceable +=
+        (replaceable.empty() ? "" : ", ") + r.effect + " (" + storage::listed(r.by) + ")";
+  if (!replaceable.empty()) text += " " + says("replaceable", {}, {{"effects", replaceable}});
   if (e.verdict.kind != Kind::unknown) return text;
   for (const model::Statement& s : e.statements) text += " " + statement(s, part.deviation());
   for (const auto& [one, other] : e.cancelling) text += " " + cancelling(one, other);
@@ -440,7 +476,7 @@ std::string ModelWords::plan(const model::Plan& plan) const {
 std::string ModelWords::no_sign(const model::Explanation& e, const PartModel& part) const {
   std::string text;
   for (const Finding& f : no_sign_findings(e, part))
-    text += (text.empty() ? "" : ", ") + finding_text(templates_, language_, f, "says");
+    text += (text.empty() ? "" : "; ") + finding_text(templates_, language_, f, "says");
   return text.empty() ? text : text + ".";
 }
 

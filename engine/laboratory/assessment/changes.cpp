@@ -162,6 +162,7 @@ Learned learn(const std::vector<const Lesson*>& lessons) {
       if (lesson->slope) slopes.push_back(*lesson->slope);
       ratios.insert(ratios.end(), lesson->ratios.begin(), lesson->ratios.end());
     }
+    of.p = kernel::p_of_ratios(ratios);
     of.excess = std::round(kernel::excess_of_ratios(std::move(ratios)) / excess_step) * excess_step;
     for (kernel::Slope& slope : slopes) slope.u *= of.excess;
     if (const double spread = kernel::spread_of_slopes(slopes); spread > 0.0)

@@ -24,6 +24,7 @@ inline constexpr double declared_below = 0.01;
 struct OfQuantity {
   double excess = 1.0;  ///< factor from the stated u to the scatter of campaigns
   double spread = 0.0;  ///< standard deviation of the slopes, printed unit per year
+  double p = 1.0;       ///< of the scatter, if the stated u were right (statistics::p_of_ratios)
 };
 
 /// Scatter and slope of one series, from which the statistics of the laboratory are estimated.

@@ -13,7 +13,7 @@ using storage::Json;
 
 namespace {
 
-// Smallest root mean square of the parameters, in u: docs/dev/constants.md, M55.
+// Smallest root mean square of the parameters, in u: docs/dev/constants.md, M56.
 constexpr double significant = 3.0;
 
 struct Size {

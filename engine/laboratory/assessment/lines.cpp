@@ -176,8 +176,10 @@ std::vector<WorkItem> of_site(const Known& known) {
   }
   std::string scatter;
   double most = 1.0;
+  const double below =
+      declared_below / static_cast<double>(std::max<std::size_t>(1, known.learned.size()));
   for (const auto& [quantity, of] : known.learned)
-    if (of.excess > 1.2) {
+    if (of.excess > 1.2 && of.p < below) {
       const std::string name = quantity.substr(0, quantity.find(' '));
       scatter += (scatter.empty() ? "" : ", ") + name;
       most = std::max(most, of.excess);

@@ -134,7 +134,7 @@ class OfMachine {
   bool is_repaired(const std::string& axis, const std::string& after) const {
     return std::any_of(m_.events.begin(), m_.events.end(), [&](const config::Event& e) {
       return (e.kind == "repair" || e.kind == "compensation") && e.date > after &&
-             e.date <= last_run_.date && (e.axis.empty() || axis.empty() || e.axis == axis);
+             e.date <= last_run_.date && e.concerns(axis);
     });
   }
 
@@ -400,7 +400,7 @@ class OfMachine {
     return std::any_of(m_.events.begin(), m_.events.end(),
                        [&](const config::Event& e) {
                          return e.kind == "compensation" && e.date >= t.after &&
-                                e.date <= t.before && (e.axis.empty() || e.axis == t.axis);
+                                e.date <= t.before && e.concerns(t.axis);
                        }) ||
            std::any_of(m_.stored.results.begin(), m_.stored.results.end(), [&](const auto& r) {
              return r.axis == t.axis && r.state == "as-left" &&

@@ -111,7 +111,7 @@ bool before(const StoredMachine& m, std::size_t a, std::size_t b) {
 }
 
 bool concerns(const config::Event& e, const FollowedSeries& s) {
-  if (e.axis.empty() || s.axis.empty() || e.axis == s.axis) return true;
+  if (e.concerns(s.axis)) return true;
   const auto colon = s.quantity.find(':');  // squareness:XY refers to X and Y
   return colon != std::string::npos &&
          s.quantity.substr(colon + 1).substr(0, s.quantity.find('.', colon)).find(e.axis) !=

@@ -6,6 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "laboratory/statistics/gls.h"
+
 namespace nonio::statistics {
 namespace {
 
@@ -77,6 +79,15 @@ double excess_of_ratios(std::vector<double> ratios) {
   const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
   std::nth_element(ratios.begin(), middle, ratios.end());
   return std::max(1.0, std::sqrt(*middle / median_of_chi2));
+}
+
+double p_of_ratios(const std::vector<double>& ratios) {
+  if (ratios.empty()) return 1.0;
+  constexpr double overdispersion = 1.5;
+  const auto n = static_cast<double>(ratios.size());
+  const auto above = static_cast<double>(std::count_if(
+      ratios.begin(), ratios.end(), [](double ratio) { return ratio > median_of_chi2; }));
+  return normal_upper((above - 0.5 - 0.5 * n) / std::sqrt(0.25 * overdispersion * n));
 }
 
 }  // namespace nonio::statistics

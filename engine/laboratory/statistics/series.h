@@ -72,6 +72,10 @@ std::vector<Scatter> scatter_of(const Series&);
 /// ratios over 0.4549, the median of chi-square with 1 degree of freedom. At least 1; 1 for fewer
 /// than 20 ratios. Steps in few series hardly affect the median.
 double excess_of_ratios(std::vector<double> ratios);
+/// Returns the probability that noise of the stated u has at least this many ratios above 0.4549.
+/// The variance of their number is taken as 1.5 times binomial, because ratios of neighbors are
+/// correlated (1.43 for long series of equal u and interval).
+double p_of_ratios(const std::vector<double>& ratios);
 
 /// Slope per year, fitted with a step at each declared event and at each point where a step is
 /// significant at 1 in 10,000. std::nullopt for fewer than four points or if the slope is not

@@ -231,7 +231,7 @@ void put_residuals(RotaryFit& fit, std::span<const BallCentre> centres, const Pl
     fit.axial.push_back(sense.sign * p.flat(k, 2));
     fit.tangential.push_back(c.radius * sense.sign *
                              wrapped(at - sense.sign * centres[i].angle - sense.zero));
-    around.push_back(sense.sign * at);
+    around.push_back(sense.sign * (at - sense.zero));
     const double t = use_angles ? fit.tangential.back() : 0.0;
     sum += p.weight[k] * (std::pow(fit.radial.back(), 2) + std::pow(fit.axial.back(), 2) + t * t);
   }

@@ -11,9 +11,11 @@
 
 #include "course/course.h"
 #include "data/thin.h"
+#include "diagnosis/plans.h"
 #include "fit/compare.h"
 #include "nonio/math/distributions.h"
 #include "nonio/sdk/axis_readings.h"
+#include "plans.h"
 #include "search/candidates.h"
 #include "search/finding.h"
 #include "verdict.h"
@@ -275,6 +277,23 @@ void describe(const Finding& finding, const std::vector<Term>& catalogue, Explan
   out.descriptions = described(finding, certain_terms(out));
 }
 
+/// Plans a measurement that separates the first replaceable effect of the model.
+void plan_for_replaceable(const Finding& f, Explanation& out) {
+  if (out.replaceable.empty()) return;
+  const Replaceable& first = out.replaceable.front();
+  Candidate member;
+  std::vector<Term> others;
+  for (const Term& term : f.of_best.fit.terms)
+    if (term.name() == first.effect)
+      member.term = term;
+    else
+      others.push_back(term);
+  member.aliases = first.by;
+  for (const Parameter& p : f.of_best.fit.parameters)
+    if (p.effect == first.effect) member.parameters.push_back(p);
+  out.plans = plans_for(f.part, others, member, f.terms, f.of_best.fit.s);
+}
+
 Expected<Explanation> explain_all(const Part& part, const std::vector<Term>& model,
                                   const std::vector<Term>& catalogue, std::uint64_t seed,
                                   const Ground& ground) {
@@ -288,6 +307,10 @@ Expected<Explanation> explain_all(const Part& part, const std::vector<Term>& mod
   out.best_rms = finding->of_best.fit.rms;
   const double rms = rms_with(finding->part.table, finding->of_model.fit.terms, ground.weight);
   judge(*finding, std::isfinite(rms) ? rms : finding->of_model.fit.rms, out);
+  if (out.verdict.kind == Verdict::Kind::nothing) {
+    out.replaceable = replaceable_in(*finding, ground);
+    plan_for_replaceable(*finding, out);
+  }
   if (out.verdict.kind == Verdict::Kind::unknown) {
     describe(*finding, catalogue, out);
     out.statements = statements_of(*finding);

@@ -69,19 +69,35 @@ void append(Observations& o, const Course& course, double interval) {
   fill_measured(o);
 }
 
+/// Fits the prediction of one effect with other effects.
+Expected<Fit> imitate(Observations imagined, const VectorXd& said, const std::vector<Term>& terms) {
+  imagined.deviation.assign(said.data(),
+                            said.data() + static_cast<std::ptrdiff_t>(imagined.size()));
+  return fit(imagined, terms);
+}
+
+double squares(const Fit& fit) {
+  return fit.rms * fit.rms * static_cast<double>(fit.residual.size());
+}
+
 /// Distance, in standard deviations, from the prediction of one effect to the nearest prediction
-/// with `other`, whose shapes are searched; 0 if this fit fails.
-double distance(const Observations& o, const std::vector<Term>& model, const VectorXd& said,
-                const Term& other, double s) {
-  Observations imagined = o;
-  imagined.deviation.assign(said.data(), said.data() + said.size());
+/// with `other`, as far as the planned readings add to that of the present ones, which precede them
+/// in `said`. Shapes of `other` are searched for the present readings and for all; 0 if a fit fails.
+double distance(const Observations& present, const Further& planned, const std::vector<Term>& model,
+                const VectorXd& said, const Term& other, double s) {
   std::vector<Term> terms = model;
-  Term free = other;
-  free.shape.clear();
-  terms.push_back(free);
-  const auto fitted = fit(imagined, terms);
-  if (!fitted) return 0.0;
-  return std::sqrt(std::max(fitted->rms * fitted->rms * static_cast<double>(o.size()), 0.0)) / s;
+  terms.push_back(other);
+  terms.back().shape.clear();
+  const auto before = imitate(present, said, terms);
+  if (!before) return 0.0;
+  const auto after_plan = [&](std::vector<Term> all) {
+    all.insert(all.end(), planned.set_up.begin(), planned.set_up.end());
+    return imitate(planned.table, said, all);
+  };
+  const auto searched = after_plan(terms), same = after_plan(before->terms);
+  if (!searched || !same) return 0.0;
+  const double after = std::min(squares(*searched), squares(*same));
+  return std::sqrt(std::max(after - squares(*before), 0.0)) / s;
 }
 
 std::vector<Course> courses_of(const Observations& o, const AxisReadings& r) {
@@ -147,15 +163,16 @@ double from_part(const Part& part, const Further& f, const std::vector<Term>& mo
   Effect same;
   same.info.name = "part";
   same.linear.resize(static_cast<std::size_t>(of_part.cols()));
-  same.columns = [&](const Observations&, const Axis&,
+  same.columns = [&](const Observations& o, const Axis&,
                      const std::vector<double>&) -> Expected<Effect::Columns> {
     Effect::Columns out;
     for (Index k = 0; k < of_part.cols(); ++k)
-      out.emplace_back(of_part.col(k).begin(), of_part.col(k).end());
+      out.emplace_back(of_part.col(k).begin(),
+                       of_part.col(k).begin() + static_cast<Index>(o.size()));
     return out;
   };
   same.instances = [](const Observations&) { return std::vector<std::string>{""}; };
-  return distance(f.table, model, columns * value, Term{&same, {}}, s);
+  return distance(part.table, f, model, columns * value, Term{&same, {}}, s);
 }
 
 }  // namespace
@@ -171,13 +188,13 @@ std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
   for (const Parameter& p : candidate.parameters)
     if (!p.shape) value(linear++) = p.value;
   value.conservativeResize(linear);
-  const auto further = part.kind == Part::Kind::axis ? further_runs(part, candidate.term.axis)
-                                                     : further_in_space(part);
-  for (const Further& f : further) {
+  auto further = part.kind == Part::Kind::axis ? further_runs(part, candidate.term.axis)
+                                               : further_in_space(part);
+  for (Further& f : further) {
+    add_set_up_of_part(f, model);
     const Observations& o = f.table;
     const auto columns = columns_of(o, candidate.term, candidate.term.shape);
     if (!columns || columns->cols() != linear) continue;
-    const std::vector<Term> known = with_further_part(model, f);
     Plan plan{f.id,      o.size() - part.table.size(), INFINITY, candidate.term.name(), "", f.of,
               f.duration};
     const auto separates = [&](double d, const std::string& other) {
@@ -187,10 +204,10 @@ std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
       const auto other = std::find_if(catalogue.begin(), catalogue.end(),
                                       [&](const Term& t) { return t.name() == alias; });
       if (other == catalogue.end()) continue;
-      separates(distance(o, known, *columns * value, *other, s), alias);
+      separates(distance(part.table, f, model, *columns * value, *other, s), alias);
     }
     if (parts_alike)
-      separates(from_part(part, f, known, *columns, value, s), "part-" + candidate.term.name());
+      separates(from_part(part, f, model, *columns, value, s), "part-" + candidate.term.name());
     // The same part moved along an axis without effect on this error shows nothing new.
     if (std::isfinite(plan.power) && !(parts_alike && plan.power < 1.0))
       plans.push_back(std::move(plan));
@@ -211,8 +228,8 @@ std::vector<Plan> plans_for_pair(const Part& part, const std::vector<Term>& mode
       if (!columns || at + static_cast<std::size_t>(columns->cols()) > value.size()) return plans;
       for (Index k = 0; k < columns->cols(); ++k) said += value[at++] * columns->col(k);
     }
-    const double power = std::min(distance(f.table, model, said, pair[0], s),
-                                  distance(f.table, model, said, pair[1], s));
+    const double power = std::min(distance(part.table, f, model, said, pair[0], s),
+                                  distance(part.table, f, model, said, pair[1], s));
     plans.push_back({f.id, f.table.size() - part.table.size(), power, pair[0].name(),
                      pair[1].name(), f.of, f.duration});
   }

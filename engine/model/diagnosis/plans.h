@@ -16,6 +16,7 @@ struct Further {
   std::string id, of;  ///< kind and object of the measurement, as `Plan::id` and `Plan::of`
   Observations table;
   std::optional<double> duration{};  ///< as `Plan::duration`
+  std::vector<Term> set_up{};        ///< unknowns that only the planned measurement has
   /// Rows of the part that is made once more, in the order of the added rows, and its name.
   std::vector<std::size_t> again{};
   std::string body{};
@@ -34,8 +35,8 @@ std::vector<Further> further_in_space(const Part& part);
 inline constexpr const char* further_body = " (again)";
 /// Returns tables with one of the parts made once more: turned by 90 deg, or in another place.
 std::vector<Further> further_parts(const Part& part);
-/// Adds the unknowns of the set-up of the part that is made once more.
-std::vector<Term> with_further_part(std::vector<Term> model, const Further& further);
+/// Adds the unknowns of the set-up of the part that is made once more, like those in the model.
+void add_set_up_of_part(Further& further, const std::vector<Term>& model);
 /// Converts columns of an effect of the machine to those of the same error in the part, its fixture
 /// or the measuring machine: it moves with the part.
 MatrixXd as_error_of_part(const Part& part, const Further& further, MatrixXd columns);
@@ -43,8 +44,9 @@ MatrixXd as_error_of_part(const Part& part, const Further& further, MatrixXd col
 /// not separable from those of the machine.
 bool is_of_parts_alike(const Part& part);
 
-/// Measurements that would separate a candidate from its aliases. Power: the part of the candidate
-/// that no alias explains, in standard deviations `s` of a reading (m or rad). At most three: those
+/// Measurements that would separate a candidate from its aliases. `model`: the other effects of the
+/// explanation, which are fitted too. Power: the part of the candidate in the planned readings that
+/// no alias explains, in standard deviations `s` of a reading (m or rad). At most three: those
 /// with a power of four by increasing number of readings, then the others by decreasing power.
 std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
                             const Candidate& candidate, const std::vector<Term>& catalogue,

@@ -12,7 +12,7 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-// Cost of one more part: docs/dev/constants.md, M56.
+// Cost of one more part: docs/dev/constants.md, M57.
 constexpr double set_up = 1800.0, per_feature = 60.0;  // s
 
 /// Another position of a part: turned by 90 deg about `middle` if `turned`, then moved by `by`.
@@ -127,17 +127,15 @@ class OneMorePart {
 
 std::vector<Further> further_parts(const Part& part) { return OneMorePart(part).all(); }
 
-std::vector<Term> with_further_part(std::vector<Term> model, const Further& further) {
-  const std::size_t known = model.size();
-  for (std::size_t t = 0; t < known && !further.again.empty(); ++t) {
-    const std::string& name = model[t].axis.name;
-    const bool of_body = name == further.body || name.starts_with(further.body + " ");
-    if (!model[t].effect->is_nuisance || !of_body) continue;
-    Term one = model[t];
-    one.axis.name.insert(further.body.size(), further_body);
-    model.push_back(std::move(one));
+void add_set_up_of_part(Further& further, const std::vector<Term>& model) {
+  for (const Term& term : model) {
+    const std::string& name = term.axis.name;
+    const bool of_body =
+        !further.again.empty() && (name == further.body || name.starts_with(further.body + " "));
+    if (!term.effect->is_nuisance || !of_body) continue;
+    further.set_up.push_back(term);
+    further.set_up.back().axis.name.insert(further.body.size(), further_body);
   }
-  return model;
 }
 
 MatrixXd as_error_of_part(const Part& part, const Further& further, MatrixXd columns) {

@@ -11,6 +11,7 @@ namespace nonio::model {
 namespace {
 
 constexpr std::size_t most_stops = 21;
+constexpr const char* planned = "plan";
 
 /// Appends one line that passes all stops in order and then back.
 void append_line(Observations& o, const std::string& name, const std::vector<Vector>& stops,
@@ -76,12 +77,37 @@ Vector unit_along(std::size_t k) {
   return v;
 }
 
+/// The angle between the straightedge or beam of a planned line and the axis `place`, as effect
+/// line-slope of measured lines.
+const Effect& slope_of_plan() {
+  static const Effect slope{.info = {"line-slope", "1.0.0", ""},
+                            .linear = {{"a", "", Quantity::small_angle}},
+                            .shapes = {},
+                            .applies = [](const Observations&, const Axis&) { return true; },
+                            .columns = [](const Observations& o, const Axis& place,
+                                          const std::vector<double>&) -> Expected<Effect::Columns> {
+                              std::vector<double> column(o.size(), 0.0);
+                              for (const auto& axis : o.axes)
+                                if (axis.axis == place.name)
+                                  for (std::size_t i = 0; i < o.size(); ++i)
+                                    if (o.lines[o.line_of(i)].name == planned)
+                                      column[i] = axis.position[i];
+                              return Effect::Columns{std::move(column)};
+                            },
+                            .is_nuisance = true};
+  return slope;
+}
+
 void add_straight_lines(const Part& part, const Volume& v, std::vector<Further>& out) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (std::size_t error = 0; error < 3 && v.has(axis); ++error) {
       if (error == axis || !v.has(error)) continue;
       Further f{"straightness-line", {'E', letter_of(error), letter_of(axis)}, part.table};
-      append_line(f.table, "plan", along(v, axis, v.low), unit_along(error));
+      append_line(f.table, planned, along(v, axis, v.low), unit_along(error));
+      Axis place;
+      for (const auto& moved : part.table.axes)
+        if (coordinate_of(moved.axis) == axis) place.name = moved.axis;
+      f.set_up.push_back({&slope_of_plan(), std::move(place), {}});
       out.push_back(std::move(f));
     }
 }
@@ -117,7 +143,7 @@ void add_diagonals(const Part& part, const Volume& v, std::vector<Further>& out)
         for (std::size_t k = 0; k < 3; ++k) stops.back()[k] += share * way[k];
       }
       Further f{"half-diagonal", {letter_of(a), letter_of(b)}, part.table};
-      append_line(f.table, "plan", stops, sense);
+      append_line(f.table, planned, stops, sense);
       out.push_back(std::move(f));
     }
 }

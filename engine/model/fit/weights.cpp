@@ -7,7 +7,7 @@
 namespace nonio::model {
 
 void set_weights(std::span<Term> candidates) {
-  // docs/dev/constants.md, M54.
+  // docs/dev/constants.md, M55.
   constexpr double equal_part = 0.5, largest = 8.0;
   double sum = 0.0, counted = 0.0;
   for (const Term& t : candidates)

@@ -168,7 +168,6 @@ class CandidateOf {
     return c;
   }
 
- private:
   /// Effects that can replace a member with hardly any loss of evidence; for a curve also causes
   /// with nearly its form (`is_form_of`); and effects of `Finding::otherwise`.
   std::vector<std::string> aliases_of(std::size_t member) const {
@@ -180,10 +179,14 @@ class CandidateOf {
       State changed = f_.bench->joined(rest, gains, other);
       if (f_.bench->in_space() && !(changed.criterion < f_.best.criterion + hopeless)) continue;
       changed = f_.bench->settled(std::move(changed));
+      // On one axis, nearly every effect of the model has an imitation with more parameters.
+      if (member < f_.in_model && !f_.bench->in_space() && changed.parameters > f_.best.parameters)
+        continue;
       if ((changed.blocks.size() > rest.blocks.size() && as_good(changed)) ||
-          (f_.terms[member].effect->curve && is_form_of(other)))
+          (member >= f_.in_model && f_.terms[member].effect->curve && is_form_of(other)))
         names.push_back(f_.terms[other].name());
     }
+    if (member < f_.in_model) return names;
     for (const std::string& name : f_.otherwise)
       if (!f_.bench->holds(f_.best, f_.index_of(name)) &&
           std::find(names.begin(), names.end(), name) == names.end())
@@ -191,6 +194,7 @@ class CandidateOf {
     return names;
   }
 
+ private:
   /// Whether a cause with fewer parameters explains nearly as much: a curve can follow any shape,
   /// while the shape of a cause is only approximately known.
   bool is_form_of(std::size_t cause) const {
@@ -274,6 +278,18 @@ std::vector<Candidate> candidates_of(const Finding& finding, const Ground& groun
     if (c.visible || !c.term.library) out.push_back(std::move(c));
   }
   rank(out);
+  return out;
+}
+
+std::vector<Replaceable> replaceable_in(const Finding& finding, const Ground& ground) {
+  const CandidateOf candidate(finding, ground);
+  std::vector<Replaceable> out;
+  for (std::size_t e = 0; e < finding.in_model; ++e) {
+    const Term& term = finding.terms[e];
+    if (term.effect->is_nuisance || !finding.bench->holds(finding.best, e)) continue;
+    std::vector<std::string> by = candidate.aliases_of(e);
+    if (!by.empty()) out.push_back({term.name(), std::move(by)});
+  }
   return out;
 }
 

@@ -332,14 +332,14 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
   const position = (v) => data.axis + " " + number(v, 4).replace(/[.,]?0+$/, "") + " " + data.position_unit;
   function about(i) {
     const signed = (v) => (v > 0 ? "+" : "") + number(v, 2) + " " + data.unit;
-    const d = data.direction[i], left = named ? data.residual[i] : residual[i];
+    const d = data.direction[i], left = named ? data.residual[i] : residual[i], in_run = data.run[i] > 0 || d !== 0;
     const lines = [
-      text(words.reading, {run: data.run[i], direction: d > 0 ? "+" : d < 0 ? "\u2212" : "?"}) + ", " + position(data.target[i]),
+      (in_run ? text(words.reading, {run: data.run[i], direction: d > 0 ? "+" : d < 0 ? "\u2212" : "?"}) + ", " : "") + position(data.target[i]),
       words.deviation + " " + signed(data.deviation[i]),
       words.model + " " + signed(data.deviation[i] - left),
       words.residual + " " + signed(left),
     ];
-    if (data.time && finite(data.time[i])) lines.push(words.time + " " + number(data.time[i] , 1) + " " + data.time_unit);
+    if (in_run && data.time && finite(data.time[i])) lines.push(words.time + " " + number(data.time[i] , 1) + " " + data.time_unit);
     if (data.temperature && finite(data.temperature[i])) lines.push(words.temperature + " " + number(data.temperature[i], 2) + " \u00B0C");
     const file = data.files[data.measurement[i]];
     lines.push(text(words.line, {file: file || "", line: data.line[i]}));

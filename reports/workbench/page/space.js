@@ -1,6 +1,6 @@
 // ---- the volume: lines and diagonals colored by residual, with magnified deviations ----
 const space = (() => {
-  let turn = 35, lift = 25, times = 0;
+  let turn = 35, lift = 25, times = 0, charts = null;
   function colour(v, most) {
     const t = Math.max(-1, Math.min(1, v / (most || 1))), strength = Math.round(30 + 70 * Math.abs(t));
     return `color-mix(in srgb, var(${t >= 0 ? "--minus" : "--plus"}) ${strength}%, var(--band))`;
@@ -59,7 +59,17 @@ const space = (() => {
     const [left, right] = [Math.min, Math.max].map((f) => f(...around.map((c) => c[0]))), [top, bottom] = [Math.min, Math.max].map((f) => f(...around.map((c) => c[1])));
     const scale = Math.min(440 / Math.max(1, right - left), 300 / Math.max(1, bottom - top)), middle = [260 - (scale * (left + right)) / 2, 170 - (scale * (top + bottom)) / 2];
     const put = ([x, y]) => [middle[0] + x * scale, middle[1] + y * scale], place = (p) => put(at(p));
-    const picture = svg("svg", {viewBox: "0 0 520 340", role: "img", "aria-label": say("space.alt", {n: lines.length, most: short(most), unit: shown.unit})});
+    charts = charts || nonioCharts({tip: by("tip"), words: () => words, number: (v) => short(v), zoomed: () => {}});
+    const box = by("space-view");
+    if (!box.querySelector("#space-times")) {
+      const slider = (id, word, value, min, max, set) => el("label", {}, say(word) + " ", el("input", {type: "range", id, min, max, step: "any", value, "data-key": id, oninput: (e) => { set(Number(e.target.value)); redraw(); }}));
+      box.replaceChildren(el("div", {id: "space-picture"}, svg("svg", {class: "chart", viewBox: "0 0 520 340", role: "img"})), el("div", {class: "sliders"}, slider("space-times", "space.times", times, 0, 3, (v) => (times = v)), slider("space-turn", "space.turn", turn, -180, 180, (v) => (turn = v)), slider("space-lift", "space.lift", lift, -10, 90, (v) => (lift = v))), el("p", {class: "muted"}, say("space.legend")), el("p", {class: "muted", id: "space-chain"}), el("div", {id: "space-table"}));
+    }
+    const picture = by("space-picture").querySelector("svg"), values = [];
+    picture.setAttribute("aria-label", say("space.alt", {n: lines.length, most: short(most), unit: shown.unit}));
+    picture.replaceChildren();
+    const frame = {svg: picture, g: picture, k: "space", x: 0, y: 0, w: 520, h: 340, points: [], series: [], said: {x: "mm", y: shown.unit}};
+    frame.table = () => [["line", "X / mm", "Y / mm", "Z / mm", `deviation / ${shown.unit}`, `residual / ${shown.unit}`], ...values];
     const edge = (a, b) => picture.append(svg("line", {class: "rule edge", x1: a[0].toFixed(1), y1: a[1].toFixed(1), x2: b[0].toFixed(1), y2: b[1].toFixed(1)}));
     for (const [name, box_] of chain) {
       const own = cornersOf(box_).map((p) => put(project(size, p)));
@@ -90,14 +100,14 @@ const space = (() => {
       const points = [...mean.entries()].sort((a, b) => a[0] - b[0]).map(([t, [n, r, d]]) => {
         const f = last > first ? (t - first) / (last - first) : 0, p = [0, 1].map((i) => from[i] + f * (to[i] - from[i]));
         const off = (times * 30 * (d / n)) / (Math.max(...data.deviation.map(Math.abs)) || 1);
-        return [p[0] + off * side[0], p[1] + off * side[1], r / n];
+        const put_ = [p[0] + off * side[0], p[1] + off * side[1]], where = line.from.map((v, i) => v + f * (line.to[i] - v));
+        values.push([line.id, ...where, d / n, r / n]);
+        frame.points.push([...put_, -1, [line.id, where.map((v, i) => `${"XYZ"[i]} ${short(v)}`).join(", ") + " mm", `${say("column.residual", {unit: shown.unit})}: ${short(r / n)}`]]);
+        return [...put_, r / n];
       });
       points.slice(1).forEach((p, k) => {
         const one = svg("line", {class: "in-space", x1: points[k][0].toFixed(1), y1: points[k][1].toFixed(1), x2: p[0].toFixed(1), y2: p[1].toFixed(1)});
         one.style.stroke = colour((p[2] + points[k][2]) / 2, most);
-        const tip = svg("title");
-        tip.textContent = `${line.id}: ${short(p[2])} ${shown.unit}`;
-        one.append(tip);
         picture.append(one);
       });
       label(line.id, points[points.length - 1]);
@@ -108,11 +118,8 @@ const space = (() => {
       node.textContent = all.join(", ");
       picture.append(node);
     }
-    const slider = (id, word, value, min, max, set) => el("label", {}, say(word) + " ", el("input", {type: "range", id, min, max, step: "any", value, "data-key": id, oninput: (e) => { set(Number(e.target.value)); redraw(); }}));
     const worst = lines.map((line) => { const m = data.lanes ? data.lanes.indexOf(line.id) : lines.indexOf(line), rows = data.residual.filter((r, i) => data.measurement[i] === m); return [line.id, rows.length, Math.sqrt(rows.reduce((s, r) => s + r * r, 0) / (rows.length || 1))]; }).sort((a, b) => b[2] - a[2]);
-    const box = by("space-view");
-    if (!box.querySelector("#space-times")) box.replaceChildren(el("div", {id: "space-picture"}), el("div", {class: "sliders"}, slider("space-times", "space.times", times, 0, 3, (v) => (times = v)), slider("space-turn", "space.turn", turn, -180, 180, (v) => (turn = v)), slider("space-lift", "space.lift", lift, -10, 90, (v) => (lift = v))), el("p", {class: "muted"}, say("space.legend")), el("p", {class: "muted", id: "space-chain"}), el("div", {id: "space-table"}));
-    by("space-picture").replaceChildren(picture);
+    charts.add(frame);
     by("space-chain").textContent = say("space.chain", {chain: [say("space.bed"), ...["X", "Y", "Z"].filter((n) => names.includes(n)), say("space.tool")].join(" \u2013 "), structure: say("space.is_" + structure)});
     fill(by("space-table"), el("table", {}, el("thead", {}, el("tr", {}, el("th", {scope: "col"}, say("space.line")), el("th", {scope: "col", class: "number"}, say("next.readings")), el("th", {scope: "col", class: "number"}, `RMS / ${shown.unit}`))), el("tbody", {}, ...worst.map(([id, n, r]) => el("tr", {}, el("th", {scope: "row"}, id), el("td", {class: "number"}, String(n)), el("td", {class: "number"}, short(r)))))));
   }

@@ -33,6 +33,10 @@ class Pictures(live_browser.CampaignPage):
             self.assertEqual(slider, self.js("document.activeElement.id"), "the focus stays on the slider")
         inside = "(() => { const s = document.querySelector('#space svg').getBoundingClientRect(); return [...document.querySelectorAll('#space svg *')].filter((e) => e.tagName !== 'title').every((e) => { const r = e.getBoundingClientRect(); return r.left >= s.left - 1 && r.right <= s.right + 1 && r.top >= s.top - 1 && r.bottom <= s.bottom + 1; }); })()"
         self.assertTrue(self.js(inside), "nothing is cut")
+        self.assertEqual(["PNG", "SVG", "CSV"], self.js("[...document.querySelectorAll('#space-picture .chart-tools button')].map((b) => b.textContent)"))
+        self.js("document.querySelector('#space-picture svg').focus()")
+        self.press(Keys.HOME)
+        self.assertRegex(self.js("document.getElementById('tip').innerText"), r"X [\d.]+, Y [\d.]+, Z [\d.]+ mm\s+Residual / \u00B5m: ")
         self.no_complaints()
 
     def test_more_readings_than_the_page_holds_are_drawn_from_the_server_and_zoomed(self):

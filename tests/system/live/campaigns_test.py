@@ -242,8 +242,11 @@ class CampaignsOfASite(LiveTest):
             self.send(s, "/api/campaigns", [], good, 400)
             self.assertEqual([], self.folders())
             self.assertEqual({"site"}, {p.name for p in self.site.parent.iterdir()} - {"out"})
-            self.assertEqual(["site.toml"], sorted(p.name for p in self.site.iterdir()))
-            # Nested so deeply that a copy would end the server.
+            self.assertEqual(["audit.jsonl", "site.toml"], sorted(p.name for p in self.site.iterdir()))
+            recorded = [json.loads(line) for line in (self.site / "audit.jsonl").read_text().splitlines()]
+            self.assertEqual({"begins", "failed"}, {r["state"] for r in recorded})
+            self.assertTrue(all("account" not in r for r in recorded), "this site has no users")
+                # Nested so deeply that a copy would end the server.
             deep = b'{"name":"x.csv","v":' + b"[" * 200000 + b"]" * 200000 + b"}"
             for path in ("/api/preview", "/api/campaigns"):
                 self.assertEqual(400, s.request("POST", path, deep + b"\nabc", {"Content-Type": "application/octet-stream"})[0])

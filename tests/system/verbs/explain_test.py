@@ -216,7 +216,7 @@ class Explain(VerbTest):
         self.campaign(manifest(["scale:X"]), x=readings(scale=20, backlash=-6))
         shown = self.nonio("model", "explain", self.folder).stdout
         line = next(l for l in shown.splitlines() if l.startswith("  No sign of: "))
-        self.assertRegex(line, r"No sign of: \S+:X \(would be detected from [\d.]+ um\), \S+:X \([\d.]+ um\)")
+        self.assertRegex(line, r"No sign of: \S+:X \(would be detected from [\d.]+ um\); \S+:X \([\d.]+ um\)")
         e = self.explain()
         self.assertEqual(line.strip(), e["no_sign"])
         for c in e["candidates"]:

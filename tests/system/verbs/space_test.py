@@ -104,8 +104,16 @@ class Space(VerbTest):
         self.assertTrue(said["plans"])
         best = said["plans"][0]
         self.assertGreaterEqual(best["power"], 4.0)
-        self.assertIn(best["plan"], {"straightness-line", "other-line"})
+        self.assertIn(best["plan"], {"straightness-line", "other-line", "half-diagonal"})
         self.assertTrue(best["says"])
+        # The alias remains where the model is complete, and the straightness line is advised only
+        # for what it senses.
+        said = self.json_of("explain", self.folder, "--auto")
+        self.assertEqual(said["verdict"]["kind"], "nothing")
+        kept = {r["effect"]: set(r["by"]) for r in said["replaceable"]}
+        self.assertTrue(any({"yaw:X", "straightness:EYX"} <= {effect, *by} for effect, by in kept.items()), kept)
+        self.assertIn(said["replaceable"][0]["effect"], said["verdict"]["says"])
+        self.assertNotIn("straightness:EYX (", said.get("no_sign", ""))
 
     def test_what_shows_only_next_to_others_is_not_named_first(self):
         """The wave of the screw in circles: added alone it leaves the RMS as it is."""

@@ -351,6 +351,7 @@ TEST(RotaryJudge, EllipseAndAxialRunOut) {
   const Finding* axial = found(wobble, "rotary.axial-run-out");
   ASSERT_NE(axial, nullptr) << ids(wobble);
   EXPECT_NEAR(evidence(*axial, "amplitude"), 6 * um, 1 * um);
+  EXPECT_NEAR(evidence(*axial, "at"), 20 * deg, 4 * deg);
   EXPECT_EQ(found(wobble, "rotary.ellipse"), nullptr);
 }
 

@@ -99,6 +99,16 @@ TEST(WorklistSeries, CirclesAreSeparateFromDiagonalsAndComparedWithTheirLike) {
   EXPECT_EQ(m.series()[1].kinds, std::vector<std::string>{"crash"});
 }
 
+TEST(WorklistSeries, AnEventOfAGantryAxisConcernsItsSides) {
+  for (const auto& [axis, is_known] :
+       {std::pair{"X", true}, {"X1", true}, {"X2", false}, {"Y", false}}) {
+    MadeMachine m("S-1");
+    m.follow("X1", "scale", eight, 0.1);
+    m.events() = {{"2020-09-01", "S-1", axis, "crash", "vice", "", 1}};
+    EXPECT_EQ(m.series()[0].kinds.size(), is_known ? 1U : 0U) << axis;
+  }
+}
+
 TEST(WorklistSeries, ATableIsAStepThatIsKnown) {
   MadeMachine m("S-1");
   m.follow("X", "scale", eight, 0.1);

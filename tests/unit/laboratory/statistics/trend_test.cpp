@@ -268,8 +268,28 @@ TEST(ExcessScatter, IsThatOfTheLaboratory) {
   for (const Series& s : all)
     for (const Scatter& one : scatter_of(s)) ratios.push_back(one.ratio);
   EXPECT_NEAR(excess_of_ratios(ratios), 1.5, 0.2);
+  EXPECT_LT(p_of_ratios(ratios), 0.001);
   ratios.resize(10);
   EXPECT_EQ(excess_of_ratios(ratios), 1.0);  // too few to say
+}
+
+TEST(ExcessScatter, OfNoiseIsSignificantAsOftenAsStated) {
+  std::mt19937_64 random(502);
+  std::cout << "seed 502\n";
+  const int trials = 4000;
+  int below = 0, high = 0;
+  for (int trial = 0; trial < trials; ++trial) {
+    std::vector<double> ratios;
+    for (int i = 0; i < 8; ++i) {
+      Series s = made_series(6, 0.3, random, [](std::size_t, double) { return 0.0; });
+      for (Point& p : s.points) p.u = 0.3;
+      for (const Scatter& one : scatter_of(s)) ratios.push_back(one.ratio);
+    }
+    below += p_of_ratios(ratios) < 0.01;
+    high += excess_of_ratios(ratios) > 1.2;
+  }
+  EXPECT_LT(below, 0.015 * trials);
+  EXPECT_GT(high, 0.1 * trials);  // the factor alone says little
 }
 
 TEST(SpreadOfSlopes, HoldsASlopeWhereAStepIsTestedAndNotWhereItIsKnown) {

@@ -142,6 +142,12 @@ struct Sensors {
   double relative_u = 0.0, measured = 0.0, wanted = 0.0;
 };
 
+/// An effect of the model and the effects that explain these readings as well in its place.
+struct Replaceable {
+  std::string effect;
+  std::vector<std::string> by;
+};
+
 struct Explanation {
   Comparison comparison;
   /// effects that can be added to the model, largest evidence first
@@ -155,6 +161,9 @@ struct Explanation {
   std::vector<std::string> certain;
   /// Pairs of effects of `together` that cancel each other, so that neither is demonstrated.
   std::vector<std::pair<std::string, std::string>> cancelling;
+  /// for `nothing`: effects of the model whose values these readings cannot prove, because others
+  /// explain them as well
+  std::vector<Replaceable> replaceable;
   /// A growth and a drift in `together` that are one growth about the point `at`, m.
   struct OneGrowth {
     std::string growth, drift;
@@ -170,7 +179,8 @@ struct Explanation {
   /// places of the structure in the residuals of the model; for `unknown` the smallest set of
   /// places that contains it or, if none does, the places of the best explanation
   std::vector<Place> fails;
-  /// at most three measurements that would separate aliases, or two effects that cancel each other
+  /// at most three measurements that would separate aliases (for `nothing` those of the first of
+  /// `replaceable`), or two effects that cancel each other
   std::vector<Plan> plans;
   /// owner of effects that are not in the catalog but are referenced by terms
   std::shared_ptr<const void> keeps{};

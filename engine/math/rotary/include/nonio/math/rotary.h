@@ -49,7 +49,7 @@ struct RotaryFit {
   double s = 0.0;  ///< standard deviation of a coordinate from the residuals; 0 if dof is 0
   int dof = 0;
   std::vector<double> radial, axial, tangential;  ///< residuals, m
-  std::vector<double> around;                     ///< angle of each point about the direction, rad
+  std::vector<double> around;                     ///< position of the axis at each point, rad
   double gap = 0.0;  ///< largest angle between adjacent points; the arc is 2 pi - gap
   /// Shift of the center by a squareness or scale error of the linear axes, m per (m/m) of shear,
   /// for the worst orientation; 0 for N > 3 equal steps of a full turn.
@@ -63,7 +63,7 @@ tl::expected<RotaryFit, RotaryRefusal> fit_rotary(std::span<const BallCentre> ce
 /// (or plane) absorbs: constant, cos t, sin t.
 struct DoubleWave {
   double amplitude = 0.0;
-  double phase = 0.0;  ///< angle of a maximum, rad
+  double phase = 0.0;  ///< position of the axis at a maximum, -pi/2 to pi/2, rad
   double p = 1.0;     ///< p-value of the hypothesis that no wave exists (F test with 2 and dof - 2)
   double left = 0.0;  ///< standard deviation of all residuals that remain, radial and axial
 };
