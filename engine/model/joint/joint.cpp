@@ -359,6 +359,13 @@ class JointSearch {
     return out;
   }
 
+  /// Whether another effect that changes at the same date explains the readings as well.
+  bool changes_as_well(Choices rest, const Choice& named, Choice other, double least) const {
+    other.holds = named.holds, other.after = named.after;
+    rest.push_back(other);
+    return criterion(rest) < least + alias_evidence;
+  }
+
   void put_effects(JointExplanation& out) const {
     const double all = criterion(choices_);
     for (std::size_t i = 0; i < choices_.size(); ++i) {
@@ -370,7 +377,9 @@ class JointSearch {
       const double evidence = before - all;
       effect.evidence = evidence - evidence_of_weight(effect.weight);
       for (const auto& [name, one] : scored(rest))
-        if (name != effect.effect && one.evidence > evidence - alias_evidence)
+        if (name != effect.effect && (one.evidence > evidence - alias_evidence ||
+                                      (effect.holds == Holds::changed &&
+                                       changes_as_well(rest, choices_[i], one.choice, all))))
           effect.aliases.push_back(name);
       out.effects.push_back(std::move(effect));
     }
