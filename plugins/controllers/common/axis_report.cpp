@@ -169,6 +169,8 @@ void predict(const AxisJob& job, const math::Correction& whole, OutputResult& re
     add("B", was.B(), B_after);
     add("M", was.M(), math::predicted_after(was.M(), will.M(), job.U.M));
   }
+  if (job.drifted > 0.0)
+    result.notes.emplace_back(remark(job, "table.drifted")).evidence = {{"drift", job.drifted, q}};
   if (std::isnan(job.U.E) && will.E() < was.E()) {
     Remark& note = result.notes.emplace_back(remark(job, "table.at-least"));
     note.texts.emplace_back("id", job.measurement);
