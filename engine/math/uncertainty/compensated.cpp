@@ -21,10 +21,23 @@ CompensatedUncertainty compensated_uncertainty(const Campaign& campaign, const M
   const auto limits = limits_held(campaign, {&own, 1});
   auto budget = uncertainty_budget(campaign, limits.environment, m.axis, test).budget;
   if (budget && !has_drift) budget->seen = {};
-  const double seen = has_drift ? drift_share(test).B_mean : 0.0;
-  if (!budget) return {seen, not_known, not_known};
+  const DriftShare seen = has_drift ? drift_share(test) : DriftShare{};
+  if (!budget) return {seen.B_mean, seen.B, not_known, not_known};
   const auto U = iso230_2_uncertainty(*budget, approaches_per_mean(test), 2.0);
-  return {std::max(U.B_mean, seen), U.E, U.M};
+  return {std::max(U.B_mean, seen.B_mean), std::max(U.B, seen.B), U.E, U.M};
+}
+
+double CompensatedUncertainty::of_reversal(const ErrorCurve& curve,
+                                           const Correction& correction) const {
+  constexpr double last_digit = 1e-7;  // m or rad
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const double x : curve.position) {
+    const double removed = correction(x, 1) - correction(x, -1);
+    low = std::min(low, removed), high = std::max(high, removed);
+  }
+  if (!curve.bidirectional() || !(std::max(std::fabs(low), std::fabs(high)) > last_digit))
+    return 0.0;
+  return high - low > last_digit ? B : B_mean;
 }
 
 double compensated_uncertainty_along(const Campaign& campaign, const Measurement& m,

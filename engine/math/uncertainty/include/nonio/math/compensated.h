@@ -2,6 +2,7 @@
 #pragma once
 
 #include "nonio/math/axis_test.h"
+#include "nonio/math/compensation.h"
 #include "nonio/sdk/campaign.h"
 #include "nonio/sdk/observations.h"
 
@@ -9,7 +10,11 @@ namespace nonio::math {
 
 /// Expanded uncertainties (k = 2) of the errors that a table compensates, m or rad; 0: not known.
 struct CompensatedUncertainty {
-  double B_mean = 0.0, E = 0.0, M = 0.0;
+  /// B: of the largest reversal of a target. B and B_mean contain drift and repetition.
+  double B_mean = 0.0, B = 0.0, E = 0.0, M = 0.0;
+  /// U of the reversal that the correction removes: B if it differs between targets, B_mean if it
+  /// is the same for all, 0 without one.
+  double of_reversal(const ErrorCurve& curve, const Correction& correction) const;
 };
 
 /// `has_drift`: whether drift and repetition of the readings contribute; false if a model has
