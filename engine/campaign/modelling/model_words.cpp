@@ -329,6 +329,10 @@ Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
     f.id += "-of-passes";
     f.evidence.push_back({"zero", fit.noise.zero_found * fit.s_noise, q});
   }
+  if (v.kind == Kind::unknown && !e.together.empty() && e.comparison.floor) {
+    f.id = "verdict.unknown-possible";
+    f.texts.emplace_back("effects", storage::listed(e.together));
+  }
   if (v.below_scatter) f.id = "verdict.unknown-below-scatter";
   if (v.kind == Kind::unknown && !e.certain.empty()) {
     f.id = "verdict.certain";
