@@ -98,6 +98,7 @@ Finding false_alarms_finding(const model::Verdict& v) {
   const double n = static_cast<double>(v.trials), z2 = 1.959964 * 1.959964;
   const bool any = v.false_alarms > 0.0;
   const double share = any ? v.false_alarms : z2 / (n + z2);
+  if (share > 0.4) return {.id = "false-alarms.often", .evidence = {percent("share", share)}};
   return {.id = any ? "false-alarms" : "false-alarms.none",
           .evidence = {{"times", std::round(1.0 / share), Quantity::count}}};
 }

@@ -461,7 +461,7 @@ TableForecast forecast_of_axis(const Campaign& campaign, const Measurement& m,
   };
   const auto will = math::after(math::error_curve(math::AxisTest::arrange(raw)), c);
   const auto U = math::compensated_uncertainty(campaign, m, readings, test, true);
-  const double U_B = U.of_reversal(measured, c);
+  const double U_B = math::reversal_uncertainty(measured, c, U.B, U.B_mean);
   f.U_known = !std::isnan(U.E);
   f.B[1] = math::predicted_after(was.B(), will.B(), U_B);
   f.E[1] = math::predicted_E_after(was.E(), will.E(), U.E, U_B, f.B[1]);

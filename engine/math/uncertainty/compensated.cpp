@@ -27,19 +27,6 @@ CompensatedUncertainty compensated_uncertainty(const Campaign& campaign, const M
   return {std::max(U.B_mean, seen.B_mean), std::max(U.B, seen.B), U.E, U.M};
 }
 
-double CompensatedUncertainty::of_reversal(const ErrorCurve& curve,
-                                           const Correction& correction) const {
-  constexpr double last_digit = 1e-7;  // m or rad
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const double x : curve.position) {
-    const double removed = correction(x, 1) - correction(x, -1);
-    low = std::min(low, removed), high = std::max(high, removed);
-  }
-  if (!curve.bidirectional() || !(std::max(std::fabs(low), std::fabs(high)) > last_digit))
-    return 0.0;
-  return high - low > last_digit ? B : B_mean;
-}
-
 double compensated_uncertainty_along(const Campaign& campaign, const Measurement& m,
                                      const Observations& readings) {
   const Observations line = along_diagonal(readings, m);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "nonio/math/axis_test.h"
-#include "nonio/math/compensation.h"
 #include "nonio/sdk/campaign.h"
 #include "nonio/sdk/observations.h"
 
@@ -12,9 +11,6 @@ namespace nonio::math {
 struct CompensatedUncertainty {
   /// B: of the largest reversal of a target. B and B_mean contain drift and repetition.
   double B_mean = 0.0, B = 0.0, E = 0.0, M = 0.0;
-  /// U of the reversal that the correction removes: B if it differs between targets, B_mean if it
-  /// is the same for all, 0 without one.
-  double of_reversal(const ErrorCurve& curve, const Correction& correction) const;
 };
 
 /// `has_drift`: whether drift and repetition of the readings contribute; false if a model has
