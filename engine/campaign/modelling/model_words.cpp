@@ -98,6 +98,7 @@ Finding false_alarms_finding(const model::Verdict& v) {
   const double n = static_cast<double>(v.trials), z2 = 1.959964 * 1.959964;
   const bool any = v.false_alarms > 0.0;
   const double share = any ? v.false_alarms : z2 / (n + z2);
+  if (share > 0.4) return {.id = "false-alarms.often", .evidence = {percent("share", share)}};
   return {.id = any ? "false-alarms" : "false-alarms.none",
           .evidence = {{"times", std::round(1.0 / share), Quantity::count}}};
 }
@@ -328,6 +329,10 @@ Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
                                                 fit.noise.zero == model::Noise::Zero::of_pass) {
     f.id += "-of-passes";
     f.evidence.push_back({"zero", fit.noise.zero_found * fit.s_noise, q});
+  }
+  if (v.kind == Kind::unknown && !e.together.empty() && e.comparison.floor) {
+    f.id = "verdict.unknown-possible";
+    f.texts.emplace_back("effects", storage::listed(e.together));
   }
   if (v.below_scatter) f.id = "verdict.unknown-below-scatter";
   if (v.kind == Kind::unknown && !e.certain.empty()) {

@@ -461,12 +461,7 @@ TableForecast forecast_of_axis(const Campaign& campaign, const Measurement& m,
   };
   const auto will = math::after(math::error_curve(math::AxisTest::arrange(raw)), c);
   const auto U = math::compensated_uncertainty(campaign, m, readings, test, true);
-  // U of the reversal is included if the tables change the reversal by more than the last digit.
-  constexpr double last_digit = 1e-7;  // m or rad
-  const bool compensates_reversal =
-      std::any_of(measured.position.begin(), measured.position.end(),
-                  [&](double x) { return std::fabs(c(x, 1) - c(x, -1)) > last_digit; });
-  const double U_B = measured.bidirectional() && compensates_reversal ? U.B_mean : 0.0;
+  const double U_B = math::reversal_uncertainty(measured, c, U.B, U.B_mean);
   f.U_known = !std::isnan(U.E);
   f.B[1] = math::predicted_after(was.B(), will.B(), U_B);
   f.E[1] = math::predicted_E_after(was.E(), will.E(), U.E, U_B, f.B[1]);

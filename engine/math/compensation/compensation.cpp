@@ -325,4 +325,17 @@ MeanDeviations after(const ErrorCurve& curve, const Correction& correction) {
   return left;
 }
 
+double reversal_uncertainty(const ErrorCurve& curve, const Correction& correction, double of_target,
+                            double of_mean) {
+  constexpr double last_digit = 1e-7;  // m or rad
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const double x : curve.position) {
+    const double removed = correction(x, 1) - correction(x, -1);
+    low = std::min(low, removed), high = std::max(high, removed);
+  }
+  if (!curve.bidirectional() || !(std::max(std::fabs(low), std::fabs(high)) > last_digit))
+    return 0.0;
+  return high - low > last_digit ? of_target : of_mean;
+}
+
 }  // namespace nonio::math

@@ -21,10 +21,10 @@ CompensatedUncertainty compensated_uncertainty(const Campaign& campaign, const M
   const auto limits = limits_held(campaign, {&own, 1});
   auto budget = uncertainty_budget(campaign, limits.environment, m.axis, test).budget;
   if (budget && !has_drift) budget->seen = {};
-  const double seen = has_drift ? drift_share(test).B_mean : 0.0;
-  if (!budget) return {seen, not_known, not_known};
+  const DriftShare seen = has_drift ? drift_share(test) : DriftShare{};
+  if (!budget) return {seen.B_mean, seen.B, not_known, not_known};
   const auto U = iso230_2_uncertainty(*budget, approaches_per_mean(test), 2.0);
-  return {std::max(U.B_mean, seen), U.E, U.M};
+  return {std::max(U.B_mean, seen.B_mean), std::max(U.B, seen.B), U.E, U.M};
 }
 
 double compensated_uncertainty_along(const Campaign& campaign, const Measurement& m,

@@ -90,13 +90,14 @@ std::vector<std::string> about(const ControllerInput& input, const AxisJob& job)
 
 // Ids of drift findings with severity warning, computed here because the analyses that report drift
 // are optional.
-std::vector<std::string> drift_of(const math::AxisTest& test) {
+void take_drift(const math::AxisTest& test, AxisJob& job) {
   std::vector<Finding> findings;
   math::drift_findings(test, findings);
-  std::vector<std::string> ids;
-  for (const Finding& f : findings)
-    if (f.attention) ids.push_back(f.id);
-  return ids;
+  for (const Finding& f : findings) {
+    if (f.attention) job.drift.push_back(f.id);
+    for (const Number& n : f.evidence)
+      if (n.name == "total") job.drifted = std::max(job.drifted, std::fabs(n.value));
+  }
 }
 
 std::vector<std::string> suspects_of(const math::AxisTest& test, const AxisJob& job) {
@@ -129,7 +130,7 @@ AxisJob job_of(const ControllerInput& input, std::size_t index) {
   job.reversal = math::assess_reversal(test);
   take_uncertainties(input, index, job);
   if (job.rotary) job.turn = math::closed_turn(job.curve);
-  job.drift = drift_of(test);
+  take_drift(test, job);
   job.unresolved = unresolved_step(test, job.curve);
   job.suspects = suspects_of(test, job);
   return job;

@@ -158,7 +158,8 @@ void predict(const AxisJob& job, const math::Correction& whole, OutputResult& re
       result.predictions.push_back({job.measurement, name, before, after, q});
   };
   const bool both = curve.bidirectional();
-  const double U_B = both && !job.held ? job.U.B_mean : 0.0;
+  const double U_B =
+      job.held ? 0.0 : math::reversal_uncertainty(curve, correction, job.U.B, job.U.B_mean);
   const double B_after = math::predicted_after(was.B(), will.B(), U_B);
   const double E_after = math::predicted_E_after(was.E(), will.E(), job.U.E, U_B, B_after);
   // Without a known scale, the curve is not the axis error, and predictions are made for the
@@ -169,6 +170,8 @@ void predict(const AxisJob& job, const math::Correction& whole, OutputResult& re
     add("B", was.B(), B_after);
     add("M", was.M(), math::predicted_after(was.M(), will.M(), job.U.M));
   }
+  if (job.drifted > 0.0)
+    result.notes.emplace_back(remark(job, "table.drifted")).evidence = {{"drift", job.drifted, q}};
   if (std::isnan(job.U.E) && will.E() < was.E()) {
     Remark& note = result.notes.emplace_back(remark(job, "table.at-least"));
     note.texts.emplace_back("id", job.measurement);

@@ -138,7 +138,7 @@ class Fuzz(LiveTest):
             self.assertEqual(s.get("/api/site/state")["schema"], "nonio-live-site/1")
             self.assertNotIn("mistake", s.words())
             # What was made is an ordinary campaign; nothing else was.
-            names = {p.name for p in self.small.iterdir()} - {"site.toml", "02-constant-reversal", "acknowledged.toml", "events.toml", "history.sqlite", "certificates.sqlite"}
+            names = {p.name for p in self.small.iterdir()} - {"site.toml", "02-constant-reversal", "acknowledged.toml", "events.toml", "history.sqlite", "certificates.sqlite", "audit.jsonl"}
             self.assertEqual([], [n for n in names if not (self.small / n / "campaign.toml").is_file()])
 
     def test_bodies_have_a_limit_on_every_route(self):

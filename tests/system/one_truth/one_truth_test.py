@@ -35,8 +35,7 @@ EXCLUDE_EACH_OTHER = (
     {"before-after.worked", "before-after.mean-as-predicted", "before-after.not-active", "before-after.wrong-sign", "before-after.something-else"},
     {"before-after.worked", "before-after.reversal-as-predicted", "before-after.reversal-not-active", "before-after.reversal-wrong-sign",
      "before-after.reversal-something-else", "before-after.reversal-cannot-tell"},
-    {"reversal.elastic", "plausibility.pass-sign-turned"},
-    {"reversal.elastic", "plausibility.pass-order-turned"},
+    {"reversal.elastic", "plausibility.direction-turned"},
     {"drift.parallel", "repeatability.good"},
 )
 

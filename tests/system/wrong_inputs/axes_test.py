@@ -128,6 +128,13 @@ class Axes(unittest.TestCase):
                     if slope:  # in common to both directions: no file with a turned sign has it
                         self.assertNotIn("plausibility.directions-opposed", self.findings(results))
 
+    def test_local_lost_motion_on_a_good_pitch_is_not_called_a_wrong_file(self):
+        results, files = self.results("local", lambda x, d: d * (6 * math.exp(-((x - 300) / 120) ** 2) + 1), more="active_backlash_mm = 0.0")
+        found = self.findings(results)
+        self.assertIn("plausibility.direction-turned", found)
+        self.assertEqual({i for i in found if i.startswith("plausibility.pass-")}, set())
+        self.assertEqual(self.tables(files, "siemens-840d"), [])
+
     def test_one_pass_with_the_other_sign_is_found(self):
         odd = [0]
 

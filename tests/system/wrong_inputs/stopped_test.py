@@ -175,6 +175,7 @@ def cases():
                            SECOND.format("C", "ball-centres", "c.csv").split("feed")[0], {"c.csv": ball(0)}),
         # Last: each case has the readings of its place.
         "rows-shifted": read(lambda r: moved([x[:3] + [x[3] + 9 * math.sin(x[2] / 150) + 5 * math.cos(x[2] / 47)] for x in r])),
+        "direction-turned": read(lambda r: [x if x[1] != "-" else x[:3] + [-x[3]] for x in bump(r)]),
     }
 
 

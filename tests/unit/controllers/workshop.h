@@ -222,6 +222,11 @@ inline double U_of_mean_reversal(const Bench& b) {
   return math::drift_share(math::AxisTest::arrange(b.observations.at(0))).B_mean;
 }
 
+/// The same of tables for each direction, whose reversals are those of the targets.
+inline double U_of_largest_reversal(const Bench& b) {
+  return math::drift_share(math::AxisTest::arrange(b.observations.at(0))).B;
+}
+
 inline std::string file(const OutputResult& r, const std::string& name) {
   for (const Artifact& a : r.artifacts)
     if (a.name == name) return a.bytes;

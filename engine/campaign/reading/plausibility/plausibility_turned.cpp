@@ -243,22 +243,23 @@ double square_sum(const std::vector<double>& values) {
   return sum;
 }
 
-/// Returns how direction - must be turned to agree with direction +.
-Turned turned_direction(const Curve& minus, const Curve& plus, const Scatter& scatter, double step,
-                        bool rotary) {
+/// Whether direction - agrees with direction + after it is turned. Local lost motion on an axis with
+/// a good pitch causes the same.
+bool is_direction_turned(const Curve& minus, const Curve& plus, const Scatter& scatter, double step,
+                         bool rotary) {
   constexpr double least_travel = 1e-3;  // smallest range of targets, m
   constexpr double ratio = 9.0, ratio_of_odd = 5.0, chance = 1e-5;
   const Pair p = in_common(minus, plus);
   const std::size_t n = p.at.size();
-  if (n < fewest_compared || scatter.freedom <= 0.0) return Turned::not_at_all;
+  if (n < fewest_compared || scatter.freedom <= 0.0) return false;
   // Targets within a small travel show the reversal, not the pitch error.
-  if (!rotary && !(p.at.back() - p.at.front() > least_travel)) return Turned::not_at_all;
+  if (!rotary && !(p.at.back() - p.at.front() > least_travel)) return false;
   const double s = std::max(std::sqrt(scatter.squares / scatter.freedom), step);
   const double variance = s * s * (1.0 / minus.depth() + 1.0 / plus.depth()) / 4.0;
   std::vector<double> u, v;
   for (std::size_t i = 0; i < n; ++i)
     u.push_back((p.b[i] - p.a[i]) / 2.0), v.push_back((p.b[i] + p.a[i]) / 2.0);
-  bool sign = true, order = true, even_in_reversal = true;
+  bool sign = true, order = true;
   for (const Shapes& shapes : elastic_shapes(p.at, rotary)) {
     const auto left_u = without(u, shapes), left_v = without(v, shapes);
     const auto in_u = [&](const std::vector<double>& of_u, const std::vector<double>& of_v,
@@ -270,11 +271,8 @@ Turned turned_direction(const Curve& minus, const Curve& plus, const Scatter& sc
     sign = sign && in_u(left_u, left_v, ratio, static_cast<double>(n - shapes.size()));
     const auto odd_u = odd(left_u), odd_v = odd(left_v);
     order = order && in_u(odd_u, odd_v, ratio_of_odd, static_cast<double>(odd_u.size() - 1));
-    even_in_reversal = even_in_reversal && square_sum(left_u) - square_sum(odd_u) >
-                                               square_sum(left_v) - square_sum(odd_v);
   }
-  if (order && !(sign && even_in_reversal)) return Turned::order;
-  return sign ? Turned::sign : Turned::not_at_all;
+  return order || sign;
 }
 
 /// Returns the other pass in the direction of `own`; requires exactly two passes per direction.
@@ -340,9 +338,8 @@ void turned_passes(const Passes& passes, bool rotary, std::vector<Finding>& out)
   Scatter scatter;
   scatter.take(minus.scatter());
   scatter.take(plus.scatter());
-  if (const Turned all = turned_direction(minus, plus, scatter, step, rotary);
-      all != Turned::not_at_all)
-    return push_turned(all, "-", out);
+  if (is_direction_turned(minus, plus, scatter, step, rotary))
+    return out.push_back({.id = "plausibility.direction-turned", .attention = true});
   const Turned how = turned(minus, plus, scatter, step, true);
   if (how == Turned::not_at_all) return;
   const double s = std::max(std::sqrt(scatter.squares / scatter.freedom), step);

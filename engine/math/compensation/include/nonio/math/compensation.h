@@ -79,6 +79,10 @@ std::vector<std::int64_t> increments(std::span<const std::int64_t> absolute);
 /// What a control adds to position `x` approached in `direction` (+1, -1); m or rad.
 using Correction = std::function<double(double x, int direction)>;
 
+/// U of the reversal that a correction removes: `of_target` if it differs between targets, `of_mean`
+/// if it is the same for all, 0 if there is none.
+double reversal_uncertainty(const ErrorCurve&, const Correction&, double of_target, double of_mean);
+
 struct MeanDeviations {
   std::vector<double> plus, minus;  ///< deviations by direction, m or rad; empty if not measured
   double E() const;                 ///< range of both directions, or of the single direction

@@ -9,7 +9,8 @@ namespace nonio::math {
 
 /// Expanded uncertainties (k = 2) of the errors that a table compensates, m or rad; 0: not known.
 struct CompensatedUncertainty {
-  double B_mean = 0.0, E = 0.0, M = 0.0;
+  /// B: of the largest reversal of a target. B and B_mean contain drift and repetition.
+  double B_mean = 0.0, B = 0.0, E = 0.0, M = 0.0;
 };
 
 /// `has_drift`: whether drift and repetition of the readings contribute; false if a model has

@@ -55,6 +55,7 @@ struct AxisJob {
   math::Reversal reversal;
   AxisSettings settings;           ///< from option `axes`
   std::vector<std::string> drift;  ///< ids of the findings with severity warning
+  double drifted = 0.0;  ///< largest drift from the first run to the last that was found, m or rad
   std::optional<Unresolved> unresolved{};
   math::CompensatedUncertainty U;
   /// A mean reversal with a large uncertainty; `curve` is then the mean in both directions.
