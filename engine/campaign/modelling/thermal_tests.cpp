@@ -88,7 +88,7 @@ std::vector<Finding> restart_findings(const PartModel& part, const model::Fit& f
   std::vector<Finding> out;
   for (const model::Restart& one : part.part.restarts) {
     const double gap = one.to - one.from;
-    Finding f{.id = one.displacement.empty() ? "restart.gap" : "restart.jump",
+    Finding f{.id = one.is_gap() ? "restart.gap" : "restart.jump",
               .evidence = {{"from", one.from, Quantity::time},
                            {"to", one.to, Quantity::time},
                            {"jump", one.jump, part.deviation()},
@@ -99,7 +99,7 @@ std::vector<Finding> restart_findings(const PartModel& part, const model::Fit& f
       if (p.shape && p.quantity == Quantity::time && p.value < gap &&
           (longest == nullptr || p.value > longest->value))
         longest = &p;
-    if (one.displacement.empty() && longest != nullptr && longest->value > 0.0) {
+    if (one.is_gap() && longest != nullptr && longest->value > 0.0) {
       f.id = "restart.long-gap";
       f.evidence.push_back(minutes("tau_min", longest->value));
       f.texts.emplace_back("effect", longest->effect);

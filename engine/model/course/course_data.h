@@ -33,12 +33,12 @@ class CourseData {
   MatrixXd means(const Effect::Columns& columns) const;
   /// Returns the first bin of block b; for b = count the end of the last block.
   Index begin_of(Index b, Index count = blocks) const { return b * size() / count; }
-  /// First bin of each segment: those between restarts have a common zero.
-  const std::vector<Index>& segments() const { return segments_; }
-  bool begins_segment(Index b) const {
-    return std::binary_search(segments_.begin(), segments_.end(), b);
-  }
-  /// Subtracts from rows, of which the first is that of bin `from`, their means in each segment.
+  /// First bin of each line: its bins have a common zero.
+  const std::vector<Index>& zeros() const { return zeros_; }
+  bool begins_line(Index b) const { return std::binary_search(zeros_.begin(), zeros_.end(), b); }
+  /// Whether bin b is the first one after a restart.
+  bool restarts(Index b) const { return std::binary_search(restarts_.begin(), restarts_.end(), b); }
+  /// Subtracts from rows, of which the first is that of bin `from`, their means in each line.
   void centre(MatrixXd& rows, Index from = 0) const;
   /// Mean time of the readings of bin b, and time from the first to the last bin, s.
   double time(Index b) const { return time_(b); }
@@ -53,7 +53,7 @@ class CourseData {
   const Part& part_;
   mutable std::map<std::pair<std::string, std::vector<double>>, std::vector<CourseColumns>> grids_;
   std::vector<std::size_t> first_;  ///< first row of each bin, and the end
-  std::vector<Index> segments_;
+  std::vector<Index> zeros_, restarts_;
   MatrixXd displacements_;
   VectorXd time_;
 };

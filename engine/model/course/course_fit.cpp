@@ -281,8 +281,8 @@ class CourseFit {
     if (a.cols() > 0) left.col(0) -= math::times(a, x);
     data_.centre(left);
     const VectorXd rest = left.col(0);
-    const auto unknowns = static_cast<double>(linearised.columns.cols()) +
-                          static_cast<double>(data_.segments().size());
+    const auto unknowns =
+        static_cast<double>(linearised.columns.cols()) + static_cast<double>(data_.zeros().size());
     const auto bins = static_cast<double>(data_.size());
     out.redundancy = bins > unknowns ? static_cast<std::size_t>(bins - unknowns) : 0;
     out.s = std::sqrt(rest.squaredNorm() / std::max(bins - unknowns, 1.0));

@@ -15,7 +15,7 @@ struct CourseNoise {
 CourseNoise noise_of_fit(const CourseData& data);
 
 /// Whitens columns for generalized least squares, and eliminates an unknown constant (zero) of each
-/// segment; the noise of different segments is independent. The
+/// line. The noise before and after a restart is independent. The
 /// result has the unit of the column, and noise with the variance of the correlated part. Source:
 /// Kalman 1960; Harvey, Forecasting, structural time series models and the Kalman filter, 3.4.
 class CourseWhitening {
@@ -31,9 +31,9 @@ class CourseWhitening {
  private:
   /// for each bin: decay to the next bin, Kalman gain, 1 / standard deviation
   std::vector<double> follows_, gain_, scale_;
-  /// whitened columns of ones in each segment, scaled to unit length; 0 elsewhere
+  /// whitened columns of ones in each line, scaled to unit length; 0 elsewhere
   VectorXd zeros_;
-  std::vector<Index> segments_;  ///< first bin of each, and the end
+  std::vector<Index> lines_;  ///< first bin of each, and the end
   double half_log_determinant_ = 0.0, variance_of_zero_ = 0.0;
 
   void filter(MatrixXd& columns) const;

@@ -55,12 +55,12 @@ Part part_of(const Measurement& m, const Observations& o, std::uint32_t line,
 /// Correlation, without subtraction of means, of changes over a hundredth of the test in which
 /// neither restarts; otherwise 0.
 double move_together(const std::vector<double>& a, const std::vector<double>& b,
-                     const std::vector<Restart>& restarts) {
+                     const std::vector<double>& time, const std::vector<Restart>& restarts) {
   const std::size_t step = std::max<std::size_t>(1, a.size() / 100);
   double aa = 0.0, ab = 0.0, bb = 0.0;
   for (std::size_t i = 0; i + step < a.size(); ++i) {
     if (std::any_of(restarts.begin(), restarts.end(),
-                    [&](const Restart& r) { return i < r.row && r.row <= i + step; }))
+                    [&](const Restart& r) { return time[i] < r.to && r.to <= time[i + step]; }))
       continue;
     const double da = a[i + step] - a[i], db = b[i + step] - b[i];
     aa += da * da, ab += da * db, bb += db * db;
@@ -89,8 +89,8 @@ void append_courses(const Measurement& m, const Observations& o, std::vector<Par
       if (a == b || parts[a].table.time != parts[b].table.time) continue;
       std::vector<Restart> both = restarts[a - first];
       both.insert(both.end(), restarts[b - first].begin(), restarts[b - first].end());
-      if (!(std::fabs(move_together(parts[a].table.deviation, parts[b].table.deviation, both)) >
-            together))
+      if (!(std::fabs(move_together(parts[a].table.deviation, parts[b].table.deviation,
+                                    parts[a].table.time, both)) > together))
         continue;
       parts[a].companions.push_back(parts[b].table.deviation);
       parts[a].companion_names.push_back(parts[b].displacement);

@@ -90,7 +90,7 @@ class Jumps {
       if (source_changes(o_, o_.time[before], o_.time[after])) continue;
       // The reading in between belongs to the side that it is closer to.
       const bool late = width == 2 && std::fabs(change_[i]) < std::fabs(change_[i + 1]);
-      out.push_back({i + (late ? 2 : 1), o_.time[i], o_.time[i + width],
+      out.push_back({o_.time[late ? i + 1 : i], o_.time[late ? i + 2 : i + 1],
                      o_.deviation[i + width] - o_.deviation[i]});
       i += width;
     }
@@ -130,26 +130,25 @@ std::vector<Restart> restarts_of(const Part& part) {
   std::vector<Restart> out = Jumps(o).found();
   for (Restart& jump : out) jump.displacement = part.displacement;
   for (const std::size_t row : rows_after_gaps(o.time)) {
-    std::erase_if(out, [&](const Restart& jump) {
-      return jump.from <= o.time[row - 1] && o.time[row] <= jump.to;
-    });
-    out.push_back({row, o.time[row - 1], o.time[row]});
+    std::erase_if(out, [&](const Restart& jump) { return jump.to == o.time[row]; });
+    out.push_back({o.time[row - 1], o.time[row]});
   }
   return out;
 }
 
 void put_restarts(Part& part, std::vector<Restart> restarts) {
-  const auto order = [](const Restart& a, const Restart& b) { return a.row < b.row; };
-  std::stable_sort(restarts.begin(), restarts.end(), order);
-  const auto same = [](const Restart& a, const Restart& b) { return a.row == b.row; };
-  restarts.erase(std::unique(restarts.begin(), restarts.end(), same), restarts.end());
-  if (restarts.empty()) return;
+  std::stable_sort(restarts.begin(), restarts.end(),
+                   [](const Restart& a, const Restart& b) { return a.to < b.to; });
+  restarts.erase(std::unique(restarts.begin(), restarts.end(),
+                             [](const Restart& a, const Restart& b) { return a.to == b.to; }),
+                 restarts.end());
   Observations& o = part.table;
-  auto next = restarts.begin();
-  for (std::size_t i = 0; i < o.size(); ++i) {
-    for (; next != restarts.end() && next->row == i; ++next) o.lines.push_back(o.lines.front());
-    o.line.push_back(static_cast<std::uint32_t>(o.lines.size() - 1));
-  }
+  for (const Restart& one : restarts)
+    if (!one.is_gap()) o.lines.push_back(o.lines.front());
+  for (std::size_t i = 0; i < o.size() && o.lines.size() > 1; ++i)
+    o.line.push_back(static_cast<std::uint32_t>(
+        std::count_if(restarts.begin(), restarts.end(),
+                      [&](const Restart& one) { return !one.is_gap() && one.to <= o.time[i]; })));
   part.restarts = std::move(restarts);
 }
 

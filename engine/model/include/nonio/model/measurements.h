@@ -52,13 +52,14 @@ struct ChannelLeft {
   bool lacks_readings() const { return why == Why::partly || why == Why::untimed; }
 };
 
-/// A place in a displacement over time from which on its readings have a zero of their own, because
-/// readings are missing or its sensor jumps.
+/// A gap in a displacement over time, or a jump of its sensor. What the model leaves is independent
+/// before and after it; after a jump the readings have a zero, and so a line, of their own.
 struct Restart {
-  std::size_t row = 0;          ///< first row of the readings that follow
-  double from = 0.0, to = 0.0;  ///< times of the readings before and after, s
+  double from = 0.0, to = 0.0;  ///< times of the last reading before it and the first after it, s
   double jump = 0.0;            ///< change of the displacement, m; 0 for a gap
   std::string displacement{};   ///< that jumps; empty for a gap
+
+  bool is_gap() const { return displacement.empty(); }
 };
 
 /// Measurements that are explained together: they sense the same axes in the same unit.
@@ -97,7 +98,7 @@ struct Part {
   /// Displacements that move together with this one, m; each has parameters of its own.
   std::vector<std::vector<double>> companions{};
   std::vector<std::string> companion_names{};
-  /// Of this displacement and its companions; the readings from each on are a line of the table.
+  /// Of this displacement and its companions, in the order of time.
   std::vector<Restart> restarts{};
 };
 
