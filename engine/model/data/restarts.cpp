@@ -75,9 +75,13 @@ class Jumps {
   explicit Jumps(const Observations& o) : o_(o), change_(differences(o.deviation)) {
     const auto [low, high] = std::minmax_element(o.deviation.begin(), o.deviation.end());
     least_ = share_of_range * (*high - *low);
-    digit_ = std::numeric_limits<double>::infinity();
-    for (const double c : change_)
-      if (c != 0.0) digit_ = std::min(digit_, std::fabs(c));
+    double digit = std::numeric_limits<double>::infinity();
+    std::vector<double> sizes;
+    for (const double c : change_) {
+      sizes.push_back(std::fabs(c));
+      if (c != 0.0) digit = std::min(digit, sizes.back());
+    }
+    usual_ = std::max(2.0 * median(std::move(sizes)), digit);
   }
 
   std::vector<Restart> found() const {
@@ -110,7 +114,7 @@ class Jumps {
     for (std::size_t k = i + width; k < end; ++k) around.push_back(change_[k]);
     if (around.size() < neighbours) return false;
     const double usual = median(around);
-    double largest = digit_;
+    double largest = usual_;
     for (const double c : around) largest = std::max(largest, std::fabs(c - usual));
     const double q = std::exp(-1.0 / fastest);
     const double ratio = width == 1 ? 1.0 / q : (1.0 + q) / (q * q);
@@ -119,7 +123,8 @@ class Jumps {
 
   const Observations& o_;
   std::vector<double> change_;
-  double least_ = 0.0, digit_ = 0.0;  ///< smallest jump, and smallest change that is not 0, m
+  double least_ = 0.0;  ///< smallest jump, m
+  double usual_ = 0.0;  ///< change by noise or by one digit, m
 };
 
 }  // namespace
