@@ -9,6 +9,7 @@
 
 #include "course.h"
 #include "course_noise.h"
+#include "nonio/math/distributions.h"
 #include "nonio/sdk/channels.h"
 
 namespace nonio::model {
@@ -221,7 +222,8 @@ double ratio(const Part& seen, const std::vector<Term>& model, std::size_t from,
 
 /// Ratio of the errors to u where parts of the time are predicted from the others, at least 1: by as
 /// much a model that does not hold everywhere makes u too small (Birge 1932). Root mean square over
-/// blocks, or over the two ends, whichever is larger: the use of a model is mostly extrapolation.
+/// blocks, or over the two ends, whichever is larger: the use of a model is mostly extrapolation. As
+/// it comes from so few parts, it is enlarged by Student's factor for that number (GUM G.3).
 double error_over_u(const Part& seen, const std::vector<Term>& model) {
   const std::size_t n = seen.table.size();
   double blocks = 0.0;
@@ -231,7 +233,9 @@ double error_over_u(const Part& seen, const std::vector<Term>& model) {
     blocks += one * one / static_cast<double>(CourseData::blocks);
   }
   const double first = ratio(seen, model, 0, n * 2 / 5), last = ratio(seen, model, n * 3 / 5, n);
-  return std::max({1.0, std::sqrt(blocks), std::sqrt((first * first + last * last) / 2.0)});
+  const double found = std::max(std::sqrt(blocks), std::sqrt((first * first + last * last) / 2.0));
+  constexpr auto parts = static_cast<double>(CourseData::blocks + 2);
+  return std::max(1.0, 0.5 * math::coverage_factor(parts) * found);
 }
 
 }  // namespace

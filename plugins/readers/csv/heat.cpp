@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "header.h"
+#include "nonio/sdk/channels.h"
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"
 #include "rows.h"
@@ -186,6 +187,8 @@ Expected<Observations> read_nest(const ReadInput& input, Table& table) {
       put_further_columns(obs, table, row);
     }
   }
+  for (auto* temperatures : {&obs.air, &obs.material})
+    std::replace(temperatures->begin(), temperatures->end(), no_thermometer, double{NAN});
   return complete(std::move(obs));
 }
 

@@ -437,12 +437,12 @@ class Heat(VerbTest):
             text = "time_s,z_um,bearing_c,hall_c,spindle_rpm,wall_c,floor_c\n"
             for i, row in enumerate(rows):
                 frozen = rows[min(i, 400)][3] + 5
-                value = 85.0 if i in (0, 500) else wall[i] + rng.gauss(0, 0.02)
+                value = 85.0 if i in (0, 500) else -127.0 if i == 900 else wall[i] + rng.gauss(0, 0.02)
                 text += ",".join(f"{v:.4f}" for v in [*row[:3], frozen, row[4], value, 25 - wall[i] / 9 - i / 300]) + "\n"
             folder = self.write("failed", MANIFEST.format(id="failed", more=""), **{"warm.csv": text})
             stated = self.warnings(folder)
             self.assertTrue([w for w in stated if w.startswith("hall keeps the value") and "12000 s" in w], stated)
-            self.assertTrue([w for w in stated if w.startswith("wall reads 85") and "in 2 readings" in w], stated)
+            self.assertTrue([w for w in stated if w.startswith("wall reads -127") and "in 3 readings" in w], stated)
             answer = self.json("explain", folder)
             names = [c["effect"] for c in answer["candidates"]]
             self.assertFalse([n for n in names if "hall" in n], names)

@@ -350,6 +350,13 @@ TEST(Thermal, ABlankSpeedIsAMissingReadingOfThatChannel) {
   EXPECT_NEAR(obs->axes[0].position.back(), 1200.0 * 2.0 * std::numbers::pi, 1e-6);
 }
 
+TEST(Thermal, AnAirThermometerWithoutContactIsMissing) {
+  const auto obs = read_text("time_s,x_um,air_c\n0,1,20\n60,2,-127\n120,3,21\n", "thermal");
+  ASSERT_TRUE(obs) << obs.error().message;
+  ASSERT_EQ(obs->air.size(), 3U);
+  EXPECT_TRUE(std::isnan(obs->air[1]));
+}
+
 TEST(Thermal, BadTables) {
   for (const char* same_or_earlier : {"60,3", "59,2"}) {
     const auto back =
