@@ -179,6 +179,13 @@ def with_gap(rng, channels, y):
     return set(range(begin, begin + 80))
 
 
+def with_jump_in_gap(rng, channels, y):
+    missing = with_gap(rng, channels, y)
+    begin, size = min(missing), rng.choice([-1, 1]) * rng.uniform(5, 20)
+    y[begin:] = [v + size for v in y[begin:]]
+    return missing
+
+
 def with_jump(rng, channels, y):
     begin, size = rng.randrange(len(y) // 6, 5 * len(y) // 6), rng.choice([-1, 1]) * rng.uniform(5, 20)
     y[begin:] = [v + size for v in y[begin:]]
@@ -200,7 +207,8 @@ def with_start_values(rng, channels, y):
 
 
 # They change channels and displacement in place, and may return the rows that were not recorded.
-BROKEN = {"gap": with_gap, "jump": with_jump, "frozen": with_frozen_thermometer, "start": with_start_values}
+BROKEN = {"gap": with_gap, "gap-jump": with_jump_in_gap, "jump": with_jump, "frozen": with_frozen_thermometer,
+          "start": with_start_values}
 
 
 def campaign(folder, channels, y, period="", missing=()):
@@ -217,12 +225,12 @@ def output_of(*command):
     return json.loads(subprocess.run([*command, "--json"], capture_output=True, text=True, check=False).stdout)
 
 
-def explain(options, folder, name, seed):
+def explain(nonio, folder, name, seed, auto, broken=None):
     channels, y, right = story(name, random.Random(f"{seed} {name}"))
-    how = BROKEN.get(options.broken)
-    missing = how and how(random.Random(f"{seed} {name} {options.broken}"), channels, y)
+    how = BROKEN.get(broken)
+    missing = how and how(random.Random(f"{seed} {name} {broken}"), channels, y)
     campaign(folder, channels, y, missing=missing or ())
-    return output_of(options.nonio, "model", "explain", folder, *(["--auto"] if options.auto else [])), right
+    return output_of(nonio, "model", "explain", folder, *(["--auto"] if auto else [])), right
 
 
 def predict(nonio, folder, name, seed):
@@ -273,7 +281,8 @@ def main():
             hits, wrong, seen = 0, 0, {}
             for k in range(options.count):
                 folder = pathlib.Path(top) / f"{name}-{k}"
-                answer, right = explain(options, folder, name, options.seed * 1000 + k)
+                answer, right = explain(options.nonio, folder, name, options.seed * 1000 + k, options.auto,
+                                        options.broken)
                 verdict = answer["verdict"]
                 text = verdict.get("effect") or verdict["kind"]
                 seen[text] = seen.get(text, 0) + 1

@@ -32,27 +32,16 @@ std::vector<std::size_t> borders(std::size_t rows, std::size_t bins,
 
 CourseData::CourseData(const Part& part) : part_(part) {
   const std::size_t n = part.table.size();
-  const std::vector<double>& time = part.table.time;
-  std::vector<std::size_t> begins, lines{0};
-  for (const Restart& one : part.restarts) {
-    const auto row = std::lower_bound(time.begin(), time.end(), one.to) - time.begin();
-    if (row > 0 && row < static_cast<std::ptrdiff_t>(n))
-      begins.push_back(static_cast<std::size_t>(row));
-  }
+  std::vector<std::size_t> begins;
   for (std::size_t i = 1; i < n; ++i)
-    if (part.table.line_of(i) != part.table.line_of(i - 1)) lines.push_back(i);
+    if (part.table.line_of(i) != part.table.line_of(i - 1)) begins.push_back(i);
   for (std::size_t bins = std::min<std::size_t>(n, most_bins);; --bins) {
     first_ = borders(n, bins, begins);
     if (bins < 3 || has_small_factors(first_.size() - 2)) break;
   }
-  const auto bins_of = [&](const std::vector<std::size_t>& rows) {
-    std::vector<Index> out;
-    for (const std::size_t row : rows)
-      out.push_back(std::lower_bound(first_.begin(), first_.end(), row) - first_.begin());
-    return out;
-  };
-  restarts_ = bins_of(begins);
-  zeros_ = bins_of(lines);
+  lines_.push_back(0);
+  for (const std::size_t begin : begins)
+    lines_.push_back(std::lower_bound(first_.begin(), first_.end(), begin) - first_.begin());
   time_ = means(part.table.time);
   displacements_.resize(size(), static_cast<Index>(1 + part.companions.size()));
   displacements_.col(0) = means(part.table.deviation);
@@ -62,9 +51,9 @@ CourseData::CourseData(const Part& part) : part_(part) {
 
 void CourseData::centre(MatrixXd& rows, Index from) const {
   const Index end = from + rows.rows();
-  for (std::size_t s = 0; s < zeros_.size(); ++s) {
-    const Index first = std::max(zeros_[s], from),
-                last = std::min(s + 1 < zeros_.size() ? zeros_[s + 1] : size(), end);
+  for (std::size_t s = 0; s < lines_.size(); ++s) {
+    const Index first = std::max(lines_[s], from),
+                last = std::min(s + 1 < lines_.size() ? lines_[s + 1] : size(), end);
     if (last <= first) continue;
     auto own = rows.middleRows(first - from, last - first);
     own.rowwise() -= own.colwise().mean().eval();

@@ -19,7 +19,7 @@ struct CourseColumns {
 };
 
 /// Rows averaged in at most `most_bins` bins of nearly equal size, or a few more if the part has
-/// restarts, at which bins begin. The number of bins minus 1 has only the prime factors 2, 3 and 5,
+/// several lines, at which bins begin. The number of bins minus 1 has only the prime factors 2, 3 and 5,
 /// for the Fourier transform of the changes.
 class CourseData {
  public:
@@ -34,10 +34,8 @@ class CourseData {
   /// Returns the first bin of block b; for b = count the end of the last block.
   Index begin_of(Index b, Index count = blocks) const { return b * size() / count; }
   /// First bin of each line: its bins have a common zero.
-  const std::vector<Index>& zeros() const { return zeros_; }
-  bool begins_line(Index b) const { return std::binary_search(zeros_.begin(), zeros_.end(), b); }
-  /// Whether bin b is the first one after a restart.
-  bool restarts(Index b) const { return std::binary_search(restarts_.begin(), restarts_.end(), b); }
+  const std::vector<Index>& lines() const { return lines_; }
+  bool begins_line(Index b) const { return std::binary_search(lines_.begin(), lines_.end(), b); }
   /// Subtracts from rows, of which the first is that of bin `from`, their means in each line.
   void centre(MatrixXd& rows, Index from = 0) const;
   /// Mean time of the readings of bin b, and time from the first to the last bin, s.
@@ -53,7 +51,7 @@ class CourseData {
   const Part& part_;
   mutable std::map<std::pair<std::string, std::vector<double>>, std::vector<CourseColumns>> grids_;
   std::vector<std::size_t> first_;  ///< first row of each bin, and the end
-  std::vector<Index> zeros_, restarts_;
+  std::vector<Index> lines_;
   MatrixXd displacements_;
   VectorXd time_;
 };

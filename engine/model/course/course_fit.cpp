@@ -282,7 +282,7 @@ class CourseFit {
     data_.centre(left);
     const VectorXd rest = left.col(0);
     const auto unknowns =
-        static_cast<double>(linearised.columns.cols()) + static_cast<double>(data_.zeros().size());
+        static_cast<double>(linearised.columns.cols()) + static_cast<double>(data_.lines().size());
     const auto bins = static_cast<double>(data_.size());
     out.redundancy = bins > unknowns ? static_cast<std::size_t>(bins - unknowns) : 0;
     out.s = std::sqrt(rest.squaredNorm() / std::max(bins - unknowns, 1.0));

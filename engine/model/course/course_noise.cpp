@@ -24,7 +24,7 @@ CourseWhitening::CourseWhitening(const CourseData& data, const CourseNoise& nois
     gain_.push_back(variance / of_bin);
     half_log_determinant_ += 0.5 * std::log(of_bin);
     const double step = i + 1 < n ? data.time(i + 1) - data.time(i) : 0.0;
-    const bool follows = noise.correlation_time > 0.0 && !data.restarts(i + 1);
+    const bool follows = noise.correlation_time > 0.0 && !data.begins_line(i + 1);
     follows_.push_back(follows ? std::exp(-step / noise.correlation_time) : 0.0);
     const double keeps = follows_.back() * follows_.back();
     variance = keeps * variance * (1.0 - gain_.back()) + 1.0 - keeps;
@@ -32,7 +32,7 @@ CourseWhitening::CourseWhitening(const CourseData& data, const CourseNoise& nois
   MatrixXd one = MatrixXd::Ones(n, 1);
   filter(one);
   zeros_ = one.col(0);
-  lines_ = data.zeros();
+  lines_ = data.lines();
   lines_.push_back(n);
   for (std::size_t s = 0; s + 1 < lines_.size(); ++s) {
     auto own = zeros_.segment(lines_[s], lines_[s + 1] - lines_[s]);

@@ -15,7 +15,7 @@ struct CourseNoise {
 CourseNoise noise_of_fit(const CourseData& data);
 
 /// Whitens columns for generalized least squares, and eliminates an unknown constant (zero) of each
-/// line. The noise before and after a restart is independent. The
+/// line. The noise of different lines is independent. The
 /// result has the unit of the column, and noise with the variance of the correlated part. Source:
 /// Kalman 1960; Harvey, Forecasting, structural time series models and the Kalman filter, 3.4.
 class CourseWhitening {

@@ -71,7 +71,7 @@ class CoursePool {
   Eigen::LLT<MatrixXd> normal(const std::vector<Index>& columns) const;
   /// Number of bins less that of the zeros.
   double bins() const {
-    return static_cast<double>(data_.size()) - static_cast<double>(data_.zeros().size());
+    return static_cast<double>(data_.size()) - static_cast<double>(data_.lines().size());
   }
 
   const CourseData& data_;

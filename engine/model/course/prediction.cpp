@@ -172,7 +172,7 @@ Expected<Prediction> applied(const Part& seen, const std::vector<Term>& model, c
   std::optional<std::pair<double, Eigen::RowVectorXd>> kept;
   if (zero_kept)
     kept.emplace(fit->zero.back(),
-                 columns.columns.bottomRows(data.size() - data.zeros().back()).colwise().mean());
+                 columns.columns.bottomRows(data.size() - data.lines().back()).colwise().mean());
   const std::vector<double> share = with_zeros(unseen, error, from, kept, unknown.correlation_time);
   const auto floor = floor_of(fit->residual);
   // Of one reading, which is more than that of a mean of several.

@@ -148,12 +148,12 @@ void put_restarts(Part& part, std::vector<Restart> restarts) {
                              [](const Restart& a, const Restart& b) { return a.to == b.to; }),
                  restarts.end());
   Observations& o = part.table;
-  for (const Restart& one : restarts)
-    if (!one.is_gap()) o.lines.push_back(o.lines.front());
-  for (std::size_t i = 0; i < o.size() && o.lines.size() > 1; ++i)
-    o.line.push_back(static_cast<std::uint32_t>(
-        std::count_if(restarts.begin(), restarts.end(),
-                      [&](const Restart& one) { return !one.is_gap() && one.to <= o.time[i]; })));
+  o.lines.resize(restarts.size() + 1, o.lines.front());
+  auto next = restarts.begin();
+  for (std::size_t i = 0; i < o.size() && !restarts.empty(); ++i) {
+    while (next != restarts.end() && next->to <= o.time[i]) ++next;
+    o.line.push_back(static_cast<std::uint32_t>(next - restarts.begin()));
+  }
   part.restarts = std::move(restarts);
 }
 

@@ -70,25 +70,21 @@ TEST(course_noise, whitens_as_the_inverse_of_its_covariance_without_a_zero) {
   }
 }
 
-TEST(course_noise, restarts_are_independent_and_lines_have_zeros) {
+TEST(course_noise, lines_are_independent_and_have_zeros) {
   Random random;
   SCOPED_TRACE("seed " + std::to_string(random.seed));
   Part part = part_of(random, 61);
   part.table.line.assign(61, 0);
   for (std::size_t i = 23; i < 61; ++i) part.table.line[i] = i < 40 ? 1 : 2;
-  // A gap before row 9 has no zero of its own.
-  const std::vector<Index> segment = {0, 9, 23, 40};
-  for (std::size_t k = 1; k < segment.size(); ++k)
-    part.restarts.push_back({0.0, part.table.time[static_cast<std::size_t>(segment[k])]});
   const CourseData data(part);
-  ASSERT_EQ(data.zeros(), (std::vector<Index>{0, 23, 40}));
+  ASSERT_EQ(data.lines(), (std::vector<Index>{0, 23, 40}));
   const MatrixXd x = columns_of(random, data.size(), 3);
   const CourseNoise noise{300.0, 0.5};
   MatrixXd covariance = covariance_of(data, noise), zeros = MatrixXd::Zero(data.size(), 3);
   for (Index i = 0; i < data.size(); ++i) {
     zeros(i, static_cast<Index>(part.table.line[static_cast<std::size_t>(i)])) = 1.0;
     for (Index k = 0; k < data.size(); ++k)
-      for (const Index begin : segment)
+      for (const Index begin : data.lines())
         if ((i < begin) != (k < begin)) covariance(i, k) = 0.0;
   }
   const MatrixXd inverse = covariance.inverse();
@@ -116,7 +112,6 @@ TEST(course_data, bins_begin_at_restarts) {
   std::sort(begins.begin(), begins.end());
   for (const std::size_t begin : begins)
     for (std::size_t i = begin; i < 5000; ++i) ++part.table.line[i];
-  for (const std::size_t begin : begins) part.restarts.push_back({0.0, part.table.time[begin]});
   const CourseData data(part);
   // A bin with readings of two lines would have a mean between two integers.
   const VectorXd line =
@@ -124,7 +119,6 @@ TEST(course_data, bins_begin_at_restarts) {
   for (Index b = 0; b < data.size(); ++b) {
     EXPECT_EQ(line(b), std::round(line(b))) << b;
     EXPECT_EQ(data.begins_line(b), b == 0 || line(b) != line(b - 1)) << b;
-    EXPECT_EQ(data.restarts(b), b > 0 && line(b) != line(b - 1)) << b;
   }
   Index rest = data.size() - 1;
   for (const Index factor : {2, 3, 5})

@@ -52,8 +52,9 @@ struct ChannelLeft {
   bool lacks_readings() const { return why == Why::partly || why == Why::untimed; }
 };
 
-/// A gap in a displacement over time, or a jump of its sensor. What the model leaves is independent
-/// before and after it; after a jump the readings have a zero, and so a line, of their own.
+/// A gap in a displacement over time, in which its sensor may have been touched, or a jump of the
+/// sensor. The readings after it have a zero, and so a line, of their own, and what the model leaves
+/// of them is independent of that before it.
 struct Restart {
   double from = 0.0, to = 0.0;  ///< times of the last reading before it and the first after it, s
   double jump = 0.0;            ///< change of the displacement, m; 0 for a gap
