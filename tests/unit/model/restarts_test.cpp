@@ -108,8 +108,8 @@ TEST(Restarts, AGapSeparatesReadingsButBurstsDoNot) {
   EXPECT_EQ(part.table.line_of(599), 1U);
   EXPECT_EQ(part.table.line_of(600), 2U);
   Part bursts = warm_up(noise);
-  for (std::size_t i = 0; i < bursts.table.size(); ++i)
-    bursts.table.time[i] = 3600.0 * static_cast<double>(i / 20) + static_cast<double>(i % 20);
+  for (std::size_t i = 1; i < bursts.table.size(); ++i)
+    bursts.table.time[i] = bursts.table.time[i - 1] + (i % 20 == 0 ? 3581.0 : 1.0);
   EXPECT_TRUE(restarts_of(bursts).empty());
   Part short_gap = warm_up(noise);
   drop(short_gap, 600, 608);
