@@ -43,13 +43,17 @@ std::string mistake_of_channel(const std::string& effect, const Effect& known,
   for (const model::Part& part : model::parts_of(read.manifest->campaign, read.observations)) {
     auto terms = model::terms_of(part, read.manifest->campaign.machine, {effect}, {known});
     if (terms && !terms->empty()) return {};
+    const std::string of = split(effect).second.substr(0, split(effect).second.find('/'));
     for (const model::ChannelLeft& left : part.channels_left)
-      if (split(effect).second.substr(0, split(effect).second.find('/')) == left.name &&
-          left.why != model::ChannelLeft::Why::speed)
+      if (of == left.name && left.lacks_readings())
         return "\"" + effect + "\": measurement " + storage::listed(left.measurements) +
                " has no " +
                (left.why == model::ChannelLeft::Why::partly ? "channel " + left.name : "time_s") +
                ", and is explained together with those that have it";
+    for (const model::ChannelLeft& left : part.channels_left)
+      if (of == left.name && left.fails())
+        return "\"" + effect + "\": the thermometer " + left.name +
+               " fails in this campaign, so it has no effects; `nonio model compare` describes how";
   }
   return "\"" + effect + "\": no measurement over time has this channel" +
          (effect.find('/') == std::string::npos ? "" : " and these displacements") +

@@ -194,7 +194,7 @@ void put_after_table(storage::Json& json, const PartModel& part, const model::Fi
 
 /// Returns the warnings about a fit as sentences: values below their uncertainty, gains that are
 /// too large, parameters that are not identifiable, positions or orders that are not stated,
-/// interpolated temperatures, channels without effects, time constants of thermal tests, and noise that is not independent or
+/// interpolated temperatures, channels that are not used, interrupted displacements, time constants of thermal tests, and noise that is not independent or
 /// not constant.
 std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,
                                      const ModelWords& words) {
@@ -217,9 +217,7 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
       std::none_of(lines.begin(), lines.end(), [](const auto& l) { return l.body.empty(); });
   if (!part.part.table.order_known && !features) out.push_back(words.order_unknown());
   if (part.interpolated.count > 0) out.push_back(words.temperature_interpolated(part.interpolated));
-  for (const model::ChannelLeft& left : part.part.channels_left)
-    out.push_back(words.channel_left(left));
-  for (std::string& said : words.time_constants(part, fit)) out.push_back(std::move(said));
+  for (std::string& said : words.recordings(part, fit)) out.push_back(std::move(said));
   for (std::string& said : words.noise(fit, part)) out.push_back(std::move(said));
   return out;
 }

@@ -47,7 +47,12 @@ Expected<std::vector<Predicted>> predictions(const reading::ReadCampaign& seen,
     auto predicted = course
                          ? model::predict(part->part, part->terms, other.part, zero_kept)
                          : model::predict_places(part->part, part->terms, other.part, other.terms);
-    if (!predicted) return fail(other.part.name + ": " + predicted.error().message);
+    if (!predicted) {
+      std::string why = predicted.error().message;
+      for (const model::ChannelLeft& left : other.part.channels_left)
+        if (left.fails()) why += "; the thermometer " + left.name + " fails there";
+      return fail(other.part.name + ": " + why);
+    }
     out.push_back({*part, std::move(other), std::move(*predicted)});
   }
   if (out.empty())
@@ -82,7 +87,9 @@ storage::Json predict_json(const std::vector<Predicted>& all, const Campaign& se
     else if (one.unseen.part.kind == model::Part::Kind::course)
       part["holds_until_s"] = nullptr;
     part["outside_range"] = p.outside;
-    part["says"] = words.prediction(p, one.unseen);
+    std::string says = words.prediction(p, one.unseen);
+    for (const std::string& said : words.recordings(one.unseen, {})) says += " " + said;
+    part["says"] = std::move(says);
     parts.push_back(std::move(part));
   }
   json["parts"] = std::move(parts);

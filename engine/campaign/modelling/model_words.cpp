@@ -460,15 +460,6 @@ std::string ModelWords::temperature_interpolated(const RowsPlace& rows) const {
               {{"file", rows.file}, {"lines", rows.lines}});
 }
 
-std::string ModelWords::channel_left(const model::ChannelLeft& left) const {
-  using Why = model::ChannelLeft::Why;
-  const char* const why = left.why == Why::partly    ? "partly"
-                          : left.why == Why::untimed ? "untimed"
-                                                     : "speed";
-  return says(std::string("channel-left.") + why, {},
-              {{"channel", left.name}, {"measurements", storage::listed(left.measurements)}});
-}
-
 std::string ModelWords::cancelling(const std::string& one, const std::string& other) const {
   return says("cancelling", {}, {{"one", one}, {"other", other}});
 }
@@ -594,11 +585,12 @@ std::string ModelWords::order_assumed(const std::string& measurement) const {
   return says("order-assumed", {}, {{"measurement", measurement}});
 }
 
-std::vector<std::string> ModelWords::time_constants(const PartModel& part,
-                                                    const model::Fit& fit) const {
+std::vector<std::string> ModelWords::recordings(const PartModel& part,
+                                                const model::Fit& fit) const {
   std::vector<std::string> out;
-  for (const Finding& f : time_constant_findings(part, fit))
-    out.push_back(finding_text(templates_, language_, f, "says"));
+  for (const auto& findings :
+       {channel_findings(part), restart_findings(part, fit), time_constant_findings(part, fit)})
+    for (const Finding& f : findings) out.push_back(finding_text(templates_, language_, f, "says"));
   return out;
 }
 

@@ -29,7 +29,6 @@ class ModelWords {
                         double rms_before) const;
   std::string unseen(const model::Candidate& candidate, const RowsPlace& rows) const;
   std::string temperature_interpolated(const RowsPlace& rows) const;
-  std::string channel_left(const model::ChannelLeft& left) const;
   std::string cancelling(const std::string& one, const std::string& other) const;
   std::string plan(const model::Plan& plan) const;
   /// States the smallest detectable size of candidates without evidence; "" without candidates.
@@ -50,8 +49,9 @@ class ModelWords {
   std::string order_assumed(const std::string& measurement) const;
   /// Returns differences from independent noise of constant scatter; may be empty.
   std::vector<std::string> noise(const model::Fit& fit, const PartModel& part) const;
-  /// Returns one sentence per axis about the time constant of thermal tests.
-  std::vector<std::string> time_constants(const PartModel& part, const model::Fit& fit) const;
+  /// Returns sentences about channels that are not used, interrupted displacements, and time
+  /// constants of thermal tests.
+  std::vector<std::string> recordings(const PartModel& part, const model::Fit& fit) const;
   std::string order_unknown() const;
   std::string has_unstated_position() const;
   std::string unmeasured(const std::string& effect) const;

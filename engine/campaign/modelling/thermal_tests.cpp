@@ -50,7 +50,64 @@ Finding not_usable(const PartModel& part, const model::Term& asked, Finding f) {
   return f;
 }
 
+const char* why_left(const model::ChannelLeft& left) {
+  using Why = model::ChannelLeft::Why;
+  switch (left.why) {
+    case Why::partly:
+      return "channel-left.partly";
+    case Why::untimed:
+      return "channel-left.untimed";
+    case Why::speed:
+      return "channel-left.speed";
+    case Why::frozen:
+      return "channel-left.frozen";
+    case Why::start_value:
+      return "channel-left.start-value";
+    case Why::start_values_dropped:
+      break;
+  }
+  return "channel-left.start-values-dropped";
+}
+
 }  // namespace
+
+std::vector<Finding> channel_findings(const PartModel& part) {
+  std::vector<Finding> out;
+  for (const model::ChannelLeft& left : part.part.channels_left)
+    out.push_back(
+        {.id = why_left(left),
+         .evidence = {{"value", left.value, Quantity::temperature},
+                      {"from", left.from, Quantity::time},
+                      {"to", left.to, Quantity::time},
+                      {"count", static_cast<double>(left.readings), Quantity::count}},
+         .texts = {{"channel", left.name}, {"measurements", storage::listed(left.measurements)}}});
+  return out;
+}
+
+std::vector<Finding> restart_findings(const PartModel& part, const model::Fit& fit) {
+  std::vector<Finding> out;
+  for (const model::Restart& one : part.part.restarts) {
+    const double gap = one.to - one.from;
+    Finding f{.id = one.is_gap() ? "restart.gap" : "restart.jump",
+              .evidence = {{"from", one.from, Quantity::time},
+                           {"to", one.to, Quantity::time},
+                           {"jump", one.jump, part.deviation()},
+                           minutes("gap_min", gap)},
+              .texts = {{"displacement", one.displacement}}};
+    const model::Parameter* longest = nullptr;
+    for (const model::Parameter& p : fit.parameters)
+      if (p.shape && p.quantity == Quantity::time && p.value < gap &&
+          (longest == nullptr || p.value > longest->value))
+        longest = &p;
+    if (one.is_gap() && longest != nullptr && longest->value > 0.0) {
+      f.id = "restart.long-gap";
+      f.evidence.push_back(minutes("tau_min", longest->value));
+      f.texts.emplace_back("effect", longest->effect);
+    }
+    out.push_back(std::move(f));
+  }
+  return out;
+}
 
 std::vector<Finding> time_constant_findings(const PartModel& part, const model::Fit& fit) {
   using State = model::TimeConstant::State;

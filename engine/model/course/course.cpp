@@ -11,6 +11,16 @@
 
 namespace nonio::model {
 
+std::vector<double> without_zeros(std::vector<double>& readings, const Observations& table) {
+  std::vector<double> zero(std::max<std::size_t>(table.lines.size(), 1), 0.0),
+      count(zero.size(), 0.0);
+  for (std::size_t i = 0; i < readings.size(); ++i)
+    zero[table.line_of(i)] += readings[i], count[table.line_of(i)] += 1.0;
+  for (std::size_t k = 0; k < zero.size(); ++k) zero[k] /= std::max(count[k], 1.0);
+  for (std::size_t i = 0; i < readings.size(); ++i) readings[i] -= zero[table.line_of(i)];
+  return zero;
+}
+
 std::optional<NoiseFloor> floor_of(const std::vector<double>& residual) {
   if (residual.size() < 20) return std::nullopt;
   std::vector<double> d;

@@ -11,6 +11,9 @@ class CourseData;
 /// Fits like `fit` of model/fit.h, but with noise that is correlated in time.
 Expected<Fit> fit_course(const Part& part, const std::vector<Term>& terms);
 Expected<Fit> fit_course(const CourseData& data, const std::vector<Term>& terms);
+/// Subtracts the mean of each line from readings, and returns the means: 0 for a line without
+/// readings.
+std::vector<double> without_zeros(std::vector<double>& readings, const Observations& table);
 /// From the median of the second differences of successive residuals: a smooth course nearly
 /// vanishes in them, and outliers hardly affect their median. Nothing for fewer than 20 residuals.
 std::optional<NoiseFloor> floor_of(const std::vector<double>& residual);

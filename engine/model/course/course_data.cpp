@@ -3,33 +3,61 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace nonio::model {
 
 namespace {
 
-/// Returns the largest number up to `n` with no prime factors except 2, 3 and 5.
-std::size_t smooth(std::size_t n) {
-  for (; n > 1; --n) {
-    std::size_t rest = n;
-    for (const std::size_t factor : {2U, 3U, 5U})
-      while (rest % factor == 0) rest /= factor;
-    if (rest == 1) break;
+bool has_small_factors(std::size_t n) {
+  for (const std::size_t factor : {2U, 3U, 5U})
+    while (n > 1 && n % factor == 0) n /= factor;
+  return n <= 1;
+}
+
+/// First row of each of `bins` equal bins and the end; the border next to each begin is moved to it.
+std::vector<std::size_t> borders(std::size_t rows, std::size_t bins,
+                                 const std::vector<std::size_t>& begins) {
+  std::set<std::size_t> out;
+  for (std::size_t b = 0; b <= bins; ++b) out.insert(b * rows / std::max<std::size_t>(bins, 1));
+  for (const std::size_t begin : begins) {
+    const std::size_t next = (begin * bins + rows / 2) / rows;
+    if (next > 0 && next < bins) out.erase(next * rows / bins);
   }
-  return n;
+  out.insert(begins.begin(), begins.end());
+  return {out.begin(), out.end()};
 }
 
 }  // namespace
 
 CourseData::CourseData(const Part& part) : part_(part) {
   const std::size_t n = part.table.size();
-  const std::size_t bins = n < 3 ? n : smooth(std::min<std::size_t>(n, most_bins) - 1) + 1;
-  for (std::size_t b = 0; b <= bins; ++b) first_.push_back(b * n / std::max<std::size_t>(bins, 1));
+  std::vector<std::size_t> begins;
+  for (std::size_t i = 1; i < n; ++i)
+    if (part.table.line_of(i) != part.table.line_of(i - 1)) begins.push_back(i);
+  for (std::size_t bins = std::min<std::size_t>(n, most_bins);; --bins) {
+    first_ = borders(n, bins, begins);
+    if (bins < 3 || has_small_factors(first_.size() - 2)) break;
+  }
+  lines_.push_back(0);
+  for (const std::size_t begin : begins)
+    lines_.push_back(std::lower_bound(first_.begin(), first_.end(), begin) - first_.begin());
   time_ = means(part.table.time);
   displacements_.resize(size(), static_cast<Index>(1 + part.companions.size()));
   displacements_.col(0) = means(part.table.deviation);
   for (std::size_t k = 0; k < part.companions.size(); ++k)
     displacements_.col(static_cast<Index>(k) + 1) = means(part.companions[k]);
+}
+
+void CourseData::centre(MatrixXd& rows, Index from) const {
+  const Index end = from + rows.rows();
+  for (std::size_t s = 0; s < lines_.size(); ++s) {
+    const Index first = std::max(lines_[s], from),
+                last = std::min(s + 1 < lines_.size() ? lines_[s + 1] : size(), end);
+    if (last <= first) continue;
+    auto own = rows.middleRows(first - from, last - first);
+    own.rowwise() -= own.colwise().mean().eval();
+  }
 }
 
 VectorXd CourseData::means(const std::vector<double>& column) const {

@@ -189,13 +189,16 @@ class CourseFit {
 
   /// Sum of squares that ordinary least squares leaves, with `instead` as the columns of term k.
   double squares_with(std::size_t k, const MatrixXd& instead) const {
-    MatrixXd all = MatrixXd::Ones(data_.size(), 1);
+    MatrixXd all(data_.size(), 0);
     for (std::size_t t = 0; t < terms_.size(); ++t) {
       const MatrixXd& more = t == k ? instead : chosen_[t].columns;
       all.conservativeResize(Eigen::NoChange, all.cols() + more.cols());
       all.rightCols(more.cols()) = more;
     }
-    const MatrixXd& y = data_.displacements();
+    MatrixXd y = data_.displacements();
+    data_.centre(all);
+    data_.centre(y);
+    if (all.cols() == 0) return y.squaredNorm();
     const Eigen::ColPivHouseholderQR<MatrixXd> qr(all);
     return (y - all * qr.solve(y)).squaredNorm();
   }
@@ -234,10 +237,9 @@ class CourseFit {
       for (std::size_t i = 0; i < n; ++i) out.residual[i] -= says[i];
       out.part.push_back(std::move(says));
     }
-    double zero = 0.0, squares = 0.0;
-    for (const double r : out.residual) zero += r / static_cast<double>(n);
-    for (double& r : out.residual) r -= zero, squares += r * r;
-    out.zero = {zero};
+    out.zero = without_zeros(out.residual, part.table);
+    double squares = 0.0;
+    for (const double r : out.residual) squares += r * r;
     out.weight.assign(n, 1.0);
     out.rms = std::sqrt(squares / static_cast<double>(n));
     uncertainties(model, x, out);
@@ -275,10 +277,12 @@ class CourseFit {
       }
       at += own;
     }
-    VectorXd rest = data_.displacements().col(0);
-    if (a.cols() > 0) rest -= math::times(a, x);
-    rest.array() -= rest.mean();
-    const auto unknowns = static_cast<double>(linearised.columns.cols() + 1);
+    MatrixXd left = data_.displacements().leftCols(1);
+    if (a.cols() > 0) left.col(0) -= math::times(a, x);
+    data_.centre(left);
+    const VectorXd rest = left.col(0);
+    const auto unknowns =
+        static_cast<double>(linearised.columns.cols()) + static_cast<double>(data_.lines().size());
     const auto bins = static_cast<double>(data_.size());
     out.redundancy = bins > unknowns ? static_cast<std::size_t>(bins - unknowns) : 0;
     out.s = std::sqrt(rest.squaredNorm() / std::max(bins - unknowns, 1.0));

@@ -24,17 +24,23 @@ CourseWhitening::CourseWhitening(const CourseData& data, const CourseNoise& nois
     gain_.push_back(variance / of_bin);
     half_log_determinant_ += 0.5 * std::log(of_bin);
     const double step = i + 1 < n ? data.time(i + 1) - data.time(i) : 0.0;
-    follows_.push_back(noise.correlation_time > 0.0 ? std::exp(-step / noise.correlation_time)
-                                                    : 0.0);
+    const bool follows = noise.correlation_time > 0.0 && !data.begins_line(i + 1);
+    follows_.push_back(follows ? std::exp(-step / noise.correlation_time) : 0.0);
     const double keeps = follows_.back() * follows_.back();
     variance = keeps * variance * (1.0 - gain_.back()) + 1.0 - keeps;
   }
   MatrixXd one = MatrixXd::Ones(n, 1);
   filter(one);
-  const double length = one.norm();
-  zero_ = one.col(0) / std::max(length, 1e-300);
-  variance_of_zero_ = 1.0 / std::max(length * length, 1e-300);
-  half_log_determinant_ += std::log(std::max(length, 1e-300));
+  zeros_ = one.col(0);
+  lines_ = data.lines();
+  lines_.push_back(n);
+  for (std::size_t s = 0; s + 1 < lines_.size(); ++s) {
+    auto own = zeros_.segment(lines_[s], lines_[s + 1] - lines_[s]);
+    const double length = std::max(own.norm(), 1e-300);
+    own /= length;
+    variance_of_zero_ = 1.0 / std::max(length * length, 1e-300);
+    half_log_determinant_ += std::log(length);
+  }
 }
 
 void CourseWhitening::filter(MatrixXd& columns) const {
@@ -51,7 +57,13 @@ void CourseWhitening::filter(MatrixXd& columns) const {
 
 MatrixXd CourseWhitening::of(MatrixXd columns) const {
   filter(columns);
-  for (Index k = 0; k < columns.cols(); ++k) columns.col(k) -= zero_ * zero_.dot(columns.col(k));
+  for (std::size_t s = 0; s + 1 < lines_.size(); ++s) {
+    const auto zero = zeros_.segment(lines_[s], lines_[s + 1] - lines_[s]);
+    for (Index k = 0; k < columns.cols(); ++k) {
+      auto own = columns.col(k).segment(lines_[s], zero.size());
+      own -= zero * zero.dot(own);
+    }
+  }
   return columns;
 }
 

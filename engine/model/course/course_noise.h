@@ -14,7 +14,8 @@ struct CourseNoise {
 /// For the fit and the search: a correlation time of 1/24 of the test, and scatter 0.
 CourseNoise noise_of_fit(const CourseData& data);
 
-/// Whitens columns for generalized least squares, and eliminates an unknown constant (zero). The
+/// Whitens columns for generalized least squares, and eliminates an unknown constant (zero) of each
+/// line. The noise of different lines is independent. The
 /// result has the unit of the column, and noise with the variance of the correlated part. Source:
 /// Kalman 1960; Harvey, Forecasting, structural time series models and the Kalman filter, 3.4.
 class CourseWhitening {
@@ -22,15 +23,17 @@ class CourseWhitening {
   CourseWhitening(const CourseData& data, const CourseNoise& noise);
 
   MatrixXd of(MatrixXd columns) const;
-  /// Half the log-determinant of the noise covariance, including the term of the unknown zero.
+  /// Half the log-determinant of the noise covariance, including the terms of the unknown zeros.
   double half_log_determinant() const { return half_log_determinant_; }
-  /// Returns the variance of the zero divided by that of the correlated part of the noise.
+  /// Returns the variance of the last zero divided by that of the correlated part of the noise.
   double variance_of_zero() const { return variance_of_zero_; }
 
  private:
   /// for each bin: decay to the next bin, Kalman gain, 1 / standard deviation
   std::vector<double> follows_, gain_, scale_;
-  VectorXd zero_;  ///< whitened column of ones, scaled to unit length
+  /// whitened columns of ones in each line, scaled to unit length; 0 elsewhere
+  VectorXd zeros_;
+  std::vector<Index> lines_;  ///< first bin of each, and the end
   double half_log_determinant_ = 0.0, variance_of_zero_ = 0.0;
 
   void filter(MatrixXd& columns) const;

@@ -33,7 +33,7 @@ MatrixXd block_of(const CourseData& data, const MatrixXd& columns, Index b) {
 
 MatrixXd centred_block(const CourseData& data, const MatrixXd& columns, Index b) {
   MatrixXd out = block_of(data, columns, b);
-  if (out.rows() > 0) out.rowwise() -= out.colwise().mean();
+  data.centre(out, data.begin_of(b));
   return out;
 }
 
@@ -43,8 +43,10 @@ double deviation_of(const VectorXd& x) { return std::sqrt((x.array() - x.mean())
 
 CoursePool::CoursePool(const CourseData& data, const CourseNoise& noise)
     : data_(data), whitening_(data, noise) {
-  for (Index k = 0; k < data.displacements().cols(); ++k)
-    sd_ = std::max(sd_, deviation_of(data.displacements().col(k)));
+  MatrixXd displacements = data.displacements();
+  data.centre(displacements);
+  for (Index k = 0; k < displacements.cols(); ++k)
+    sd_ = std::max(sd_, deviation_of(displacements.col(k)));
 }
 
 std::vector<Index> CoursePool::add(const MatrixXd& columns, const std::vector<Quantity>& of) {

@@ -41,7 +41,7 @@ class CoursePool {
   MatrixXd covariance(const std::vector<Index>& columns, double variance) const;
   /// Result: bins x displacements.
   MatrixXd remainder(const std::vector<Index>& columns, const MatrixXd& displacements) const;
-  /// RMS of cross-validation of displacement `side`, m; each block of time has a zero of its own.
+  /// RMS of cross-validation of displacement `side`, m; each block of time has zeros of its own.
   double left_out(const std::vector<Index>& columns, const CourseSides& sides, Index side) const;
 
   static constexpr std::size_t most_columns = 6;
@@ -69,7 +69,10 @@ class CoursePool {
  private:
   Index add_one(const VectorXd& column, double prior);
   Eigen::LLT<MatrixXd> normal(const std::vector<Index>& columns) const;
-  double bins() const { return static_cast<double>(data_.size() - 1); }
+  /// Number of bins less that of the zeros.
+  double bins() const {
+    return static_cast<double>(data_.size()) - static_cast<double>(data_.lines().size());
+  }
 
   const CourseData& data_;
   CourseWhitening whitening_;

@@ -323,7 +323,8 @@ class CourseSearch {
     for (Index k = 0; k < rest.cols(); ++k) {
       std::vector<double> change(static_cast<std::size_t>(n));
       for (Index i = 0; i < n; ++i)
-        change[static_cast<std::size_t>(i)] = rest(i + 1, k) - rest(i, k);
+        if (!data_.begins_line(i + 1))
+          change[static_cast<std::size_t>(i)] = rest(i + 1, k) - rest(i, k);
       std::vector<std::complex<double>> spectrum;
       fft.fwd(spectrum, change);
       for (Index f = 1; 2 * f < n; ++f) {

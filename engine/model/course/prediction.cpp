@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "course.h"
 #include "course_noise.h"
+#include "nonio/math/distributions.h"
 #include "nonio/sdk/channels.h"
 
 namespace nonio::model {
@@ -54,10 +57,6 @@ Expected<Linearised> columns_in(const Part& part, const Fit& fit) {
   return out;
 }
 
-void centre(MatrixXd& columns) {
-  for (Index k = 0; k < columns.cols(); ++k) columns.col(k).array() -= columns.col(k).mean();
-}
-
 /// Factor of the variance of readings with exponential correlation, minus their mean: for each time.
 std::vector<double> about_mean(const std::vector<double>& time, double correlation_time) {
   const double duration = time.back() - time.front();
@@ -71,6 +70,38 @@ std::vector<double> about_mean(const std::vector<double>& time, double correlati
   for (const double c : with_mean) of_mean += c / static_cast<double>(time.size());
   for (double& c : with_mean) c = std::max(0.0, 1.0 - 2.0 * c + of_mean);
   return with_mean;
+}
+
+/// Subtracts from readings, and from columns of the model, their means in each line of `part`, but
+/// on the first line the values at the zero of the fit if that is kept. Returns the factor of the
+/// variance of the correlated part for each reading.
+std::vector<double> with_zeros(const Part& part, VectorXd& readings, MatrixXd& columns,
+                               const std::optional<std::pair<double, Eigen::RowVectorXd>>& kept,
+                               double correlation_time) {
+  std::vector<double> share;
+  const std::vector<double>& time = part.table.time;
+  for (std::size_t from = 0; from < time.size();) {
+    std::size_t to = from + 1;
+    while (to < time.size() && part.table.line_of(to) == part.table.line_of(from)) ++to;
+    const auto first = static_cast<Index>(from), count = static_cast<Index>(to - from);
+    auto own = readings.segment(first, count);
+    auto of_own = columns.middleRows(first, count);
+    if (kept && from == 0) {
+      own.array() -= kept->first;
+      of_own.rowwise() -= kept->second;
+      share.assign(to, 1.0);
+    } else {
+      own.array() -= own.mean();
+      of_own.rowwise() -= of_own.colwise().mean().eval();
+      const auto begin = time.begin();
+      const std::vector<double> factor = about_mean(
+          {begin + static_cast<std::ptrdiff_t>(from), begin + static_cast<std::ptrdiff_t>(to)},
+          correlation_time);
+      share.insert(share.end(), factor.begin(), factor.end());
+    }
+    from = to;
+  }
+  return share;
 }
 
 /// Start of the first window (a twentieth, at least 10 readings) with an RMS error above 2 u.
@@ -131,32 +162,31 @@ Expected<Prediction> applied(const Part& seen, const std::vector<Term>& model, c
     if (!p.shape) x(at++) = p.value;
   VectorXd error = Eigen::Map<const VectorXd>(unseen.table.deviation.data(),
                                               static_cast<Index>(unseen.table.size()));
-  const double mean = error.mean();
-  out.sd = std::sqrt((error.array() - mean).square().mean());
+  std::vector<double> readings = unseen.table.deviation;
+  without_zeros(readings, unseen.table);
+  for (const double r : readings) out.sd += r * r / static_cast<double>(readings.size());
+  out.sd = std::sqrt(out.sd);
   error -= other->columns * x;
   MatrixXd from(error.size(), columns.columns.cols());
   from << other->columns, other->of_shapes;
-  if (!zero_kept) {
-    error.array() -= error.mean();
-    centre(from);
-  } else {
-    error.array() -= fit->zero.front();
-    from.rowwise() -= columns.columns.colwise().mean();
-  }
+  std::optional<std::pair<double, Eigen::RowVectorXd>> kept;
+  if (zero_kept)
+    kept.emplace(fit->zero.back(),
+                 columns.columns.bottomRows(data.size() - data.lines().back()).colwise().mean());
+  const std::vector<double> share = with_zeros(unseen, error, from, kept, unknown.correlation_time);
   const auto floor = floor_of(fit->residual);
   // Of one reading, which is more than that of a mean of several.
   const double correlated = unknown.correlated * unknown.correlated,
                scatter =
                    std::max(unknown.s * unknown.s - correlated, floor ? floor->s * floor->s : 0.0),
-               zero = zero_kept ? unknown.zero * unknown.zero : 0.0;
-  const std::vector<double> share = zero_kept
-                                        ? std::vector<double>(unseen.table.size(), 1.0)
-                                        : about_mean(unseen.table.time, unknown.correlation_time);
+               zero = unknown.zero * unknown.zero;
   const MatrixXd spread = math::product(from, unknown.covariance);
   for (Index i = 0; i < error.size(); ++i) {
     out.error.push_back(error(i));
-    out.u.push_back(std::sqrt(correlated * share[static_cast<std::size_t>(i)] + scatter + zero +
-                              spread.row(i).dot(from.row(i))));
+    const bool kept_zero =
+        kept && unseen.table.line_of(static_cast<std::size_t>(i)) == unseen.table.line_of(0);
+    out.u.push_back(std::sqrt(correlated * share[static_cast<std::size_t>(i)] + scatter +
+                              (kept_zero ? zero : 0.0) + spread.row(i).dot(from.row(i))));
   }
   out.rms = std::sqrt(error.squaredNorm() / static_cast<double>(error.size()));
   return out;
@@ -192,7 +222,8 @@ double ratio(const Part& seen, const std::vector<Term>& model, std::size_t from,
 
 /// Ratio of the errors to u where parts of the time are predicted from the others, at least 1: by as
 /// much a model that does not hold everywhere makes u too small (Birge 1932). Root mean square over
-/// blocks, or over the two ends, whichever is larger: the use of a model is mostly extrapolation.
+/// blocks, or over the two ends, whichever is larger: the use of a model is mostly extrapolation. As
+/// it comes from so few parts, it is enlarged by Student's factor for that number (GUM G.3).
 double error_over_u(const Part& seen, const std::vector<Term>& model) {
   const std::size_t n = seen.table.size();
   double blocks = 0.0;
@@ -202,7 +233,9 @@ double error_over_u(const Part& seen, const std::vector<Term>& model) {
     blocks += one * one / static_cast<double>(CourseData::blocks);
   }
   const double first = ratio(seen, model, 0, n * 2 / 5), last = ratio(seen, model, n * 3 / 5, n);
-  return std::max({1.0, std::sqrt(blocks), std::sqrt((first * first + last * last) / 2.0)});
+  const double found = std::max(std::sqrt(blocks), std::sqrt((first * first + last * last) / 2.0));
+  constexpr auto parts = static_cast<double>(CourseData::blocks + 2);
+  return std::max(1.0, 0.5 * math::coverage_factor(parts) * found);
 }
 
 }  // namespace

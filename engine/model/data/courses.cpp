@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "restarts.h"
+
 namespace nonio::model {
 
 namespace {
@@ -50,11 +52,16 @@ Part part_of(const Measurement& m, const Observations& o, std::uint32_t line,
   return part;
 }
 
-/// Correlation, without subtraction of means, of changes over a hundredth of the test; otherwise 0.
-double move_together(const std::vector<double>& a, const std::vector<double>& b) {
+/// Correlation, without subtraction of means, of changes over a hundredth of the test in which
+/// neither restarts; otherwise 0.
+double move_together(const std::vector<double>& a, const std::vector<double>& b,
+                     const std::vector<double>& time, const std::vector<Restart>& restarts) {
   const std::size_t step = std::max<std::size_t>(1, a.size() / 100);
   double aa = 0.0, ab = 0.0, bb = 0.0;
   for (std::size_t i = 0; i + step < a.size(); ++i) {
+    if (std::any_of(restarts.begin(), restarts.end(),
+                    [&](const Restart& r) { return time[i] < r.to && r.to <= time[i + step]; }))
+      continue;
     const double da = a[i + step] - a[i], db = b[i + step] - b[i];
     aa += da * da, ab += da * db, bb += db * db;
   }
@@ -73,14 +80,23 @@ void append_courses(const Measurement& m, const Observations& o, std::vector<Par
     const auto rows = rows_of(o, line);
     if (rows.size() >= least) parts.push_back(part_of(m, o, line, rows));
   }
+  std::vector<std::vector<Restart>> restarts;
+  for (std::size_t a = first; a < parts.size(); ++a) restarts.push_back(restarts_of(parts[a]));
   for (std::size_t a = first; a < parts.size(); ++a) {
     parts[a].displacements = parts.size() - first;
-    for (std::size_t b = first; b < parts.size(); ++b)
-      if (a != b && parts[a].table.time == parts[b].table.time &&
-          std::fabs(move_together(parts[a].table.deviation, parts[b].table.deviation)) > together) {
-        parts[a].companions.push_back(parts[b].table.deviation);
-        parts[a].companion_names.push_back(parts[b].displacement);
-      }
+    std::vector<Restart> own = restarts[a - first];
+    for (std::size_t b = first; b < parts.size(); ++b) {
+      if (a == b || parts[a].table.time != parts[b].table.time) continue;
+      std::vector<Restart> both = restarts[a - first];
+      both.insert(both.end(), restarts[b - first].begin(), restarts[b - first].end());
+      if (!(std::fabs(move_together(parts[a].table.deviation, parts[b].table.deviation,
+                                    parts[a].table.time, both)) > together))
+        continue;
+      parts[a].companions.push_back(parts[b].table.deviation);
+      parts[a].companion_names.push_back(parts[b].displacement);
+      own.insert(own.end(), restarts[b - first].begin(), restarts[b - first].end());
+    }
+    put_restarts(parts[a], std::move(own));
   }
 }
 

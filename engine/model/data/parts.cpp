@@ -9,6 +9,7 @@
 #include "balls.h"
 #include "courses.h"
 #include "design.h"
+#include "failed_channels.h"
 #include "lines.h"
 #include "nonio/math/rotary.h"
 #include "nonio/model/explain.h"
@@ -314,6 +315,7 @@ std::vector<Part> parts_of(const Campaign& campaign, const std::vector<Observati
   std::vector<Part> parts = Parts(campaign, read).made();
   put_time_constants(campaign, read, parts);
   for (Part& part : parts) {
+    leave_failed(part);
     leave_channels(part);
     part.groupings = groupings_of(part, campaign);
   }

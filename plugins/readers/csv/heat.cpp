@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "header.h"
+#include "nonio/sdk/channels.h"
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"
 #include "rows.h"
@@ -93,18 +94,44 @@ Expected<std::vector<Displacement>> displacements_of(const Table& table) {
   return out;
 }
 
-std::optional<Error> times_grow(const Table& table) {
+bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
+/// Removes rows that are equal to the row before, and adds a note. Error: a time that is not later
+/// than that of the row before.
+Expected<void> put_in_time(Table& table, Observations& obs) {
   const auto& time = *table.column("time_s");
-  for (std::size_t i = 1; i < time.size(); ++i)
-    if (!(time[i] > time[i - 1]))
-      return at_line(table.line[i], "time_s",
-                     "expected a time later than that of the row before, " +
-                         short_text(time[i - 1], 9) + " s, found " + short_text(time[i], 9) + " s");
-  return std::nullopt;
+  std::vector<char> repeated(time.size(), 0);
+  for (std::size_t i = 1; i < time.size(); ++i) {
+    if (time[i] > time[i - 1]) continue;
+    const bool equal = std::all_of(table.numbers.begin(), table.numbers.end(), [&](const auto& c) {
+      return same(c.second[i], c.second[i - 1]);
+    });
+    if (!equal)
+      return fail(at_line(table.line[i], "time_s",
+                          "expected a time later than that of line " +
+                              std::to_string(table.line[i - 1]) + ", " +
+                              short_text(time[i - 1], 9) + " s, found " + short_text(time[i], 9) +
+                              " s" + (time[i] < time[i - 1] ? "" : " with other values")));
+    repeated[i] = 1;
+  }
+  const auto first = std::find(repeated.begin(), repeated.end(), 1);
+  if (first == repeated.end()) return {};
+  const auto rows = static_cast<std::uint64_t>(std::count(first, repeated.end(), 1));
+  const std::uint64_t line = table.line[static_cast<std::size_t>(first - repeated.begin())];
+  const auto drop = [&](auto& column) {
+    std::size_t to = 0;
+    for (std::size_t i = 0; i < repeated.size(); ++i)
+      if (repeated[i] == 0) column[to++] = column[i];
+    column.resize(to);
+  };
+  for (auto& [name, column] : table.numbers) drop(column);
+  drop(table.line);
+  obs.notes.push_back({"csv.repeated-rows", {count("rows", rows), count("line", line)}});
+  return {};
 }
 
 /// Accumulated spindle angle and direction of rotation from the speed, which applies until the next
-/// row. Without speeds the spindle is at rest.
+/// row that has one. Without speeds the spindle is at rest.
 struct Turning {
   std::vector<double> angle;
   std::vector<std::int8_t> turns;
@@ -113,16 +140,17 @@ struct Turning {
 Expected<Turning> turning_of(const Table& table) {
   const auto& time = *table.column("time_s");
   const auto* stated = table.column("speed_rpm");
-  const std::vector<double> at_rest(time.size(), 0.0), &speed = stated ? *stated : at_rest;
   Turning out;
+  double angle = 0.0, speed = 0.0;
   for (std::size_t i = 0; i < time.size(); ++i) {
-    if (!(std::fabs(speed[i]) <= 1e6))
-      return fail(at_line(
-          table.line[i], "speed_rpm",
-          "expected a speed from -1000000 to 1000000 rpm, found " + short_text(speed[i], 9)));
-    const double before = i > 0 ? speed[i - 1] / 60.0 * heat_turn * (time[i] - time[i - 1]) : 0.0;
-    out.angle.push_back(i > 0 ? out.angle.back() + before : 0.0);
-    out.turns.push_back(speed[i] > 0.0 ? std::int8_t{1} : speed[i] < 0.0 ? std::int8_t{-1} : 0);
+    if (i > 0) angle += speed / 60.0 * heat_turn * (time[i] - time[i - 1]);
+    if (stated != nullptr && std::isfinite((*stated)[i])) speed = (*stated)[i];
+    if (std::fabs(speed) > 1e6)
+      return fail(
+          at_line(table.line[i], "speed_rpm",
+                  "expected a speed from -1000000 to 1000000 rpm, found " + short_text(speed, 9)));
+    out.angle.push_back(angle);
+    out.turns.push_back(speed > 0.0 ? std::int8_t{1} : speed < 0.0 ? std::int8_t{-1} : 0);
   }
   return out;
 }
@@ -133,10 +161,10 @@ bool in_period(const Measurement& m, double time) {
   return period.size() != 2 || (time >= period[0] && time < period[1]);
 }
 
-Expected<Observations> read_nest(const ReadInput& input, const Table& table) {
+Expected<Observations> read_nest(const ReadInput& input, Table& table) {
   NONIO_TRY(const auto sensors, displacements_of(table));
-  if (auto error = times_grow(table)) return fail(std::move(*error));
   Observations obs = begin(input.measurement, table);
+  if (auto ordered = put_in_time(table, obs); !ordered) return fail(std::move(ordered).error());
   NONIO_TRY(const auto turning, turning_of(table));
   const auto& time = *table.column("time_s");
   obs.axes = {{"S", true, {}, {}}};
@@ -159,11 +187,13 @@ Expected<Observations> read_nest(const ReadInput& input, const Table& table) {
       put_further_columns(obs, table, row);
     }
   }
+  for (auto* temperatures : {&obs.air, &obs.material})
+    std::replace(temperatures->begin(), temperatures->end(), no_thermometer, double{NAN});
   return complete(std::move(obs));
 }
 
 /// An axis that cycles between targets: each reading of a target and direction is a new cycle.
-Expected<Observations> read_exercised(const ReadInput& input, const Table& table) {
+Expected<Observations> read_exercised(const ReadInput& input, Table& table) {
   const Measurement& m = input.measurement;
   const Axis* axis = input.campaign.machine.axis(m.axis);
   if (axis == nullptr || axis->rotary || coordinate_of(m.axis) > 2)
@@ -171,8 +201,8 @@ Expected<Observations> read_exercised(const ReadInput& input, const Table& table
         "columns of an axis that is exercised: expected `axis` of a linear axis X, Y or Z "
         "in the manifest, found \"" +
         m.axis + "\"");
-  if (auto error = times_grow(table)) return fail(std::move(*error));
   Observations obs = begin(input.measurement, table);
+  if (auto ordered = put_in_time(table, obs); !ordered) return fail(std::move(ordered).error());
   obs.axes = {{m.axis, false, {}, {}}};
   Observations::Line line{m.id, {}};
   line.sense[coordinate_of(m.axis)] = 1.0;
@@ -297,7 +327,7 @@ Expected<Observations> read_thermal(const ReadInput& input) {
     for (const char* name : {"material_c", "air_c", "pressure_hpa", "humidity_pct"})
       columns.push_back({name});
   } else {
-    columns.push_back({"speed_rpm", Kind::place});
+    columns.push_back({"speed_rpm"});
     columns = with_channels(with_sensors(std::move(columns)));
     columns.push_back({"*" + std::string(displacement_end)});
   }

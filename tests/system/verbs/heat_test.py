@@ -4,6 +4,7 @@ import json
 import math
 import pathlib
 import random
+import re
 import sys
 import tempfile
 import unittest
@@ -398,6 +399,55 @@ class Heat(VerbTest):
                           **{"warm.csv": "time_s,bearing_c\n0,20\n30,21\n"})
         done = self.nonio("compare", bare, expect=1)
         self.assertIn("a column whose name ends with _um", done.stderr)
+
+    def warnings(self, folder):
+        return self.json("compare", folder)["parts"][0]["warnings"]
+
+    def test_interruptions_are_stated_and_not_explained_as_heat(self):
+        seed = random.randrange(10**6)
+        with self.subTest(seed=seed):
+            whole = record(seed, [3.0])
+            gap = self.campaign("gap", whole[:700] + whole[780:], more='[model]\neffects = ["heat:bearing"]\n')
+            stated = [w for w in self.warnings(gap) if f"no readings from {700 * STEP - STEP:g} s" in w]
+            self.assertEqual(len(stated), 1, stated)
+            self.assertIn("longer than the time constant of heat:bearing", stated[0])
+            # A speed that changes can move a machine at once.
+            steady = [i for i in range(10, ROWS - 10) if len({row[-1] for row in whole[i - 9:i + 9]}) == 1]
+            first, second = (min(i for i in steady if i >= after) for after in (650, ROWS * 8 // 10))
+            touched = [row[:1] + [row[1] + (12 if i >= first else 0)] + row[2:] for i, row in enumerate(whole)]
+            jump = self.campaign("jump", touched)
+            self.assertTrue([w for w in self.warnings(jump) if re.match(r"z jumps by 1[123](\.\d)? um between", w)])
+            self.assertIn(self.json("explain", jump)["verdict"]["effect"], CAUSES)
+            # Unseen readings: each segment has a zero of its own.
+            half = whole[ROWS * 6 // 10][0]
+            seen = self.campaign("seen", touched, more=f"period = [0, {half}]\n")
+            self.nonio("explain", seen, "--auto")
+            for i in range(second, ROWS):
+                touched[i][1] += 9
+            unseen = self.campaign("unseen", touched, more=f"period = [{half}, 1e9]\n")
+            part, = self.json("compare", unseen, "--model-of", seen)["parts"]
+            self.assertLess(part["rms_um"], 0.1 * part["sd_um"])
+            self.assertLess(part["sd_um"], 14)
+
+    def test_a_thermometer_that_fails_is_named_and_no_candidate(self):
+        seed = random.randrange(10**6)
+        with self.subTest(seed=seed):
+            rng, rows = random.Random(seed), record(seed, [3.0])
+            wall = follow([20 + 6 * math.sin(i / 150 + 2) for i in range(ROWS)], 3000.0)
+            text = "time_s,z_um,bearing_c,hall_c,spindle_rpm,wall_c,floor_c\n"
+            for i, row in enumerate(rows):
+                frozen = rows[min(i, 400)][3] + 5
+                value = 85.0 if i in (0, 500) else -127.0 if i == 900 else wall[i] + rng.gauss(0, 0.02)
+                text += ",".join(f"{v:.4f}" for v in [*row[:3], frozen, row[4], value, 25 - wall[i] / 9 - i / 300]) + "\n"
+            folder = self.write("failed", MANIFEST.format(id="failed", more=""), **{"warm.csv": text})
+            stated = self.warnings(folder)
+            self.assertTrue([w for w in stated if w.startswith("hall keeps the value") and "12000 s" in w], stated)
+            self.assertTrue([w for w in stated if w.startswith("wall reads -127") and "in 3 readings" in w], stated)
+            answer = self.json("explain", folder)
+            names = [c["effect"] for c in answer["candidates"]]
+            self.assertFalse([n for n in names if "hall" in n], names)
+            self.assertIn("heat:wall", names)
+            self.assertIn("the thermometer hall fails", self.nonio("model", "add", folder, "heat:hall", expect=2).stderr)
 
     def test_campaigns_without_a_common_displacement(self):
         one = self.campaign("one", record(11, [2.0]))

@@ -2,6 +2,7 @@
 // Noise that is correlated in time, against its covariance written out.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -67,6 +68,62 @@ TEST(course_noise, whitens_as_the_inverse_of_its_covariance_without_a_zero) {
     const double determinant = covariance_of(data, noise).ldlt().vectorD().array().log().sum();
     EXPECT_NEAR(whitening.half_log_determinant(), 0.5 * (determinant + std::log(weight)), 1e-9);
   }
+}
+
+TEST(course_noise, lines_are_independent_and_have_zeros) {
+  Random random;
+  SCOPED_TRACE("seed " + std::to_string(random.seed));
+  Part part = part_of(random, 61);
+  part.table.line.assign(61, 0);
+  for (std::size_t i = 23; i < 61; ++i) part.table.line[i] = i < 40 ? 1 : 2;
+  const CourseData data(part);
+  ASSERT_EQ(data.lines(), (std::vector<Index>{0, 23, 40}));
+  const MatrixXd x = columns_of(random, data.size(), 3);
+  const CourseNoise noise{300.0, 0.5};
+  MatrixXd covariance = covariance_of(data, noise), zeros = MatrixXd::Zero(data.size(), 3);
+  for (Index i = 0; i < data.size(); ++i) {
+    zeros(i, static_cast<Index>(part.table.line[static_cast<std::size_t>(i)])) = 1.0;
+    for (Index k = 0; k < data.size(); ++k)
+      for (const Index begin : data.lines())
+        if ((i < begin) != (k < begin)) covariance(i, k) = 0.0;
+  }
+  const MatrixXd inverse = covariance.inverse();
+  const MatrixXd weight = zeros.transpose() * inverse * zeros;
+  const MatrixXd expected =
+      x.transpose() * (inverse - inverse * zeros * weight.inverse() * zeros.transpose() * inverse) *
+      x;
+  const CourseWhitening whitening(data, noise);
+  const MatrixXd white = whitening.of(x);
+  EXPECT_LT((white.transpose() * white - expected).norm(), 1e-9 * expected.norm());
+  EXPECT_NEAR(whitening.variance_of_zero(), 1.0 / weight(2, 2), 1e-12);
+  const double determinants =
+      covariance.ldlt().vectorD().array().log().sum() + weight.diagonal().array().log().sum();
+  EXPECT_NEAR(whitening.half_log_determinant(), 0.5 * determinants, 1e-9);
+}
+
+TEST(course_data, bins_begin_at_restarts) {
+  Random random;
+  SCOPED_TRACE("seed " + std::to_string(random.seed));
+  Part part = part_of(random, 5000);
+  part.table.line.assign(5000, 0);
+  std::vector<std::size_t> begins;
+  for (int k = 0; k < 6; ++k)
+    begins.push_back(1 + static_cast<std::size_t>(4998 * random.uniform()));
+  std::sort(begins.begin(), begins.end());
+  for (const std::size_t begin : begins)
+    for (std::size_t i = begin; i < 5000; ++i) ++part.table.line[i];
+  const CourseData data(part);
+  // A bin with readings of two lines would have a mean between two integers.
+  const VectorXd line =
+      data.means(std::vector<double>(part.table.line.begin(), part.table.line.end()));
+  for (Index b = 0; b < data.size(); ++b) {
+    EXPECT_EQ(line(b), std::round(line(b))) << b;
+    EXPECT_EQ(data.begins_line(b), b == 0 || line(b) != line(b - 1)) << b;
+  }
+  Index rest = data.size() - 1;
+  for (const Index factor : {2, 3, 5})
+    while (rest % factor == 0) rest /= factor;
+  EXPECT_EQ(rest, 1);
 }
 
 TEST(course_pool, evidence_is_the_integral_over_gains_and_variance) {

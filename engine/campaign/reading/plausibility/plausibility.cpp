@@ -7,6 +7,7 @@
 #include <map>
 
 #include "campaign/reading/plausibility/plausibility_strokes.h"
+#include "nonio/sdk/channels.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/digest.h"
 
@@ -459,7 +460,8 @@ Expected<void> possible_air(const Observations& o, const std::string& file) {
   constexpr double coldest = -60.0, hottest = 150.0;  // degC
   for (const Observations::Channel& c : o.channels)
     for (std::size_t i = 0; c.is_temperature() && i < c.value.size(); ++i) {
-      if (c.value[i] >= coldest && c.value[i] <= hottest) continue;
+      if ((c.value[i] >= coldest && c.value[i] <= hottest) || c.value[i] == no_thermometer)
+        continue;
       Error error{"expected -60 to 150 degC, or nothing where it was not measured; found " +
                   shortest(c.value[i]) + " at time_s = " + shortest(c.time[i])};
       error.file = file;

@@ -326,11 +326,46 @@ TEST(Thermal, AnAxisThatIsExercisedCountsItsCycles) {
   EXPECT_FALSE(read_text(text, m)) << "columns of an axis, and none is stated";
 }
 
+TEST(Thermal, AnExactlyRepeatedRowIsDroppedWithANote) {
+  const auto obs = read_text(
+      "time_s,x_um,air_c\n0,1,20\n60,2,\n60,2,\n60,2,\n120,nan,21\n120,nan,21\n180,4,22\n",
+      "thermal");
+  ASSERT_TRUE(obs) << obs.error().message;
+  EXPECT_EQ(obs->time, (std::vector<double>{0.0, 60.0, 180.0}));
+  EXPECT_EQ(obs->source_line, (std::vector<std::uint32_t>{2, 3, 8}));
+  EXPECT_EQ(obs->missing, 1U);
+  ASSERT_EQ(obs->notes.size(), 1U);
+  EXPECT_EQ(obs->notes[0].id, "csv.repeated-rows");
+  EXPECT_EQ(obs->notes[0].evidence[0].value, 3.0);
+  EXPECT_EQ(obs->notes[0].evidence[1].value, 4.0);
+}
+
+TEST(Thermal, ABlankSpeedIsAMissingReadingOfThatChannel) {
+  const auto obs = read_text("time_s,speed_rpm,x_um\n0,,0\n60,600,1\n120,,2\n180,0,3\n", "thermal");
+  ASSERT_TRUE(obs) << obs.error().message;
+  ASSERT_EQ(obs->channels.size(), 1U);
+  EXPECT_EQ(obs->channels[0].time, (std::vector<double>{60.0, 180.0}));
+  // The spindle keeps the speed that it had.
+  EXPECT_EQ(obs->axes[0].approach, (std::vector<std::int8_t>{0, 1, 1, 0}));
+  EXPECT_NEAR(obs->axes[0].position.back(), 1200.0 * 2.0 * std::numbers::pi, 1e-6);
+}
+
+TEST(Thermal, AnAirThermometerWithoutContactIsMissing) {
+  const auto obs = read_text("time_s,x_um,air_c\n0,1,20\n60,2,-127\n120,3,21\n", "thermal");
+  ASSERT_TRUE(obs) << obs.error().message;
+  ASSERT_EQ(obs->air.size(), 3U);
+  EXPECT_TRUE(std::isnan(obs->air[1]));
+}
+
 TEST(Thermal, BadTables) {
-  const auto back = read_text("time_s,x_um\n0,1\n60,2\n60,3\n", "thermal");
-  ASSERT_FALSE(back);
-  EXPECT_EQ(back.error().line, 4U);
-  EXPECT_EQ(back.error().column, "time_s");
+  for (const char* same_or_earlier : {"60,3", "59,2"}) {
+    const auto back =
+        read_text("time_s,x_um\n0,1\n60,2\n" + std::string(same_or_earlier) + "\n", "thermal");
+    ASSERT_FALSE(back);
+    EXPECT_EQ(back.error().line, 4U);
+    EXPECT_EQ(back.error().column, "time_s");
+    EXPECT_NE(back.error().message.find("later than that of line 3"), std::string::npos);
+  }
   for (const char* bad :
        {"", "time_s\n0\n", "x_um\n1\n", "time_s,x_um\n0,nan\n60,-1e20\n", "time_s,x_um\nnan,1\n",
         "time_s,x_mm\n0,1\n", "time_s,speed_rpm,x_um\n0,9e9,1\n60,1,1\n"})

@@ -30,16 +30,37 @@ struct TimeConstant {
 /// the standard uncertainty of the difference (docs/dev/constants.md, M34).
 inline constexpr double time_constants_apart = 2.6;
 
-/// A recorded channel whose effects these readings cannot determine.
+/// A recorded channel, or some of its values, that is not used.
 struct ChannelLeft {
   enum class Why {
-    partly,   ///< not recorded next to all measurements
-    untimed,  ///< readings without a time
-    speed     ///< a speed or load: only displacements over time determine its effects
+    partly,               ///< not recorded next to all measurements
+    untimed,              ///< readings without a time
+    speed,                ///< a speed or load: only displacements over time determine its effects
+    frozen,               ///< a thermometer that keeps one value while all others move
+    start_value,          ///< a thermometer that often returns its value after power-on
+    start_values_dropped  ///< the same, but rarely: only these values are not used
   };
   std::string name;
   Why why = Why::partly;
   std::vector<std::string> measurements{};  ///< those that lack the channel, or times
+  // The members below apply to a thermometer that fails.
+  double value = 0.0;           ///< degC
+  std::size_t readings = 0;     ///< number of readings with this value
+  double from = 0.0, to = 0.0;  ///< for `frozen`: time of the first and the last of them, s
+
+  bool fails() const { return why == Why::frozen || why == Why::start_value; }
+  bool lacks_readings() const { return why == Why::partly || why == Why::untimed; }
+};
+
+/// A gap in a displacement over time, in which its sensor may have been touched, or a jump of the
+/// sensor. The readings after it have a zero, and so a line, of their own, and what the model leaves
+/// of them is independent of that before it.
+struct Restart {
+  double from = 0.0, to = 0.0;  ///< times of the last reading before it and the first after it, s
+  double jump = 0.0;            ///< change of the displacement, m; 0 for a gap
+  std::string displacement{};   ///< that jumps; empty for a gap
+
+  bool is_gap() const { return displacement.empty(); }
 };
 
 /// Measurements that are explained together: they sense the same axes in the same unit.
@@ -70,7 +91,7 @@ struct Part {
   /// Groupings of the lines of an axis; empty for a single measurement.
   std::vector<std::shared_ptr<const Grouping>> groupings{};
 
-  std::vector<ChannelLeft> channels_left{};  ///< channels without effects; not of a course
+  std::vector<ChannelLeft> channels_left{};  ///< channels without effects
 
   // The members below apply to a course.
   std::string displacement{};   ///< name of the displacement, such as "x1"
@@ -78,6 +99,8 @@ struct Part {
   /// Displacements that move together with this one, m; each has parameters of its own.
   std::vector<std::vector<double>> companions{};
   std::vector<std::string> companion_names{};
+  /// Of this displacement and its companions, in the order of time.
+  std::vector<Restart> restarts{};
 };
 
 /// Index of the shape that is the time constant of a growth: continuous, named "tau", a time, in an

@@ -7,6 +7,9 @@
 
 namespace nonio {
 
+/// Temperature, degC, that libraries of 1-Wire thermometers return without contact to the sensor.
+inline constexpr double no_thermometer = -127.0;
+
 /// Returns the first-order lag y of a channel x at `time` (s, in any order): dy/dt = (x - y)/tau,
 /// with tau in s, exact if x is linear between its samples; tau = 0 gives the channel itself.
 /// Before its first and after its last sample the channel is regarded as constant. The result is

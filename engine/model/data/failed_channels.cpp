@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "failed_channels.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "nonio/sdk/channels.h"
+
+namespace nonio::model {
+
+namespace {
+
+using Channel = Observations::Channel;
+
+// docs/dev/constants.md, M55.
+constexpr std::array start_values{85.0, no_thermometer, 0.0};  // degC
+constexpr double far_apart = 5.0;                              // K, from the values around
+constexpr double notable = 0.05;  // part of the readings or of the time
+constexpr std::size_t least_equal = 30, least_others = 2;
+constexpr double others_move = 0.5, others_in_digits = 20.0;  // K; steps of the last digit
+constexpr double ln_chance = -14.0;                           // of so many equal values
+
+double range(const Channel& c, double from, double to) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  const auto begin = std::lower_bound(c.time.begin(), c.time.end(), from) - c.time.begin();
+  for (auto i = static_cast<std::size_t>(begin); i < c.time.size() && c.time[i] <= to; ++i)
+    low = std::min(low, c.value[i]), high = std::max(high, c.value[i]);
+  return high > low ? high - low : 0.0;
+}
+
+/// Removes stretches of one of the start values that begin and end with a jump.
+std::optional<ChannelLeft> without_start_values(Channel& c) {
+  std::vector<char> start(c.value.size(), 0);
+  ChannelLeft left{c.name, ChannelLeft::Why::start_value};
+  for (std::size_t i = 0; i < c.value.size();) {
+    std::size_t end = i + 1;
+    while (end < c.value.size() && c.value[end] == c.value[i]) ++end;
+    const bool known =
+        std::find(start_values.begin(), start_values.end(), c.value[i]) != start_values.end();
+    const auto jumps = [&](std::size_t other) {
+      return std::fabs(c.value[other] - c.value[i]) > far_apart;
+    };
+    if (known && (i == 0 || jumps(i - 1)) && (end == c.value.size() || jumps(end))) {
+      std::fill(start.begin() + static_cast<std::ptrdiff_t>(i),
+                start.begin() + static_cast<std::ptrdiff_t>(end), 1);
+      left.value = c.value[i];
+      left.readings += end - i;
+    }
+    i = end;
+  }
+  if (left.readings == 0) return std::nullopt;
+  const bool fails =
+      static_cast<double>(left.readings) > notable * static_cast<double>(start.size());
+  if (!fails) left.why = ChannelLeft::Why::start_values_dropped;
+  std::size_t to = 0;
+  for (std::size_t i = 0; i < start.size(); ++i)
+    if (start[i] == 0) c.time[to] = c.time[i], c.value[to++] = c.value[i];
+  c.time.resize(to);
+  c.value.resize(to);
+  return left;
+}
+
+/// The longest stretch of equal values, if it is too long to be chance while all other thermometers
+/// next to the same readings move.
+std::optional<ChannelLeft> frozen(const Channel& c, const std::vector<Channel>& all) {
+  const std::size_t n = c.value.size();
+  std::size_t begin = 0, length = 0, equal = 0;
+  double digit = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < n;) {
+    std::size_t end = i + 1;
+    while (end < n && c.value[end] == c.value[i]) ++end;
+    if (end - i > length) begin = i, length = end - i;
+    if (end < n) digit = std::min(digit, std::fabs(c.value[end] - c.value[i]));
+    equal += end - i - 1;
+    i = end;
+  }
+  if (length < least_equal) return std::nullopt;
+  const double from = c.time[begin], to = c.time[begin + length - 1];
+  if (to - from < notable * (c.time.back() - c.time.front())) return std::nullopt;
+  if (length < n) {
+    const double p =
+        static_cast<double>(equal - (length - 1) + 1) / static_cast<double>(n - length + 2);
+    if (static_cast<double>(length) * std::log(p) + std::log(static_cast<double>(n)) > ln_chance)
+      return std::nullopt;
+  }
+  const double least = std::max(others_move, length < n ? others_in_digits * digit : 0.0);
+  std::size_t others = 0;
+  for (const Channel& other : all) {
+    if (!other.is_temperature() || other.name == c.name || other.lines != c.lines) continue;
+    if (range(other, from, to) < least) return std::nullopt;
+    ++others;
+  }
+  if (others < least_others) return std::nullopt;
+  ChannelLeft left{c.name, ChannelLeft::Why::frozen};
+  left.value = c.value[begin], left.readings = length, left.from = from, left.to = to;
+  return left;
+}
+
+}  // namespace
+
+void leave_failed(Part& part) {
+  Observations& o = part.table;
+  for (Channel& c : o.channels)
+    if (c.is_temperature())
+      if (auto left = without_start_values(c)) part.channels_left.push_back(std::move(*left));
+  std::vector<ChannelLeft> stuck;
+  for (const Channel& c : o.channels)
+    if (c.is_temperature() && !c.value.empty())
+      if (auto left = frozen(c, o.channels)) stuck.push_back(std::move(*left));
+  part.channels_left.insert(part.channels_left.end(), stuck.begin(), stuck.end());
+  std::erase_if(o.channels, [&](const Channel& c) {
+    return c.value.empty() ||
+           std::any_of(part.channels_left.begin(), part.channels_left.end(),
+                       [&](const auto& left) { return left.name == c.name && left.fails(); });
+  });
+}
+
+}  // namespace nonio::model
