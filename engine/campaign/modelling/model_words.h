@@ -68,6 +68,9 @@ class ModelWords {
   std::string language_;
 };
 
+/// A share in whole percent.
+Number percent(const char* name, double share);
+
 /// Statements of `ModelWords` as findings, for documents in any language. Ids begin with
 /// "verdict.", "place.", "plan.", "description." or "false-alarms".
 Finding verdict_finding(const model::Explanation& explanation, const PartModel& part);

@@ -102,7 +102,7 @@ TEST_F(ModelHtml, CandidatesCardsSizesAndWhatToMeasureAreOnIt) {
   const std::string text = page(with_candidates(made_model()));
   for (const char* what :
        {"scale:X <b>significant</b>", "0.150 \u00b5m", "<summary>scale:X</summary>",
-        ("No sign of: warm-up:X (would be detected from 1.10 \u00b5m), "
+        ("No sign of: warm-up:X (would be detected from 1.10 \u00b5m); "
          "temperature:X (0.250 \u00b5m)."),
         "<li>Record the material temperature"})
     EXPECT_TRUE(has(text, what)) << what;

@@ -145,7 +145,7 @@ TEST_F(ModelReport, CandidatesTheSizesOfOthersAndWhatToMeasureAreInIt) {
   const std::string text = flat(read_pdf(pdf(with_candidates(made_model()))).all());
   for (const char* what :
        {"scale:X – significant 81.5 0.600 µm 0.620 µm 0.150 µm",
-        "No sign of: warm-up:X (would be detected from 1.10 µm), temperature:X (0.250 µm).",
+        "No sign of: warm-up:X (would be detected from 1.10 µm); temperature:X (0.250 µm).",
         "What to measure next: Record the material temperature"})
     EXPECT_TRUE(has(text, what)) << what << "\n" << text;
 }
