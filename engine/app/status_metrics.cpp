@@ -123,7 +123,7 @@ Expected<std::string> metrics_of(const std::filesystem::path& out, const std::st
   metrics.value(std::to_string(number));
   if (const auto status = batch::run_status(out); status && status->seconds) {
     metrics.family("nonio_last_run_seconds", "Duration of the last complete run");
-    metrics.value(fixed_text(*status->seconds, 1));
+    metrics.value(fixed_text(*status->seconds, 3));
   }
   metrics.family("nonio_campaigns", "Campaigns of the last run, by state");
   for (const auto& count : counts)
