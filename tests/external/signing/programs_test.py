@@ -114,6 +114,7 @@ class Programs(SigningTest):
         run("openssl", "x509", "-in", keys.folder / "ada.pem", "-outform", "DER", "-out", keys.folder / "ada.der")
         run("pkcs11-tool", "--module", module, "--login", "--pin", pin, "--write-object", keys.folder / "ada.der", "--type",
             "cert", "--id", "01", "--label", "calib", env=environment)
+        (keys.folder / "pin").touch(mode=0o600)
         (keys.folder / "pin").write_text(pin)
         self.site_toml(keys, key=f'pkcs11 = "pkcs11:token=lab;object=calib"\nmodule = "{module}"',
                        password=f'password_file = "{keys.folder}/pin"')
