@@ -2,8 +2,11 @@
 #include "plans.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <optional>
 #include <type_traits>
 
 #include "data/design.h"
@@ -80,24 +83,36 @@ double squares(const Fit& fit) {
   return fit.rms * fit.rms * static_cast<double>(fit.residual.size());
 }
 
+/// A prediction for the present readings, and its fit with other effects.
+struct Imitation {
+  VectorXd said;
+  Fit fit;
+};
+
 /// Distance, in standard deviations, from the prediction of one effect to the nearest prediction
 /// with `other`, as far as the planned readings add to that of the present ones, which precede them
-/// in `said`. Shapes of `other` are searched for the present readings and for all; 0 if a fit fails.
+/// in `said`; 0 if a fit fails. Shapes of `other` are searched for the present readings, and for all
+/// if the plan is good without. `before`: the fit of the present readings, once it is made.
 double distance(const Observations& present, const Further& planned, const std::vector<Term>& model,
-                const VectorXd& said, const Term& other, double s) {
+                const VectorXd& said, const Term& other, double s,
+                std::optional<Imitation>& before) {
   std::vector<Term> terms = model;
   terms.push_back(other);
   terms.back().shape.clear();
-  const auto before = imitate(present, said, terms);
-  if (!before) return 0.0;
+  VectorXd here = said.head(static_cast<Index>(present.size()));
+  if (!before || before->said != here) {
+    auto fitted = imitate(present, said, terms);
+    if (!fitted) return 0.0;
+    before = Imitation{std::move(here), *std::move(fitted)};
+  }
   const auto after_plan = [&](std::vector<Term> all) {
     all.insert(all.end(), planned.set_up.begin(), planned.set_up.end());
-    return imitate(planned.table, said, all);
+    const auto fitted = imitate(planned.table, said, all);
+    return fitted ? std::sqrt(std::max(squares(*fitted) - squares(before->fit), 0.0)) / s : 0.0;
   };
-  const auto searched = after_plan(terms), same = after_plan(before->terms);
-  if (!searched || !same) return 0.0;
-  const double after = std::min(squares(*searched), squares(*same));
-  return std::sqrt(std::max(after - squares(*before), 0.0)) / s;
+  const double same = after_plan(before->fit.terms);
+  return other.effect->shapes.empty() || same < enough_power ? same
+                                                             : std::min(same, after_plan(terms));
 }
 
 std::vector<Course> courses_of(const Observations& o, const AxisReadings& r) {
@@ -172,7 +187,8 @@ double from_part(const Part& part, const Further& f, const std::vector<Term>& mo
     return out;
   };
   same.instances = [](const Observations&) { return std::vector<std::string>{""}; };
-  return distance(part.table, f, model, columns * value, Term{&same, {}}, s);
+  std::optional<Imitation> before;
+  return distance(part.table, f, model, columns * value, Term{&same, {}}, s, before);
 }
 
 }  // namespace
@@ -190,6 +206,7 @@ std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
   value.conservativeResize(linear);
   auto further = part.kind == Part::Kind::axis ? further_runs(part, candidate.term.axis)
                                                : further_in_space(part);
+  std::map<std::string, std::optional<Imitation>> before;
   for (Further& f : further) {
     add_set_up_of_part(f, model);
     const Observations& o = f.table;
@@ -204,7 +221,7 @@ std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
       const auto other = std::find_if(catalogue.begin(), catalogue.end(),
                                       [&](const Term& t) { return t.name() == alias; });
       if (other == catalogue.end()) continue;
-      separates(distance(part.table, f, model, *columns * value, *other, s), alias);
+      separates(distance(part.table, f, model, *columns * value, *other, s, before[alias]), alias);
     }
     if (parts_alike)
       separates(from_part(part, f, model, *columns, value, s), "part-" + candidate.term.name());
@@ -220,6 +237,7 @@ std::vector<Plan> plans_for_pair(const Part& part, const std::vector<Term>& mode
                                  double s) {
   std::vector<Plan> plans;
   if (pair.size() != 2 || !(s > 0.0) || part.kind != Part::Kind::axis) return plans;
+  std::array<std::optional<Imitation>, 2> before;
   for (const Further& f : further_runs(part, pair[0].axis)) {
     VectorXd said = VectorXd::Zero(static_cast<Index>(f.table.size()));
     std::size_t at = 0;
@@ -228,8 +246,8 @@ std::vector<Plan> plans_for_pair(const Part& part, const std::vector<Term>& mode
       if (!columns || at + static_cast<std::size_t>(columns->cols()) > value.size()) return plans;
       for (Index k = 0; k < columns->cols(); ++k) said += value[at++] * columns->col(k);
     }
-    const double power = std::min(distance(part.table, f, model, said, pair[0], s),
-                                  distance(part.table, f, model, said, pair[1], s));
+    const double power = std::min(distance(part.table, f, model, said, pair[0], s, before[0]),
+                                  distance(part.table, f, model, said, pair[1], s, before[1]));
     plans.push_back({f.id, f.table.size() - part.table.size(), power, pair[0].name(),
                      pair[1].name(), f.of, f.duration});
   }

@@ -177,11 +177,13 @@ class CandidateOf {
     for (std::size_t other = f_.in_model; other < f_.terms.size(); ++other) {
       if (other == member || f_.bench->holds(f_.best, other)) continue;
       State changed = f_.bench->joined(rest, gains, other);
-      if (f_.bench->in_space() && !(changed.criterion < f_.best.criterion + hopeless)) continue;
-      changed = f_.bench->settled(std::move(changed));
+      if ((f_.bench->in_space() || member < f_.in_model) &&
+          !(changed.criterion < f_.best.criterion + hopeless))
+        continue;
       // On one axis, nearly every effect of the model has an imitation with more parameters.
       if (member < f_.in_model && !f_.bench->in_space() && changed.parameters > f_.best.parameters)
         continue;
+      changed = f_.bench->settled(std::move(changed));
       if ((changed.blocks.size() > rest.blocks.size() && as_good(changed)) ||
           (member >= f_.in_model && f_.terms[member].effect->curve && is_form_of(other)))
         names.push_back(f_.terms[other].name());
