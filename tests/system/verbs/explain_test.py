@@ -105,10 +105,13 @@ class Explain(VerbTest):
         """The reversal of a screw clamped at both ends, largest in the middle: no effect of the catalogue has this shape."""
         seed = random.SystemRandom().randrange(2**31)
         print("seed", seed)
-        named = self.explain_with(seed, lambda z, d, run: d * 12 * (1 - z * z))["verdict"]
-        self.assertEqual((named["kind"], named["effect"]), ("missing", "parabolic-reversal:X"), named)
-        self.nonio("model", "add", self.folder, named["effect"])
-        self.assertEqual(self.explain()["verdict"]["kind"], "nothing")
+        complete = 0  # one false alarm in about a hundred complete models is what the program states
+        for k in range(3):
+            named = self.explain_with(seed + k, lambda z, d, run: d * 12 * (1 - z * z))["verdict"]
+            self.assertEqual((named["kind"], named["effect"]), ("missing", "parabolic-reversal:X"), named)
+            self.nonio("model", "add", self.folder, named["effect"])
+            complete += self.explain()["verdict"]["kind"] == "nothing"
+        self.assertGreaterEqual(complete, 2)
 
     def test_several_campaigns_have_the_cause_that_each_has(self):
         """The catalogue alone describes it by a drift and a jump."""
