@@ -15,7 +15,7 @@ namespace {
 
 using Channel = Observations::Channel;
 
-// docs/dev/constants.md, M55.
+// docs/dev/constants.md, M59.
 constexpr std::array start_values{85.0, no_thermometer, 0.0};  // degC
 constexpr double far_apart = 5.0;                              // K, from the values around
 constexpr double notable = 0.05;  // part of the readings or of the time

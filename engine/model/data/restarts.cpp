@@ -14,7 +14,7 @@ namespace nonio::model {
 
 namespace {
 
-// docs/dev/constants.md, M54.
+// docs/dev/constants.md, M58.
 constexpr double longer_than_interval = 10.0, usual_gap = 900.0, share_of_test = 0.01;
 constexpr double shortest_segment = 0.1;   // median duration of segments / median gap
 constexpr double fastest = 0.5;            // time constant of a body / interval between readings
