@@ -18,7 +18,7 @@ constexpr double campaigns_assumed = 10.0, finds_assumed = 1.0;
 
 std::string list_of(const std::vector<std::string>& ids) {
   std::string out;
-  for (const std::string& id : ids) out += (out.empty() ? "\"" : ", \"") + id + "\"";
+  for (const std::string& id : ids) out += (out.empty() ? "" : ", ") + quoted_toml(id);
   return "[" + out + "]";
 }
 
@@ -57,10 +57,11 @@ std::string text_of(const Fleet& fleet) {
       if (!value->empty()) out += std::string(key) + " = " + quoted_toml(*value) + "\n";
     out += "campaigns = " + list_of(m.campaigns) + "\n";
     for (const Fleet::Effect& e : m.effects) {
-      out += "\n[[machines.effect]]\nname = \"" + e.name + "\"\nfound = " + list_of(e.found) + "\n";
+      out += "\n[[machines.effect]]\nname = " + quoted_toml(e.name) +
+             "\nfound = " + list_of(e.found) + "\n";
       if (!e.unit.empty())
         out += "median = " + short_text(e.median) + "\nspread = " + short_text(e.spread) +
-               "\nunit = \"" + e.unit + "\"\n";
+               "\nunit = " + quoted_toml(e.unit) + "\n";
     }
   }
   return out;

@@ -180,7 +180,6 @@ Turned turned(const Curve& one, const Curve& other, const Scatter& scatter, doub
 }
 
 void push_turned(Turned how, const std::string& which, std::vector<Finding>& out) {
-  if (how == Turned::not_at_all) return;
   out.push_back({.id = how == Turned::order ? "plausibility.pass-order-turned"
                                             : "plausibility.pass-sign-turned",
                  .attention = true,
