@@ -115,6 +115,40 @@ class Space(VerbTest):
         self.assertIn(said["replaceable"][0]["effect"], said["verdict"]["says"])
         self.assertNotIn("straightness:EYX (", said.get("no_sign", ""))
 
+    def volume(self, extra=()):
+        """Lines of X, Y, Z and four body diagonals of a machine with two squarenesses and one scale, and lines of `extra`."""
+        size, at = {"X": 800, "Y": 600, "Z": 500}, {"X": "Y = 300, Z = 250", "Y": "X = 400, Z = 250", "Z": "X = 400, Y = 300"}
+        place = "{{ X = {}, Y = {}, Z = {} }}".format
+        lines = [("PPP", (0, 0, 0), (800, 600, 500)), ("NPP", (800, 0, 0), (0, 600, 500)), ("PNP", (0, 600, 0), (800, 0, 500)),
+                 ("PPN", (0, 0, 500), (800, 600, 0)), *extra]
+        text = 'format = 1\n[campaign]\nid = "v"\n[machine]\nmodel = "M"\nserial = "S"\nstructure = "bridge"\n'
+        text += "".join(f'[machine.axes.{a}]\nkind = "linear"\ntravel = [0.0, {size[a]}.0]\n' for a in size)
+        text += "".join(f'[[measurement]]\nid = "{a}"\nkind = "axis"\naxis = "{a}"\nat = {{ {at[a]} }}\nfile = "{a}.csv"\n' for a in size)
+        text += "".join(f'[[measurement]]\nid = "{n}"\nkind = "diagonal"\nfrom = {place(*a)}\nto = {place(*b)}\nfile = "{n}.csv"\n'
+                        for n, a, b in lines)
+        text += "[simulation]\nseed = 5\n"
+        text += "".join(f'[[cycle]]\nmeasurement = "{a}"\nfrom_mm = 0\nto_mm = {size[a]}\nstep_mm = {size[a] // 10}\nruns = 3\nnoise_um = 0.5\n'
+                        for a in size)
+        text += "".join(f'[[cycle]]\nmeasurement = "{n}"\nsteps = 12\nruns = 3\nnoise_um = 0.5\n' for n, _, _ in lines)
+        for name, value in (("squareness:XZ", "c_urad = -28.0"), ("squareness:XY", "c_urad = -12.0"), ("scale:Z", "a_um_per_m = -18.0")):
+            text += f'[[effect]]\nname = "{name}"\n{value}\n'
+        truth = self.folder.parent / "truth.toml"
+        truth.write_text(text)
+        self.nonio("simulate", truth, "--out", self.folder)
+        return self.part("explain")
+
+    def test_the_advised_measurement_separates(self):
+        said = self.volume()
+        first = said["candidates"][0]
+        self.assertEqual(("squareness:XZ", ["roll:X"]), (first["effect"], first["aliases"]))
+        plan = said["plans"][0]
+        self.assertGreaterEqual(plan["power"], 4.0)
+        # A straightness line has a slope of its own and senses neither.
+        self.assertEqual(("half-diagonal", "XY"), (plan["plan"], plan["of"]))
+        shutil.rmtree(self.folder)
+        first = self.volume([("H", (0, 0, 0), (800, 300, 0))])["candidates"][0]
+        self.assertEqual(("squareness:XZ", []), (first["effect"], first["aliases"]))
+
     def test_what_shows_only_next_to_others_is_not_named_first(self):
         """The wave of the screw in circles: added alone it leaves the RMS as it is."""
         for name in ("40-circles", "41-circle-one-way"):

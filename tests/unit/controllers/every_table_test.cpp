@@ -209,6 +209,25 @@ TEST(EveryTable, RefusalIsOfOneAxis) {
   }
 }
 
+TEST(EveryTable, StatesADriftThatDoesNotWithholdIt) {
+  for (const Kind& k : kinds()) {
+    std::mt19937 random(9);
+    Measured axis = random_axis(random, false);
+    axis.runs = 5;
+    Bench b(axis);
+    const auto drifted = [&] {
+      const auto r = b.write(k.output(), k.options);
+      EXPECT_TRUE(r && !r->artifacts.empty()) << k.name;
+      return r && std::any_of(r->notes.begin(), r->notes.end(),
+                              [](const Remark& note) { return note.id == "table.drifted"; });
+    };
+    EXPECT_FALSE(drifted()) << k.name;
+    Observations& o = b.observations[0];
+    for (std::size_t i = 0; i < o.size(); ++i) o.deviation[i] += 0.3 * um * o.run[i];
+    EXPECT_TRUE(drifted()) << k.name;
+  }
+}
+
 // Without any analysis: the readings themselves say it.
 TEST(EveryTable, RefusesDriftUnlessAskedFor) {
   for (const Kind& k : kinds()) {

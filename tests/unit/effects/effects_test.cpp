@@ -334,6 +334,32 @@ TEST(Effects, JumpsAreTriedAtEveryEndOfAPass) {
     EXPECT_TRUE(std::count(grid.begin(), grid.end(), 500.0 * pass - 5.0)) << pass;
 }
 
+TEST(Effects, AJumpOnACircleIsBetweenItsRuns) {
+  const auto circles = [](std::uint32_t runs) {
+    Observations o;
+    o.lines = {{"C", {}}};
+    o.axes = {{"X", false, {}, {}}, {"Y", false, {}, {}}};
+    for (std::uint32_t run = 1; run <= runs; ++run)
+      for (int degrees = 0; degrees < 360; degrees += 5) {
+        const double at = degrees / 57.29577951308232;
+        o.axes[0].position.push_back(0.15 * std::cos(at));
+        o.axes[1].position.push_back(0.15 * std::sin(at));
+        o.axes[0].approach.push_back(std::sin(at) > 0.0 ? -1 : 1);
+        o.axes[1].approach.push_back(std::cos(at) > 0.0 ? 1 : -1);
+        o.sense.push_back({std::cos(at), std::sin(at), 0.0});
+        o.deviation.push_back(0.0);
+        o.line.push_back(0);
+        o.run.push_back(run);
+        o.time.push_back(static_cast<double>(o.time.size()));
+      }
+    return o;
+  };
+  EXPECT_FALSE(effect("run-jump").applies(circles(1), linear()));
+  const Observations two = circles(2);
+  EXPECT_TRUE(effect("run-jump").applies(two, linear()));
+  EXPECT_EQ(effect("run-jump").shapes[0].grid(two, linear()), std::vector<double>{71.5});
+}
+
 TEST(Effects, InstantsOfTwoLinesAreOnOneClock) {
   Observations o = campaign(linear(), 4, 0.1, 1);
   Observations twice = o;
