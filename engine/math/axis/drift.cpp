@@ -206,7 +206,7 @@ std::vector<Drift> fit_drifts(const AxisTest& test) {
   std::vector<Drift> out;
   for (const double part : time_constants) {
     Drift& drift = out.emplace_back();
-    drift.scatter = std::sqrt(variance);
+    drift.scatter = std::sqrt(variance), drift.scatter_dof = dof;
     drift.middle = model.middle;
     const Runs even = by_run(model, timing, INFINITY, false);
     drift.runs = even.time.size();

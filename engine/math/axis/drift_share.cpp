@@ -12,13 +12,13 @@
 namespace nonio::math {
 namespace {
 
-// Factor that the largest of `values` normal values exceeds at 4.55 %, at least 2.
-double factor_of_largest(std::size_t values) {
+// Factor that the largest of `values` exceeds at 4.55 %, at least 2; `dof`: of their scatter.
+double factor_of_largest(std::size_t values, double dof) {
   const double tail = 0.0455 / static_cast<double>(values);
-  double low = 2.0, high = 10.0;
+  double low = 2.0, high = 30.0;
   for (int halved = 0; halved < 40; ++halved) {
     const double k = (low + high) / 2.0;
-    (t_two_sided(k, 1e6) / 2.0 > tail ? low : high) = k;
+    (t_two_sided(k, dof) / 2.0 > tail ? low : high) = k;
   }
   return low;
 }
@@ -44,7 +44,7 @@ double in_scatter(const AxisTest& test, const Drift& drift, bool minus) {
 }
 
 void put_reversal(const AxisTest& test, const Drift& drift, double u_mean, DriftShare& share) {
-  const double k_largest = factor_of_largest(test.targets.size());
+  const double k_largest = factor_of_largest(test.targets.size(), 1e6);
   double by_offset = 0.0, by_slope = 0.0;
   bool positive = false, negative = false;
   for (std::size_t i = 0; i < test.targets.size(); ++i) {
@@ -95,20 +95,13 @@ std::vector<Mean> means_of(const AxisTest& test, const Drift& drift, bool bidire
   return out;
 }
 
-// Contribution to the difference of the largest and the least mean. As many pairs of means compete
-// for it as are nearer to both than their scatter.
-double share_of_range(const std::vector<Mean>& means, const Drift& drift, double u_mean) {
-  if (means.size() < 2) return 0.0;
-  const auto less = [](const Mean& a, const Mean& b) { return a.value < b.value; };
-  const Mean& high = *std::max_element(means.begin(), means.end(), less);
-  const Mean& low = *std::min_element(means.begin(), means.end(), less);
-  double middle = 0.0;
-  for (const Mean& one : means) middle += one.time / static_cast<double>(means.size());
-  const auto near = [&](const Mean& end) {
-    return static_cast<std::size_t>(std::count_if(means.begin(), means.end(), [&](const Mean& one) {
-      return std::fabs(one.value - end.value) <= 2.0 * std::sqrt(one.variance + end.variance);
-    }));
-  };
+/// Error of the difference of two means by drift, and its variance with that of the means.
+struct Difference {
+  double drift = 0.0, variance = 0.0;
+};
+
+Difference difference_of(const Mean& high, const Mean& low, double middle, const Drift& drift,
+                         double u_mean) {
   const double by_offset = high.time - low.time,
                by_slope = high.x * (high.time - middle) - low.x * (low.time - middle);
   // Every pass can have a slope of its own.
@@ -119,11 +112,41 @@ double share_of_range(const std::vector<Mean>& means, const Drift& drift, double
   const double lever = high.direction == 2               ? squared(high.x - low.x) / 2.0
                        : high.direction == low.direction ? squared(high.x - low.x)
                                                          : squared(high.x) + squared(low.x);
-  const double variance = squared(by_offset * drift.offset.u) + squared(by_slope * drift.slope.u) +
-                          high.variance + low.variance + own * lever +
-                          (high.direction != low.direction ? squared(u_mean) : 0.0);
-  return std::fabs(by_offset * drift.offset.per_run + by_slope * drift.slope.per_run) +
-         factor_of_largest(near(high) * near(low)) * std::sqrt(variance);
+  return {by_offset * drift.offset.per_run + by_slope * drift.slope.per_run,
+          squared(by_offset * drift.offset.u) + squared(by_slope * drift.slope.u) + high.variance +
+              low.variance + own * lever +
+              (high.direction != low.direction ? squared(u_mean) : 0.0)};
+}
+
+/// Contributions to the difference of the largest and the least mean.
+struct OfRange {
+  double measured = 0.0;  ///< only the pairs of means compete that could be the extremes
+  double flat = 0.0;      ///< all pairs compete, as after compensation
+};
+
+OfRange share_of_range(const std::vector<Mean>& means, const Drift& drift, double u_mean) {
+  if (means.size() < 2) return {};
+  const auto less = [](const Mean& a, const Mean& b) { return a.value < b.value; };
+  const Mean& high = *std::max_element(means.begin(), means.end(), less);
+  const Mean& low = *std::min_element(means.begin(), means.end(), less);
+  double middle = 0.0;
+  for (const Mean& one : means) middle += one.time / static_cast<double>(means.size());
+  const auto near = [&](const Mean& end) {
+    return static_cast<std::size_t>(std::count_if(means.begin(), means.end(), [&](const Mean& one) {
+      return std::fabs(one.value - end.value) <= 2.0 * std::sqrt(one.variance + end.variance);
+    }));
+  };
+  const double dof = drift.scatter_dof > 0.0 ? drift.scatter_dof : 1e6;
+  OfRange out;
+  const Difference ends = difference_of(high, low, middle, drift, u_mean);
+  out.measured = std::fabs(ends.drift) +
+                 factor_of_largest(near(high) * near(low), dof) * std::sqrt(ends.variance);
+  const double k = factor_of_largest(means.size() * (means.size() - 1), dof);
+  for (const Mean& one : means) {
+    const Difference d = difference_of(one, means.front(), middle, drift, u_mean);
+    out.flat = std::max(out.flat, std::fabs(d.drift) + k * std::sqrt(d.variance));
+  }
+  return out;
 }
 
 // Misfit within which a course of the drift is possible, in chi^2: docs/dev/constants.md, M60.
@@ -145,8 +168,11 @@ DriftShare share_of_drift(const AxisTest& test) {
     if (drift.misfit() > best->misfit() + possible_within * of_one) continue;
     share.s = std::max({share.s, in_scatter(test, drift, false), in_scatter(test, drift, true)});
     put_reversal(test, drift, u_mean, share);
-    share.E = std::max(share.E, share_of_range(means_of(test, drift, false), drift, u_mean));
-    share.M = std::max(share.M, share_of_range(means_of(test, drift, true), drift, u_mean));
+    const OfRange E = share_of_range(means_of(test, drift, false), drift, u_mean),
+                  M = share_of_range(means_of(test, drift, true), drift, u_mean);
+    share.E = std::max(share.E, E.measured), share.M = std::max(share.M, M.measured);
+    share.E_after = std::max(share.E_after, E.flat);
+    share.M_after = std::max(share.M_after, M.flat);
   }
   return share;
 }

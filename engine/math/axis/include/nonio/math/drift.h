@@ -38,8 +38,8 @@ struct Drift {
     bool agree = true;  ///< false if the drifts of the two directions have opposite signs
   };
   Part offset, slope;
-  double scatter = 0.0;  ///< standard deviation of a reading within its pass
-  double middle = 0.0;   ///< position to which the offset of a pass refers
+  double scatter = 0.0, scatter_dof = 0.0;  ///< standard deviation of a reading within its pass
+  double middle = 0.0;                      ///< position to which the offset of a pass refers
   std::size_t runs = 0;
   double time_constant = INFINITY;  ///< T, in runs; INFINITY: the drift is even
   struct Course {
@@ -65,12 +65,13 @@ std::vector<Drift> estimate_drifts(const AxisTest&);
 /// expanded, m or rad. Results are not corrected for drift, so it is included in full.
 struct DriftShare {
   double scatter = 0.0;  ///< standard deviation of a reading within its pass, not expanded
-  double B = 0.0;  ///< contribution to the largest reversal B_i
+  double B = 0.0;        ///< contribution to the largest reversal B_i
   double B_mean = 0.0;
   double U_mean = 0.0;  ///< to the mean of |B_i|: that to B_mean if all have one sign, else to B
   double s = 0.0;  ///< contribution to the largest standard deviation of a target and direction
   double E = 0.0;  ///< contribution to the range of the means of all targets and directions
   double M = 0.0;  ///< contribution to the range of the means of both directions
+  double E_after = 0.0, M_after = 0.0;  ///< the same after these means have been compensated
 };
 DriftShare drift_share(const AxisTest&);
 
