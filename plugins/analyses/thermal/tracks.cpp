@@ -107,6 +107,7 @@ bool is_loaded(const Observations& o) {
 
 Tracks tracks_of(const Measurement& m, const Observations& o) {
   Tracks out;
+  out.deviation = deviation_of(o.angular);
   if (!m.axis.empty()) {
     out.test = Test::axis;
     out.visits = math::visits_of(o);
@@ -125,7 +126,7 @@ Tracks tracks_of(const Measurement& m, const Observations& o) {
     if (rows[line].size() < 2) continue;
     auto [kept, track] = math::in_time(o, std::move(rows[line]));
     if (track.size() < 2) continue;
-    if (auto dead = math::dead_sensor(o.lines[line].name, track.d)) {
+    if (auto dead = math::dead_sensor(o.lines[line].name, track.d, out.deviation)) {
       out.findings.push_back(*dead);
       continue;
     }

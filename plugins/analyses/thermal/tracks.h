@@ -28,6 +28,7 @@ struct Tracks {
   std::vector<Followed> all;
   std::vector<math::Visits> visits;  ///< readings of an axis test by position
   bool speed_steps = false;
+  Quantity deviation = Quantity::deviation;  ///< of the sensors; angular_deviation: tilts in rad
   std::vector<Finding> findings;
 };
 

@@ -34,6 +34,11 @@ class Worker {
   }
 
  private:
+  bool is_angular() const { return tracks_.deviation == Quantity::angular_deviation; }
+  Quantity quantity_of(const Followed& f) const {
+    return f.tilt ? Quantity::small_angle : tracks_.deviation;
+  }
+
   /// The u of a range contains two readings and the bias of maximum and minimum by noise.
   Item range_item(const std::string& name, const Track& k, const RangeOf& r, const Followed& f) {
     const auto noise = math::reading_noise(k);
@@ -46,7 +51,7 @@ class Worker {
     const double scale = f.tilt ? 1.0 / f.lever : 1.0, metre = f.tilt ? f.lever : 1.0;
     return {.name = name + "_" + f.name,
             .value = r.range,
-            .quantity = f.tilt ? Quantity::small_angle : Quantity::deviation,
+            .quantity = quantity_of(f),
             .u = std::sqrt(2.0 * noise.s * noise.s + 2.0 * excess * excess),
             .dof = noise.dof,
             .from = k.d[r.low] * metre,
@@ -67,7 +72,7 @@ class Worker {
     }
     out_.items.push_back(range_item("window", k, *window, f));
     out_.items.push_back(range_item("first", k, *first, f));
-    if (tracks_.test == Test::etve && !f.tilt && window->range > out_.drift)
+    if (tracks_.test == Test::etve && !f.tilt && !is_angular() && window->range > out_.drift)
       out_.drift = window->range, out_.drift_sensor = f.name;
     double widest = 0.0;
     for (std::size_t i = 1; i < k.size(); ++i) widest = std::max(widest, k.time[i] - k.time[i - 1]);
@@ -82,7 +87,7 @@ class Worker {
     const double metre = f.tilt ? f.lever : 1.0;
     out_.items.push_back({.name = std::string(name) + "_" + f.name,
                           .value = k.d.back() - k.d.front(),
-                          .quantity = f.tilt ? Quantity::small_angle : Quantity::deviation,
+                          .quantity = quantity_of(f),
                           .u = std::numbers::sqrt2 * noise.s,
                           .dof = noise.dof,
                           .from = k.d.front() * metre,
@@ -98,7 +103,7 @@ class Worker {
     put_end(f, "cool", f.cool);
     if (f.tilt) return;
     if (tracks_.speed_steps) return once("thermal.speed-steps", {});
-    put_constants(f.name, f.run, 1.0, Quantity::deviation, 1.0);
+    put_constants(f.name, f.run, 1.0, tracks_.deviation, 1.0);
   }
 
   TimeConstants put_constants(const std::string& name, const Track& k, double lever,
@@ -125,14 +130,16 @@ class Worker {
                             .to = p.c * lever,
                             .scale = scale});
     }
-    const auto t = fit.settled(wish_.remaining / lever);
-    if (t.t >= slowest_) slowest_ = t.t, slowest_u_ = t.u, slowest_name_ = name;
+    if (!is_angular()) {
+      const auto t = fit.settled(wish_.remaining / lever);
+      if (t.t >= slowest_) slowest_ = t.t, slowest_u_ = t.u, slowest_name_ = name;
+    }
     put_curve(name, fit, k);
     return fit;
   }
 
   void put_curve(const std::string& name, const TimeConstants& fit, const Track& k) {
-    Series s{"fit_" + name, "t", Quantity::time, Quantity::deviation, {}, {}, {}};
+    Series s{"fit_" + name, "t", Quantity::time, tracks_.deviation, {}, {}, {}};
     if (tracks_.test == Test::axis) s.quantity = Quantity::deviation_per_length;
     constexpr int steps = 100;
     for (int i = 0; i <= steps; ++i) {
