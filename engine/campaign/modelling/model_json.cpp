@@ -207,8 +207,15 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
       out.push_back(words.gain_too_large(p));
   for (std::size_t t = 0; t < fit.lost.size(); ++t)
     if (fit.lost[t] > 0) out.push_back(words.not_identifiable(fit.terms[t].name(), fit.lost[t]));
-  if (part.part.kind == model::Part::Kind::space && model::has_unstated_position(part.part))
-    out.push_back(words.has_unstated_position());
+  if (part.part.kind == model::Part::Kind::space) {
+    if (const auto unstated = model::unstated_positions(part.part); !unstated.empty())
+      out.push_back(words.unstated_position(unstated));
+    const auto has = [&](const char* effect) {
+      return std::ranges::any_of(fit.terms, [&](const auto& t) { return t.name() == effect; });
+    };
+    if (has("squareness:XY") && has("yaw:X"))
+      out.push_back(words.squareness_place("squareness:XY", "yaw:X"));
+  }
   for (const std::string& measurement : part.part.order_assumed)
     out.push_back(words.order_assumed(measurement));
   const auto& lines = part.part.table.lines;

@@ -234,7 +234,16 @@ std::string ModelWords::not_identifiable(const std::string& effect, std::size_t 
               {{"effect", effect}});
 }
 
-std::string ModelWords::has_unstated_position() const { return says("unstated-position", {}, {}); }
+std::string ModelWords::unstated_position(const std::vector<std::string>& measurements) const {
+  std::string which;
+  for (const std::string& one : measurements) which += (which.empty() ? "" : ", ") + one;
+  return says("unstated-position", {}, {{"which", which}});
+}
+
+std::string ModelWords::squareness_place(const std::string& squareness,
+                                         const std::string& yaw) const {
+  return says("squareness-place", {}, {{"effect", squareness}, {"yaw", yaw}});
+}
 
 std::vector<std::string> ModelWords::noise(const model::Fit& fit, const PartModel& part) const {
   using Zero = model::Noise::Zero;

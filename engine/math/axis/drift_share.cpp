@@ -12,17 +12,6 @@
 namespace nonio::math {
 namespace {
 
-// Factor that the largest of `values` exceeds at 4.55 %, at least 2; `dof`: of their scatter.
-double factor_of_largest(std::size_t values, double dof) {
-  const double tail = 0.0455 / static_cast<double>(values);
-  double low = 2.0, high = 30.0;
-  for (int halved = 0; halved < 40; ++halved) {
-    const double k = (low + high) / 2.0;
-    (t_two_sided(k, dof) / 2.0 > tail ? low : high) = k;
-  }
-  return low;
-}
-
 // Returns the contribution of drift to the largest s of a direction: s minus the square root of s^2
 // minus the mean square that drift may contribute. Among equal values of s the larger contribution
 // is used, so that rounding does not decide.
