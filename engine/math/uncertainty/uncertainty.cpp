@@ -137,6 +137,15 @@ Budget slope_budget(const Budget& b) {
   return out;
 }
 
+std::optional<double> common_scale_uncertainty(const Campaign& campaign, const std::string& axis,
+                                               double length) {
+  AxisTest ends;
+  ends.targets = {0.0, length};
+  const auto of = uncertainty_budget(campaign, campaign.environment, axis, ends);
+  if (!of.budget || !(length > 0.0)) return std::nullopt;
+  return slope_budget(*of.budget).systematic() / length / 2.0;
+}
+
 UncertaintyBudget contributions_of(const Budget& b, const std::string& axis, bool rotary) {
   UncertaintyBudget out;
   if (!rotary) out.length = b.length;

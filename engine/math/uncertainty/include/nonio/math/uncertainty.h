@@ -108,4 +108,9 @@ ResultUncertainty slope_uncertainty(const Budget& of_slope, std::size_t n);
 /// contributes 2/sqrt 3 of the limit instead of 0.6.
 Budget slope_budget(const Budget&);
 
+/// Returns the standard uncertainty of the scale of an axis that all readings of a test over `length`
+/// have in common: instrument, misalignment and temperatures; std::nullopt if a key is missing.
+std::optional<double> common_scale_uncertainty(const Campaign&, const std::string& axis,
+                                               double length);
+
 }  // namespace nonio::math
