@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/finding_builder.h"
+#include "nonio/math/compensated.h"
 #include "nonio/math/drift.h"
 #include "nonio/math/iso230_2.h"
 #include "nonio/math/reversal.h"
@@ -38,13 +39,14 @@ const char* positive_reversal(std::optional<double> active) {
 }  // namespace
 
 void reversal_findings(const AxisTest& test, std::vector<Finding>& findings,
-                       std::optional<double> active, double U_mean) {
+                       std::optional<double> active, ReversalUncertainty of_budget) {
   using Kind = Reversal::Kind;
   const Reversal r = assess_reversal(test);
   const bool attention = !std::isnan(r.largest) && matters(test, r.largest);
   // A single value is not recommended if it leaves a larger reversal somewhere than exists now.
   const bool constant = r.kind == Kind::lost_motion || r.kind == Kind::over_compensated;
-  const double U = std::max(drift_share(test).B_mean, U_mean);
+  const DriftShare seen = drift_share(test);
+  const double U = std::max(seen.B_mean, of_budget.B_mean);
   const char* id = constant && !(r.largest_left < r.largest) ? "reversal.one-value-worse"
                    : r.kind == Kind::lost_motion && is_reversal_known(r.mean, U)
                        ? "reversal.lost-motion"
@@ -53,8 +55,7 @@ void reversal_findings(const AxisTest& test, std::vector<Finding>& findings,
                    : r.kind == Kind::not_constant     ? "reversal.not-constant"
                                                       : nullptr;
   if (id != nullptr) {
-    // A correction is not better than the uncertainty of its value.
-    const double left = std::max(r.largest_left, U);
+    const double left = predicted_after(r.largest, r.largest_left, std::max(seen.B, of_budget.B));
     FindingBuilder finding(id, attention, test.rotary);
     finding.deviation("mean", r.mean)
         .deviation("u_mean", r.u_mean)
@@ -98,10 +99,10 @@ void common_offset(const AxisTest& test, std::vector<Finding>& findings) {
 }  // namespace
 
 std::vector<Finding> axis_findings(const AxisTest& test, const Observations& o, const Axis* axis,
-                                   double U_mean) {
+                                   ReversalUncertainty U) {
   std::vector<Finding> findings;
-  drift_findings(test, findings);
-  reversal_findings(test, findings, axis != nullptr ? axis->active_backlash : std::nullopt, U_mean);
+  drift_findings(test, findings, U);
+  reversal_findings(test, findings, axis != nullptr ? axis->active_backlash : std::nullopt, U);
   scatter_findings(test, findings);
   turn_findings(test, findings);
   plan_findings(test, o, axis, findings);
