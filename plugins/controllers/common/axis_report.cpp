@@ -168,7 +168,15 @@ void predict(const AxisJob& job, const math::Correction& whole, OutputResult& re
   if (job.scale_known && curve.left_out == 0) {
     add(both ? "E" : job.from_diagonals ? "M" : curve.plus.empty() ? "E-" : "E+", was.E(), E_after);
     add("B", was.B(), B_after);
-    add("M", was.M(), math::predicted_after(was.M(), will.M(), job.U.M));
+    const double M_after = math::predicted_after(was.M(), will.M(), job.U.M);
+    add("M", was.M(), M_after);
+    if (will.E() < was.E() && M_after > was.M())
+      result.findings.push_back({"table.worse-mean",
+                                 true,
+                                 {{"before", was.M(), q}, {"after", M_after, q}},
+                                 {{"axis", job.axis}},
+                                 job.measurement,
+                                 "Load only the backlash value."});
   }
   if (job.drifted > 0.0)
     result.notes.emplace_back(remark(job, "table.drifted")).evidence = {{"drift", job.drifted, q}};

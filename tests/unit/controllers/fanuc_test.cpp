@@ -163,6 +163,29 @@ TEST(Fanuc, AdvisesNoMagnificationThatTheOptionRefuses) {
   }
 }
 
+TEST(Fanuc, ATableThatMakesTheMeanWorseSaysSo) {
+  const std::array<double, 13> plus = {-0.67, 0.22, 0.47,  0.21,  -0.40, -1.37, -1.53,
+                                       -1.75, -2.1, -1.73, -2.29, -1.44, -0.71},
+                               minus = {1.27, 2.15, 2.81, 2.13,  1.68, 0.77, 0.36,
+                                        0.19, 0.0,  0.11, -0.11, 0.64, 1.14};
+  const auto at = [](const std::array<double, 13>& values, double x) {
+    return values[static_cast<std::size_t>(std::lround((x + 180 * deg) / (30 * deg)))] * arcsec;
+  };
+  Measured m;
+  m.axis = m.id = "C";
+  m.rotary = true;
+  m.targets = even(-180 * deg, 30 * deg, 13);
+  m.plus = [&](double x) { return at(plus, x); };
+  m.minus = [&](double x) { return at(minus, x); };
+  for (const double unit : {0.36, 3.6}) {
+    const auto r = Bench(m).write(fanuc_plugin(), {{"detection_unit_arcsec", unit}});
+    ASSERT_TRUE(r) << r.error().message;
+    EXPECT_EQ(prediction(*r, "M").after > prediction(*r, "M").before, unit == 3.6);
+    EXPECT_LT(prediction(*r, "E").after, prediction(*r, "E").before);
+    EXPECT_EQ(finding(*r, "table.worse-mean") != nullptr, unit == 3.6);
+  }
+}
+
 TEST(Fanuc, MagnificationScalesThePulses) {
   const auto m = axis(
       even(0.0, 100 * mm, 6), [](double x) { return x * 300e-6; }, -6 * um);
