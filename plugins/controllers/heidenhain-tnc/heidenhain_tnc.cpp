@@ -251,6 +251,7 @@ Expected<OutputResult> write(const ControllerInput& input) {
       .parse = parse,
       .backlash_in_steps = true,
       .power_of_two = layout.power_of_two,
+      .within_turn = layout.power_of_two,
       .wanted = [&](const AxisJob& job) { return wanted(job, crosses(job), layout); }};
   const auto jobs = controllers::write_axes(input, writer, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
