@@ -341,6 +341,7 @@ void print_comparison(std::ostream& out, const Json& part, const TerminalWords& 
         out, say("correlated"),
         say("correlated.pair", {{"one", text_in(pair, "one")}, {"other", text_in(pair, "other")}}) +
             ": r = " + say.number(fixed_text(pair.at("r"), 3)));
+  if (!model.at("effects").empty()) sentence(out, 2, say("aliases.elsewhere"));
   print_places(out, part, say);
   if (part.contains("means")) line(out, "", say("means", {{"count", part.at("means").dump()}}));
   sentences(out, part.at("suspects"), say("suspect") + ": ");

@@ -29,7 +29,7 @@ NONIO_MEMBERS(assessment::SeriesTests::Of, a, b, c)
 NONIO_MEMBERS(assessment::SeriesTests, a, b, c)
 NONIO_MEMBERS(assessment::IntervalFacts, a, b, c, d, e, f, g, h, i)
 NONIO_MEMBERS(assessment::ComparedValue, a, b, c, d, e, f, g, h)
-NONIO_MEMBERS(assessment::Standing, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
+NONIO_MEMBERS(assessment::Standing, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o)
 NONIO_MEMBERS(assessment::KeptMachine::Series, a, b, c)
 NONIO_MEMBERS(assessment::KeptMachine::Page, a, b, c)
 NONIO_MEMBERS(assessment::KeptMachine, a, b, c, d, e, f)
@@ -46,7 +46,7 @@ using storage::Database;
 constexpr const char* kept_folder = ".nonio";
 constexpr const char* machines_name = "machines.sqlite";
 /// Must change if a version of the program may compute other results or trends.
-constexpr std::string_view machines_version = "12 " NONIO_VERSION, trends_version = "4";
+constexpr std::string_view machines_version = "13 " NONIO_VERSION, trends_version = "5";
 constexpr std::size_t digest_size = 64;
 constexpr double patience = 5.0;  // s; without the file, everything is computed again
 

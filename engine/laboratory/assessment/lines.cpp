@@ -136,6 +136,16 @@ void drafts(const Known& known, std::vector<WorkItem>& out) {
   put_count(out.back(), "count", known.last_run.waiting.size());
 }
 
+void misread(const Known& known, std::vector<WorkItem>& out) {
+  WorkItem line = line_of(Kind::information, "worklist.misreading", "site");
+  for (const Standing* m : known.machines)
+    if (!m->misread.empty()) line.campaigns.push_back(m->misread);
+  if (line.campaigns.empty()) return;
+  put_count(line, "count", line.campaigns.size());
+  line.campaign = line.campaigns.front();
+  out.push_back(std::move(line));
+}
+
 void conforming(const Known& known, std::vector<WorkItem>& out) {
   std::size_t machines = 0, lost_motion = 0;
   for (const Standing* m : known.machines) {
@@ -165,6 +175,7 @@ std::vector<WorkItem> of_site(const Known& known) {
   without_machine(known, out);
   drafts(known, out);
   not_judged(known, out);
+  misread(known, out);
   conforming(known, out);
   unknown(known, out);
   for (const store::Spelling& s : known.spellings) {

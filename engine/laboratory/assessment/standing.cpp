@@ -204,6 +204,7 @@ Standing standing_of(const AssessedMachine& m, const reports::MachineHistory& de
   if (m.stored.findings.empty()) return s;
   for (const auto& [id, severity] : m.stored.findings.back()) {
     s.attention = s.attention || severity == "attention";
+    if (id == "reading.suspect") s.misread = m.stored.campaigns.back().id;
     s.reversal = s.reversal || (severity == "attention" && id.starts_with("reversal."));
   }
   return s;

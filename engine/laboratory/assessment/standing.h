@@ -29,6 +29,7 @@ struct Standing {
   bool conforms = false;
   bool attention = false;  ///< whether the last campaign has a finding of severity warning
   bool reversal = false;   ///< whether such a finding is about reversal
+  std::string misread{};   ///< the newest campaign if it includes a suspected misreading
   IntervalFacts interval{};
   std::string until{};  ///< last date of a run with the same worklist
 };

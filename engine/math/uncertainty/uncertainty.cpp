@@ -139,11 +139,11 @@ Budget slope_budget(const Budget& b) {
 
 std::optional<double> common_scale_uncertainty(const Campaign& campaign, const std::string& axis,
                                                double length) {
-  AxisTest ends;
-  ends.targets = {0.0, length};
-  const auto of = uncertainty_budget(campaign, campaign.environment, axis, ends);
-  if (!of.budget || !(length > 0.0)) return std::nullopt;
-  return slope_budget(*of.budget).systematic() / length / 2.0;
+  std::vector<std::string> missing;
+  const Budget b = linear(campaign, campaign.environment, axis, length, missing);
+  if (!missing.empty() || exact_instrument(campaign.instrument, false) || !(length > 0.0))
+    return std::nullopt;
+  return slope_budget(b).systematic() / length / 2.0;
 }
 
 UncertaintyBudget contributions_of(const Budget& b, const std::string& axis, bool rotary) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "nonio/math/distributions.h"
+#include "nonio/math/uncertainty.h"
 
 namespace nonio::math::budget_test {
 namespace {
@@ -285,6 +286,18 @@ TEST(Budget, TheReadingsCountWhereTheyGoBeyondWhatIsStated) {
   // Nothing is made up for what was not stated.
   c.environment = {};
   EXPECT_TRUE(held(runs(5 * um, 34.3)).findings.empty());
+}
+
+// 10 um of the instrument, 2/sqrt 3 um of misalignment, 6 and 7.2 um of temperatures, over 2 m.
+TEST(Budget, WhatAllReadingsOfAScaleHaveInCommon) {
+  const double U = std::sqrt(100.0 + 4.0 / 3.0 + 36.0 + 7.2 * 7.2);
+  const auto u = common_scale_uncertainty(stated(), "X", 2.0);
+  ASSERT_TRUE(u);
+  EXPECT_NEAR(*u, U / 4.0 * um, 1e-10);
+  Campaign c = stated();
+  c.environment.temperature_range.reset();
+  EXPECT_FALSE(common_scale_uncertainty(c, "X", 2.0));
+  EXPECT_FALSE(common_scale_uncertainty(stated(), "X", 0.0));
 }
 
 }  // namespace
