@@ -12,7 +12,6 @@
 #include <sstream>
 #include <utility>
 
-#include "colour.h"
 #include "common.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/nearest.h"

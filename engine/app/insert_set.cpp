@@ -7,7 +7,6 @@
 
 #include "campaign/evaluation/evaluation.h"
 #include "campaign/reading/plausibility/plausibility.h"
-#include "insert.h"
 #include "platform/storage/files.h"
 #include "state_record.h"
 #include "tables.h"

@@ -3,7 +3,7 @@
 #include <iostream>
 #include <memory>
 
-#include "certificates/password.h"
+#include "certificates/users.h"
 #include "live/server.h"
 #include "password_input.h"
 #include "verbs.h"

@@ -8,11 +8,9 @@
 #include <memory>
 
 #include "campaign/config/site_files.h"
-#include "campaign/config/table_files.h"
 #include "campaign/planning/plan.h"
 #include "campaign/tables/control_state.h"
 #include "check_campaign.h"
-#include "insert.h"
 #include "insert_set.h"
 #include "laboratory/assessment/loading_verdict.h"
 #include "laboratory/assessment/table_changes.h"

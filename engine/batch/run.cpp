@@ -10,11 +10,9 @@
 
 #include "batch/close/history_update.h"
 #include "batch/close/mail.h"
-#include "batch/close/run_history.h"
 #include "batch/close/shown_histories.h"
 #include "batch/close/summary.h"
 #include "batch/close/worklist_update.h"
-#include "batch/commit/leftovers.h"
 #include "batch/commit/store.h"
 #include "batch/shards/packed_shard.h"
 #include "batch/shards/parts.h"

@@ -10,7 +10,6 @@
 
 #include "campaign/config/template_files.h"
 #include "campaign/evaluation/evaluation.h"
-#include "campaign/evaluation/issue_json.h"
 #include "campaign/evaluation/record.h"
 #include "campaign/evaluation/results_json.h"
 #include "campaign/reading/campaign_reader.h"
@@ -26,7 +25,6 @@
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
-#include "platform/storage/scratch_folder.h"
 
 namespace nonio::certificates {
 namespace fs = std::filesystem;

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "campaign/config/number_pattern.h"
-#include "campaign/evaluation/issue_json.h"
+#include "campaign/evaluation/results_json.h"
 #include "certificates/journal.h"
 #include "certificates/register_place.h"
 #include "certificates/register_tables.h"

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "campaign/evaluation/issue_json.h"
 #include "campaign/evaluation/record.h"
+#include "campaign/evaluation/results_json.h"
 #include "certificates/certificate_list.h"
 #include "certificates/content_check.h"
 #include "certificates/register.h"

@@ -17,7 +17,7 @@
 #include <memory>
 #include <utility>
 
-#include "campaign/config/secret_files.h"
+#include "campaign/config/site_files.h"
 #include "platform/process/channel.h"
 #include "platform/process/child.h"
 #include "platform/process/guarded.h"

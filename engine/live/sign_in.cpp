@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "certificates/password.h"
+#include "certificates/users.h"
 #include "live/random_token.h"
 #include "platform/storage/digest.h"
 

@@ -3,7 +3,6 @@
 #include "certificates/person_name.h"
 #include "live/site_service.h"
 #include "platform/storage/files.h"
-#include "platform/storage/scratch_folder.h"
 
 namespace nonio::live {
 namespace fs = std::filesystem;

@@ -20,7 +20,6 @@
 #include "nonio/sdk/text.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
-#include "platform/storage/scratch_folder.h"
 
 namespace nonio::live {
 

@@ -17,8 +17,7 @@
 
 #include "campaign/config/site_files.h"
 #include "campaign/config/template_files.h"
-#include "campaign/loader/plugin_file.h"
-#include "campaign/loader/plugin_symbols.h"
+#include "campaign/loader/plugins.h"
 #include "nonio/sdk/format.h"
 #include "platform/process/child.h"
 #include "platform/process/confine.h"

@@ -24,7 +24,7 @@
 #include "batch/survey/twins.h"
 #include "batch/workers/computing.h"
 #include "batch/workers/worker.h"
-#include "campaign/config/secret_files.h"
+#include "campaign/config/site_files.h"
 #include "certificates/certificates.h"
 #include "certificates/numbering.h"
 #include "certificates/signer.h"

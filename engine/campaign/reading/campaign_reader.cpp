@@ -9,7 +9,7 @@
 
 #include "campaign/config/certificate_reader.h"
 #include "campaign/config/formula.h"
-#include "campaign/config/table_files.h"
+#include "campaign/config/site_files.h"
 #include "campaign/reading/checked_read.h"
 #include "campaign/reading/formula_copy.h"
 #include "campaign/reading/names.h"

@@ -19,7 +19,6 @@
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
 #include "platform/storage/pack.h"
-#include "platform/storage/scratch_folder.h"
 #include "platform/storage/tar.h"
 
 namespace nonio::storage {
