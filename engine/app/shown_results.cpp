@@ -17,12 +17,11 @@ using storage::Json;
 namespace fs = std::filesystem;
 
 Expected<Shown> evaluated_now(const fs::path& folder, const Common& common, Documents documents) {
-  auto place = reading::open_workplace(folder, common.plugin_folders(), common.template_folders(),
-                                       NONIO_VERSION);
-  if (!place) return fail(place.error());
+  NONIO_TRY(auto place, reading::open_workplace(folder, common.plugin_folders(),
+                                                common.template_folders(), NONIO_VERSION));
   if (!common.quiet)
-    for (const std::string& note : (*place)->notes) complain(note);
-  const reading::Context& context = (*place)->context;
+    for (const std::string& note : place->notes) complain(note);
+  const reading::Context& context = place->context;
   const reading::Stage stage = [](const std::string&) {};
   evaluation::AnalysedCampaign analysed = evaluation::analyse(
       reading::read_campaign(folder, context, stage), id_of_campaign(folder), context, stage, {});
@@ -34,23 +33,21 @@ Expected<Shown> evaluated_now(const fs::path& folder, const Common& common, Docu
   std::vector<std::string> notes;
   if (const std::string& language = context.site.language; language != "en")
     notes = evaluation::notes_in(language, evaluated.results, context.templates);
-  return Shown{std::move(text), std::move((*place)->context.templates), context.site.language,
+  return Shown{std::move(text), std::move(place->context.templates), context.site.language,
                std::move(observations), std::move(notes)};
 }
 
 Expected<Shown> of_run(const fs::path& folder, const Common& common) {
-  auto text = storage::read_file(folder / evaluation::results_name);
-  if (!text) return fail(text.error());
+  NONIO_TRY(auto text, storage::read_file(folder / evaluation::results_name));
   std::string language = "en", digest;
   std::vector<std::string> notes;
   if (auto record = evaluation::read_record(folder); record && !record->language.empty()) {
     language = record->language;
     notes = std::move(record->notes);
   }
-  auto templates = config::read_templates(common.template_folders(), digest, nullptr, {},
-                                          config::words_in(language));
-  if (!templates) return fail(templates.error());
-  return Shown{std::move(*text), std::move(*templates), language, {}, std::move(notes)};
+  NONIO_TRY(auto templates, config::read_templates(common.template_folders(), digest, nullptr, {},
+                                                   config::words_in(language)));
+  return Shown{std::move(text), std::move(templates), language, {}, std::move(notes)};
 }
 
 Json results_of(const Shown& shown) {

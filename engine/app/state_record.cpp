@@ -67,9 +67,7 @@ bool is_known(const config::RecordFile* record, const std::string& axis, const N
 Expected<std::string> add_states(const OpenCampaign& open, const std::string& axis,
                                  const std::vector<NewState>& states) {
   const Machine& machine = open.campaign().machine;
-  const auto found = config::record_of(open.place->context.machines, machine);
-  if (!found) return fail(found.error());
-  const config::RecordFile* const record = *found;
+  NONIO_TRY(const auto* const record, config::record_of(open.place->context.machines, machine));
   const std::string asset = record != nullptr ? record->asset : machine.asset;
   if (asset.empty())
     return fail(

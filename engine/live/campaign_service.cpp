@@ -114,9 +114,7 @@ Expected<std::unique_ptr<Starting>> service_of(const LiveWish& wish) {
     return fail("--user-header is for a site, and this is a campaign");
   LiveWish settled = wish;
   if (!is_campaign) {
-    auto signs_in = requires_sign_in(wish);
-    if (!signs_in) return fail(signs_in.error());
-    settled.sign_in = *signs_in;
+    NONIO_TRY(settled.sign_in, requires_sign_in(wish));
     if (settled.sign_in && !wish.token_file.empty())
       return fail(
           "--token-file: people sign in at this site (users.toml), so that no token is used");

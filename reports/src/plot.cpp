@@ -269,10 +269,9 @@ class PlotSetter {
       for (const double v : curve.y) up.add(v);
       for (const double v : curve.y2) up.add(v);
     }
-    const auto drawn = across.empty() || up.empty() ? draw_nothing(top, height)
-                       : plot_.scales               ? draw(top, height, across, up)
-                                                    : draw_picture(top, height, across, up);
-    if (!drawn) return fail(drawn.error());
+    NONIO_TRY(const auto drawn, across.empty() || up.empty() ? draw_nothing(top, height)
+                                : plot_.scales               ? draw(top, height, across, up)
+                                               : draw_picture(top, height, across, up));
     return height;
   }
 

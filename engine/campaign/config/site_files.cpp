@@ -134,9 +134,8 @@ Expected<std::vector<Artifact>> read_list(const std::string& list, const Read& r
   for (std::size_t from = 0; from <= list.size();) {
     const std::size_t comma = std::min(list.find(',', from), list.size());
     const std::filesystem::path path = list.substr(from, comma - from);
-    auto bytes = read(path);
-    if (!bytes) return tl::unexpected<Error>(bytes.error());
-    files.push_back({path.filename().string(), std::move(*bytes)});
+    NONIO_TRY(auto bytes, read(path));
+    files.push_back({path.filename().string(), std::move(bytes)});
     from = comma + 1;
   }
   return files;

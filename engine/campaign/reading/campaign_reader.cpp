@@ -144,17 +144,17 @@ Expected<const Reader*> choose_reader(const CampaignSource& from, const Measurem
   for (const Reader& r : readers) {
     const std::string who = "reader " + r.info.name;
     from.stage(who + " (measurement " + m.id + "), asked whether it reads this file");
-    const auto reads = process::guarded_answer(who, [&] { return reading::reads(r, m, method); });
-    if (!reads) return fail(reads.error());
-    any = any || *reads;
+    NONIO_TRY(const auto reads,
+              process::guarded_answer(who, [&] { return reading::reads(r, m, method); }));
+    any = any || reads;
     const auto recognised =
-        process::guarded_answer(who, [&] { return *reads && r.recognises(head_of(bytes)); });
+        process::guarded_answer(who, [&] { return reads && r.recognises(head_of(bytes)); });
     if (!recognised) return fail(recognised.error());
     if (*recognised) return &r;
     if (!reads_columns_of(r, method)) continue;
-    const auto knows = process::guarded_answer(who, [&] { return r.recognises(head_of(bytes)); });
-    if (!knows) return fail(knows.error());
-    if (*knows) return &r;
+    NONIO_TRY(const auto knows,
+              process::guarded_answer(who, [&] { return r.recognises(head_of(bytes)); }));
+    if (knows) return &r;
     if (of_columns == nullptr) of_columns = &r;
   }
   if (of_columns != nullptr) return of_columns;
@@ -259,22 +259,20 @@ Expected<void> read_one_measurement(const CampaignSource& from, const Measuremen
     return fail(key_error(from, out, "measurement." + m.id + ".file", path.error().message));
   if (!file)
     return fail(key_error(from, out, "measurement." + m.id + ".file", file.error().message));
-  const auto converted = utf8_of_utf16(file->bytes());
-  if (!converted) return fail(converted.error());
-  const std::string_view bytes = *converted ? std::string_view(**converted) : file->bytes();
-  const auto reader = choose_reader(from, m, bytes, out);
-  if (!reader) return fail(reader.error());
-  if (*reader == nullptr) return {};
-  const Info& info = (*reader)->info;
+  NONIO_TRY(const auto converted, utf8_of_utf16(file->bytes()));
+  const std::string_view bytes = converted ? std::string_view(*converted) : file->bytes();
+  NONIO_TRY(const auto reader, choose_reader(from, m, bytes, out));
+  if (reader == nullptr) return {};
+  const Info& info = reader->info;
   const auto options = settle_reader(from, info, out);
   if (!options) return {};
   const std::string who = "reader " + info.name;
   from.stage(who + " (measurement " + m.id + ")");
-  auto observations = checked_read(**reader, {bytes, out.manifest->campaign, m, *options,
-                                              [&](std::size_t offset) {
-                                                if (!*converted) file->release(offset);
-                                              },
-                                              from.context.plugins->method(method_name(m))});
+  auto observations = checked_read(*reader, {bytes, out.manifest->campaign, m, *options,
+                                             [&](std::size_t offset) {
+                                               if (!converted) file->release(offset);
+                                             },
+                                             from.context.plugins->method(method_name(m))});
   if (!observations) {
     Error error = observations.error();
     if (error.message.starts_with(who + ": ")) error.message.erase(0, who.size() + 2);

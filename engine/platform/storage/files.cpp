@@ -133,12 +133,10 @@ Expected<ReadFile> ReadFile::open(const fs::path& path) {
     void* data = ::mmap(nullptr, room, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (data == MAP_FAILED) return system_error("cannot read", path);
     ReadFile read(static_cast<char*>(data), 0, room);
-    const auto size = read_into(file.get(), read.data_, room, path);
-    if (!size) return fail(size.error());
-    read.size_ = *size;
+    NONIO_TRY(read.size_, read_into(file.get(), read.data_, room, path));
     struct stat after {};
     if (::fstat(file.get(), &after) != 0) return system_error("cannot read", path);
-    if (same_state(before, after) && *size + 1 == room) return read;
+    if (same_state(before, after) && read.size_ + 1 == room) return read;
     ::usleep(100'000);
   }
   return fail(
@@ -417,12 +415,11 @@ Expected<void> fill_and_flush(const fs::path& folder, const std::vector<Artifact
 
 Expected<void> publish(const fs::path& folder, const std::vector<Artifact>& files) {
   if (files.empty()) return {};
-  const auto is_new = make_folder(folder);
-  if (!is_new) return fail(is_new.error());
+  NONIO_TRY(const auto is_new, make_folder(folder));
   auto done = fill_and_flush(folder, files);
   // A journaling file system commits the new folder together with the files, so the parent folder
   // is flushed after them.
-  if (done && *is_new) done = flush_folder(fs::absolute(folder).parent_path());
+  if (done && is_new) done = flush_folder(fs::absolute(folder).parent_path());
   const std::vector<std::string> names = names_of(files);
   const auto is_ours = [&](const std::string& name) {
     const auto file =

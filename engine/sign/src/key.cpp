@@ -129,13 +129,13 @@ Expected<Signed> sign_pdf(const Key::Impl& key, std::string bytes, Time now,
   if (place->contents.find_first_not_of('0') != std::string_view::npos)
     return fail("is signed already");
   Signed out;
-  const auto cms = make_cms(key, place->before, place->after, now, stamping, out.no_time_stamp);
-  if (!cms) return fail(cms.error());
-  if (cms->size() > place->room())
-    return fail("the signature has " + std::to_string(cms->size()) +
+  NONIO_TRY(const auto cms,
+            make_cms(key, place->before, place->after, now, stamping, out.no_time_stamp));
+  if (cms.size() > place->room())
+    return fail("the signature has " + std::to_string(cms.size()) +
                 " bytes and does not fit into " + std::to_string(place->room()));
   if (bytes.size() > pdf::max_file) return fail(too_large);
-  bytes.replace(place->gap + 1, 2 * cms->size(), hex(*cms));
+  bytes.replace(place->gap + 1, 2 * cms.size(), hex(cms));
   out.bytes = std::move(bytes);
   return out;
 }

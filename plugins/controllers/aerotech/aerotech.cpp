@@ -198,9 +198,8 @@ struct Parser {
       std::reverse(raw.position.begin(), raw.position.end());
       std::reverse(raw.plus.begin(), raw.plus.end());
     }
-    auto read = controllers::loaded(declared(), raw);
-    if (!read) return tl::unexpected<Error>(read.error());
-    tables.push_back(std::move(*read));
+    NONIO_TRY(auto read, controllers::loaded(declared(), raw));
+    tables.push_back(std::move(read));
     return {};
   }
   Expected<void> plane_table(const std::vector<std::string_view>& head,
@@ -251,9 +250,8 @@ struct Parser {
 };
 
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
-  const auto axes = controllers::known_axes(in);
-  if (!axes) return tl::unexpected<Error>(axes.error());
-  Parser parser{*axes};
+  NONIO_TRY(const auto axes, controllers::known_axes(in));
+  Parser parser{axes};
   for (const Artifact& f : in.files)
     if (auto ended = controllers::ends_whole(f.name, f.bytes); !ended)
       return tl::unexpected<Error>(ended.error());
@@ -276,18 +274,16 @@ Expected<OutputResult> write(const ControllerInput& in) {
                                    .parse = parse,
                                    .turn_end = controllers::TurnEnd::closed,
                                    .holds_documented = true};
-  const auto jobs = controllers::write_axes(in, writer, result);
-  if (!jobs) return tl::unexpected<Error>(jobs.error());
-  const Campaign campaign = controllers::with_axes_of(in, *jobs);
-  const auto axes = controllers::known_axes({{}, campaign, in.options});
-  if (!axes) return tl::unexpected<Error>(axes.error());
+  NONIO_TRY(const auto jobs, controllers::write_axes(in, writer, result));
+  const Campaign campaign = controllers::with_axes_of(in, jobs);
+  NONIO_TRY(const auto axes, controllers::known_axes({{}, campaign, in.options}));
   for (const CrossJob& set :
        controllers::cross_jobs(in, controllers::SecondSide::not_known, result)) {
     if (set.volume || set.curves.size() != 2) {
       result.notes.push_back(controllers::not_in_format(writer.name, set.measurement));
       continue;
     }
-    if (controllers::lacks_number(set.moving(), in, *axes, set.measurement, result)) continue;
+    if (controllers::lacks_number(set.moving(), in, axes, set.measurement, result)) continue;
     if (std::any_of(set.curves.begin(), set.curves.end(),
                     [](const CrossCurve& c) { return std::fabs(c.position.front()) > 1e-9; }))
       return fail("diagonals of " + set.measurement +
@@ -301,8 +297,8 @@ Expected<OutputResult> write(const ControllerInput& in) {
                                        c.input + ".reference_mm");
     if (controllers::oversized(set, in, result)) continue;
     const std::vector<Artifact> file{
-        {"aerotech-plane-" + controllers::file_part(set.measurement) + ".cal", plane(set, *axes)}};
-    if (auto done = controllers::predict_cross(set, file, parse, *jobs, in, result); !done)
+        {"aerotech-plane-" + controllers::file_part(set.measurement) + ".cal", plane(set, axes)}};
+    if (auto done = controllers::predict_cross(set, file, parse, jobs, in, result); !done)
       return tl::unexpected<Error>(done.error());
     result.artifacts.push_back(file.front());
   }

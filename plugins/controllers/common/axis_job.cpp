@@ -408,9 +408,8 @@ std::optional<double> AxisJob::position_setting(std::string_view name) const {
 Expected<std::vector<AxisJob>> axis_jobs(const ControllerInput& input,
                                          const std::vector<std::string_view>& keys,
                                          OutputResult& result) {
-  auto settings = settings_of_axes(input.options, keys);
-  if (!settings) return tl::unexpected<Error>(settings.error());
-  if (auto known = check_names(*settings, input); !known)
+  NONIO_TRY(auto settings, settings_of_axes(input.options, keys));
+  if (auto known = check_names(settings, input); !known)
     return tl::unexpected<Error>(known.error());
   std::vector<AxisJob> all, jobs;
   const auto& measurements = input.campaign.measurements;
@@ -441,7 +440,7 @@ Expected<std::vector<AxisJob>> axis_jobs(const ControllerInput& input,
       continue;
     }
     job.stem = file_part(job.axis);
-    if (const auto it = settings->find(job.axis); it != settings->end()) job.settings = it->second;
+    if (const auto it = settings.find(job.axis); it != settings.end()) job.settings = it->second;
     if (const Measurement* m = measurement_of(input, job.measurement);
         m != nullptr && m->compensation == "off")
       job.settings[job.rotary ? "backlash_deg" : "backlash_mm"] = 0.0;

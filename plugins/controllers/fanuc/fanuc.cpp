@@ -180,8 +180,7 @@ bool has_table(const ParameterValues& p) {
 /// Follows the manual of the control, independently of the code that writes the files, so that it
 /// verifies them.
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
-  const auto axes = controllers::known_axes(in);
-  if (!axes) return tl::unexpected<Error>(axes.error());
+  NONIO_TRY(const auto axes, controllers::known_axes(in));
   const Settings& o = in.options;
   Memory memory;
   if (o.flag("extended")) memory.least = -128, memory.most = 127;
@@ -196,16 +195,15 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   std::vector<LoadedTable> tables;
   for (const auto& [number, parameters] : memory.parameter) {
     if (!has_table(parameters)) continue;
-    const auto axis = axis_numbered(*axes, static_cast<std::size_t>(number));
+    const auto axis = axis_numbered(axes, static_cast<std::size_t>(number));
     const bool plus = o.text("reference_return") != "-";
     const Units units = axis.rotary
                             ? Units{o.number("detection_unit_arcsec", 3.6) / arcsec_per_rad,
                                     o.number("interval_unit_arcsec", 3.6) / arcsec_per_rad, plus}
                             : Units{o.number("detection_unit_um", 1.0) * 1e-6,
                                     o.number("interval_unit_um", 1.0) * 1e-6, plus};
-    auto read = table(memory, parameters, axis, units);
-    if (!read) return tl::unexpected<Error>(read.error());
-    tables.push_back(std::move(*read));
+    NONIO_TRY(auto read, table(memory, parameters, axis, units));
+    tables.push_back(std::move(read));
   }
   if (tables.empty()) return fail("no parameters 3620 to 3624");
   return tables;
@@ -409,13 +407,12 @@ Expected<OutputResult> write(const ControllerInput& input) {
       .table = table_of(o),
       .keys = {"number:", "reference_number:", "step", "reference", "backlash"},
       .files = [&](const Sheet& s) -> Expected<std::vector<Artifact>> {
-        auto p = parameters_of(s);
-        if (!p) return tl::unexpected<Error>(p.error());
-        if (auto placed = numbering.place(s, *p); !placed)
+        NONIO_TRY(auto p, parameters_of(s));
+        if (auto placed = numbering.place(s, p); !placed)
           return tl::unexpected<Error>(placed.error());
         const std::string stem = "fanuc-" + s.job.stem;
-        return std::vector<Artifact>{{stem + ".prm", parameter_text(s, *p)},
-                                     {stem + ".txt", words(s, *p)}};
+        return std::vector<Artifact>{{stem + ".prm", parameter_text(s, p)},
+                                     {stem + ".txt", words(s, p)}};
       },
       .parse = parse,
       .zero_of = o.text("reference_return", "+") != "-" ? controllers::ZeroOf::plus

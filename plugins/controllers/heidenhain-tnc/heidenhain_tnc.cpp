@@ -114,27 +114,23 @@ Expected<std::vector<LoadedTable>> com(std::string_view bytes, const std::vector
   std::size_t end = lines.size();
   while (!with_datum && end > 2 && lines[end - 1] != "[END]") --end;
   if (!with_datum && --end < 3) return fail("no [END]");
-  const auto x = positions(lines, end);
-  if (!x) return tl::unexpected<Error>(x.error());
-  if (x->size() < 2 || x->size() > most)
-    return fail(std::to_string(x->size()) + " rows, the control takes 2 to " +
-                std::to_string(most));
+  NONIO_TRY(const auto x, positions(lines, end));
+  if (x.size() < 2 || x.size() > most)
+    return fail(std::to_string(x.size()) + " rows, the control takes 2 to " + std::to_string(most));
   const auto name_of_table = cell(lines[0], 6);
   const auto owner = owners.find(name_of_table);
   const KnownAxis input = owner != owners.end()
                               ? axis_named(axes, owner->second)
                               : axis_of_file(axes, name_of_table, name_of_table.substr(0, 5));
-  const auto negative = column(lines, end, "BACKLASH");
-  if (!negative) return tl::unexpected<Error>(negative.error());
+  NONIO_TRY(const auto negative, column(lines, end, "BACKLASH"));
   std::vector<LoadedTable> tables;
   for (const auto name : controllers::words_of(lines[1])) {
     if (name == "NR" || name == "AXISPOS" || name == "BACKLASH") continue;
-    const auto values = column(lines, end, name);
-    if (!values) return tl::unexpected<Error>(values.error());
-    if (values->empty()) continue;
+    NONIO_TRY(const auto values, column(lines, end, name));
+    if (values.empty()) continue;
     const KnownAxis output = axis_named(axes, name);
     const bool own = output.name == input.name;
-    tables.push_back(table(input, output, *x, *values, own ? *negative : std::vector<double>{}));
+    tables.push_back(table(input, output, x, values, own ? negative : std::vector<double>{}));
     if (auto ok = math::validate_table(tables.back()); !ok)
       return tl::unexpected<Error>(ok.error());
   }
@@ -144,8 +140,7 @@ Expected<std::vector<LoadedTable>> com(std::string_view bytes, const std::vector
 /// Follows the manual of the control, independently of the code that writes the files, so that it
 /// verifies them.
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
-  const auto axes = controllers::known_axes(in);
-  if (!axes) return tl::unexpected<Error>(axes.error());
+  NONIO_TRY(const auto axes, controllers::known_axes(in));
   std::vector<LoadedTable> tables;
   std::map<std::string, double> backlash;
   const auto most = static_cast<std::size_t>(in.options.integer("max_points", 256));
@@ -160,10 +155,10 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
     if (is_table && lines[0].rfind("BEGIN CONFIG.CMA", 0) == 0) continue;
     for (const std::string_view line : lines)
       if (const auto v = after(line, "backLash = "); v && !is_table)
-        backlash[f.name.empty() ? "" : axis_of_file(*axes, f.name, "heidenhain-tnc-").name] = *v;
+        backlash[f.name.empty() ? "" : axis_of_file(axes, f.name, "heidenhain-tnc-").name] = *v;
     if (!is_table && in.files.size() == 1) return fail("not a .COM table");
     if (!is_table) continue;
-    auto read = com(f.bytes, *axes, most, owners);
+    auto read = com(f.bytes, axes, most, owners);
     if (!read) return read;
     tables.insert(tables.end(), read->begin(), read->end());
   }
@@ -240,24 +235,22 @@ Expected<std::vector<Artifact>> merge(const MergeInput& in) {
   if (cma == in.backup.end())
     return fail(
         "expected CONFIG.CMA among the files of the backup: it states which table is whose");
-  const auto cell = cell_of(cma->bytes, controllers::plain(in.axis));
-  if (!cell) return fail(cell.error());
-  const std::string name = cell->text.empty() ? name_of(*fresh) : cell->text;
+  NONIO_TRY(const auto cell, cell_of(cma->bytes, controllers::plain(in.axis)));
+  const std::string name = cell.text.empty() ? name_of(*fresh) : cell.text;
   Artifact table = *fresh;
   table.bytes.replace(6, name_of(*fresh).size(), name);
   table.name = name;
   std::vector<Artifact> out;
   for (const Artifact& a : in.backup)
     if (is_table(a) && name_of(a) == name) {
-      if (cell->text.empty())
+      if (cell.text.empty())
         return fail("the backup has a table " + name + " that belongs to another axis");
       table.name = a.name;
     }
   out.push_back(std::move(table));
-  if (cell->text.empty()) {
-    auto text = filled(cma->bytes, *cell, name);
-    if (!text) return fail(text.error());
-    out.push_back({cma->name, std::move(*text)});
+  if (cell.text.empty()) {
+    NONIO_TRY(auto text, filled(cma->bytes, cell, name));
+    out.push_back({cma->name, std::move(text)});
   }
   for (const Artifact& a : in.table)
     if (!is_table(a) && !is_assignment(a)) out.push_back(a);
@@ -507,13 +500,12 @@ Expected<OutputResult> write(const ControllerInput& input) {
       .backlash_in_steps = true,
       .power_of_two = layout.power_of_two,
       .wanted = [&](const AxisJob& job) { return wanted(job, crosses(job), layout); }};
-  const auto jobs = controllers::write_axes(input, writer, result);
-  if (!jobs) return tl::unexpected<Error>(jobs.error());
+  NONIO_TRY(const auto jobs, controllers::write_axes(input, writer, result));
   std::vector<const AxisJob*> written;
-  for (const AxisJob& job : *jobs)
+  for (const AxisJob& job : jobs)
     if (job.loaded) written.push_back(&job);
   if (written.empty()) return result;
-  for (const CrossJob& set : sets) predict_columns(set, *jobs, input, result);
+  for (const CrossJob& set : sets) predict_columns(set, jobs, input, result);
   result.artifacts.push_back(
       {"heidenhain-tnc-CONFIG.CMA",
        cma_table(written, axis_columns(input.campaign, *written.front()), layout)});

@@ -185,16 +185,15 @@ class Merger {
 
  private:
   Expected<void> take_directions(const Artifact& table) {
-    const auto numbers = numbers_for(tables_in({table}), tables_in(files_), in_.options);
-    if (!numbers) return fail(numbers.error());
+    NONIO_TRY(const auto numbers, numbers_for(tables_in({table}), tables_in(files_), in_.options));
     std::string lines;
     std::set<std::string> own;
     for (const std::string_view text : controllers::lines_of(table.bytes))
       if (is_comment(text)) {
         if (text.find("CHOSEN, not read from a backup") == std::string_view::npos)
-          lines += renumbered(std::string(controllers::trimmed(text)), *numbers) + "\n";
+          lines += renumbered(std::string(controllers::trimmed(text)), numbers) + "\n";
       } else if (const auto l = line_of(text)) {
-        const std::string& to = numbers->at(l->index[0]);
+        const std::string& to = numbers.at(l->index[0]);
         own.insert(to);
         lines += "$" + l->name + "[" + to + (l->index.size() > 1 ? "," + l->index[1] : "") +
                  "]=" + l->value + "\n";
@@ -354,13 +353,12 @@ Expected<void> write_cross_tables(const ControllerInput& input,
                                   const std::vector<controllers::AxisJob>& pitch,
                                   OutputResult& result) {
   const Campaign campaign = controllers::with_axes_of(input, pitch);
-  const auto axes = controllers::known_axes({{}, campaign, input.options});
-  if (!axes) return tl::unexpected<Error>(axes.error());
-  const Naming name{*axes, input.options.flag("quoted_axes")};
+  NONIO_TRY(const auto axes, controllers::known_axes({{}, campaign, input.options}));
+  const Naming name{axes, input.options.flag("quoted_axes")};
   std::int64_t first = input.options.integer("first_cec_table");
   if (input.options.flag("directions")) {
     std::size_t most = input.campaign.machine.axes.size();
-    for (const controllers::KnownAxis& axis : *axes) most = std::max(most, axis.number);
+    for (const controllers::KnownAxis& axis : axes) most = std::max(most, axis.number);
     first += 2 * static_cast<std::int64_t>(most);
   }
 
@@ -368,7 +366,7 @@ Expected<void> write_cross_tables(const ControllerInput& input,
   std::vector<Remark> enabling;
   for (const CrossJob& job : jobs) {
     if (auto ok = controllers::fits(job, input.options); !ok) return ok;
-    if (controllers::lacks_number(job.moving(), input, *axes, job.measurement, result)) continue;
+    if (controllers::lacks_number(job.moving(), input, axes, job.measurement, result)) continue;
     if (controllers::oversized(job, input, result)) continue;
     if (auto free = free_tables(first, job.curves.size(), input.options); !free)
       return fail("diagonals of " + job.measurement + ": " + free.error().message);
@@ -379,7 +377,7 @@ Expected<void> write_cross_tables(const ControllerInput& input,
       return done;
     result.artifacts.push_back(std::move(file));
     note_chosen(job.axes(), first, job.curves.size(), result);
-    note_enabling(job, *axes, enabling);
+    note_enabling(job, axes, enabling);
   }
   result.notes.insert(result.notes.end(), enabling.begin(), enabling.end());
   return {};
@@ -505,15 +503,14 @@ Expected<OutputResult> write(const ControllerInput& input) {
                                    .files = files,
                                    .parse = parse,
                                    .holds_documented = true};
-  const auto jobs = controllers::write_axes(input, writer, result);
-  if (!jobs) return tl::unexpected<Error>(jobs.error());
-  for (const AxisJob& job : *jobs)
+  NONIO_TRY(const auto jobs, controllers::write_axes(input, writer, result));
+  for (const AxisJob& job : jobs)
     if (job.loaded && input.options.flag("directions") && job.curve.bidirectional())
       note_chosen(job.axis,
                   input.options.integer("first_cec_table") +
                       2 * (static_cast<std::int64_t>(job.number) - 1),
                   2, result);
-  if (auto done = write_cross_tables(input, *jobs, result); !done)
+  if (auto done = write_cross_tables(input, jobs, result); !done)
     return tl::unexpected<Error>(done.error());
   controllers::note_facts(writer, result);
   return result;

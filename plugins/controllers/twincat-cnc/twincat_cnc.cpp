@@ -135,10 +135,9 @@ Expected<std::vector<std::string>> words_with_lose(const Sheet& s) {
 }
 
 Expected<std::vector<Artifact>> files(const Sheet& s) {
-  const auto words = words_with_lose(s);
-  if (!words) return tl::unexpected<Error>(words.error());
+  NONIO_TRY(const auto words, words_with_lose(s));
   const auto units = [&](double x) { return std::to_string(std::llround(x / s.position_unit())); };
-  std::string out = head(*words, s.job.number, s.job.axis);
+  std::string out = head(words, s.job.number, s.job.axis);
   out += line("kw.ssfk.unit", "1") + line("kw.ssfk.interval", units(s.grid.step)) +
          line("kw.ssfk.kw_startpos", units(s.grid.first)) +
          line("kw.ssfk.kw_nr_max", std::to_string(s.grid.points)) +
@@ -223,8 +222,7 @@ std::optional<double> lose_in(std::string_view bytes, bool rotary) {
 }
 
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
-  const auto axes = controllers::known_axes(in);
-  if (!axes) return tl::unexpected<Error>(axes.error());
+  NONIO_TRY(const auto axes, controllers::known_axes(in));
   const std::string said = in.options.text("cross_sign");
   std::vector<LoadedTable> tables;
   for (const Artifact& f : in.files) {
@@ -241,18 +239,16 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
       if (f.bytes.find("kw.") == std::string::npos) return fail(missing);
       return controllers::fail_at(f.name, 1, missing);
     }
-    const auto axis = axis_numbered(*axes, static_cast<std::size_t>(number->second));
+    const auto axis = axis_numbered(axes, static_cast<std::size_t>(number->second));
     if (list.count("kw.ssfk.kw_nr_max") != 0) {
-      auto read = screw(list, axis);
-      if (!read) return tl::unexpected<Error>(read.error());
-      if (!read->backlash) read->backlash = lose_in(f.bytes, axis.rotary);
-      tables.push_back(std::move(*read));
+      NONIO_TRY(auto read, screw(list, axis));
+      if (!read.backlash) read.backlash = lose_in(f.bytes, axis.rotary);
+      tables.push_back(std::move(read));
     }
     if (list.count("kw.crosscomp.last_index") == 0) continue;
     if (said.empty()) return fail("the sign of kw.crosscomp is not known: set cross_sign");
-    auto read = cross(list, *axes, axis, said == "error" ? -1.0 : 1.0);
-    if (!read) return tl::unexpected<Error>(read.error());
-    tables.push_back(std::move(*read));
+    NONIO_TRY(auto read, cross(list, axes, axis, said == "error" ? -1.0 : 1.0));
+    tables.push_back(std::move(read));
   }
   return tables;
 }
@@ -283,8 +279,7 @@ Expected<void> write_cross(const ControllerInput& in,
                            const std::vector<controllers::AxisJob>& pitch, OutputResult& result) {
   const std::string said = in.options.text("cross_sign");
   const Campaign campaign = controllers::with_axes_of(in, pitch);
-  const auto axes = controllers::known_axes({{}, campaign, in.options});
-  if (!axes) return tl::unexpected<Error>(axes.error());
+  NONIO_TRY(const auto axes, controllers::known_axes({{}, campaign, in.options}));
   if (said.empty()) return {};
   const auto jobs = controllers::cross_jobs(in, controllers::SecondSide::own_table, result);
   for (const CrossJob& job : jobs) {
@@ -293,14 +288,14 @@ Expected<void> write_cross(const ControllerInput& in,
       continue;
     }
     if (auto ok = controllers::fits(job, in.options); !ok) return ok;
-    if (controllers::lacks_number(job.moving(), in, *axes, job.measurement, result)) continue;
+    if (controllers::lacks_number(job.moving(), in, axes, job.measurement, result)) continue;
     if (controllers::oversized(job, in, result)) continue;
     std::vector<Artifact> files;
     for (const CrossCurve& c : job.curves)
       files.push_back({"twincat-cnc-cross-" + controllers::file_part(c.output) +
                            (jobs.size() > 1 ? "-" + controllers::file_part(job.measurement) : "") +
                            ".lis",
-                       cross_list(c, *axes, said == "error" ? 1.0 : -1.0, job)});
+                       cross_list(c, axes, said == "error" ? 1.0 : -1.0, job)});
     if (auto done = controllers::predict_cross(job, files, parse, pitch, in, result); !done)
       return done;
     for (Artifact& f : files) result.artifacts.push_back(std::move(f));
@@ -318,9 +313,8 @@ Expected<OutputResult> write(const ControllerInput& in) {
       .parse = parse,
       .directions = controllers::Directions::by_option_without_backlash,
       .backlash_in_steps = true};
-  const auto jobs = controllers::write_axes(in, writer, result);
-  if (!jobs) return tl::unexpected<Error>(jobs.error());
-  if (auto done = write_cross(in, *jobs, result); !done) return tl::unexpected<Error>(done.error());
+  NONIO_TRY(const auto jobs, controllers::write_axes(in, writer, result));
+  if (auto done = write_cross(in, jobs, result); !done) return tl::unexpected<Error>(done.error());
   controllers::note_facts(writer, result);
   return result;
 }

@@ -383,13 +383,12 @@ void add(OutputResult& result, const OutputInput& in, const Format& format, cons
 Expected<OutputResult> write(const OutputInput& in) {
   const std::string control = in.options.text("control");
   OutputResult result;
-  auto all = laws(in, result.findings);
-  if (!all) return tl::unexpected<Error>(all.error());
-  if (all->empty() && result.findings.empty())
+  NONIO_TRY(auto all, laws(in, result.findings));
+  if (all.empty() && result.findings.empty())
     result.findings.push_back({.id = "heat-compensation.no-model", .attention = true});
   for (const Format& format : formats()) {
     if (format.name != control) continue;
-    for (const Law& law : *all) add(result, in, format, law);
+    for (const Law& law : all) add(result, in, format, law);
     if (format.note != nullptr && !result.artifacts.empty())
       result.notes.push_back({.id = format.note, .texts = {{"control", control}}});
   }

@@ -117,19 +117,18 @@ Expected<Observations> read_declared(const ReadInput& input) {
   std::vector<ColumnSpec> columns;
   for (const Method::Column& c : method.columns)
     columns.push_back({name_in_file(c), kind_of(c), c.required});
-  auto table = in_file(read_table(input.bytes, columns), input);
-  if (!table) return fail(table.error());
+  NONIO_TRY(auto table, in_file(read_table(input.bytes, columns), input));
   Readings readings;
-  readings.source_line = std::move(table->line);
+  readings.source_line = std::move(table.line);
   for (const Method::Column& c : method.columns) {
-    const auto* column = table->column(name_in_file(c));
+    const auto* column = table.column(name_in_file(c));
     if (column == nullptr) continue;
     auto& values = readings.columns[c.name] = *column;
     for (double& value : values) value /= unit_of(c.quantity).per_si;
   }
   auto o = in_file(observe(method, {input.campaign, input.measurement, readings}), input);
-  if (o && table->empty_rows > 0)
-    o->notes.push_back({"csv.empty-rows", {count("rows", table->empty_rows)}});
+  if (o && table.empty_rows > 0)
+    o->notes.push_back({"csv.empty-rows", {count("rows", table.empty_rows)}});
   return o;
 }
 

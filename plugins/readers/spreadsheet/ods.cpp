@@ -108,8 +108,7 @@ Expected<Book> read_ods(std::string_view archive, std::size_t most_rows) {
   if (!xml) return fail("the file is no ODS spreadsheet: it has no content.xml");
   Book book;
   OdsReader reader(book, most_rows);
-  const auto read = read_xml(*xml, [&](const Node& node) { return reader.take(node); });
-  if (!read) return fail(read.error());
+  NONIO_TRY(const auto read, read_xml(*xml, [&](const Node& node) { return reader.take(node); }));
   if (book.sheets.empty()) return fail("the spreadsheet has no sheet");
   return book;
 }

@@ -180,9 +180,8 @@ class SheetReader {
 
   Expected<void> end() {
     if (is_wrong_) return fail("sheet \"" + sheet_.name + "\": a cell has no place");
-    auto put = text();
-    if (!put) return fail(put.error());
-    return sheet_.put(at_row_, column_++, std::move(*put));
+    NONIO_TRY(auto put, text());
+    return sheet_.put(at_row_, column_++, std::move(put));
   }
 
   Expected<std::string> text() const {
@@ -230,10 +229,9 @@ Expected<Book> read_xlsx(std::string_view archive, std::size_t most_rows) {
     sheet.name = one.name;
     sheet.most_rows = most_rows;
     SheetReader reader(sheet, common);
-    const auto read = read_xml(
-        *xml, [&](const Node& node) { return reader.take(node); },
-        [&] { return reader.row() > most_rows; });
-    if (!read) return fail(read.error());
+    NONIO_TRY(const auto read, read_xml(
+                                   *xml, [&](const Node& node) { return reader.take(node); },
+                                   [&] { return reader.row() > most_rows; }));
     book.sheets.push_back(std::move(sheet));
   }
   if (book.sheets.empty()) return fail("the workbook has no sheet with cells");
