@@ -17,7 +17,6 @@
 #include "certificates/certificates.h"
 #include "certificates/numbering.h"
 #include "certificates/recomputed.h"
-#include "platform/process/apart.h"
 #include "platform/process/child.h"
 #include "platform/process/guarded.h"
 #include "platform/process/shared_status.h"

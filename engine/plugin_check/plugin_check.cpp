@@ -9,8 +9,6 @@
 #include <chrono>
 #include <clocale>
 #include <cstdlib>
-#include <ctime>
-#include <iostream>
 #include <map>
 #include <thread>
 #include <type_traits>

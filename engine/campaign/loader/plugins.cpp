@@ -8,7 +8,6 @@
 #include <boost/core/demangle.hpp>
 #include <boost/dll/shared_library.hpp>
 #include <cstring>
-#include <iostream>
 #include <span>
 
 #include "campaign/loader/offered.h"

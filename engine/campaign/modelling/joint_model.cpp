@@ -2,7 +2,6 @@
 #include "campaign/modelling/joint_model.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <map>
 #include <set>

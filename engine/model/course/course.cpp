@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "course_data.h"
 #include "nonio/math/distributions.h"

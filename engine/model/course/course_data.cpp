@@ -2,7 +2,6 @@
 #include "course_data.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 namespace nonio::model {

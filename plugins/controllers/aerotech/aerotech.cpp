@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "nonio/controllers/list.h"
 #include "nonio/controllers/replay.h"

@@ -3,7 +3,6 @@
 // (styles).
 #include <cstdlib>
 #include <map>
-#include <set>
 
 #include "archive.h"
 #include "sheet.h"
