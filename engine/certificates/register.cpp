@@ -124,7 +124,7 @@ Expected<std::optional<Register>> open_if_there(const fs::path& site,
   NONIO_TRY(const auto there, has_register(place, patience));
   if (!there) return std::nullopt;
   NONIO_TRY(auto opened, Register::open(site, numbering, patience));
-  return std::move(opened);
+  return opened;
 }
 
 }  // namespace
@@ -313,7 +313,7 @@ Expected<std::optional<evaluation::Certificate>> Register::last(const std::strin
   const std::int64_t id = integer(rows.front()[0]);
   if (inputs_of(id) != data) return std::nullopt;
   NONIO_TRY(auto loaded, load(id));
-  return std::move(loaded);
+  return loaded;
 }
 
 Expected<std::optional<evaluation::Certificate>> Register::find(const std::string& campaign,
