@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "campaign/tables/control_state.h"
 #include "campaign/tables/cross_merge.h"
+#include "campaign_verb.h"
 #include "table_common.h"
 
 /// `table insert` and `table session` for several axes together.
@@ -63,5 +66,31 @@ Expected<std::string> record_answers(const OpenCampaign& open, const StateAnswer
 
 /// Returns a finding if a later campaign measured the axis again; otherwise the list is empty.
 std::vector<Finding> older_measurement(const OpenCampaign& open, const std::string& axis);
+
+struct LaterCampaign {
+  std::filesystem::path folder;
+  std::string id, date, purpose;
+};
+
+/// Returns the campaigns with readings of the same machine and axis and a later date, or the same
+/// date and purpose "check", sorted by date. Searches the site or, without a site, the folders with
+/// the same parent. Unreadable manifests are skipped. Empty if this campaign has no date.
+std::vector<LaterCampaign> later_campaigns(const OpenCampaign& open, const std::string& axis);
+
+/// A state of the control, to be entered into the record of a machine.
+struct NewState {
+  std::string since, source;         ///< keys of [[axes.X.state]]: date and source
+  std::vector<Artifact> files;       ///< files of the table; empty if no table was active
+  std::optional<double> backlash{};  ///< m or rad; std::nullopt is not entered
+  std::vector<LoadedTable> tables{};
+  /// Position at which the table is zero, mm or deg; std::nullopt is not entered.
+  std::optional<double> reference{};
+};
+
+/// Adds the states of an axis to machines/<asset>.toml of the site and copies their files next to
+/// it. Existing states are unchanged. Returns the name of the record. An error, with the record
+/// unchanged, if the campaign states no asset or if the new record would be invalid.
+Expected<std::string> add_states(const OpenCampaign& open, const std::string& axis,
+                                 const std::vector<NewState>& states);
 
 }  // namespace nonio::app

@@ -11,10 +11,8 @@
 #include "campaign/planning/plan.h"
 #include "campaign/tables/control_state.h"
 #include "insert_set.h"
-#include "later_campaigns.h"
 #include "platform/storage/files.h"
 #include "questions.h"
-#include "state_record.h"
 #include "table_common.h"
 #include "verbs.h"
 

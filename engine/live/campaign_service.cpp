@@ -7,10 +7,13 @@
 #include "campaign/config/template_files.h"
 #include "certificates/users.h"
 #include "live/desk.h"
+#include "live/server.h"
 #include "nonio/workbench/page.h"
 #include "platform/storage/files.h"
+#include "platform/storage/late_library.h"
 
 namespace nonio::live {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -124,6 +127,11 @@ Expected<std::unique_ptr<Starting>> service_of(const LiveWish& wish) {
                                             wish.own_plugins, wish.version}));
   if (!is_campaign) return site_service(settled, std::move(launcher), std::move(shells));
   return std::make_unique<CampaignService>(wish, std::move(launcher), std::move(shells));
+}
+
+Expected<void> serve(const LiveWish& wish) {
+  const auto server = storage::exported_as<Serve>("libnonio_live_server.so", "nonio_serve");
+  return server ? (**server)(wish) : fail(server.error());
 }
 
 }  // namespace nonio::live

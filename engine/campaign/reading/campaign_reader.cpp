@@ -7,8 +7,8 @@
 #include <set>
 #include <string>
 
-#include "campaign/config/certificate_reader.h"
 #include "campaign/config/formula.h"
+#include "campaign/config/manifest.h"
 #include "campaign/config/site_files.h"
 #include "campaign/reading/checked_read.h"
 #include "campaign/reading/formula_copy.h"
