@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <numeric>
 
 #include "font_reader.h"
 #include "font_subset.h"
@@ -126,16 +127,18 @@ pdf::EmbeddedFont embedded(const Font& font, const std::string& file, const Numb
           widths_array(font.advance, numbers), pdf::deflated(to_unicode(font, numbers), level)};
 }
 
+constexpr int highest_level = 12;  // such fonts are compressed once per process
+
 void compress(Font& font) {
-  constexpr int level = 12;  // highest level, because it runs once per process
-  Numbers all, common;
-  for (std::size_t g = 0; g < font.common.size(); ++g) {
-    all.push_back(static_cast<int>(g));
-    common.push_back(font.common[g] != 0 ? static_cast<int>(g) : no_glyph);
-  }
-  font.with_all = embedded(font, font.bytes, all, level);
   const std::string subset = font_subset(font.bytes, font.common);
-  font.with_common = subset.empty() ? font.with_all : embedded(font, subset, common, level);
+  if (subset.empty()) {
+    font.with_common = with_all(font);
+    return;
+  }
+  Numbers common;
+  for (std::size_t g = 0; g < font.common.size(); ++g)
+    common.push_back(font.common[g] != 0 ? static_cast<int>(g) : no_glyph);
+  font.with_common = embedded(font, subset, common, highest_level);
 }
 
 /// Compares size and table directory, which has checksums, because comparing all bytes is slow.
@@ -146,6 +149,15 @@ bool same_font(const Font& font, FontFile file) {
 }
 
 }  // namespace
+
+const pdf::EmbeddedFont& with_all(const Font& font) {
+  std::call_once(font.whole->made, [&] {
+    Numbers all(font.common.size());
+    std::iota(all.begin(), all.end(), 0);
+    font.whole->embedded = embedded(font, font.bytes, all, highest_level);
+  });
+  return font.whole->embedded;
+}
 
 pdf::EmbeddedFont embedded_part(const Font& font, const std::vector<std::uint16_t>& glyphs) {
   constexpr int level = 1;

@@ -164,13 +164,8 @@ Expected<void> add_mark(std::vector<PdfCanvas>& pages, const Document& document,
   return {};
 }
 
-pdf::Font as_embedded(const Font& font, bool common_only, int stem) {
-  return {common_only ? &font.with_common : &font.with_all,
-          font.box,
-          font.ascent,
-          font.descent,
-          font.cap_height,
-          stem};
+pdf::Font as_embedded(const Font& font, const pdf::EmbeddedFont* embedded, int stem) {
+  return {embedded, font.box, font.ascent, font.descent, font.cap_height, stem};
 }
 
 pdf::NewFile new_file(const Document& document, const Fonts& fonts, Used& used) {
@@ -183,9 +178,12 @@ pdf::NewFile new_file(const Document& document, const Fonts& fonts, Used& used) 
   file.width = document.style.page_width;
   file.height = document.style.page_height;
   file.see_through = document.style.see_through;
-  file.fonts[0] = as_embedded(fonts.regular, used.common_only, 80);
-  file.fonts[1] = as_embedded(fonts.bold, used.common_only, 140);
-  file.fonts[2] = as_embedded(fonts.wide, used.common_only, 80);
+  const auto part = [&](const Font& font) {
+    return used.common_only ? &font.with_common : &with_all(font);
+  };
+  file.fonts[0] = as_embedded(fonts.regular, part(fonts.regular), 80);
+  file.fonts[1] = as_embedded(fonts.bold, part(fonts.bold), 140);
+  file.fonts[2] = as_embedded(fonts.wide, nullptr, 80);
   file.pictures = std::move(used.pictures);
   file.profile = document.profile;
   return file;

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "campaign/config/checks.h"
+#include "campaign/config/plain_texts.h"
 #include "campaign/config/toml_reader.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/nearest.h"
@@ -204,6 +205,7 @@ Expected<void> flatten(const toml::table& table, const std::string& prefix, cons
 }  // namespace
 
 Expected<Settings> parse_settings(std::string_view text, const std::string& file) {
+  if (auto plain = plain_texts(text)) return std::move(*plain);
   NONIO_TRY(auto root, parse_toml(text, file));
   Settings settings;
   if (auto flat = flatten(root, "", file, settings); !flat) return fail(flat.error());

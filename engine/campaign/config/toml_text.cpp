@@ -2,17 +2,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "campaign/config/plain_texts.h"
 #include "campaign/config/toml_reader.h"
 #include "nonio/sdk/fields.h"
 
 namespace nonio::config {
 
 namespace {
-
-bool is_bare_key_character(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
-         c == '_';
-}
 
 /// Finds text for which toml++ 3.3 has undefined behavior instead of an error: a byte outside ASCII
 /// that is neither in a string nor in a comment, or where a string continues after a backslash; a

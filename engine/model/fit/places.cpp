@@ -456,7 +456,8 @@ std::vector<Place> seats_of(const Residuals& left) {
   }
   VectorXd rest = left.residual;
   std::vector<Place> seats;
-  while (seats.size() < 3) {
+  constexpr std::size_t most = 3;
+  for (;;) {
     std::size_t best = bases.size();
     double gain = 0.0, fall = 0.0;
     for (std::size_t f = 0; f < bases.size(); ++f) {
@@ -481,6 +482,7 @@ std::vector<Place> seats_of(const Residuals& left) {
     find_level(factors.all()[best], levels_of(factors.all()[best], left.white), rest,
                (rest.squaredNorm() - fall) / dof, left.floor ? left.floor->dof : left.dof, seat);
     seats.push_back(std::move(seat));
+    if (seats.size() == most) break;
     const MatrixXd chosen = bases[best];
     math::take_out(chosen, rest);
     for (MatrixXd& basis : bases) {

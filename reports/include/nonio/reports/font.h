@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,8 +26,13 @@ struct Font {
   int units = 1000;  ///< outline units per em
 
   std::vector<char> common;  ///< by glyph: whether its character is common in documents
-  pdf::EmbeddedFont with_common,
-      with_all;  ///< empty if documents embed only used glyphs
+  pdf::EmbeddedFont with_common;       ///< empty if documents embed only used glyphs
+  /// Made when the first document needs it.
+  struct Whole {
+    std::once_flag made{};
+    pdf::EmbeddedFont embedded{};
+  };
+  std::shared_ptr<Whole> whole = std::make_shared<Whole>();
 
   std::uint16_t glyph(char32_t c) const { return c < glyphs.size() ? glyphs[c] : 0; }
 };
@@ -43,8 +49,11 @@ struct FontFile {
   std::string_view bytes, name;
 };
 
-/// Does not set `with_common` and `with_all`.
+/// Does not set `with_common`.
 Expected<Font> parse_font(FontFile);
+
+/// Returns the font with all its glyphs, which rare characters need.
+const pdf::EmbeddedFont& with_all(const Font& font);
 
 /// Cached in the process. The result depends only on the bytes.
 Expected<std::shared_ptr<const Fonts>> shared_fonts(FontFile regular, FontFile bold,

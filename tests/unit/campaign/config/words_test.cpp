@@ -5,11 +5,13 @@
 
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <regex>
 #include <set>
 #include <sstream>
 
 #include "campaign/config/manifest.h"
+#include "campaign/config/plain_texts.h"
 
 namespace nonio::words_test {
 namespace {
@@ -239,6 +241,56 @@ TEST(WordFiles, EveryRemarkHasThem) {
   for (std::sregex_iterator it(sources.begin(), sources.end(), said), end; it != end; ++it, ++count)
     EXPECT_TRUE(known.count((*it)[1])) << (*it)[1];
   EXPECT_GE(count, 15U);
+}
+
+/// A number among the texts sends them to the parser of all TOML.
+Expected<Settings> parsed(const std::string& text) {
+  auto settings = config::parse_settings("a-number = 1\n" + text, "words.toml");
+  if (settings) settings->values.erase("a-number");
+  return settings;
+}
+
+TEST(WordFiles, AreReadDirectlyAsTheParserReadsThem) {
+  std::vector<std::string> texts;
+  for (const auto& entry : fs::recursive_directory_iterator(NONIO_WORDS)) {
+    if (!entry.is_regular_file()) continue;
+    std::ostringstream text;
+    text << std::ifstream(entry.path()).rdbuf();
+    texts.push_back(text.str());
+    const auto plain = config::plain_texts(text.str());
+    ASSERT_TRUE(plain) << entry.path();
+    const auto other = parsed(text.str());
+    ASSERT_TRUE(other) << entry.path();
+    EXPECT_EQ(plain->values, other->values) << entry.path();
+  }
+  ASSERT_GT(texts.size(), 50U);
+}
+
+TEST(WordFiles, WhatIsReadDirectlyIsNeverWhatTheParserRefuses) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  const std::vector<std::string> headers = {"[a]", "[a.b]", "[b]", "[a.\"b.c\"]", "[[a]]"},
+                                 keys = {"a", "b", "c", "\"a.b\"", "\"\"", "a.c", "a.b", "b.c.a"},
+                                 values = {"\"x\"", "\"\\\"\"", "\"\\\\\"", "\"\\n\"", "'x'", "1"},
+                                 pieces = {"\"", "=",      "\n", " ", "# t\n", "\xC3\xA4", "\xFF",
+                                           "\t", "\"\"\"", ".",  "[", "]",     "\r\n",     "a"};
+  const auto one_of = [&](const auto& list) { return list[random() % list.size()]; };
+  std::size_t read = 0;
+  for (int round = 0; round < 20000; ++round) {
+    std::string text;
+    for (auto lines = random() % 7; lines > 0; --lines)
+      text += (random() % 3 == 0 ? one_of(headers) : one_of(keys) + " = " + one_of(values)) + "\n";
+    for (auto edits = random() % 3; edits > 1; --edits)
+      text.insert(random() % (text.size() + 1), one_of(pieces));
+    const auto plain = config::plain_texts(text);
+    if (!plain) continue;
+    ++read;
+    const auto other = parsed(text);
+    ASSERT_TRUE(other) << text << other.error().message;
+    ASSERT_EQ(plain->values, other->values) << text;
+  }
+  EXPECT_GT(read, 1000U);
 }
 
 }  // namespace
