@@ -12,12 +12,12 @@
 #include "nonio/sdk/results.h"
 #include "nonio/sdk/units.h"
 
-namespace nonio::evaluation {
-
 namespace nonio::math {
 class AxisTest;
 struct OtherTargets;
 }  // namespace nonio::math
+
+namespace nonio::evaluation {
 
 /// Data for comparison with campaigns that have other targets (nonio/math/followed.h).
 struct ComparedTargets {
