@@ -21,7 +21,7 @@
 #include "batch/state/run_plan.h"
 #include "batch/state/run_result.h"
 #include "batch/state/run_state.h"
-#include "batch/survey/known_numbers.h"
+#include "batch/survey/earlier_results.h"
 #include "batch/survey/survey.h"
 #include "batch/workers/runner.h"
 #include "batch/workers/set_up.h"
