@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <map>
 #include <sstream>
-#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>

@@ -2,7 +2,6 @@
 #include "certificates/register.h"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 #include "campaign/config/number_pattern.h"

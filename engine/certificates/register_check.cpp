@@ -7,9 +7,7 @@
 #include "campaign/evaluation/results_json.h"
 #include "certificates/certificate_list.h"
 #include "certificates/content_check.h"
-#include "certificates/register.h"
 #include "certificates/register_place.h"
-#include "nonio/sign/verify.h"
 #include "platform/storage/digest.h"
 
 namespace nonio::certificates {

@@ -16,8 +16,6 @@
 #include <utility>
 
 #include "campaign/config/site_files.h"
-#include "platform/process/channel.h"
-#include "platform/process/child.h"
 #include "platform/process/guarded.h"
 #include "platform/process/stop.h"
 #include "platform/process/watched.h"

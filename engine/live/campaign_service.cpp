@@ -7,7 +7,6 @@
 #include "campaign/config/template_files.h"
 #include "certificates/users.h"
 #include "live/desk.h"
-#include "live/server.h"
 #include "nonio/workbench/page.h"
 #include "platform/storage/files.h"
 #include "platform/storage/late_library.h"

@@ -30,15 +30,12 @@
 #include <iostream>
 #include <map>
 #include <mutex>
-#include <string>
 #include <string_view>
 #include <thread>
-#include <vector>
 
 #include "live/campaign_service.h"
 #include "live/guard.h"
 #include "live/random_token.h"
-#include "nonio/sdk/error.h"
 #include "platform/process/channel.h"
 #include "platform/storage/late_library.h"
 

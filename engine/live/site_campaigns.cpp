@@ -7,15 +7,12 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "campaign/config/keys.h"
 #include "campaign/config/manifest.h"
 #include "certificates/users.h"
 #include "laboratory/assessment/describe.h"
 #include "live/audit_log.h"
-#include "live/service.h"
 #include "live/session.h"
 #include "nonio/sdk/text.h"
 #include "platform/storage/files.h"

@@ -9,13 +9,9 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "campaign/config/formula_units.h"
 #include "nonio/sdk/axis_readings.h"
-#include "nonio/sdk/campaign.h"
-#include "nonio/sdk/error.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/splitmix64.h"
 #include "platform/storage/nearest.h"

@@ -3,10 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <string>
 
-#include "nonio/math/axis_test.h"
 #include "nonio/math/followed.h"
 #include "nonio/sdk/format.h"
 

@@ -9,7 +9,6 @@
 #include "campaign/evaluation/control_tables.h"
 #include "campaign/evaluation/followed.h"
 #include "nonio/sdk/format.h"
-#include "nonio/sdk/json_writer.h"
 #include "platform/storage/digest.h"
 
 namespace nonio::evaluation {

@@ -2,10 +2,8 @@
 #include "campaign/reading/campaign_reader.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <set>
-#include <string>
 
 #include "campaign/config/formula.h"
 #include "campaign/config/manifest.h"

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <map>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "campaign/config/keys.h"

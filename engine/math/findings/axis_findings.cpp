@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <vector>
 
 #include "common/constants.h"
 #include "common/finding_builder.h"
-#include "nonio/math/axis_test.h"
 #include "nonio/math/budget.h"
 #include "nonio/math/distributions.h"
 #include "nonio/math/drift.h"

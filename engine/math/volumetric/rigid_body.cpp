@@ -6,12 +6,9 @@
 #include <functional>
 #include <limits>
 #include <set>
-#include <vector>
 
 #include "combinations.h"
 #include "dense.h"
-#include "nonio/math/budget.h"
-#include "nonio/math/volume_map.h"
 #include "rigid_terms.h"
 
 namespace nonio::math {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "course_data.h"
 
-#include <algorithm>
 #include <set>
 
 namespace nonio::model {

@@ -5,9 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "course/course.h"
 #include "data/thin.h"

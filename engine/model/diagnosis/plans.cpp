@@ -6,10 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <optional>
 #include <type_traits>
 
-#include "data/design.h"
 #include "fit/workbench.h"
 #include "nonio/sdk/axis_readings.h"
 

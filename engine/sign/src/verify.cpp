@@ -2,7 +2,6 @@
 #include "nonio/sign/verify.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "key.h"
 #include "nonio/pdf/signature_field.h"

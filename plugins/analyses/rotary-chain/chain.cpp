@@ -2,12 +2,10 @@
 #include "chain.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
-#include <optional>
 #include <set>
 #include <tuple>
 

@@ -7,10 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <optional>
-#include <string>
 #include <tuple>
-#include <vector>
 
 #include "nonio/math/budget.h"
 #include "nonio/math/distributions.h"

@@ -4,18 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
-#include <optional>
 #include <set>
-#include <string>
-#include <vector>
 
 #include "nonio/math/differences.h"
 #include "nonio/math/thermal.h"
-#include "nonio/sdk/campaign.h"
-#include "nonio/sdk/observations.h"
-#include "nonio/sdk/results.h"
 
 namespace nonio::thermal {
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <iterator>
 #include <set>
-#include <vector>
 
 #include "nonio/controllers/text.h"
 #include "nonio/math/axis_findings.h"

@@ -6,7 +6,6 @@
 #include "header.h"
 #include "nonio/sdk/method.h"
 #include "spatial.h"
-#include "table.h"
 
 namespace nonio::csv {
 
