@@ -236,7 +236,7 @@ std::string safe(const std::string& name) {
   return out;
 }
 
-std::string number(double value) {
+std::string toml_real(double value) {
   std::string text;
   append_shortest(text, rounded_to_places(value, 9));
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
@@ -248,18 +248,18 @@ std::string state_text(const NewState& state, const std::string& axis, bool rota
   out += "table = \"" + (list.empty() ? "none" : list) + "\"\n";
   if (state.backlash)
     out += std::string(rotary ? "backlash_deg = " : "backlash_mm = ") +
-           number(*state.backlash * (rotary ? deg_per_rad : 1e3)) + "\n";
+           toml_real(*state.backlash * (rotary ? deg_per_rad : 1e3)) + "\n";
   out += "source = \"" + state.source + "\"\n";
   if (!list.empty()) out += "sha256 = \"" + config::table_sha256(state.files) + "\"\n";
   for (const LoadedTable& t : state.tables) {
     if (t.position.size() != 1 || t.position.front().size() < 2) continue;
     const auto& at = t.position.front();
     const double per = rotary ? deg_per_rad : 1e3;
-    out += "grid = [" + number(at.front() * per) + ", " + number(at.back() * per) + "]\n";
+    out += "grid = [" + toml_real(at.front() * per) + ", " + toml_real(at.back() * per) + "]\n";
     out += "points = " + std::to_string(at.size()) + "\n";
     break;
   }
-  if (state.reference && !list.empty()) out += "reference = " + number(*state.reference) + "\n";
+  if (state.reference && !list.empty()) out += "reference = " + toml_real(*state.reference) + "\n";
   return out;
 }
 
