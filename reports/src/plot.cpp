@@ -269,9 +269,10 @@ class PlotSetter {
       for (const double v : curve.y) up.add(v);
       for (const double v : curve.y2) up.add(v);
     }
-    NONIO_TRY(const auto drawn, across.empty() || up.empty() ? draw_nothing(top, height)
-                                : plot_.scales               ? draw(top, height, across, up)
-                                               : draw_picture(top, height, across, up));
+    const auto drawn = across.empty() || up.empty() ? draw_nothing(top, height)
+                       : plot_.scales               ? draw(top, height, across, up)
+                                                    : draw_picture(top, height, across, up);
+    if (!drawn) return fail(drawn.error());
     return height;
   }
 

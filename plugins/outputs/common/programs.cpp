@@ -78,12 +78,13 @@ class Requests {
     for (auto it = asked.begin(); it != asked.end(); ++it) {
       const std::string& what = *it;
       if (std::find(asked.begin(), it, what) != it) continue;
-      NONIO_TRY(const auto done, what == "axes"             ? axes()
-                                 : what == "diagonals"      ? diagonals(false)
-                                 : what == "half-diagonal"  ? diagonals(true)
-                                 : what == "step-diagonals" ? step_diagonals()
-                                 : what == "sign-probe"     ? sign_probe()
-                                                            : unknown(what));
+      const auto done = what == "axes"             ? axes()
+                        : what == "diagonals"      ? diagonals(false)
+                        : what == "half-diagonal"  ? diagonals(true)
+                        : what == "step-diagonals" ? step_diagonals()
+                        : what == "sign-probe"     ? sign_probe()
+                                                   : unknown(what);
+      if (!done) return fail(done.error());
     }
     return std::move(programs_);
   }

@@ -108,7 +108,8 @@ Expected<Book> read_ods(std::string_view archive, std::size_t most_rows) {
   if (!xml) return fail("the file is no ODS spreadsheet: it has no content.xml");
   Book book;
   OdsReader reader(book, most_rows);
-  NONIO_TRY(const auto read, read_xml(*xml, [&](const Node& node) { return reader.take(node); }));
+  const auto read = read_xml(*xml, [&](const Node& node) { return reader.take(node); });
+  if (!read) return fail(read.error());
   if (book.sheets.empty()) return fail("the spreadsheet has no sheet");
   return book;
 }

@@ -228,9 +228,10 @@ Expected<Book> read_xlsx(std::string_view archive, std::size_t most_rows) {
     sheet.name = one.name;
     sheet.most_rows = most_rows;
     SheetReader reader(sheet, common);
-    NONIO_TRY(const auto read, read_xml(
-                                   *xml, [&](const Node& node) { return reader.take(node); },
-                                   [&] { return reader.row() > most_rows; }));
+    const auto read = read_xml(
+        *xml, [&](const Node& node) { return reader.take(node); },
+        [&] { return reader.row() > most_rows; });
+    if (!read) return fail(read.error());
     book.sheets.push_back(std::move(sheet));
   }
   if (book.sheets.empty()) return fail("the workbook has no sheet with cells");
