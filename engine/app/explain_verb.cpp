@@ -76,8 +76,7 @@ class ExplainTogether {
     const auto fleet =
         config::read_fleet(config::site_of(options_.folders.front()), place_->context.site);
     if (!fleet) return complain(text_of(fleet.error().front()));
-    std::vector<std::string> left_out;
-    const auto found = modelling::explain_together(all, *fleet, seed_, left_out);
+    const auto found = modelling::explain_together(all, *fleet, seed_);
     if (!found) {
       complain(text_of(found.error()));
       return exit_failed;
@@ -85,16 +84,16 @@ class ExplainTogether {
     const reading::Context& context = place_->context;
     const modelling::ModelWords words(context.templates,
                                       common_.json ? "en" : context.site.language);
-    const auto document = modelling::together_json(*found, words, seed_, left_out, errors_);
+    const auto document = modelling::together_json(*found, words, seed_, errors_);
     if (!options_.page.empty())
-      if (const auto put = write_page(*found, words); !put) return complain(text_of(put.error()));
+      if (const auto put = write_page(found->together, words); !put)
+        return complain(text_of(put.error()));
     if (common_.json)
       std::cout << storage::dump(document);
     else
-      for (const auto& part : modelling::parts_of(document))
-        print_together(std::cout, part, words.terminal());
-    if (!common_.json && !left_out.empty() && !common_.quiet)
-      complain("not explained together: " + storage::listed(left_out));
+      print_together(std::cout, document, words.terminal());
+    if (!common_.json && !found->left_out.empty() && !common_.quiet)
+      complain("not explained together: " + storage::listed(found->left_out));
     return errors_.empty() ? exit_done : exit_failed;
   }
 

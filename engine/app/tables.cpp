@@ -406,7 +406,9 @@ void print_change(std::ostream& out, const Json& change, const TerminalWords& sa
   sentences(out, change.at("after").at("warnings"), say("warning") + ": ");
 }
 
-void print_together(std::ostream& out, const Json& part, const TerminalWords& say) {
+namespace {
+
+void print_joint_part(std::ostream& out, const Json& part, const TerminalWords& say) {
   const Json& campaigns = part.at("campaigns");
   std::set<std::string> names;  // as found and as left are two members of one campaign
   for (const Json& c : campaigns) names.insert(text_in(c, "campaign"));
@@ -442,6 +444,23 @@ void print_together(std::ostream& out, const Json& part, const TerminalWords& sa
           << padded(say.number(short_text(e.at("score"), 4)), 12)
           << padded(with_unit(e, "rms", say), 15)
           << say(e.at("per_campaign") == "shared" ? "joint.is-shared" : "joint.is-own") << "\n";
+}
+
+}  // namespace
+
+void print_together(std::ostream& out, const Json& document, const TerminalWords& say) {
+  constexpr std::size_t most = 8;
+  for (const Json& part : modelling::parts_of(document)) print_joint_part(out, part, say);
+  if (document.contains("alone"))
+    sentence(out, 0, say("joint.alone", {{"parts", list_in(document, "alone")}}));
+  const Json& next = document.at("next");
+  if (next.size() > 1) out << say("joint.next") << "\n";
+  for (std::size_t i = 0; i < std::min(next.size(), most) && next.size() > 1; ++i)
+    sentence(out, 2,
+             std::to_string(i + 1) + ". " + text_in(next[i], "campaign") + ", " +
+                 text_in(next[i], "part") + ": " + text_in(next[i], "says"));
+  if (next.size() > most)
+    out << "  " << say("joint.more-next", {{"count", std::to_string(next.size() - most)}}) << "\n";
 }
 
 void print_step(std::ostream& out, const Json& step, const TerminalWords& say) {

@@ -30,7 +30,7 @@ void print_model(std::ostream& out, const nlohmann::ordered_json& part,
                  const config::TerminalWords& say);
 void print_explanation(std::ostream& out, const nlohmann::ordered_json& part,
                        const std::string& folder, bool all, const config::TerminalWords& say);
-void print_together(std::ostream& out, const nlohmann::ordered_json& part,
+void print_together(std::ostream& out, const nlohmann::ordered_json& document,
                     const config::TerminalWords& say);
 /// Prints a change of the model (nonio-model/1): RMS values before and after as numbers and bars,
 /// and the parameters of the changed model.

@@ -2,6 +2,7 @@
 #include "campaign/modelling/joint_model.h"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <map>
 #include <set>
@@ -111,7 +112,7 @@ class Kinds {
 using Axes = std::map<Key, std::vector<Measured>>;
 
 void put_axis(Axes& out, const std::string& machine, const reading::ReadCampaign& read,
-              const PartModel& part, std::vector<std::string>& left_out) {
+              const PartModel& part, FleetExplanation& all) {
   const Campaign& campaign = read.manifest->campaign;
   std::set<Line, std::greater<>> lines;  // "before" comes before "after"
   for (const std::string& id : part.part.measurements) lines.insert(line_of(campaign, id));
@@ -119,9 +120,9 @@ void put_axis(Axes& out, const std::string& machine, const reading::ReadCampaign
   for (const Line& line : lines) {
     PartModel one = lines.size() > 1 ? only(part, line, read) : part;
     if (one.part.table.size() > most_readings)
-      left_out.push_back(name + " (more than " + std::to_string(most_readings) + " readings)");
+      all.left_out.push_back(name + " (more than " + std::to_string(most_readings) + " readings)");
     else if (!one.unfit.empty())
-      left_out.push_back(name + " (" + one.unfit + ")");
+      all.left_out.push_back(name + " (" + one.unfit + ")");
     else
       out[{machine, axis, line.first}].push_back({&read, line.second, std::move(one)});
   }
@@ -129,7 +130,7 @@ void put_axis(Axes& out, const std::string& machine, const reading::ReadCampaign
 
 /// `trouble` receives the error of a campaign whose model has a mistake.
 Axes common_parts(const std::vector<const reading::ReadCampaign*>& campaigns,
-                  Expected<void>& trouble, std::vector<std::string>& left_out) {
+                  Expected<void>& trouble, FleetExplanation& all) {
   Axes out;
   Kinds kinds;
   for (const reading::ReadCampaign* read : campaigns) {
@@ -141,20 +142,21 @@ Axes common_parts(const std::vector<const reading::ReadCampaign*>& campaigns,
       trouble = fail(std::move(error));
       return {};
     }
-    for (const PartModel& part : *parts) {
+    for (PartModel& part : *parts) {
       if (part.part.kind == model::Part::Kind::axis)
-        put_axis(out, kinds.of(campaign.machine), *read, part, left_out);
+        put_axis(out, kinds.of(campaign.machine), *read, part, all);
+      else if (part.part.kind == model::Part::Kind::course || !part.unfit.empty() ||
+               part.part.table.size() > most_readings)
+        all.left_out.push_back(campaign.id + " " + part.part.name);
       else
-        left_out.push_back(campaign.id + " " + part.part.name);
+        all.alone.push_back({campaign.id, std::move(part)});
     }
   }
   for (auto it = out.begin(); it != out.end();) {
-    const auto& list = it->second;
+    auto& list = it->second;
     if (list.front().read == list.back().read) {
-      const Campaign& campaign = list.front().read->manifest->campaign;
-      const std::string machine = name_of(campaign.machine);
-      left_out.push_back(campaign.id + " " + it->first.axis + " (the only campaign" +
-                         (machine.empty() ? "" : " of machine " + machine) + ")");
+      for (Measured& one : list)
+        all.alone.push_back({one.read->manifest->campaign.id, std::move(one.part)});
       it = out.erase(it);
     } else {
       ++it;
@@ -411,22 +413,21 @@ std::vector<std::string> each_once(const std::vector<std::string>& names) {
   return out;
 }
 
-Expected<std::vector<Together>> explain_together(
+Expected<FleetExplanation> explain_together(
     const std::vector<const reading::ReadCampaign*>& campaigns, const config::Fleet& fleet,
-    std::uint64_t seed, std::vector<std::string>& left_out) {
+    std::uint64_t seed) {
   std::vector<const reading::ReadCampaign*> ordered = campaigns;
   std::stable_sort(ordered.begin(), ordered.end(), [](const auto* a, const auto* b) {
     return a->manifest->campaign.date < b->manifest->campaign.date;
   });
   Expected<void> trouble;
-  auto parts = common_parts(ordered, trouble, left_out);
+  FleetExplanation out;
+  auto parts = common_parts(ordered, trouble, out);
   if (!trouble) return fail(trouble.error());
-  if (parts.empty())
-    return fail(
-        "expected an axis that two campaigns or more of one machine, or of one stated model of "
-        "machines, measured with runs; found none");
-  const bool one_kind = parts.begin()->first.machine == std::prev(parts.end())->first.machine;
-  std::vector<Together> out;
+  if (parts.empty() && out.alone.empty())
+    return fail("expected readings of axes, lines in space, circles or parts; found none");
+  const bool one_kind =
+      parts.empty() || parts.begin()->first.machine == std::prev(parts.end())->first.machine;
   for (auto& [key, list] : parts) {
     Together t;
     t.axis = key.axis, t.side = key.side;
@@ -454,19 +455,59 @@ Expected<std::vector<Together>> explain_together(
     if (!explained && add_named_causes(t, seed)) {
       NONIO_TRY(t.explanation, model::explain_together(members_of(t), seed));
     }
-    out.push_back(std::move(t));
+    out.together.push_back(std::move(t));
+  }
+  for (Alone& one : out.alone) {
+    NONIO_TRY(auto explained, explain_part(one.part, seed));
+    one.plans = std::move(explained.plans);
   }
   return out;
 }
 
-Json together_json(const std::vector<Together>& all, const ModelWords& words, std::uint64_t seed,
-                   const std::vector<std::string>& left_out, const std::vector<Error>& errors) {
+namespace {
+
+/// The best further measurement for each pair of effects that is confused, the best of all first.
+Json next_json(const FleetExplanation& all, const ModelWords& words) {
+  struct Next {
+    const model::Plan* plan;
+    std::string campaign, part;
+  };
+  std::vector<Next> list;
+  for (const Together& t : all.together)
+    for (const model::JointPlan& one : t.explanation.plans)
+      list.push_back({&one.plan, t.campaigns[one.campaign], t.part});
+  for (const Alone& one : all.alone)
+    for (const model::Plan& plan : one.plans)
+      list.push_back({&plan, one.campaign, one.part.part.name});
+  std::stable_sort(list.begin(), list.end(),
+                   [](const Next& a, const Next& b) { return is_better(*a.plan, *b.plan); });
+  Json json = Json::array();
+  std::set<std::array<std::string, 4>> pairs;
+  for (const Next& one : list) {
+    if (!pairs.insert({one.campaign, one.part, one.plan->one, one.plan->other}).second) continue;
+    json.push_back(plan_json(*one.plan, words));
+    json.back()["campaign"] = one.campaign;
+    json.back()["part"] = one.part;
+  }
+  return json;
+}
+
+}  // namespace
+
+Json together_json(const FleetExplanation& all, const ModelWords& words, std::uint64_t seed,
+                   const std::vector<Error>& errors) {
   Json json = {{"schema", "nonio-explain/1"}};
   Json parts = Json::array();
-  for (const Together& t : all) parts.push_back(part_of_json(t, words));
-  if (!all.empty()) json.update(parts[most_severe(all)]);
-  if (all.size() > 1) json["parts"] = std::move(parts);
-  if (!left_out.empty()) json["left_out"] = left_out;
+  for (const Together& t : all.together) parts.push_back(part_of_json(t, words));
+  if (!parts.empty()) json.update(parts[most_severe(all.together)]);
+  if (parts.size() != 1) json["parts"] = std::move(parts);
+  json["next"] = next_json(all, words);
+  if (!all.alone.empty()) {
+    Json alone = Json::array();
+    for (const Alone& one : all.alone) alone.push_back(one.campaign + " " + one.part.part.name);
+    json["alone"] = std::move(alone);
+  }
+  if (!all.left_out.empty()) json["left_out"] = all.left_out;
   json["seed"] = seed;
   Json list = Json::array();
   for (const Error& e : errors) list.push_back(storage::to_json(e));

@@ -26,20 +26,32 @@ struct Together {
   Quantity deviation() const { return parts.front().deviation(); }
 };
 
+/// A part of one campaign that is explained on its own: an axis that no other campaign measured, a
+/// circle, lines in space, parts that the machine made.
+struct Alone {
+  std::string campaign;
+  PartModel part;
+  std::vector<model::Plan> plans{};  ///< that separate what is named from its aliases
+};
+
+struct FleetExplanation {
+  std::vector<Together> together;
+  std::vector<Alone> alone;
+  std::vector<std::string> left_out;  ///< "<campaign> <part>", with the reason
+};
+
 /// Returns the names without repetitions, in their order.
 std::vector<std::string> each_once(const std::vector<std::string>& names);
 
-/// Explains each axis that at least two campaigns of one machine, or of machines of one stated
-/// model, measured. Other parts are added to `left_out` as "<campaign> <part>": other kinds, axes
-/// in one campaign only, parts with more than 20000 readings, and parts that cannot show their
-/// model.
-Expected<std::vector<Together>> explain_together(
+/// Explains together each axis that at least two campaigns of one machine, or of machines of one
+/// stated model, measured, and alone what else has readings to plan for. Left out are displacements
+/// over time, parts with more than 20000 readings, and parts that cannot show their model.
+Expected<FleetExplanation> explain_together(
     const std::vector<const reading::ReadCampaign*>& campaigns, const config::Fleet& fleet,
-    std::uint64_t seed, std::vector<std::string>& left_out);
+    std::uint64_t seed);
 
 /// Returns the JSON nonio-explain/1 of several campaigns (docs/json.md).
-storage::Json together_json(const std::vector<Together>& all, const ModelWords& words,
-                            std::uint64_t seed, const std::vector<std::string>& left_out,
-                            const std::vector<Error>& errors);
+storage::Json together_json(const FleetExplanation& all, const ModelWords& words,
+                            std::uint64_t seed, const std::vector<Error>& errors);
 
 }  // namespace nonio::modelling

@@ -132,7 +132,6 @@ std::vector<Finding> no_sign_findings(const model::Explanation& e, const PartMod
 namespace {
 
 // docs/dev/constants.md, M24.
-constexpr double separable = 4.0;  // power of a plan that separates effects, in standard deviations
 constexpr double most_longer = 10.0;       // largest factor by which a longer test is proposed
 constexpr std::size_t enough_targets = 9;  // with fewer targets, denser targets are proposed
 
@@ -187,7 +186,7 @@ class Next {
   void plan() {
     if (e_.plans.empty()) return;
     const auto good = std::find_if(e_.plans.begin(), e_.plans.end(),
-                                   [](const model::Plan& p) { return p.power >= separable; });
+                                   [](const model::Plan& p) { return p.separates(); });
     if (good != e_.plans.end()) return out_.push_back(plan_finding(*good));
     const auto [low, high] = std::minmax_element(part_.part.along.begin(), part_.part.along.end());
     add("wider",

@@ -10,21 +10,21 @@ namespace nonio::math {
 namespace {
 
 /// The model has two consecutive readings for each value.
-ReadingModel model_of(const Campaign& campaign, const std::vector<Difference>& all) {
+ReadingModel model_of(const Campaign& campaign, const std::vector<Difference>& all, bool is_tilt) {
   std::vector<BudgetLine> lines;
   double largest = 0.0;
   for (const Difference& d : all) {
     BudgetLine line;
-    line.kind = BudgetLine::Kind::lateral;
+    line.kind = is_tilt ? BudgetLine::Kind::angle : BudgetLine::Kind::lateral;
     line.length = {d.length, d.length};
     lines.push_back(std::move(line));
     if (d.scale != 0.0) largest = std::max({largest, std::fabs(d.from), std::fabs(d.to)});
   }
   Environment environment = campaign.environment;
-  environment.drift = 0.0;
+  environment.drift = environment.drift_angle = 0.0;
   ReadingModel model = reading_model(campaign, environment, std::move(lines));
   for (auto& input : model.inputs) {
-    const bool gain = input.is.id == "device-fixed";
+    const bool gain = input.is.id == "device-fixed" || input.is.id == "device-angle";
     if (!gain && input.is.id != "device-length") continue;
     std::vector<double> pattern;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -64,18 +64,21 @@ void put_ball(const Campaign& campaign, const std::vector<Difference>& all, Read
 void put_differences(const Campaign& campaign, const std::vector<Difference>& all,
                      Evaluation& out) {
   if (all.empty()) return;
-  ReadingModel model = model_of(campaign, all);
+  const bool is_tilt = std::any_of(all.begin(), all.end(), [](const Difference& d) {
+    return d.quantity == Quantity::angular_deviation;
+  });
+  const Quantity q = deviation_of(is_tilt);
+  ReadingModel model = model_of(campaign, all, is_tilt);
   put_ball(campaign, all, model);
   ReadingModel without = model;  // for values that contain a ball with unknown form error
   bool ball_missing = false;
   double most = 0.0;
   for (const Difference& d : all) {
-    if (d.quantity == Quantity::deviation) most = std::max(most, d.u);
+    if (d.quantity == q) most = std::max(most, d.u);
     ball_missing = ball_missing || (d.with_ball && !campaign.instrument.sphere);
   }
   if (ball_missing) without.missing.emplace_back("instrument.sphere_um");
-  BudgetOf budget(model, most, INFINITY, Quantity::deviation),
-      unknown(without, most, INFINITY, Quantity::deviation);
+  BudgetOf budget(model, most, INFINITY, q), unknown(without, most, INFINITY, q);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Difference& d = all[i];
     if (!(d.dof > 0.0)) {
@@ -94,13 +97,14 @@ void put_differences(const Campaign& campaign, const std::vector<Difference>& al
   if (model.missing.empty() && !budget.budget().results.empty()) out.budget = budget.budget();
 }
 
-std::optional<Finding> dead_sensor(const std::string& name, std::span<const double> readings) {
+std::optional<Finding> dead_sensor(const std::string& name, std::span<const double> readings,
+                                   Quantity of) {
   const auto differs = [&](double d) { return d != readings.front(); };
   if (readings.size() < 4 || std::any_of(readings.begin(), readings.end(), differs)) return {};
   return Finding{.id = "sensor.refused-equal",
                  .attention = true,
                  .evidence = {{"readings", static_cast<double>(readings.size()), Quantity::count},
-                              {"value", readings.front(), Quantity::deviation}},
+                              {"value", readings.front(), of}},
                  .texts = {{"sensor", name}}};
 }
 

@@ -87,7 +87,7 @@ double successive(const VectorXd& residual) {
 
 std::vector<Quantity> quantities_of(const Term& term) {
   std::vector<Quantity> out;
-  for (const Effect::Parameter& p : term.effect->linear) out.push_back(p.quantity);
+  for (const Effect::Parameter& p : term.effect->linear) out.push_back(quantity_of(p, term.axis));
   return out;
 }
 

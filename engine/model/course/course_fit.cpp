@@ -299,7 +299,8 @@ class CourseFit {
     for (std::size_t k = 0; k < terms_.size(); ++k) {
       const Term& term = terms_[k];
       for (const Effect::Parameter& p : term.effect->linear) {
-        out.parameters.push_back({term.name(), p.name, x(at), u(at), p.quantity, false});
+        out.parameters.push_back(
+            {term.name(), p.name, x(at), u(at), quantity_of(p, term.axis), false});
         places.push_back(at++);
       }
       for (std::size_t s = 0; s < term.shape.size(); ++s) {

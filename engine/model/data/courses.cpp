@@ -35,9 +35,10 @@ Part part_of(const Measurement& m, const Observations& o, std::uint32_t line,
   part.displacement = column_of(o.lines[line].name);
   part.name = m.id + "/" + part.displacement;
   part.measurements = {m.id};
-  part.axes = {Axis{.name = part.displacement}};
+  part.axes = {Axis{.name = part.displacement, .rotary = o.angular}};
   Observations& t = part.table;
   t.measurement = o.measurement;
+  t.angular = o.angular;
   t.lines = {o.lines[line]};
   t.channels = o.channels;
   for (const std::size_t i : rows) {
@@ -74,7 +75,7 @@ void append_courses(const Measurement& m, const Observations& o, std::vector<Par
   // docs/dev/constants.md, M40.
   constexpr double together = 0.9;
   constexpr std::size_t least = 60;
-  if (o.time.size() != o.size() || o.angular) return;
+  if (o.time.size() != o.size()) return;
   const std::size_t first = parts.size();
   for (std::uint32_t line = 0; line < o.lines.size(); ++line) {
     const auto rows = rows_of(o, line);

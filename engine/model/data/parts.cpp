@@ -288,6 +288,7 @@ std::optional<Term> term_of(const Part& part, const Effect& effect, const std::s
     if (std::find(places.begin(), places.end(), of) == places.end()) return std::nullopt;
     Axis place;
     place.name = std::move(of);
+    place.rotary = part.kind == Part::Kind::course && part.table.angular;
     return Term{&effect, std::move(place), {}};
   }
   const std::string& of = written;

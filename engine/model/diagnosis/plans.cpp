@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
 #include <type_traits>
 
 #include "fit/workbench.h"
@@ -151,15 +152,17 @@ std::vector<Further> further_runs(const Part& part, const Axis& axis) {
   return out;
 }
 
+bool is_better(const Plan& a, const Plan& b) {
+  if (a.separates() != b.separates()) return a.separates();
+  if (!a.separates()) return a.power > b.power;
+  if (a.duration.has_value() != b.duration.has_value()) return a.duration.has_value();
+  return std::tie(a.duration, a.readings) < std::tie(b.duration, b.readings);
+}
+
 namespace {
 
-/// Plans with enough power by increasing cost, then the others by decreasing power.
 std::vector<Plan> cheapest(std::vector<Plan> plans) {
-  std::stable_sort(plans.begin(), plans.end(), [](const Plan& a, const Plan& b) {
-    const bool a_enough = a.power >= enough_power, b_enough = b.power >= enough_power;
-    if (a_enough != b_enough) return a_enough;
-    return a_enough ? a.readings < b.readings : a.power > b.power;
-  });
+  std::stable_sort(plans.begin(), plans.end(), is_better);
   if (plans.size() > 3) plans.resize(3);
   return plans;
 }

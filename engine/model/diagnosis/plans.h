@@ -8,9 +8,6 @@
 
 namespace nonio::model {
 
-// Standard deviations between two separable explanations: docs/dev/constants.md, M13.
-constexpr double enough_power = 4.0;
-
 /// A table with one additional planned measurement, whose deviations are 0.
 struct Further {
   std::string id, of;  ///< kind and object of the measurement, as `Plan::id` and `Plan::of`

@@ -481,13 +481,6 @@ class JointSearch {
     const std::size_t step = (of_.size() + most_campaigns - 1) / most_campaigns;
     for (const JointEffect& effect : out.effects) {
       std::optional<JointPlan> best;
-      const auto is_better = [&](const Plan& plan) {
-        if (!best) return true;
-        const Plan& known = best->plan;
-        const bool enough = plan.power >= enough_power;
-        if (enough != (known.power >= enough_power)) return enough;
-        return enough ? plan.readings < known.readings : plan.power > known.power;
-      };
       for (std::size_t m = of_.size() - 1; m < of_.size() && !effect.aliases.empty(); m -= step) {
         const auto candidate = candidate_of(effect, m);
         if (!candidate) continue;
@@ -498,7 +491,7 @@ class JointSearch {
             model.push_back(*term);
         for (Plan& plan :
              plans_for(*of_[m].part, model, *candidate, of_[m].catalogue, r_.members[m].s))
-          if (is_better(plan)) best = {m, std::move(plan)};
+          if (!best || is_better(plan, best->plan)) best = {m, std::move(plan)};
       }
       if (best) out.plans.push_back(std::move(*best));
     }

@@ -31,6 +31,7 @@ struct Tracks {
   std::vector<Followed> all;
   std::vector<math::Visits> visits;  ///< readings of an axis test by position
   bool speed_steps = false;
+  Quantity deviation = Quantity::deviation;  ///< of the sensors; angular_deviation: tilts in rad
   std::vector<Finding> findings;
 };
 
@@ -129,6 +130,7 @@ bool is_loaded(const Observations& o) {
 /// visits of the targets.
 Tracks tracks_of(const Measurement& m, const Observations& o) {
   Tracks out;
+  out.deviation = deviation_of(o.angular);
   if (!m.axis.empty()) {
     out.test = Test::axis;
     out.visits = math::visits_of(o);
@@ -147,7 +149,7 @@ Tracks tracks_of(const Measurement& m, const Observations& o) {
     if (rows[line].size() < 2) continue;
     auto [kept, track] = math::in_time(o, std::move(rows[line]));
     if (track.size() < 2) continue;
-    if (auto dead = math::dead_sensor(o.lines[line].name, track.d)) {
+    if (auto dead = math::dead_sensor(o.lines[line].name, track.d, out.deviation)) {
       out.findings.push_back(*dead);
       continue;
     }
@@ -209,6 +211,11 @@ class Worker {
   }
 
  private:
+  bool is_angular() const { return tracks_.deviation == Quantity::angular_deviation; }
+  Quantity quantity_of(const Followed& f) const {
+    return f.tilt ? Quantity::small_angle : tracks_.deviation;
+  }
+
   /// The u of a range contains two readings and the bias of maximum and minimum by noise.
   Item range_item(const std::string& name, const Track& k, const RangeOf& r, const Followed& f) {
     const auto noise = math::reading_noise(k);
@@ -221,7 +228,7 @@ class Worker {
     const double scale = f.tilt ? 1.0 / f.lever : 1.0, metre = f.tilt ? f.lever : 1.0;
     return {.name = name + "_" + f.name,
             .value = r.range,
-            .quantity = f.tilt ? Quantity::small_angle : Quantity::deviation,
+            .quantity = quantity_of(f),
             .u = std::sqrt(2.0 * noise.s * noise.s + 2.0 * excess * excess),
             .dof = noise.dof,
             .from = k.d[r.low] * metre,
@@ -242,7 +249,7 @@ class Worker {
     }
     out_.items.push_back(range_item("window", k, *window, f));
     out_.items.push_back(range_item("first", k, *first, f));
-    if (tracks_.test == Test::etve && !f.tilt && window->range > out_.drift)
+    if (tracks_.test == Test::etve && !f.tilt && !is_angular() && window->range > out_.drift)
       out_.drift = window->range, out_.drift_sensor = f.name;
     double widest = 0.0;
     for (std::size_t i = 1; i < k.size(); ++i) widest = std::max(widest, k.time[i] - k.time[i - 1]);
@@ -257,7 +264,7 @@ class Worker {
     const double metre = f.tilt ? f.lever : 1.0;
     out_.items.push_back({.name = std::string(name) + "_" + f.name,
                           .value = k.d.back() - k.d.front(),
-                          .quantity = f.tilt ? Quantity::small_angle : Quantity::deviation,
+                          .quantity = quantity_of(f),
                           .u = std::numbers::sqrt2 * noise.s,
                           .dof = noise.dof,
                           .from = k.d.front() * metre,
@@ -273,7 +280,7 @@ class Worker {
     put_end(f, "cool", f.cool);
     if (f.tilt) return;
     if (tracks_.speed_steps) return once("thermal.speed-steps", {});
-    put_constants(f.name, f.run, 1.0, Quantity::deviation, 1.0);
+    put_constants(f.name, f.run, 1.0, tracks_.deviation, 1.0);
   }
 
   TimeConstants put_constants(const std::string& name, const Track& k, double lever,
@@ -300,14 +307,16 @@ class Worker {
                             .to = p.c * lever,
                             .scale = scale});
     }
-    const auto t = fit.settled(wish_.remaining / lever);
-    if (t.t >= slowest_) slowest_ = t.t, slowest_u_ = t.u, slowest_name_ = name;
+    if (!is_angular()) {
+      const auto t = fit.settled(wish_.remaining / lever);
+      if (t.t >= slowest_) slowest_ = t.t, slowest_u_ = t.u, slowest_name_ = name;
+    }
     put_curve(name, fit, k);
     return fit;
   }
 
   void put_curve(const std::string& name, const TimeConstants& fit, const Track& k) {
-    Series s{"fit_" + name, "t", Quantity::time, Quantity::deviation, {}, {}, {}};
+    Series s{"fit_" + name, "t", Quantity::time, tracks_.deviation, {}, {}, {}};
     if (tracks_.test == Test::axis) s.quantity = Quantity::deviation_per_length;
     constexpr int steps = 100;
     for (int i = 0; i <= steps; ++i) {

@@ -259,12 +259,18 @@ Effect effect(const char* name, const char* summary, std::vector<Effect::Paramet
   return e;
 }
 
+Effect::Parameter settled() {
+  return {"a", "displacement at the largest value, settled", Quantity::deviation,
+          Quantity::angular_deviation};
+}
+
 }  // namespace
 
 NONIO_PLUGIN(registry) {
-  const Quantity per_kelvin = Quantity::deviation_per_kelvin;
+  const Quantity per_kelvin = Quantity::deviation_per_kelvin,
+                 tilt_per_kelvin = Quantity::angle_per_kelvin;
   Effect follows = effect("heat", "A displacement follows a measured temperature with a lag",
-                          {{"g", "displacement per kelvin", per_kelvin}},
+                          {{"g", "displacement per kelvin", per_kelvin, tilt_per_kelvin}},
                           {lag("tau", "time constant of the lag")}, temperatures, heat);
   follows.applies = applies_to_all;
   registry.add(std::move(follows));
@@ -276,22 +282,21 @@ NONIO_PLUGIN(registry) {
   registry.add(std::move(grows));
   registry.add(effect("heat-slow",
                       "A second, slower displacement follows a measured temperature too",
-                      {{"g", "displacement per kelvin", per_kelvin}},
+                      {{"g", "displacement per kelvin", per_kelvin, tilt_per_kelvin}},
                       {slow("tau", "time constant of the slow part")}, temperatures, heat));
   registry.add(effect("heat-difference",
                       "A structure bends with the difference of two temperatures",
-                      {{"g", "displacement per kelvin of difference", per_kelvin}},
+                      {{"g", "displacement per kelvin of difference", per_kelvin, tilt_per_kelvin}},
                       {lag("tau", "time constant of the lag")}, differences, difference));
   registry.add(effect("heat-source", "A displacement follows a speed or a load with a lag",
-                      {{"a", "displacement at the largest value, settled", Quantity::deviation}},
-                      {decay("tau", "time constant"), power()}, sources, source));
+                      {settled()}, {decay("tau", "time constant"), power()}, sources, source));
   registry.add(effect("heat-source-slow",
-                      "A second, slower displacement follows a speed or a load too",
-                      {{"a", "displacement at the largest value, settled", Quantity::deviation}},
+                      "A second, slower displacement follows a speed or a load too", {settled()},
                       {slow("tau", "time constant of the slow part"), power()}, sources, source));
-  registry.add(effect("settling", "A displacement that dies away from the first reading on",
-                      {{"z", "displacement at the start", Quantity::deviation}},
-                      {decay("tau", "time constant")}, of_time, settling));
+  registry.add(
+      effect("settling", "A displacement that dies away from the first reading on",
+             {{"z", "displacement at the start", Quantity::deviation, Quantity::angular_deviation}},
+             {decay("tau", "time constant")}, of_time, settling));
 }
 
 }  // namespace nonio::heat

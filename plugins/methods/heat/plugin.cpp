@@ -27,6 +27,16 @@ Option period() {
           .expected = "expected two times, the first one earlier"};
 }
 
+Option unit() {
+  return {.name = "unit",
+          .default_value = std::string("um"),
+          .unit = "",
+          .help =
+              "Which displacements are evaluated: columns `NAME_um`, or tilts in columns "
+              "`NAME_arcsec`. A file with both has a measurement for each.",
+          .choices = {"um", "arcsec"}};
+}
+
 }  // namespace
 
 NONIO_PLUGIN(registry) {
@@ -39,6 +49,7 @@ NONIO_PLUGIN(registry) {
                                  .help = "The linear axis that is exercised; without it the "
                                          "columns are those of sensors."},
                                 period(),
+                                unit(),
                                 sensor_distance()}},
                       .motion = Measurement::Motion::time});
   registry.add(Method{.info = {"spindle",

@@ -237,6 +237,10 @@ Expected<std::vector<Law>> laws(const OutputInput& in, std::vector<Finding>& fin
     if (readings == nullptr || fit.effects.empty()) continue;
     if (runs == nullptr && readings->channels.empty()) continue;
     const std::string displacement = displacement_of(fit);
+    if (fit.angular) {
+      findings.push_back(about("heat-compensation.tilt", displacement));
+      continue;
+    }
     const auto entry = stated.find(displacement);
     const std::string axis = runs != nullptr         ? fit.part
                              : entry != stated.end() ? entry->second

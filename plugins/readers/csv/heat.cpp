@@ -28,7 +28,7 @@ constexpr Sensor nest[] = {{"x_um", "X", 0}, {"x1_um", "X1", 0}, {"x2_um", "X2",
                            {"y_um", "Y", 1}, {"y1_um", "Y1", 1}, {"y2_um", "Y2", 1},
                            {"z_um", "Z", 2}};
 
-constexpr std::string_view displacement_end = "_um";
+constexpr std::string_view displacement_end = "_um", tilt_end = "_arcsec";
 
 std::string without(std::string_view name, std::string_view end) {
   return std::string(name.substr(0, name.size() - end.size()));
@@ -78,7 +78,14 @@ struct Displacement {
   Sense sense{};
 };
 
-Expected<std::vector<Displacement>> displacements_of(const Table& table) {
+std::vector<Displacement> tilts_of(const Table& table) {
+  std::vector<Displacement> out;
+  for (const auto& [name, values] : table.numbers)
+    if (name.ends_with(tilt_end)) out.push_back({name, without(name, tilt_end), {}});
+  return out;
+}
+
+std::vector<Displacement> displacements_of(const Table& table) {
   std::vector<Displacement> out;
   for (const Sensor& s : nest_of(table)) {
     out.push_back({s.column, s.name, {}});
@@ -89,8 +96,6 @@ Expected<std::vector<Displacement>> displacements_of(const Table& table) {
         std::none_of(out.begin(), out.end(),
                      [&, &n = name](const auto& d) { return d.column == n; }))
       out.push_back({name, without(name, displacement_end), {}});
-  if (out.empty())
-    return fail("missing column: expected a displacement, a column whose name ends with _um");
   return out;
 }
 
@@ -162,8 +167,21 @@ bool in_period(const Measurement& m, double time) {
 }
 
 Expected<Observations> read_nest(const ReadInput& input, Table& table) {
-  NONIO_TRY(const auto sensors, displacements_of(table));
+  const auto displacements = displacements_of(table), tilts = tilts_of(table);
   Observations obs = begin(input.measurement, table);
+  const Measurement& m = input.measurement;
+  obs.angular = m.settings.text("unit") == "arcsec" || displacements.empty();
+  const auto& sensors = obs.angular ? tilts : displacements;
+  if (sensors.empty())
+    return fail("missing column: expected a displacement, a column whose name ends with " +
+                std::string(tilts.empty() ? "_um or _arcsec" : displacement_end));
+  const auto& all = input.campaign.measurements;
+  if (!obs.angular && !tilts.empty() &&
+      std::none_of(all.begin(), all.end(), [&](const Measurement& other) {
+        return other.file == m.file && other.settings.text("unit") == "arcsec";
+      }))
+    obs.notes.push_back({"csv.tilts-not-evaluated", {count("columns", tilts.size())}});
+  const double si = obs.angular ? 1.0 / arcsec_per_rad : 1e-6;
   if (auto ordered = put_in_time(table, obs); !ordered) return fail(std::move(ordered).error());
   NONIO_TRY(const auto turning, turning_of(table));
   const auto& time = *table.column("time_s");
@@ -179,7 +197,7 @@ Expected<Observations> read_nest(const ReadInput& input, Table& table) {
         ++obs.missing;
         continue;
       }
-      obs.deviation.push_back(deviation[row] * 1e-6);
+      obs.deviation.push_back(deviation[row] * si);
       obs.line.push_back(number);
       obs.run.push_back(1);
       obs.axes[0].position.push_back(turning.angle[row]);
@@ -330,6 +348,7 @@ Expected<Observations> read_thermal(const ReadInput& input) {
     columns.push_back({"speed_rpm"});
     columns = with_channels(with_sensors(std::move(columns)));
     columns.push_back({"*" + std::string(displacement_end)});
+    columns.push_back({"*" + std::string(tilt_end)});
   }
   auto table = read_table(input.bytes, columns);
   auto obs = !table      ? Expected<Observations>(fail(table.error()))

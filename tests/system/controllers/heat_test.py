@@ -400,6 +400,9 @@ class HeatCompensation(BenchTest):
                 self.assertEqual(sorted(p.name for p in (self.out / "c").glob("heat-*")), files)
         self.write("linuxcnc", ("heat:bearing/ch3",), names={"z_um": "ch3_um"})
         self.assertIn("heat-compensation.no-axis", self.findings())
+        self.write("linuxcnc", ("heat:bearing/z",), names={"z_um": "z_arcsec", "y_um": "y_arcsec"})
+        self.assertIn("heat-compensation.tilt", self.findings())
+        self.assertEqual(list((self.out / "c").glob("heat-*")), [])
 
     def test_an_axis_that_the_machine_has_not(self):
         self.write("linuxcnc", options='axes = ["z = W"]\n', expect=1)

@@ -48,7 +48,7 @@ def campaign():
             {"id": "K1", "kind": "circle", "file": "k.csv", "plane": "XY", "radius_mm": 150, "centre": {"X": 400, "Y": 300},
              "tolerance_um": {"G_ccw": 20.0}, "tolerance_urad": {"C0Y": 30.0}, "tolerance_um_per_m": {"scale_mismatch": 25.0},
              "tolerance_arcsec": {"roll": 5.0}},
-            {"id": "T1", "kind": "thermal", "file": "t.csv", "sensor_distance_mm": 120, "period": [0.0, 7200.0],
+            {"id": "T1", "kind": "thermal", "file": "t.csv", "sensor_distance_mm": 120, "unit": "um", "period": [0.0, 7200.0],
              "channel": [{"name": "t4", "place": "front bearing", "role": "structure"}]},
             {"id": "S1", "kind": "spindle", "file": "s1.csv"},
             {"id": "L1", "kind": "lengths", "file": "l.csv"},

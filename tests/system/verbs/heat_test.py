@@ -35,11 +35,12 @@ CAUSES = ("heat:bearing", "heat-slow:bearing", "heat-source:spindle", "heat-sour
 
 def follow(values, tau):
     """A body that is heated by its surroundings, in small steps: no formula of the program."""
-    y, out = values[0], []
+    y, last, out = values[0], values[0], []
     for v in values:
-        for _ in range(10):
-            y += STEP / 10 / tau * (v - y)
+        for k in range(10):
+            y += STEP / 10 / tau * (last + (v - last) * (k + 0.5) / 10 - y)
         out.append(y)
+        last = v
     return out
 
 
@@ -104,6 +105,40 @@ class Heat(VerbTest):
             self.assertEqual(part["terms"], len(after["model"]["effects"]))
             kept = self.json("compare", unseen, "--model-of", seen, "--zero", "kept")
             self.assertGreaterEqual(kept["parts"][0]["rms_um"], part["rms_um"] - 1e-9)
+
+    def test_a_tilt_is_modelled_as_a_displacement_is(self):
+        """The same numbers in arcsec instead of um; with both in one file each has a measurement."""
+        seed = random.randrange(10**6)
+        with self.subTest(seed=seed):
+            rows = record(seed, [3.0])
+            model = '[model]\neffects = ["heat:bearing", "heat-source:spindle"]\n'
+            moved = self.campaign("moved", rows, more=model)
+            tilted = self.write("tilted", MANIFEST.format(id="tilted", more=model),
+                                **{"warm.csv": table(rows, ("z",)).replace("z_um", "z_arcsec")})
+            (um,), (arcsec,) = (self.json("compare", c)["parts"] for c in (moved, tilted))
+            self.assertAlmostEqual(arcsec["rms_arcsec"], um["rms_um"], delta=0.01 * um["rms_um"])
+            self.assertNotIn("rms_um", arcsec)
+            for one, other in zip(um["model"]["parameters"], arcsec["model"]["parameters"]):
+                self.assertEqual(other["unit"], one["unit"].replace("um", "arcsec"))
+                self.assertLess(abs(other["value"] - one["value"]), 0.02 * abs(one["value"]) + one.get("u", 0))
+            self.assertEqual(self.json("explain", tilted)["verdict"]["kind"], self.json("explain", moved)["verdict"]["kind"])
+            predicted, = self.json("compare", tilted, "--model-of", tilted)["parts"]
+            self.assertLess(predicted["rms_arcsec"], 0.2 * predicted["sd_arcsec"])
+            both = [[*row[:2], row[1] / 3, *row[2:]] for row in rows]
+            second = '[[measurement]]\nid = "tilt"\nkind = "thermal"\nfile = "warm.csv"\nunit = "arcsec"\n'
+            file = {"warm.csv": table(both, ("z", "roll")).replace("roll_um", "roll_arcsec")}
+            alone = self.write("alone", MANIFEST.format(id="alone", more=model), **file)
+            mixed = self.write("mixed", MANIFEST.format(id="mixed", more=second + model), **file)
+            self.assertEqual([p["part"] for p in self.json("compare", alone)["parts"]], ["warm/z"])
+            self.assertIn('unit = "arcsec"', self.nonio("show", alone, "--all").stdout)
+            z, roll = self.json("compare", mixed)["parts"]
+            self.assertEqual(roll["part"], "tilt/roll")
+            self.assertAlmostEqual(roll["rms_arcsec"], z["rms_um"] / 3, delta=0.02 * z["rms_um"])
+            self.assertNotIn('unit = "arcsec"', self.nonio("show", mixed, "--all").stdout)
+            results = self.json("show", mixed)
+            values = {name: v for a in results["analyses"] for name, v in a["values"].items()}
+            self.assertEqual(values["range_roll"]["unit"], "arcsec")
+            self.assertAlmostEqual(values["range_roll"]["value"], values["range_Z"]["value"] / 3, delta=0.01)
 
     def test_noise_of_a_thermometer_is_no_lag(self):
         """A lag smooths the noise of its channel. Without a lag of the machine the readings fit best without one."""
@@ -398,7 +433,7 @@ class Heat(VerbTest):
         bare = self.write("bare", MANIFEST.format(id="bare", more=""),
                           **{"warm.csv": "time_s,bearing_c\n0,20\n30,21\n"})
         done = self.nonio("compare", bare, expect=1)
-        self.assertIn("a column whose name ends with _um", done.stderr)
+        self.assertIn("a column whose name ends with _um or _arcsec", done.stderr)
 
     def warnings(self, folder):
         return self.json("compare", folder)["parts"][0]["warnings"]

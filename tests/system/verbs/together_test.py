@@ -17,6 +17,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.append(str(ROOT / "bench"))
 import fleet
+import plates
 
 NONIO = os.environ["NONIO"]
 SEED = int(os.environ.get("NONIO_SEED") or random.SystemRandom().randrange(10 ** 6))
@@ -146,6 +147,34 @@ class Together(unittest.TestCase):
         printed = " ".join(explain(self.site).stdout.split())
         self.assertIn(f"({plan['campaign']}): {plan['says']}", printed)
 
+    def test_what_to_measure_next_over_axes_machines_and_parts(self):
+        """One list, in which measurements that separate something come first, by their duration."""
+        fleet.fleet(self.site, "shared", "zero-drift:X", 0.25, 4, 0.0, random.Random(1))
+        for sample in ("04-drift-parallel", "05-drift-wedge"):
+            shutil.copytree(ROOT / "samples" / "site" / sample, self.site / sample)
+        (self.site / "plate").mkdir()
+        plates.plate(self.site / "plate" / "P1.csv", plates.grid(100), plates.errors("squareness:XY", 4.0), 1.0, 0.0, self.rng)
+        plates.write(self.site / "plate", [("P1", 0)])
+        answer = self.answer()
+        alone = ["04-drift-parallel Y", "05-drift-wedge X", "plate XY"]
+        self.assertEqual(sorted(answer["alone"]), alone)
+        self.assertNotIn("left_out", answer)
+        following = answer["next"]
+        self.assertLessEqual({*alone, "c0001 X"}, {f"{n['campaign']} {n['part']}" for n in following})
+        self.assertIn("turned-part", [n["plan"] for n in following])
+        self.assertEqual(following, sorted(following, key=lambda n: (n["power"] < 4, n["duration_s"] if n["power"] >= 4 else -n["power"])))
+        printed = " ".join(explain(self.site, "--quiet").stdout.split())
+        self.assertIn("What to measure next, over all campaigns, cheapest first 1. " + following[0]["campaign"], printed)
+        for number, one in enumerate(following[:8], 1):
+            self.assertIn(f"{number}. {one['campaign']}, {one['part']}: {one['says']}", printed)
+
+    def test_campaigns_of_different_axes_have_their_measurements_too(self):
+        for sample in ("04-drift-parallel", "05-drift-wedge"):
+            shutil.copytree(ROOT / "samples" / "site" / sample, self.site / sample)
+        answer = self.answer()
+        self.assertEqual(answer["parts"], [])
+        self.assertEqual({n["campaign"] for n in answer["next"]}, {"04-drift-parallel", "05-drift-wedge"})
+
     def test_nothing_is_found_where_there_is_nothing(self):
         fleet.fleet(self.site, "none", "", 0.0, 10, 0.3, random.Random(5))
         answer = self.answer()
@@ -166,7 +195,7 @@ class Together(unittest.TestCase):
         self.assertEqual([c["campaign"] for c in of["campaigns"]], ["c0000", "c0001", "c0002"])
         of = self.answer(self.site, "--since", "2020-03-01", "--until", "2020-05-31")
         self.assertEqual([c["campaign"] for c in of["campaigns"]], ["c0003", "c0004"])
-        self.assertEqual(of["left_out"], ["c0002 X (the only campaign of machine M-2)"])
+        self.assertEqual(of["alone"], ["c0002 X"])
 
     def replace(self, campaigns, old, new):
         for manifest in campaigns:
@@ -189,8 +218,8 @@ class Together(unittest.TestCase):
             effect, = (e for e in each[part]["effects"] if e["effect"] == "backlash:X")
             self.assertEqual([c["campaign"] for c in each[part]["campaigns"]], [f"c{n:04d}" for n in range(first, first + 4)])
             self.assertEqual(effect["per_campaign"], "shared")
-        alone = explain(self.site / "c0000", self.site / "c0004", status=1)
-        self.assertIn("of one machine, or of one stated model of machines", alone.stderr)
+        alone = " ".join(explain(self.site / "c0000", self.site / "c0004").stdout.split())
+        self.assertIn("or of machines of the same stated maker and model, measured it: c0000 X, c0004 X.", alone)
         self.replace(manifests, 'asset = ', 'model = "VM 1"\nasset = ')
         together = self.answer()
         self.assertEqual((together["part"], together["machines"]), ("X", ["M-1", "M-2"]))

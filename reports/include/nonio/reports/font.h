@@ -25,8 +25,8 @@ struct Font {
   int ascent = 0, descent = 0, cap_height = 0;
   int units = 1000;  ///< outline units per em
 
-  std::vector<char> common;  ///< by glyph: whether its character is common in documents
-  pdf::EmbeddedFont with_common;       ///< empty if documents embed only used glyphs
+  std::vector<char> common;       ///< by glyph: whether its character is common in documents
+  pdf::EmbeddedFont with_common;  ///< empty if documents embed only used glyphs
   /// Made when the first document needs it.
   struct Whole {
     std::once_flag made{};

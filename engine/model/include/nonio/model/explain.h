@@ -55,6 +55,9 @@ std::vector<Candidate> not_applying(const Part& part, const std::vector<Effect>&
 
 std::vector<std::uint32_t> interpolated_temperatures(const Part& part);
 
+/// Standard deviations between two separable explanations: docs/dev/constants.md, M13.
+inline constexpr double enough_power = 4.0;
+
 /// A further measurement that would separate the effects of an alias group.
 struct Plan {
   /// kind of measurement: "another-run", "run-after-a-pause", "other-targets", ...
@@ -65,7 +68,13 @@ struct Plan {
   std::string of{};        ///< axes of the plan, or what is measured ("EYX"), in space
   /// Duration including the pause before the measurement, s; only for an axis with times.
   std::optional<double> duration{};
+
+  bool separates() const { return power >= enough_power; }
 };
+
+/// Whether `a` is to be advised before `b`: plans that separate by increasing duration, then those of
+/// unknown duration by their number of readings, then the others by decreasing power.
+bool is_better(const Plan& a, const Plan& b);
 
 /// Predicted improvement by one more run, if the noise stays as it is and the best explanation is
 /// true (docs/dev/model-search.md, "One more run").

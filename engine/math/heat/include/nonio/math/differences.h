@@ -26,10 +26,11 @@ struct Difference {
   Quantity quantity = Quantity::deviation;
   /// standard uncertainty by repetition; dof 0: not known, so U is not given
   double u = 0.0, dof = INFINITY;
-  double from = 0.0, to = 0.0;  ///< the two deviations from which the value is computed, m
-  double scale = 0.0;           ///< value/(to - from); 0: the gain does not affect it
-  double length = 0.0;          ///< length measured by a beam, m
-  bool with_ball = false;       ///< whether the value contains the form error of the ball
+  /// the two deviations from which the value is computed, m; of tilts (angular_deviation) rad
+  double from = 0.0, to = 0.0;
+  double scale = 0.0;      ///< value/(to - from); 0: the gain does not affect it
+  double length = 0.0;     ///< length measured by a beam, m
+  bool with_ball = false;  ///< whether the value contains the form error of the ball
 };
 
 /// Adds the values with U, the budget, and a finding about missing data. If instrument.sphere_um is
@@ -37,6 +38,7 @@ struct Difference {
 void put_differences(const Campaign&, const std::vector<Difference>&, Evaluation& out);
 
 /// Returns a finding if all of at least four readings of a sensor are equal.
-std::optional<Finding> dead_sensor(const std::string& name, std::span<const double> readings);
+std::optional<Finding> dead_sensor(const std::string& name, std::span<const double> readings,
+                                   Quantity of = Quantity::deviation);
 
 }  // namespace nonio::math
