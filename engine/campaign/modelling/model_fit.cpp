@@ -8,6 +8,7 @@
 #include <set>
 
 #include "campaign/modelling/model_verdict.h"
+#include "campaign/modelling/model_words.h"
 #include "campaign/modelling/thermal_tests.h"
 #include "campaign/reading/names.h"
 #include "nonio/sdk/channels.h"
