@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 
 #include "campaign/evaluation/record.h"
 #include "nonio/sdk/format.h"
@@ -76,10 +77,13 @@ std::string name_of(const storage::Json& analysis) {
   return measurement.empty() ? name : name + " of " + measurement;
 }
 
-const storage::Json* find(const storage::Json& results, const std::string& name) {
+/// Analyses may have the same name: a model for each displacement of a measurement.
+std::vector<const storage::Json*> all_of_name(const storage::Json& results,
+                                              const std::string& name) {
+  std::vector<const storage::Json*> out;
   for (const storage::Json& a : results["analyses"])
-    if (name_of(a) == name) return &a;
-  return nullptr;
+    if (name_of(a) == name) out.push_back(&a);
+  return out;
 }
 
 bool is_analysis(const storage::Json& a) {
@@ -100,12 +104,14 @@ Expected<std::string> same_values(std::string_view attached_text, std::string_vi
   const storage::Json again = storage::parse_or_discard(again_text);
   if (!is_results(attached) || !is_results(again)) return fail(no_results);
   Comparison comparison;
+  std::map<std::string, std::size_t> taken;
   for (const storage::Json& a : attached["analyses"]) {
-    const storage::Json* same_one = find(again, name_of(a));
-    if (same_one == nullptr)
+    const auto same = all_of_name(again, name_of(a));
+    const std::size_t place = taken[name_of(a)]++;
+    if (place >= same.size())
       return fail("the analysis " + name_of(a) +
                   " is not found again: is its plugin installed (`nonio plugin list`)?");
-    comparison.compare(values_of(a), values_of(*same_one), name_of(a));
+    comparison.compare(values_of(a), values_of(*same[place]), name_of(a));
   }
   if (attached["analyses"].size() != again["analyses"].size())
     return fail("the attached readings give " + std::to_string(again["analyses"].size()) +
@@ -193,25 +199,29 @@ bool same_when_rounded(const sign::DccValue& v, double value, double U) {
          std::strtod(rounded->U.c_str(), nullptr) == stated_U;
 }
 
-/// Returns an empty text if the value agrees with results.json.
-std::string contradiction(const sign::DccValue& v, const storage::Json& results) {
-  const storage::Json* analysis = find(results, v.analysis);
-  const std::string who = v.analysis + " " + v.name;
-  if (analysis == nullptr || !analysis->contains("values") ||
-      !(*analysis)["values"].contains(v.name))
-    return who + " is not in results.json";
-  const storage::Json& value = (*analysis)["values"][v.name];
-  if (!is_number(value, "value")) return who + " is no number in results.json";
-  if (!value.contains("unit") || value["unit"] != v.unit)
-    return who + " has another unit in results.json";
+/// Returns an empty text if the value agrees with `value` of results.json.
+std::string contradiction(const sign::DccValue& v, const storage::Json& value) {
+  if (!is_number(value, "value")) return "is no number in results.json";
+  if (!value.contains("unit") || value["unit"] != v.unit) return "has another unit in results.json";
   const bool has_U = is_number(value, "U");
   if (!same_when_rounded(v, value["value"].get<double>(),
                          has_U ? value["U"].get<double>() : std::nan("")))
-    return who + " is another number in results.json, or has another uncertainty there";
+    return "is another number in results.json, or has another uncertainty there";
   // Results of earlier versions do not state k, which was 2.
   if (has_U && !same(is_number(value, "k") ? value["k"].get<double>() : 2.0, v.k))
-    return who + " has another coverage factor in results.json";
+    return "has another coverage factor in results.json";
   return {};
+}
+
+/// Returns an empty text if one of the analyses of this name has the value.
+std::string contradiction_in(const storage::Json& results, const sign::DccValue& v) {
+  std::string why = "is not in results.json";
+  for (const storage::Json* a : all_of_name(results, v.analysis)) {
+    if (!a->contains("values") || !(*a)["values"].contains(v.name)) continue;
+    why = contradiction(v, (*a)["values"][v.name]);
+    if (why.empty()) return {};
+  }
+  return v.analysis + " " + v.name + " " + why;
 }
 
 }  // namespace
@@ -234,7 +244,7 @@ sign::Check check_dcc(const pdf::Attachment& dcc, const pdf::Attachment* results
   const storage::Json json = storage::parse_once(results->bytes);
   std::string wrong = is_results(json) ? "" : no_results;
   for (const sign::DccValue& v : *values)
-    if (wrong.empty()) wrong = contradiction(v, json);
+    if (wrong.empty()) wrong = contradiction_in(json, v);
   if (wrong.empty()) {
     check.says += ", the same as in results.json";
   } else {

@@ -73,8 +73,8 @@ void put_fit(const Path& path, const Case& c, Outcome& out) {
   for (const CircleReading& r : readings) (r.direction > 0 ? plus : minus) = true;
   all_causes(model, plus && minus);
   if (c.options.contains("eight"))
-    for (const Cause more :
-         {Cause::zero_change, Cause::lateral_u, Cause::lateral_v, Cause::bow_u, Cause::bow_v})
+    for (const Cause more : {Cause::zero_change, Cause::centre_change_u, Cause::centre_change_v,
+                             Cause::lateral_u, Cause::lateral_v, Cause::bow_u, Cause::bow_v})
       model.wanted[static_cast<std::size_t>(more)] = false;
   const auto fit = fit_causes(readings, model);
   if (!fit) return;

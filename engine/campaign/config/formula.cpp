@@ -502,27 +502,34 @@ Expected<Effect::Columns> columns(const std::shared_ptr<const Formula>& one, con
   if (shapes != shape.size())
     return fail("formula " + formula.name + ": expected " + std::to_string(shapes) +
                 " shape parameters, found " + std::to_string(shape.size()));
-  const double last_run =
-      o.run.empty() ? 1.0 : static_cast<double>(*std::max_element(o.run.begin(), o.run.end()));
+  // Numbers in a file are labels: runs 6 to 10 are the first to the fifth.
+  std::vector<std::uint32_t> runs(o.run.begin(), o.run.end());
+  std::sort(runs.begin(), runs.end());
+  runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
+  const auto place_of = [&](std::uint32_t run) {
+    return 1.0 +
+           static_cast<double>(std::lower_bound(runs.begin(), runs.end(), run) - runs.begin());
+  };
   const auto air = mean_of_all(o, o.air), pressure = mean_of_all(o, o.pressure),
              humidity = mean_of_all(o, o.humidity);
   Effect::Columns out(linear.size(), std::vector<double>(o.size(), 0.0));
   for (std::size_t i = 0; i < o.size(); ++i) {
     if (!r.moved[i]) continue;
-    const std::array<double, Expression::variables> row{r.p[i],
-                                                        r.theta[i],
-                                                        r.d[i],
-                                                        r.t[i],
-                                                        r.K[i],
-                                                        o.run.empty() ? 1.0 : o.run[i],
-                                                        r.length,
-                                                        r.duration,
-                                                        last_run,
-                                                        axis.screw_pitch.value_or(0.0),
-                                                        static_cast<double>(axis.teeth.value_or(0)),
-                                                        air ? o.air[i] - *air : 0.0,
-                                                        pressure ? o.pressure[i] - *pressure : 0.0,
-                                                        humidity ? o.humidity[i] - *humidity : 0.0};
+    const std::array<double, Expression::variables> row{
+        r.p[i],
+        r.theta[i],
+        r.d[i],
+        r.t[i],
+        r.K[i],
+        o.run.empty() ? 1.0 : place_of(o.run[i]),
+        r.length,
+        r.duration,
+        static_cast<double>(std::max<std::size_t>(1, runs.size())),
+        axis.screw_pitch.value_or(0.0),
+        static_cast<double>(axis.teeth.value_or(0)),
+        air ? o.air[i] - *air : 0.0,
+        pressure ? o.pressure[i] - *pressure : 0.0,
+        humidity ? o.humidity[i] - *humidity : 0.0};
     std::copy(row.begin(), row.end(), slots.begin());
     for (std::size_t k = 0; k < linear.size(); ++k) {
       const double unit = amount(formula.parameters[linear[k]]);

@@ -17,13 +17,13 @@ namespace nonio::evaluation {
 
 namespace {
 
-/// Raises each U to at least the CMC over `length` (m). Does nothing without accreditation. Source:
+/// Raises each U to at least the CMC over `length` (m) or `angle` (rad). Does nothing without accreditation. Source:
 /// the policy of ILAC-P14; its text was not available.
-void apply_cmc(const Laboratory& laboratory, double length, Evaluation& e) {
+void apply_cmc(const Laboratory& laboratory, double length, double angle, Evaluation& e) {
   if (laboratory.accreditation.empty() || !laboratory.cmc.stated()) return;
   std::string raised;
   const auto raise = [&](double& U, Quantity q) {
-    const double least = math::least_U(laboratory, q, length);
+    const double least = math::least_U(laboratory, q, length, angle);
     const bool below = U < least;
     if (below) U = least;
     return below;
@@ -54,16 +54,13 @@ void note_reasons_missing(const Measurement& m, Evaluation& evaluation) {
        .texts = {{"file", m.file}, {"id", m.id}}});
 }
 
-/// Length in the uncertainty budget, otherwise the largest range of positions of a linear axis, m;
-/// 0 without either.
-double measured_length(const reading::ReadCampaign& read, const Evaluation& e,
-                       const Measurement* measurement) {
-  if (e.budget) return e.budget->length;
+/// Largest range of positions of a linear or rotary axis, m or rad; 0 without one.
+double range_of(const reading::ReadCampaign& read, const Measurement* measurement, bool rotary) {
   double most = 0.0;
   for (std::size_t i = 0; measurement != nullptr && i < read.observations.size(); ++i)
     if (read.manifest->campaign.measurements[i].id == measurement->id)
       for (const auto& axis : read.observations[i].axes)
-        if (!axis.rotary && !axis.position.empty()) {
+        if (axis.rotary == rotary && !axis.position.empty()) {
           const auto [low, high] = std::minmax_element(axis.position.begin(), axis.position.end());
           most = std::max(most, *high - *low);
         }
@@ -107,8 +104,10 @@ std::optional<Results::Analysed> analysed_with(
   for (const Measurement& m : work.campaign().measurements)
     if (m.id == id || std::find(uses.begin(), uses.end(), m.id) != uses.end())
       note_reasons_missing(m, *evaluation);
-  apply_cmc(work.campaign().laboratory, measured_length(work.read, *evaluation, measurement),
-            *evaluation);
+  apply_cmc(
+      work.campaign().laboratory,
+      evaluation->budget ? evaluation->budget->length : range_of(work.read, measurement, false),
+      range_of(work.read, measurement, true), *evaluation);
   for (Finding& f : evaluation->findings) f.measurement = id;
   if (!analysis.states_followed) follow_all(analysis.info.name, measurement, *evaluation);
   return Results::Analysed{analysis.info.name, analysis.info.version, id, std::move(*evaluation)};

@@ -291,17 +291,54 @@ std::vector<Observations> without_tables(const Campaign& campaign,
   return raw;
 }
 
+namespace {
+
+bool is_curve(const Series& s) {
+  return s.name.size() >= 3 && s.name[0] == 'E' && s.quantity == Quantity::deviation;
+}
+
+/// Takes out how far the pitch tables of both sides of a gantry turn its beam at the first target,
+/// from which diagonals have their squareness.
+void take_out_racking(const Campaign& campaign, const Tables& tables, Evaluation& e) {
+  for (const math::Beam& beam : math::beams_of(campaign)) {
+    const auto first = std::find_if(e.series.begin(), e.series.end(), [&](const Series& s) {
+      return is_curve(s) && s.over == beam.axis && !s.position.empty();
+    });
+    if (beam.along.empty() || first == e.series.end()) continue;
+    const double at = first->position.front();
+    const math::Places places{{beam.axis, at}, {beam.slave, at}};
+    double moved = 0.0;
+    for (const int way : {1, -1}) {
+      const math::MotionSigns ways{{beam.axis, way}, {beam.slave, way}};
+      moved += (math::added(tables, beam.slave, places, ways) -
+                math::added(tables, beam.axis, places, ways)) /
+               2.0;
+    }
+    const double turn = moved / (beam.at_slave - beam.at_axis);
+    if (beam.along.front() == 'Y') {
+      for (Value& v : e.values)
+        if (v.name == "C0Y") v.value += turn;
+    } else {
+      for (Series& s : e.series)
+        for (std::size_t i = 0;
+             is_curve(s) && s.over == beam.along && s.name[1] == beam.axis[0] && i < s.value.size();
+             ++i)
+          s.value[i] -= turn * (s.position[i] - s.position.front());
+    }
+  }
+}
+
+}  // namespace
+
 Results without_tables(const Campaign& campaign, const Results& results, const Tables& tables) {
   Results out = results;
   for (Results::Analysed& a : out.analyses) {
-    if (std::any_of(
-            campaign.measurements.begin(), campaign.measurements.end(),
-            [&](const Measurement& m) { return m.id == a.measurement && m.compensation == "off"; }))
-      continue;
+    const auto m = std::find_if(campaign.measurements.begin(), campaign.measurements.end(),
+                                [&](const Measurement& one) { return one.id == a.measurement; });
+    const bool known = m != campaign.measurements.end();
+    if (known && m->compensation == "off") continue;
+    if (known && is_diagonal(*m)) take_out_racking(campaign, tables, a.evaluation);
     std::map<char, std::string> axis_of;
-    const auto is_curve = [](const Series& s) {
-      return s.name.size() >= 3 && s.name[0] == 'E' && s.quantity == Quantity::deviation;
-    };
     for (const Series& s : a.evaluation.series)
       if (is_curve(s)) axis_of.emplace(s.name[2], s.over);
     for (Series& s : a.evaluation.series) {

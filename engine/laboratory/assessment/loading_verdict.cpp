@@ -36,6 +36,7 @@ statistics::TableCurve curve_of(const evaluation::AxisCorrection& c, bool rotary
   for (double& x : out.position) x *= at;
   for (auto* values : {&out.plus, &out.minus})
     for (double& v : *values) v *= of;
+  if (rotary) out.repeat_after(360.0);
   return out;
 }
 
@@ -134,6 +135,12 @@ Expected<LoadingVerdict> judge_loading(const reading::ReadCampaign& before,
   out.answer = answer_of(out.findings);
   if (out.answer != LoadingVerdict::Answer::worked)
     out.change = change_between(before, after, axis, next, control);
+  // Advice about the reversal holds only with the right table, and the change states which one is on.
+  if (out.change && out.change->loading != statistics::Loading::loaded)
+    std::erase_if(out.findings, [](const Finding& f) {
+      return f.id.ends_with("not-active") || f.id.ends_with("wrong-sign") ||
+             f.id.ends_with("something-else");
+    });
   const Measurement& m = after.manifest->campaign.measurements[two];
   out.E = tables::forecast_of_axis(after.manifest->campaign, m, axis, after.observations[two],
                                    after.observations[two], {}, {})

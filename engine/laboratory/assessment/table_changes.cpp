@@ -36,6 +36,7 @@ kernel::TableCurve table_of(const Json& of, bool rotary) {
                        numbers(of, "minus", rotary, false)};
   const std::size_t n = t.position.size();
   if (t.plus.size() != n || (!t.minus.empty() && t.minus.size() != n)) return {};
+  if (rotary) t.repeat_after(360.0);
   return t;
 }
 

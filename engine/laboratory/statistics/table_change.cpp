@@ -309,6 +309,7 @@ class Recognizing {
 double TableCurve::at(double x, int direction) const {
   if (position.empty()) return 0.0;
   const auto& v = direction < 0 && !minus.empty() ? minus : plus;
+  if (turn > 0.0) x -= turn * std::floor((x - position.front()) / turn);
   if (x <= position.front()) return v.front();
   if (x >= position.back()) return v.back();
   const auto i = static_cast<std::size_t>(std::upper_bound(position.begin(), position.end(), x) -
@@ -317,11 +318,22 @@ double TableCurve::at(double x, int direction) const {
   return v[i - 1] + part * (v[i] - v[i - 1]);
 }
 
+void TableCurve::repeat_after(double length) {
+  const auto closed = [](const std::vector<double>& v) {
+    return v.empty() || v.front() == v.back();
+  };
+  if (position.size() > 2 && closed(plus) && closed(minus) &&
+      std::fabs(position.back() - position.front() - length) < 1e-9 * length)
+    turn = length;
+}
+
 TableCurve TableCurve::shifted(int points) const {
   TableCurve out = *this;
   const auto n = static_cast<int>(position.size());
   for (int i = 0; i < n; ++i) {
-    const auto from = static_cast<std::size_t>(std::clamp(i - points, 0, n - 1));
+    const int other =
+        turn > 0.0 ? (i - points % (n - 1) + n - 1) % (n - 1) : std::clamp(i - points, 0, n - 1);
+    const auto from = static_cast<std::size_t>(other);
     const auto to = static_cast<std::size_t>(i);
     out.plus[to] = plus[from];
     if (!minus.empty()) out.minus[to] = minus[from];

@@ -15,9 +15,13 @@ struct MeasuredCurve {
   double u = 0.0;
 };
 
-/// Correction that is linear between the points and constant outside them; zero without points.
+/// Correction that is linear between the points and constant outside them, or repeats after a turn;
+/// zero without points.
 struct TableCurve {
   std::vector<double> position{}, plus{}, minus{};
+  double turn = 0.0;  ///< length after which it repeats; 0: it does not
+  /// Lets a table over one `length` with equal ends repeat.
+  void repeat_after(double length);
   bool empty() const { return position.empty(); }
   double at(double x, int direction) const;
   /// Moves the entries by `points` points towards larger positions.

@@ -274,7 +274,10 @@ bool CircleModel::leaves_out(double angle) const {
 void all_causes(CircleModel& m, bool both_directions) {
   m.wanted.fill(true);
   const auto leave = [&](Cause c) { m.wanted[index_of(c)] = false; };
-  if (!both_directions) leave(Cause::zero_change), leave(Cause::servo_mismatch);
+  if (!both_directions)
+    for (const Cause c : {Cause::zero_change, Cause::centre_change_u, Cause::centre_change_v,
+                          Cause::servo_mismatch})
+      leave(c);
   if (!(m.pitch[0] > 0.0)) leave(Cause::cyclic_u_sin), leave(Cause::cyclic_u_cos);
   if (!(m.pitch[1] > 0.0)) leave(Cause::cyclic_v_sin), leave(Cause::cyclic_v_cos);
 }
@@ -293,6 +296,10 @@ double cause_at(Cause cause, const CircleModel& m, double t, int direction) {
       return 1.0;
     case Cause::zero_change:
       return d;
+    case Cause::centre_change_u:
+      return d * c;
+    case Cause::centre_change_v:
+      return d * s;
     case Cause::scale_mismatch:
       return m.R / 2.0 * (c * c - s * s);
     case Cause::squareness:

@@ -24,7 +24,7 @@ Decision decide(double value, double U, double tolerance, std::string_view rule,
   return Decision::cannot_be_decided;
 }
 
-double least_U(const Laboratory& laboratory, Quantity quantity, double length) {
+double least_U(const Laboratory& laboratory, Quantity quantity, double length, double angle) {
   if (laboratory.accreditation.empty()) return 0.0;
   const Cmc& cmc = laboratory.cmc;
   switch (quantity) {
@@ -36,6 +36,10 @@ double least_U(const Laboratory& laboratory, Quantity quantity, double length) {
     case Quantity::small_angle:
     case Quantity::number:  // components of a direction have the uncertainty of an angle
       return cmc.angle.value_or(0.0);
+    case Quantity::deviation_per_length:
+      return length > 0.0 ? least_U(laboratory, Quantity::deviation, length, angle) / length : 0.0;
+    case Quantity::deviation_per_angle:
+      return angle > 0.0 ? cmc.angle.value_or(0.0) / angle : 0.0;
     default:
       return 0.0;
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <vector>
 
 namespace nonio {
@@ -82,14 +83,32 @@ Expected<void> check(const Observations& o) {
   return check_lines(o);
 }
 
+namespace {
+
+/// Names become keys of JSON and columns of CSV.
+template <class List>
+Expected<void> check_names(const char* what, const List& list) {
+  std::set<std::string_view> known;
+  for (const auto& one : list)
+    if (!known.insert(one.name).second)
+      return fail(std::string("two ") + what + " with the name " + one.name);
+  return {};
+}
+
+}  // namespace
+
 Expected<void> check(const Evaluation& e) {
+  if (auto distinct = check_names("values", e.values); !distinct) return distinct;
+  if (auto distinct = check_names("series", e.series); !distinct) return distinct;
   for (const Value& v : e.values)
     if (auto sound = check_value(v); !sound) return sound;
   if (auto sound = check_evidence(e.findings); !sound) return sound;
-  for (const PointTable* table : {&e.points, &e.rows})
+  for (const PointTable* table : {&e.points, &e.rows}) {
+    if (auto distinct = check_names("columns", table->columns); !distinct) return distinct;
     for (const PointTable::Column& c : table->columns)
       if (c.values.size() != table->columns.front().values.size())
         return fail("a table with columns of different lengths");
+  }
   for (const Series& s : e.series)
     if (s.value.size() != s.position.size() || (!s.U.empty() && s.U.size() != s.value.size()) ||
         (!s.repeatability.empty() && s.repeatability.size() != s.value.size()))

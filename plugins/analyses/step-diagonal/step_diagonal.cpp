@@ -16,9 +16,12 @@ using namespace math;
 
 namespace {
 
+/// "PPP" of the pass "SD PPP", "PPP-run-2" of "SD PPP run 2".
 std::string short_name(const std::string& pass) {
-  const std::size_t space = pass.rfind(' ');
-  return space == std::string::npos ? pass : pass.substr(space + 1);
+  const std::size_t run = pass.rfind(" run "), space = pass.find_last_of(' ', run - 1);
+  std::string name = space == std::string::npos ? pass : pass.substr(space + 1);
+  std::replace(name.begin(), name.end(), ' ', '-');
+  return name;
 }
 
 PointTable table_of(const Passes& p) {

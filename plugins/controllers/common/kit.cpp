@@ -39,9 +39,9 @@ math::GridRule rule_of(const AxisJob& job, const ControllerInput& input, const W
   rule.step = w.fixed_step > 0.0 ? w.fixed_step : wished_step(job, input.options);
   rule.rotary = job.rotary;
   rule.axis = job.axis;
-  rule.turn = job.turn.has_value() && w.turn_end == TurnEnd::repeats;
+  rule.turn = job.turn.has_value() && w.turn_end == TurnEnd::repeats && !w.power_of_two;
   if (!rule.turn) rule.first = job.position_setting("first");
-  rule.power_of_two = w.power_of_two && !rule.turn;
+  rule.power_of_two = w.power_of_two;
   if (anchored(t)) {
     rule.anchor = rule.turn ? 0.0 : reference;
     if (t.entry == Entry::increment) rule.most = std::max<std::size_t>(rule.most, 3) - 1;
@@ -89,6 +89,15 @@ Expected<void> place_points(Sheet& s, const Writer& w) {
   const math::GridRule rule = rule_of(s.job, s.input, w, t, s.reference);
   NONIO_TRY(s.grid, math::choose_grid(wanted(s.job, w), rule));
   if (t.entry == Entry::increment && !rule.turn) surround(s.grid, s.reference);
+  constexpr double rounding = 1e-9;
+  if (w.within_turn && s.job.rotary &&
+      (s.grid.first < -rounding || wanted(s.job, w).back() > full_turn + rounding))
+    return fail("axis " + s.job.axis +
+                ": this control uses entries of rotary axes from 0 to 360 "
+                "deg only, and these readings are from " +
+                with_unit(s.job, wanted(s.job, w).front(), 4) + " to " +
+                with_unit(s.job, wanted(s.job, w).back(), 4) +
+                ": measure, or state, positions from 0 to 360 deg");
   s.position.clear();
   for (std::size_t i = 0; i < s.grid.points; ++i) s.position.push_back(s.grid.position(i));
   return {};
@@ -194,6 +203,13 @@ Expected<void> set_reference(Sheet& s, OutputResult& result) {
     s.reference = told.value_or(0.0);
     return {};
   }
+  if (s.job.turn && told.value_or(0.0) != 0.0)
+    return wrong_axes("axis " + s.job.axis +
+                          ": the table of a whole turn begins at the reference position of the "
+                          "axis, which must be 0 deg: measure from there, or state the positions "
+                          "of the readings from there; reference_deg is " +
+                          with_unit(s.job, *told, 4),
+                      s.job.axis + ".reference_deg");
   if (s.table.zero == ControlTable::Zero::first && told.value_or(0.0) != 0.0)
     return wrong_axes(
         "axis " + s.job.axis +
@@ -218,7 +234,8 @@ Expected<Sheet> sheet_of(const AxisJob& job, const ControlTable& table,
           .minus = {},
           .plus_steps = {},
           .minus_steps = {},
-          .holds_documented = w.holds_documented};
+          .holds_documented = w.holds_documented,
+          .repeats = w.turn_end == TurnEnd::repeats};
   if (auto ok = set_reference(s, result); !ok) return tl::unexpected<Error>(ok.error());
   if (auto placed = place_points(s, w); !placed) return tl::unexpected<Error>(placed.error());
   if (!anchored(table))
@@ -353,7 +370,7 @@ std::vector<std::string> Sheet::zero_and_size() const {
 }
 
 std::string Sheet::outside_words() const {
-  if (job.turn) return "the table repeats after each turn";
+  if (job.turn && repeats) return "the table repeats after each turn";
   return "below " + with_unit(job, position.front(), 4) + " and above " +
          with_unit(job, position.back(), 4) + " the value of that end holds" +
          (holds_documented ? "" : " (assumed: not documented)");

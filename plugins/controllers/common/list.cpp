@@ -6,7 +6,8 @@
 
 namespace nonio::controllers {
 
-std::vector<Artifact> list_file(const Sheet& s, std::string_view name, Columns columns) {
+std::vector<Artifact> list_file(const Sheet& s, std::string_view name, Columns columns,
+                                Numbered numbered) {
   const bool two = columns == Columns::both;
   const std::string unit = s.position_unit() == 25.4e-3 ? "inch" : std::string(s.job.unit());
   std::string out = comments(s.words(), "# ") + "# point position_" + unit + " entry" +
@@ -16,8 +17,10 @@ std::vector<Artifact> list_file(const Sheet& s, std::string_view name, Columns c
                          std::size_t i) {
     return whole ? std::to_string(steps[i]) : s.entry(v[i]);
   };
-  for (std::size_t i = 0; i < s.plus_steps.size(); ++i) {
-    out += std::to_string(i + 1) + " " + s.at(i) + " " + entry(s.plus, s.plus_steps, i);
+  const std::size_t points = s.plus_steps.size();
+  for (std::size_t number = 1; number <= points; ++number) {
+    const std::size_t i = numbered == Numbered::upwards ? number - 1 : points - number;
+    out += std::to_string(number) + " " + s.at(i) + " " + entry(s.plus, s.plus_steps, i);
     if (two) out += " " + (s.directions ? entry(s.minus, s.minus_steps, i) : "0");
     out += "\n";
   }
@@ -55,6 +58,10 @@ Expected<std::vector<LoadedTable>> parse_files(const TableInput& in, const Contr
     }
     if (points == 0) continue;
     if (auto ok = whole_text(f, points); !ok) return tl::unexpected<Error>(ok.error());
+    if (raw.position.front() > raw.position.back()) {  // numbered downwards
+      for (auto* column : {&raw.position, &raw.plus, &raw.minus})
+        std::reverse(column->begin(), column->end());
+    }
     NONIO_TRY(auto read, loaded(table, raw));
     const auto& x = read.position.front();
     const bool turn = read.rotary && x.front() == 0.0 && std::fabs(x.back() - full_turn) < 1e-9;

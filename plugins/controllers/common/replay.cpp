@@ -69,11 +69,17 @@ std::optional<double> turn_of(const ControllerInput& in, const CrossJob& job,
   return (*other - *one) / (beam.at_slave - beam.at_axis);
 }
 
-void keep_worst(std::vector<Prediction>& all, const Prediction& one) {
-  const auto known =
-      std::find_if(all.begin(), all.end(), [&](const Prediction& p) { return p.name == one.name; });
+struct Predicted {
+  Prediction stated;   ///< not below U
+  double after = 0.0;  ///< range of the mean deviations
+};
+
+void keep_worst(std::vector<Predicted>& all, const Predicted& one) {
+  const auto known = std::find_if(
+      all.begin(), all.end(), [&](const Predicted& p) { return p.stated.name == one.stated.name; });
   if (known == all.end()) return all.push_back(one);
-  known->before = std::max(known->before, one.before);
+  known->stated.before = std::max(known->stated.before, one.stated.before);
+  known->stated.after = std::max(known->stated.after, one.stated.after);
   known->after = std::max(known->after, one.after);
 }
 
@@ -155,7 +161,7 @@ void predict_lines(const CrossJob& job, const Replay& replay, OutputResult& resu
         {"table.diagonals-not-predicted", {}, {{"axis", replay.replaces}}, job.measurement});
     return;
   }
-  std::vector<Prediction> all;
+  std::vector<Predicted> all;
   for (const ReadLine& line : job.lines) {
     if (line.deviation.size() < 2) continue;
     const auto will = after(line, replay);
@@ -164,15 +170,16 @@ void predict_lines(const CrossJob& job, const Replay& replay, OutputResult& resu
       return;
     }
     const double before = range_of(line.measured.empty() ? line.deviation : line.measured);
-    keep_worst(all, {job.measurement, line.name.substr(0, line.name.find(' ')), before,
-                     math::predicted_after(before, range_of(*will), line.U), Quantity::deviation});
+    keep_worst(all, {{job.measurement, line.name.substr(0, line.name.find(' ')), before,
+                      math::predicted_after(before, range_of(*will), line.U), Quantity::deviation},
+                     range_of(*will)});
   }
-  for (Prediction& p : all) {
-    if (!(p.after < p.before))
-      result.findings.push_back({.id = "table.no-gain",
+  for (auto& [p, after] : all) {
+    if (!(after < p.before))
+      result.findings.push_back({.id = "table.no-gain-diagonal",
                                  .attention = true,
                                  .evidence = {{"before", p.before, Quantity::deviation},
-                                              {"after", p.after, Quantity::deviation}},
+                                              {"after", after, Quantity::deviation}},
                                  .texts = {{"axis", p.name}},
                                  .measurement = job.measurement,
                                  .advice = "These tables would not make the diagonal better."});

@@ -34,7 +34,9 @@ Expected<std::vector<Artifact>> files(const controllers::Sheet& s) {
     return fail("axis " + s.job.axis +
                 ": the table is at and below machine zero, the targets do "
                 "not: measure in machine coordinates");
-  return controllers::list_file(s, "haas-classic");
+  // The first entry of the control is at machine zero.
+  return controllers::list_file(s, "haas-classic", controllers::Columns::mean,
+                                controllers::Numbered::downwards);
 }
 
 Expected<OutputResult> write(const ControllerInput& in) {

@@ -499,6 +499,7 @@ Expected<OutputResult> write(const ControllerInput& input) {
       .parse = parse,
       .backlash_in_steps = true,
       .power_of_two = layout.power_of_two,
+      .within_turn = layout.power_of_two,
       .wanted = [&](const AxisJob& job) { return wanted(job, crosses(job), layout); }};
   NONIO_TRY(const auto jobs, controllers::write_axes(input, writer, result));
   std::vector<const AxisJob*> written;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "certificate.h"
+#include "nonio/reports/model.h"
 #include "nonio/reports/number.h"
 #include "nonio/reports/wording.h"
 #include "nonio/sdk/format.h"
@@ -175,6 +176,7 @@ dcc::About about_of(const std::vector<Source>& sources, const char* release) {
   dcc::About about{in.issue->number, c.certificate.languages, c.certificate.location, "certificate",
                    release};
   about.only_with_U = true;
+  about.not_reported = reports::model_analysis;
   for (const Results::Analysed& a : in.results.analyses) {
     if (!is_printed(a)) continue;
     about.words[dcc::name_of(a)] = words_of(sources, a);

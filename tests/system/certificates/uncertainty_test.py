@@ -13,6 +13,7 @@ from signing import NONIO, SigningTest  # noqa: E402
 
 SAMPLES = pathlib.Path(os.environ["NONIO_SAMPLES"])
 GANTRY, TABLE, STEPS, AXIS = "13-gantry-diagonals", "14-rotary-table", "15-step-diagonal", "09-tolerances"
+CIRCLE = "40-circles"
 PROBE = ('sphere_um = 0.5\nprobe_um = 1.0\n\n[environment]\ntemperature_range_K = 0.2\ntemperature_difference_K = 0.8\n'
          'expansion_range_um_per_m_K = 1.0\ndrift_um = 0.6\n')
 LINEAR = "".join(f'[machine.axes.{a}]\nkind = "linear"\nexpansion_um_per_m_K = 11.5\n\n' for a in "XYZ")
@@ -192,7 +193,8 @@ class Uncertainty(SigningTest):
             site.mkdir()
             (site / "site.toml").write_text(f'[laboratory]\nname = "L"\n{accreditation}'
                                             '[laboratory.cmc]\nfixed_um = 50.0\nper_m_um = 10.0\n')
-            shutil.copytree(SAMPLES / AXIS, site / AXIS)
+            for sample in (AXIS, CIRCLE):
+                shutil.copytree(SAMPLES / sample, site / sample)
             subprocess.run([NONIO, "run", str(site), "--out", str(out)], capture_output=True, timeout=300)
             a = next(a for a in self.results(AXIS, out)["analyses"] if a["plugin"] == "iso230-2")
             length = a["budget"]["length_mm"] / 1000.0
@@ -201,6 +203,9 @@ class Uncertainty(SigningTest):
                 self.assertAlmostEqual(raised, 50.0 + 10.0 * length, places=6)
                 self.assertIn("uncertainty.cmc", [f["id"] for f in a["findings"]])
                 self.assertTrue(all(u >= raised - 1e-9 for u in a["point_U"].values()))
+                circle = next(a for a in self.results(CIRCLE, out)["analyses"] if a["plugin"] == "circle")
+                length = circle["budget"]["length_mm"] / 1000.0
+                self.assertAlmostEqual(circle["values"]["scale_mismatch"]["U"], 50.0 / length + 10.0, places=6)
             else:
                 self.assertLess(raised, 20.0)
 

@@ -172,6 +172,27 @@ class Cross(gantry_test.Gantry):
                 self.assertAlmostEqual(predicted[name]["before"], diagonal(before, falling), delta=1.5)
                 self.assertAlmostEqual(predicted[name]["predicted"], max(diagonal(after, falling), U), delta=2.0)
 
+    def test_pitch_tables_first_and_their_reference_within_the_travel(self):
+        """Pitch tables hold the beam as it is at their reference point, not as it is at the first target."""
+        for k in range(2):
+            for driven in "XY":
+                with self.subTest(k=k, driven=driven, seed=SEED):
+                    now, number = Machine(random.Random(SEED + k)), self.numbers(driven)
+                    other = "XY".replace(driven, "")
+                    extra = "".join('[options.siemens-840d.axes.%s]\nnumber = %d\nreference_mm = %g\n' % one for one in (
+                        (driven, number["U"], LENGTH["U"] * 0.4), (driven + "2", number["U2"], LENGTH["U"] * 0.4), (other, number["V"], 0.0)))
+                    _, files = self.measured(now, SEED + k, driven, extra)
+                    pitch = {n: t for n, t in files.items() if "EEC" in n}
+                    for n, t in pitch.items():
+                        (self.folder / n).write_text(t)
+                    active = {a: ",".join(n for n in pitch if "-%s-" % a in n) for a in ("X", "Y", driven + "2")}
+                    before = Loaded(now, pitch, number)
+                    results, new = self.measured(before, SEED + 90 + k, driven, extra, {a: n for a, n in active.items() if n})
+                    self.assertEqual(results["errors"], [])
+                    after = Loaded(now, pitch | new, number)
+                    for falling in (False, True):
+                        self.assertLess(diagonal(after, falling), 0.1 * diagonal(before, falling) + 2.5)
+
     # nonio table insert --axis XY: a backup whose tables were active
 
     FOREIGN = "$AN_CEC[20,0]=0.001\n$AN_CEC[20,1]=0.004\n$AN_CEC_INPUT_AXIS[20]=(AX1)\n$AN_CEC_OUTPUT_AXIS[20]=(AX3)\n" \

@@ -66,8 +66,8 @@ class Axis(BenchTest):
         targets = [-25.4 * i for i in range(12)][::-1]
         self.write("haas-classic", "haas-classic-X.txt", '[options.haas-classic]\nsign = "correction"\n', targets)
         rows = points_of(self.file("haas-classic-X.txt"))
-        self.assertEqual([r[1] for r in rows], [0.5 * i for i in range(-22, 1)])
-        self.assertEqual(rows[-1][2], 0.0)  # machine zero
+        self.assertEqual([r[1] for r in rows], [-0.5 * i for i in range(23)])
+        self.assertEqual(rows[0][2], 0.0)  # machine zero
         for _, x, value in rows:
             mm = x * 25.4
             e = interpolate([(t, wave(t)) for t in targets], mm)

@@ -34,6 +34,22 @@ TEST(Recomputed, AnyDifferenceIsSaid) {
   EXPECT_NE(why(R"({"analyses": []})", R"({"analyses": []})"), "");
 }
 
+/// A measurement over time has a model for each displacement.
+TEST(Recomputed, AnalysesOfOneNameAreComparedInTheirOrder) {
+  const auto model = [](const char* rms) {
+    return std::string(
+               R"(,{"plugin": "model-fit", "measurement": "t", "values": {"rms": {"value": )") +
+           rms + R"(, "unit": "um"}}})";
+  };
+  EXPECT_EQ(
+      why(results("1", model("13.2") + model("2.1")), results("1", model("13.2") + model("2.1"))),
+      "");
+  EXPECT_NE(
+      why(results("1", model("13.2") + model("2.1")), results("1", model("13.2") + model("2.2"))),
+      "");
+  EXPECT_NE(why(results("1", model("13.2") + model("2.1")), results("1", model("13.2"))), "");
+}
+
 /// Our parser reads the last one, others the first: a document must not have two values of one key.
 TEST(Recomputed, AKeyTwiceIsNoResult) {
   const std::string once = results("11.96");

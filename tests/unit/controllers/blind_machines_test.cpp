@@ -56,7 +56,7 @@ std::vector<Kind> kinds() {
            {{"sign", std::string("correction")}},
            2.54e-6,
            0.0,
-           [](const Files& f, const Axis& a) { return models::list(f, a, 1.0, 25.4 * mm); },
+           models::haas,
            true,
            true},
           {"mitsubishi", "mitsubishi", of, 0.5e-6, 0.0, models::mitsubishi},

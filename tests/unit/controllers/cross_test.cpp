@@ -174,7 +174,7 @@ TEST(Cross, AFlippedSignIsSeenByTheConsumer) {
   const auto result = bench.write(siemens_plugin());
   ASSERT_TRUE(result);
   EXPECT_GT(prediction(*result, "D1").after, 1.9 * prediction(*result, "D1").before);
-  EXPECT_NE(finding(*result, "table.no-gain"), nullptr);
+  EXPECT_NE(finding(*result, "table.no-gain-diagonal"), nullptr);
 }
 
 TEST(Cross, HeidenhainColumnsOfTheOtherAxis) {

@@ -117,6 +117,27 @@ TEST(Heidenhain, PowerOfTwoSpacingStillCompensates) {
   EXPECT_LT(prediction(*r, "E").after, 0.1 * prediction(*r, "E").before);
 }
 
+TEST(Heidenhain, SpacingOfARotaryAxisIsAPowerOfTwoWithinOneTurn) {
+  Measured m;
+  m.axis = m.id = "C";
+  m.rotary = true;
+  m.plus = [](double x) { return 20 * arcsec * std::sin(x); };
+  m.minus = m.plus;
+  for (const int points : {13, 12}) {  // with and without the end that is the beginning
+    m.targets = even(0.0, 30 * deg, points);
+    const auto r = Bench(m).write(heidenhain_plugin(), layout("tnc407"));
+    ASSERT_TRUE(r) << r.error().message;
+    const std::string head = lines(file(*r, "heidenhain-tnc-C.COM"))[0];
+    const double units = std::stod(head.substr(head.find("DISTANCE:+") + 10)) * 1e4;
+    EXPECT_NEAR(std::log2(units), std::round(std::log2(units)), 1e-9) << head;
+    EXPECT_LT(prediction(*r, "E").after, 0.2 * prediction(*r, "E").before);
+  }
+  m.targets = even(-120 * deg, 15 * deg, 11);
+  const auto r = Bench(m).write(heidenhain_plugin(), layout("tnc407"));
+  ASSERT_FALSE(r);
+  EXPECT_TRUE(contains(r.error().message, "from 0 to 360 deg")) << r.error().message;
+}
+
 TEST(Heidenhain, TwoMeasurementsOfAnAxisMakeTwoLinesAndNoneActive) {
   Bench b(two_axes_x());
   b.campaign.measurements[0].id = "before";

@@ -239,6 +239,19 @@ inline Control list(const Files& files, const Axis& a, double sign, double unit)
   return one_table(t);
 }
 
+/// The first entry is at machine zero, the following ones every half inch towards minus.
+inline Control haas(const Files& files, const Axis&) {
+  constexpr double inch = 25.4 * mm;
+  std::map<double, double> at;
+  for (const auto& r : rows(all(files, ".txt"))) at[-(r.at(0) - 1.0) * inch / 2.0] = r.at(2) * inch;
+  Control::Table t;
+  for (const auto& [x, v] : at) {
+    t.x.push_back(x);
+    t.plus.push_back(v);
+  }
+  return one_table(t);
+}
+
 /// (division interval - way moved) x 2 in um, from the reference position to both sides.
 inline Control mitsubishi(const Files& files, const Axis& a) {
   std::map<int, double> number_of, value{{0, 0.0}};

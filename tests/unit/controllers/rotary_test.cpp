@@ -41,6 +41,25 @@ Measured table_axis(std::mt19937& random, std::vector<double> targets) {
 
 }  // namespace
 
+TEST(Rotary, AWholeTurnThatDoesNotBeginAtTheReferenceIsRefusedByName) {
+  std::mt19937 random(1);
+  Bench b(table_axis(random, even(0.0, 30 * deg, 13)));
+  const Options options = {{"extended", true},
+                           {"axes", NumberTables{{"C", {{"reference_deg", 120.0}}}}}};
+  const auto r = b.write(fanuc_plugin(), options);
+  ASSERT_FALSE(r);
+  EXPECT_TRUE(contains(r.error().message, "reference_deg is 120")) << r.error().message;
+}
+
+TEST(Rotary, ATableThatDoesNotRepeatSaysWhatHoldsBeyondTheTurn) {
+  std::mt19937 random(1);
+  const auto r =
+      Bench(table_axis(random, even(0.0, 30 * deg, 13))).write(linuxcnc_plugin(), Options{});
+  ASSERT_TRUE(r) << r.error().message;
+  for (const Artifact& f : r->artifacts)
+    EXPECT_FALSE(contains(f.bytes, "repeats after each turn")) << f.name;
+}
+
 TEST(Rotary, TurnsOfAnyStartAreCompensated) {
   const std::uint32_t seed = 360;
   print_seed(seed);

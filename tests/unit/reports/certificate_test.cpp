@@ -503,6 +503,10 @@ TEST_F(Certificate, TheDccHasTheSameNumberAndValues) {
   Case c = whole();
   decide(c, "iso230-2", "A", 1e-6, Decision::does_not_conform);
   issue.replaces = "2026-0003";
+  Evaluation model;  // the pages do not report it, so the DCC must not either
+  model.values = {
+      {.name = "squareness:XY.c", .value = 1e-5, .quantity = Quantity::small_angle, .U = 1e-6}};
+  c.results.analyses.push_back({"model-fit", "1", "X", model});
   const auto result = write(c);
   ASSERT_TRUE(result);
   const std::string& xml = result->artifacts[1].bytes;
@@ -511,6 +515,7 @@ TEST_F(Certificate, TheDccHasTheSameNumberAndValues) {
         "<dcc:endPerformanceDate>2026-11-04<", "<dcc:replacedUniqueIdentifier>2026-0003<",
         "<dcc:conformity>fail<", ">ISO 230-2:2014", "LAT 123 / 2026-045", "\\micro\\metre"})
     EXPECT_TRUE(has(xml, what)) << what;
+  EXPECT_FALSE(has(xml, "squareness:XY"));
 }
 
 TEST_F(Certificate, WithoutANumberThereIsNone) {

@@ -93,6 +93,12 @@ TEST(Check, ResultsMustBeNumbersOfOneLength) {
     return sound ? std::string() : sound.error().message;
   };
   EXPECT_EQ(found_in([](Evaluation&) {}), "") << "NaN in a table: no value";
+  EXPECT_EQ(found_in([](Evaluation& e) { e.values.push_back(e.values[0]); }),
+            "two values with the name A");
+  EXPECT_EQ(found_in([](Evaluation& e) { e.points.columns[1].name = "target"; }),
+            "two columns with the name target");
+  EXPECT_EQ(found_in([](Evaluation& e) { e.series.push_back(e.series[0]); }),
+            "two series with the name EXX");
   EXPECT_EQ(found_in([](Evaluation& e) { e.values[0].value = nan; }),
             "a value A that is not a number");
   EXPECT_EQ(found_in([](Evaluation& e) { e.values[0].U = INFINITY; }),

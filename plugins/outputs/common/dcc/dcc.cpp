@@ -57,6 +57,7 @@ class Writer {
  private:
   bool is_stated(const Value& v) const { return !about_.only_with_U || v.U.has_value(); }
   bool has_values(const Results::Analysed& a) const {
+    if (a.plugin == about_.not_reported) return false;
     const auto& values = a.evaluation.values;
     return std::any_of(values.begin(), values.end(), [&](const Value& v) { return is_stated(v); });
   }

@@ -48,8 +48,9 @@ struct About {
   std::string software, release;       ///< name and version of the program
   /// Whether values without U are omitted, as in the printed certificate.
   bool only_with_U = false;
-  std::map<std::string, Words> words{};           ///< keys are "plugin of measurement"
-  std::map<std::string, Text> meaning{};          ///< meaning of values and curves, by name
+  std::string not_reported{};             ///< analysis that is not on the printed pages either
+  std::map<std::string, Words> words{};   ///< keys are "plugin of measurement"
+  std::map<std::string, Text> meaning{};  ///< meaning of values and curves, by name
   Text lowest{}, highest{}, equipment{}, item{};  ///< further statements about instrument and item
   Text uncertainty{};                             ///< how the uncertainty was determined
   Text register_name{};                           ///< name of the register's identity

@@ -231,6 +231,20 @@ TEST(Circle, ValuesAndTheirUncertainties) {
   ASSERT_TRUE(e.budget);
 }
 
+TEST(Circle, UOfAPathDoesNotDependOnTheCentreOfTheOther) {
+  std::mt19937_64 random(7);
+  const exact::Mill m = mill();
+  auto readings = exact::circle(m, {0.1e-6, 0.1e-6, 0.9}, random);
+  const auto before = evaluated(test_of(m, readings), options());
+  for (CircleReading& r : readings)
+    if (r.direction < 0) r.deviation += 1e-6 * std::cos(r.angle);
+  const auto after = evaluated(test_of(m, readings), options());
+  EXPECT_EQ(value(after, "G_ccw")->value, value(before, "G_ccw")->value);
+  EXPECT_NEAR(*value(after, "G_ccw")->U, *value(before, "G_ccw")->U,
+              0.1 * *value(before, "G_ccw")->U);
+  EXPECT_NEAR(*value(after, "C0Y")->U, *value(before, "C0Y")->U, 0.1 * *value(before, "C0Y")->U);
+}
+
 TEST(Circle, OneDirectionRefusesSquarenessAndServoMismatchByName) {
   std::mt19937_64 random(2);
   const exact::Mill m = mill();

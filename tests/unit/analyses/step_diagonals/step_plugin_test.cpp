@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "csv.h"
+#include "nonio/sdk/check.h"
 #include "nonio/sdk/plugin.h"
 #include "workshop.h"
 
@@ -172,6 +173,24 @@ StepDiagonals noisy(const machine::Errors& e, const Volume& v, double askew, dou
 machine::Errors some_errors(const Volume& v) {
   std::mt19937 rng(11);
   return random_errors(rng, v, 20 * um);
+}
+
+TEST(StepDiagonal, EachRunOfADiagonalHasAColumn) {
+  Bench b;
+  const auto d = noisy(some_errors(b.volume), b.volume, 0.2e-3);
+  std::string text = "run,diagonal,step,moved,deviation_um\n";
+  for (const char* run : {"1,", "2,"})
+    for (std::size_t k = 0; k < 4; ++k) {
+      std::istringstream lines(rows(d, k));
+      for (std::string line; std::getline(lines, line);) text += run + line + "\n";
+    }
+  b.steps(text);
+  const auto result = b.evaluated();
+  ASSERT_TRUE(result) << result.error().message;
+  ASSERT_EQ(result->points.columns.size(), 9U);
+  for (const char* pass : {"PPP", "PNP", "PPP-run-2", "PNP-run-2"})
+    EXPECT_NE(result->points.column(pass), nullptr) << pass;
+  EXPECT_TRUE(check(*result));
 }
 
 TEST(StepDiagonal, WithAxisRunsEverythingIsGiven) {

@@ -96,6 +96,19 @@ TEST(Formula, ColumnsAreTheTermsOfTheLinearParameters) {
   }
 }
 
+TEST(Formula, RunsAreCountedWhateverTheirNumbers) {
+  const auto e = config::formula_effect(formula("a*run + b*runs", {a, b}), x);
+  ASSERT_TRUE(e) << e.error().message;
+  Observations o = readings(x);
+  const auto before = e->columns(o, x, {});
+  for (std::uint32_t& run : o.run) run = 5 + 2 * run;
+  const auto after = e->columns(o, x, {});
+  ASSERT_TRUE(before && after);
+  EXPECT_EQ(*after, *before);
+  EXPECT_EQ((*before)[0].back(), 3.0);
+  EXPECT_EQ((*before)[1].front(), 3.0);
+}
+
 TEST(Formula, RowsOfAnotherAxisAreZero) {
   const auto e = config::formula_effect(formula("a*cos(theta/(1*m))", {a}), x);
   ASSERT_TRUE(e) << e.error().message;

@@ -33,6 +33,25 @@ MeasuredCurve measured(const Curve& c, unsigned seed, double u = 0.1) {
   return m;
 }
 
+TEST(TableChange, ATableOfAWholeTurnRepeats) {
+  TableCurve t;
+  for (int i = 0; i <= 12; ++i) {
+    t.position.push_back(30.0 * i);
+    t.plus.push_back(i == 12 ? 0.0 : 10.0 * std::sin(30.0 * i / 57.29577951308232));
+  }
+  TableCurve held = t;
+  t.repeat_after(360.0);
+  for (const double x : {-180.0, -90.0, -15.0, 45.0, 390.0, 725.0}) {
+    const double within = x - 360.0 * std::floor(x / 360.0);
+    EXPECT_NEAR(t.at(x, 1), held.at(within, 1), 1e-9) << x;
+    EXPECT_NEAR(t.shifted(2).at(x + 60.0, 1), t.at(x, 1), 1e-9) << x;
+  }
+  EXPECT_EQ(held.at(-90.0, 1), 0.0);
+  held.plus.back() = 1.0;  // an open table holds its ends
+  held.repeat_after(360.0);
+  EXPECT_EQ(held.turn, 0.0);
+}
+
 std::optional<TableChange> found(const Curve& before, const Curve& after,
                                  const std::optional<TableCurve>& active,
                                  const std::vector<TableCurve>& known) {

@@ -16,7 +16,7 @@ namespace nonio {
 /// lines that exist; and `doubts` that are findings `plausibility.*` with attention set.
 Expected<void> check(const Observations& o);
 
-/// Requires finite values, uncertainties, coverage factors and evidence; columns of equal length in
+/// Requires distinct names of values, series and columns; finite values, uncertainties, coverage factors and evidence; columns of equal length in
 /// a table or series; and one budget entry for each contribution. NaN in a table means that there
 /// is no value.
 Expected<void> check(const Evaluation& e);

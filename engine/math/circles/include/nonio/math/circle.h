@@ -69,7 +69,9 @@ enum class Cause : std::uint8_t {
   centre_u,
   centre_v,
   radius,
-  zero_change,  ///< half of the difference of the radius between the two directions
+  zero_change,      ///< half of the difference of the radius between the two directions
+  centre_change_u,  ///< half of the difference of the centre: a drift from one path to the other
+  centre_change_v,
   scale_mismatch,
   squareness,
   servo_mismatch,

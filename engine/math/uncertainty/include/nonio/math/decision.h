@@ -18,9 +18,10 @@ Decision decide(double value, double U, double tolerance, std::string_view rule 
 /// Guard band of `rule` for U with coverage factor k.
 double guard_band(double U, std::string_view rule, double k);
 
-/// Smallest U (k = 2) that the accreditation covers over `length` (m), SI; 0 without accreditation
+/// Smallest U (k = 2) that the accreditation covers over `length` (m) or `angle` (rad), SI, of a
+/// slope that of an end divided by the range; 0 without accreditation
 /// or if [laboratory.cmc] states nothing for this quantity. An analysis that decides itself uses at
 /// least this U, because the result gets it too.
-double least_U(const Laboratory& laboratory, Quantity quantity, double length);
+double least_U(const Laboratory& laboratory, Quantity quantity, double length, double angle = 0.0);
 
 }  // namespace nonio::math

@@ -43,6 +43,7 @@ struct Sheet {
   std::vector<std::int64_t> plus_steps, minus_steps;
   /// Whether the maker documents which value applies outside of the table.
   bool holds_documented = false;
+  bool repeats = false;  ///< whether a table of a whole turn repeats, see Writer::turn_end
   /// For increments: initial value of `minus_steps`, minus relative to plus at the reference, in
   /// steps.
   std::int64_t minus_start() const;
@@ -98,7 +99,8 @@ struct Writer {
   ZeroOf zero_of = ZeroOf::mean;
   /// Whether the backlash parameter has the unit of the entries; otherwise 6 decimals of mm or deg.
   bool backlash_in_steps = false;
-  bool power_of_two = false;  ///< the step of linear axes must be a power of two
+  bool power_of_two = false;  ///< the step must be a power of two
+  bool within_turn = false;   ///< entries of rotary axes outside of 0 to 360 deg have no effect
   double fixed_step = 0.0;    ///< step of a control whose points cannot be chosen, SI; otherwise 0
   /// Whether the maker states that the end value applies outside of the table; otherwise the file
   /// states that this is an assumption.

@@ -7,10 +7,14 @@
 /// table file: one point per line, text after '#'.
 namespace nonio::controllers {
 
+/// Whether point 1 is the one at the smallest or at the largest position.
+enum class Numbered { upwards, downwards };
+
 /// Returns "NAME-X.txt" with the columns point number, position and entry. With columns for both
 /// directions, the entry towards minus follows (0 without direction tables).
 std::vector<Artifact> list_file(const Sheet&, std::string_view name,
-                                Columns columns = Columns::mean);
+                                Columns columns = Columns::mean,
+                                Numbered numbered = Numbered::upwards);
 
 /// Inverse of `list_file`; the result is the table after it is entered in the control.
 Expected<std::vector<LoadedTable>> parse_list(const TableInput&, const ControlTable&,
