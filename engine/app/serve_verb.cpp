@@ -5,7 +5,7 @@
 
 #include "certificates/users.h"
 #include "live/server.h"
-#include "password_input.h"
+#include "questions.h"
 #include "verbs.h"
 
 namespace nonio::app {

@@ -57,4 +57,13 @@ bool is_password_hash(const std::string& text);
 /// show whether a user exists. Passwords of more than 200 bytes are rejected at once.
 bool fits_password(std::string_view password, const std::string& hash);
 
+/// Returns the mistake in the name of a person who approves; empty if the name is valid: one line
+/// of up to 100 bytes without invisible characters, without compatibility characters (NFKC), and
+/// without words that mix letters of two alphabets.
+std::string mistake_in_name(const std::string& name);
+
+/// Returns the letters and digits in lower case, with letters of other alphabets replaced by the
+/// Latin letters that they resemble. Two names with the same result count as one person.
+std::string likeness_of(const std::string& name);
+
 }  // namespace nonio::certificates

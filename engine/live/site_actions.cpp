@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "certificates/certificate_list.h"
-#include "certificates/person_name.h"
+#include "certificates/users.h"
 #include "live/site_service.h"
 #include "platform/storage/files.h"
 

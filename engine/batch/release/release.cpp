@@ -12,7 +12,6 @@
 #include "campaign/evaluation/record.h"
 #include "certificates/certificate_list.h"
 #include "certificates/journal.h"
-#include "certificates/person_name.h"
 #include "certificates/register_place.h"
 #include "certificates/users.h"
 #include "nonio/sdk/statement.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "campaign/modelling/after_table.h"
 
+#include <cmath>
+
 #include "nonio/math/iso230_2.h"
 
 namespace nonio::modelling {
