@@ -167,14 +167,16 @@ class SeriesChart {
           (reports::is_log_of_scatter(s_.quantity) ? "" : "; " + words_.get("history.comparison"));
     if (s_.ended) text += " (" + words_.get("history.ended") + ")";
     std::string out = wrapped(text, 0, width_, 2);
-    if (s_.compared_over)
-      out += line(words_.get("site.compared_over", {{"from", position(s_.compared_over->from)},
-                                                    {"to", position(s_.compared_over->to)}}));
+    if (const auto& over = s_.compared_over)
+      out += line(
+          words_.get("site.compared_over", {{"from", position(over->from, s_.position())},
+                                            {"to", position(over->to, s_.position())},
+                                            {"unit", std::string(unit_of(s_.position()).symbol)}}));
     return out;
   }
 
-  std::string position(double si) const {
-    return localised(short_text(si * unit_of(Quantity::length).per_si), words_.language());
+  std::string position(double si, Quantity q) const {
+    return localised(short_text(si * unit_of(q).per_si), words_.language());
   }
 
   std::string state_of(const HistoryPoint& p) const {

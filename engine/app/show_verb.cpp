@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 
@@ -224,22 +225,22 @@ class Page {
     if (!(U > 0.0) && of.value("unit", "").empty())
       return local(fixed_text(value, value == std::floor(value) ? 0 : 7));
     if (!(U > 0.0)) return local(fixed_text(value, 3));
-    constexpr int most = 12;
-    int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(U))), 0, most);
-    // As many as show on which side of its tolerance limit the value is.
+    const auto rounded = rounded_result(value, U);
+    if (!rounded) return local(short_text(value));
+    if (key == std::string_view("U")) return local(rounded->U);
+    // As many digits as show on which side of its tolerance limit the value is.
+    std::string text = rounded->value;
     if (const auto limit = of.find("tolerance"); limit != of.end() && limit->is_number()) {
-      const auto side = [&](double x) {
-        const double most_accepted = limit->get<double>();
-        return (std::fabs(x) > most_accepted) - (std::fabs(x) < most_accepted);
-      };
-      while (key == std::string_view("value") && digits < most &&
-             side(rounded_to_places(value, digits)) != side(value))
-        ++digits;
+      const double most = limit->get<double>();
+      const auto side = [&](double x) { return (std::fabs(x) > most) - (std::fabs(x) < most); };
+      for (int digits = std::max(0, -place_of_second_digit(U));
+           digits < 12 && side(std::strtod(text.c_str(), nullptr)) != side(value); ++digits)
+        text = fixed_text(value, digits + 1);
     }
-    return local(fixed_text(value, digits));
+    return local(text);
   }
 
-  /// Example: "4.82 ± 1.00 um". A value without U and unit is printed as a whole number or with
+  /// Example: "4.8 ± 1.0 um". A value without U and unit is printed as a whole number or with
   /// four digits.
   std::string result(const Json& v) const {
     const std::string U = number(v, "U"), unit = v.value("unit", "");

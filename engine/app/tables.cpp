@@ -269,7 +269,7 @@ void print_limits(std::ostream& out, const Json& part, bool all, const TerminalW
 }
 
 void print_foresight(std::ostream& out, const Json& what_if, const TerminalWords& say) {
-  out << "  " << say("what-if") << (what_if.empty() ? ": -" : "") << "\n";
+  out << "  " << say("what-if") << (what_if.empty() ? ": " + say("what-if.none") : "") << "\n";
   const auto number = [&](const Json& value) {
     return say.number(short_text(value.get<double>()));
   };

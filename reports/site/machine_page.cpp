@@ -86,8 +86,9 @@ void add_changes(View& view, const Page& page, const HistorySeries& s,
   if (const auto& over = s.compared_over)
     view.set("compared_over",
              page.words.get("site.compared_over",
-                            {{"from", short_number(page, over->from, Quantity::length)},
-                             {"to", short_number(page, over->to, Quantity::length)}}));
+                            {{"from", short_number(page, over->from, s.position())},
+                             {"to", short_number(page, over->to, s.position())},
+                             {"unit", std::string(unit_of(s.position()).symbol)}}));
   for (const HistoryChange& c : s.changes)
     view.add("change").set("change", with_whole_days(change_text(page, numbers, c)));
   const bool drifts = s.model == "drift" && !s.segments.empty();

@@ -390,6 +390,26 @@ bool may_imitate(const PartModel& part, const model::Candidate& named) {
          !o.humidity.empty();
 }
 
+/// Whether runs or passes have zeros that scatter more than the readings within them.
+bool has_large_zeros(const model::Comparison& c) {
+  using Zero = model::Noise::Zero;
+  const model::Noise& noise = c.fit.noise;
+  return (noise.zero == Zero::of_run || noise.zero == Zero::of_pass) && noise.zero_found > 1.0;
+}
+
+/// Whether the named effects explain random zeros of runs or passes: few of these resemble one of
+/// many causes by chance, but not down to the floor.
+bool is_at_floor(const PartModel& part, const model::Explanation& e,
+                 const model::Groundwork* known) {
+  constexpr double down_to_floor = 1.5;  // docs/dev/constants.md, M70
+  std::vector<model::Term> terms = part.terms;
+  for (const model::Candidate& c : e.candidates)
+    if (std::find(e.together.begin(), e.together.end(), c.term.name()) != e.together.end())
+      terms.push_back(c.term);
+  const auto with = model::compare(part.part, terms, known);
+  return with && with->floor && with->fit.rms < down_to_floor * with->floor->s;
+}
+
 /// Searches causes together with the catalog. The result replaces `out` only if its named effect
 /// has evidence by itself, and if it contains exactly one cause, or none if the catalog already
 /// named an effect. The rate of false alarms is that of the second search.
@@ -397,9 +417,9 @@ void look_up_library(const PartModel& part, std::uint64_t seed, const model::Gro
                      model::Explanation& out) {
   using Kind = model::Verdict::Kind;
   if (!out.comparison.floor || part.library == nullptr) return;
-  const bool explained = out.verdict.kind == Kind::missing;
-  if (explained ? !may_imitate(part, out.candidates.front()) : out.verdict.kind != Kind::unknown)
-    return;
+  const bool explained = out.verdict.kind == Kind::missing,
+             is_open = out.verdict.kind == Kind::unknown || has_large_zeros(out.comparison);
+  if (explained ? !may_imitate(part, out.candidates.front()) : !is_open) return;
   std::shared_ptr<const void> keeps;
   std::vector<model::Term> library = library_of(part, keeps);
   if (explained && out.explains_all) library = model::replacing(part.part, out, std::move(library));
@@ -409,6 +429,7 @@ void look_up_library(const PartModel& part, std::uint64_t seed, const model::Gro
       model::explain(part.part, part.terms, without_held(std::move(all), part), seed, known);
   if (!more || more->verdict.kind != Kind::missing || !(more->candidates.front().alone > 0.0))
     return;
+  if (out.verdict.kind == Kind::nothing && !is_at_floor(part, *more, known)) return;
   const auto causes = std::count_if(library.begin(), library.end(), [&](const model::Term& t) {
     return std::find(more->together.begin(), more->together.end(), t.name()) !=
            more->together.end();

@@ -6,6 +6,7 @@
 
 #include "campaign/modelling/model_verdict.h"
 #include "campaign/modelling/thermal_tests.h"
+#include "nonio/math/uncertainty.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::modelling {
@@ -233,7 +234,40 @@ std::string ModelWords::not_identifiable(const std::string& effect, std::size_t 
               {{"effect", effect}});
 }
 
-std::string ModelWords::has_unstated_position() const { return says("unstated-position", {}, {}); }
+std::vector<std::string> ModelWords::scales(const PartModel& part, const model::Fit& fit,
+                                            const Campaign& campaign) const {
+  std::vector<std::string> out;
+  for (const model::Parameter& p : fit.parameters) {
+    if (!p.effect.starts_with("scale:") || p.held || p.shape ||
+        p.quantity != Quantity::deviation_per_length)
+      continue;
+    const std::string axis = p.effect.substr(6, p.effect.find('@') - 6);
+    double length = 0.0;
+    for (const auto& column : part.part.table.axes)
+      if (column.axis == axis) {
+        double low = INFINITY, high = -INFINITY;
+        for (const double x : column.position)
+          if (std::isfinite(x)) low = std::min(low, x), high = std::max(high, x);
+        length = high - low;
+      }
+    if (const auto u = math::common_scale_uncertainty(campaign, axis, length))
+      out.push_back(says("scale-of-readings", {{"u", *u, p.quantity}}, {{"effect", p.effect}}));
+    else
+      out.push_back(says("scale-of-readings-alone", {}, {{"effect", p.effect}}));
+  }
+  return out;
+}
+
+std::string ModelWords::unstated_position(const std::vector<std::string>& measurements) const {
+  std::string which;
+  for (const std::string& one : measurements) which += (which.empty() ? "" : ", ") + one;
+  return says("unstated-position", {}, {{"which", which}});
+}
+
+std::string ModelWords::squareness_place(const std::string& squareness,
+                                         const std::string& yaw) const {
+  return says("squareness-place", {}, {{"effect", squareness}, {"yaw", yaw}});
+}
 
 std::vector<std::string> ModelWords::noise(const model::Fit& fit, const PartModel& part) const {
   using Zero = model::Noise::Zero;

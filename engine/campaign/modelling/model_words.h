@@ -53,7 +53,11 @@ class ModelWords {
   /// constants of thermal tests.
   std::vector<std::string> recordings(const PartModel& part, const model::Fit& fit) const;
   std::string order_unknown() const;
-  std::string has_unstated_position() const;
+  /// u of a scale contains neither instrument nor temperatures: one sentence for each.
+  std::vector<std::string> scales(const PartModel& part, const model::Fit& fit,
+                                  const Campaign& campaign) const;
+  std::string unstated_position(const std::vector<std::string>& measurements) const;
+  std::string squareness_place(const std::string& squareness, const std::string& yaw) const;
   std::string unmeasured(const std::string& effect) const;
   /// `what` is "is", "size", "appearance", "similar" or "remedy". Returns English text without a
   /// translation, or "".

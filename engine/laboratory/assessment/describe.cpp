@@ -113,7 +113,7 @@ class Describing {
                       .model = name_of(s.trend.model)};
     out.ended = s.ended;
     if (s.over)
-      out.compared_over = {si(s.over->from, Quantity::length), si(s.over->to, Quantity::length)};
+      out.compared_over = {si(s.over->from, out.position()), si(s.over->to, out.position())};
     for (const FollowedSeries::Apart& a : s.apart) {
       out.points.push_back(point(a.result, q));
       out.points.back().joined = false;

@@ -28,13 +28,18 @@ struct Parameters {
 
 std::string without_axis(const std::string& effect) { return effect.substr(0, effect.find(':')); }
 
+// The pose and size of a part on the table are in every model of it: they are no candidates.
+bool is_of_part(const std::string& effect) { return effect.starts_with("body-"); }
+
 /// Significant effects of the fitted model; parameters are named "backlash:X.b".
 void add_fitted(const Json& values, std::multimap<std::string, Size>& found) {
   std::map<std::string, Parameters> effects;
   for (const auto& [name, value] : values.items()) {
     const std::size_t dot = name.rfind('.');
     const double U = value.value("U", 0.0);
-    if (name.find(':') == std::string::npos || dot == std::string::npos || !(U > 0.0)) continue;
+    if (name.find(':') == std::string::npos || dot == std::string::npos || !(U > 0.0) ||
+        is_of_part(name))
+      continue;
     Parameters& p = effects[name.substr(0, dot)];
     const double v = value.value("value", 0.0);
     p.squares += v * v, p.of_u += 4.0 * v * v / (U * U), ++p.count;

@@ -51,9 +51,10 @@ class HistoryWriter {
     if (s.compared_over) {
       json_.key("compared_over");
       json_.begin_object();
-      json_.member("from", printed(s.compared_over->from, Quantity::length));
-      json_.member("to", printed(s.compared_over->to, Quantity::length));
-      json_.member("unit", unit_of(Quantity::length).symbol);
+      const auto& over = *s.compared_over;
+      json_.member("from", printed(over.from, s.position()));
+      json_.member("to", printed(over.to, s.position()));
+      json_.member("unit", unit_of(s.position()).symbol);
       json_.end_object();
     }
     json_.list("points", s.points, [&](const HistoryPoint& p) { put(p); });

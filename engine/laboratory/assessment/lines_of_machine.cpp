@@ -445,12 +445,14 @@ class OfMachine {
       WorkItem l = line(Kind::withheld,
                         table                               ? "worklist.no-table"
                         : is_failed_compensation(w.finding) ? "worklist.compensation"
+                        : w.finding == "reading.suspect"    ? "worklist.misreading"
                         : is_calibration(w.finding)         ? "worklist.calibration"
                         : is_refusal(w.finding)             ? "worklist.no-result"
                                                             : "worklist.certificate",
                         c.id + (w.axis.empty() ? "" : ":" + w.axis));
       l.axis = w.axis, l.campaign = c.id, l.since = c.evaluated;
       put_text(l, "campaign", c.id);
+      put_text(l, "axis", w.axis);
       auto& to = all.emplace(l.id, std::move(l)).first->second;
       add_to_list(to, "withheld", {w.finding});
       if (table || is_refusal(w.finding)) add_to_list(to, "outputs", w.outputs);

@@ -124,7 +124,7 @@ std::vector<Withheld> withheld(const StoredMachine& m) {
   for (std::size_t i = 0; i < m.asked.size(); ++i)
     for (const store::FindingRow& f : m.asked[i]) {
       const bool is_table = f.id.starts_with("table.");
-      const bool is_of_axis = is_table || is_failed_compensation(f.id);
+      const bool is_of_axis = is_table || f.id == "reading.suspect" || is_failed_compensation(f.id);
       const std::string axis =
           is_of_axis ? axis_of_measurement(m, i, f.measurement) : std::string();
       if (is_of_axis && is_measured_later(m, newest, i, axis)) continue;

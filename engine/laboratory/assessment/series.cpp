@@ -256,6 +256,27 @@ class Joining {
     to.longest = std::max(to.longest, other.longest);
   }
 
+  /// Whether two campaigns have the same readings: one of them was renamed.
+  bool is_renamed(std::size_t a, std::size_t b) const {
+    const StoredResult &one = m_.results[a], &other = m_.results[b];
+    return one.campaign != other.campaign && one.measurement == other.measurement &&
+           one.value == other.value && one.u_repeat == other.u_repeat;
+  }
+
+  /// Adds a result to a group. Of a campaign that was renamed, only the last evaluation is used.
+  void append(Group& g, std::size_t i) const {
+    const auto campaign = [&](std::size_t k) -> const store::StoredCampaign& {
+      return m_.campaigns[m_.results[k].campaign];
+    };
+    for (auto k = g.results.rbegin(); k != g.results.rend() && campaign(*k).day == campaign(i).day;
+         ++k)
+      if (is_renamed(*k, i)) {
+        if (campaign(i).evaluation > campaign(*k).evaluation) *k = i;
+        return;
+      }
+    g.results.push_back(i);
+  }
+
   void put(std::size_t i) {
     const StoredResult& r = m_.results[i];
     if (!(r.u_repeat.value_or(0.0) > 0.0) || !std::isfinite(r.value) ||
@@ -265,7 +286,7 @@ class Joining {
     for (Group& g : groups_) {
       const StoredResult& first = m_.results[g.results.front()];
       if (first.unit == r.unit && first.conditions == r.conditions) {
-        g.results.push_back(i);
+        append(g, i);
         if (targets(i) == nullptr) g.common.reset();
         return;
       }

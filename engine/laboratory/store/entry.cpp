@@ -100,8 +100,8 @@ class EntryReader {
                            text_at(i, "certificate"), text_at(i, "valid_until")};
   }
 
-  /// The state is "check" for all results of a check campaign, because they are a separate series;
-  /// by default "as-found".
+  /// The state is "check" for all results of a check campaign; by default "as-found". A check
+  /// continues the series, because it shows what a table did.
   std::string state(std::string said) const {
     if (entry_.purpose == "check") return "check";
     return said.empty() ? "as-found" : said;

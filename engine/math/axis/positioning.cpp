@@ -57,12 +57,13 @@ const std::array rules = {
 };
 
 // In a difference of two readings, the environment can contribute its whole range.
-constexpr RuleShare share_of_reversal{false, 2.0, 0.0, 0.0, 1.0};
+constexpr RuleShare share_of_reversal{false, 2.0, 0.0, 0.0, &DriftShare::B};
 
 std::vector<RuleValue> iso(const PositioningRule& rule, const AxisStatistics& axis) {
   const Iso230Result r = evaluate_iso230_2(axis, rule.k);
-  const RuleShare A{true, 2.0, rule.k, 0.0}, E{true, 2.0, 0.0, 0.0}, M{true, 1.0, 0.0, 0.0},
-      both{false, 2.0, rule.k, 0.0, 1.0}, one{false, 0.0, rule.k, 0.0};
+  const RuleShare A{true, 2.0, rule.k, 0.0, &DriftShare::E}, E{true, 2.0, 0.0, 0.0, &DriftShare::E},
+      M{true, 1.0, 0.0, 0.0, &DriftShare::M}, both{false, 2.0, rule.k, 0.0, &DriftShare::B},
+      one{false, 0.0, rule.k, 0.0};
   std::vector<RuleValue> out = {{"A", r.A, A}, {"A+", r.A_plus, A}, {"A-", r.A_minus, A}};
   if (rule.systematic)
     out.insert(out.end(),
@@ -71,7 +72,7 @@ std::vector<RuleValue> iso(const PositioningRule& rule, const AxisStatistics& ax
                          {"R+", r.R_plus, one},
                          {"R-", r.R_minus, one},
                          {"B", r.B, share_of_reversal},
-                         {"B_mean", r.B_mean, {false, 2.0, 0.0, 0.0, 0.0, 1.0}}});
+                         {"B_mean", r.B_mean, {false, 2.0, 0.0, 0.0, &DriftShare::B_mean}}});
   return out;
 }
 
@@ -84,13 +85,13 @@ std::vector<RuleValue> upr(const PositioningRule& rule, const AxisStatistics& ax
 std::vector<RuleValue> vdi(const PositioningRule& rule, const AxisStatistics& axis) {
   const VdiResult r = evaluate_vdi3441(axis, StandardDeviation::direct);
   const RuleShare scatter{false, 0.0, rule.k, 0.0};
-  return {{"P", r.P, {true, 2.0, rule.k, 0.0}},
-          {"Pa", r.Pa, {true, 1.0, 0.0, 0.0}},
+  return {{"P", r.P, {true, 2.0, rule.k, 0.0, &DriftShare::E}},
+          {"Pa", r.Pa, {true, 1.0, 0.0, 0.0, &DriftShare::M}},
           {"Ps_max", r.Ps_max, scatter},
           {"Ps_mean", r.Ps_mean, scatter},
           {"U_max", r.U_max, share_of_reversal},
-          {"U_mean", r.U_mean, share_of_reversal},
-          {"PsU_max", r.PsU_max, {false, 2.0, rule.k, 0.0, 1.0}, true}};
+          {"U_mean", r.U_mean, {false, 2.0, 0.0, 0.0, &DriftShare::U_mean}},
+          {"PsU_max", r.PsU_max, {false, 2.0, rule.k, 0.0, &DriftShare::B}, true}};
 }
 
 double both_of(double plus, double minus) {
@@ -108,11 +109,9 @@ std::vector<RuleValue> nmtba(const PositioningRule& rule, const AxisStatistics& 
       repeatability[minus ? 1 : 0].put(rule.k * side.s);
     }
   // The commanded position refers to a zero set by one reading; a subtracted offset is a mean.
-  RuleShare of_accuracy{true, 1.0, rule.k / 2.0, 0.0};
-  if (rule.without_offset)
-    of_accuracy.means = 2.0;
-  else
-    of_accuracy.band = 1.0;
+  const RuleShare of_accuracy = rule.without_offset
+                                    ? RuleShare{true, 2.0, rule.k / 2.0, 0.0, &DriftShare::E}
+                                    : RuleShare{true, 1.0, rule.k / 2.0, 1.0, &DriftShare::M};
   const RuleShare scatter{false, 0.0, rule.k / 2.0, 0.0};
   const double plus = accuracy[0].largest(), minus = accuracy[1].largest();
   return {{"+-accuracy", both_of(plus, minus), of_accuracy},
@@ -120,7 +119,7 @@ std::vector<RuleValue> nmtba(const PositioningRule& rule, const AxisStatistics& 
           {"+-accuracy-", minus, of_accuracy},
           {"+-repeatability",
            evaluate_iso230_2(axis, rule.k).R / 2.0,
-           {false, 0.5, rule.k / 2.0, 0.0, 0.5}},
+           {false, 0.5, rule.k / 2.0, 0.0, &DriftShare::B, 0.5}},
           {"+-repeatability+", repeatability[0].largest(), scatter},
           {"+-repeatability-", repeatability[1].largest(), scatter}};
 }

@@ -46,8 +46,10 @@ Expected<AxisAnalysis> begin_axis_analysis(const AnalysisInput& in) {
   const BudgetOrGap of =
       uncertainty_budget(in.campaign, limits.environment, in.measurement.axis, a.test);
   a.budget = of.budget;
-  const double U_mean = a.budget ? iso230_2_uncertainty(*a.budget, a.approaches, 2.0).B_mean : 0.0;
-  for (Finding& f : axis_findings(a.test, o, stated != nullptr ? &axis : nullptr, U_mean))
+  const Iso230Uncertainty U = iso230_2_uncertainty(a.budget.value_or(Budget{}), a.approaches, 2.0);
+  const ReversalUncertainty of_reversal =
+      a.budget ? ReversalUncertainty{U.B, U.B_mean} : ReversalUncertainty{};
+  for (Finding& f : axis_findings(a.test, o, stated != nullptr ? &axis : nullptr, of_reversal))
     a.findings.push_back(std::move(f));
   for (Finding& f : limits.findings) a.findings.push_back(std::move(f));
   require_repetition(a.test, a.budget, "R, R+, R-, A, A+, A-", a.findings);
@@ -60,17 +62,26 @@ Expected<AxisAnalysis> begin_axis_analysis(const AnalysisInput& in) {
   return a;
 }
 
-void add_value(Evaluation& e, const AxisAnalysis& a, std::string name, double value, double U,
-               Made made) {
+void add_value(Evaluation& e, const AxisAnalysis& a, std::string name, double value,
+               const ResultUncertainty& U, Made made) {
   if (!std::isfinite(value)) return;
   Value v{std::move(name), value, a.deviation};
-  if (a.budget && std::isfinite(U) && U > 0.0) {
-    v.U = U;
+  if (a.budget && std::isfinite(U.U) && U.U > 0.0) {
+    v.U = U.U;
     if (!e.budget) e.budget = contributions_of(*a.budget, a.axis, a.test.rotary);
     e.budget->results.push_back(
         {v.name, a.deviation, shares_of(*a.budget, U, made == Made::of_all), 2.0, INFINITY});
   }
   e.values.push_back(std::move(v));
+}
+
+void note_scatter(Evaluation& e, const AxisAnalysis& a, std::string values) {
+  if (!a.budget || a.budget->U_EVE == 0.0 || a.approaches < 2) return;
+  const double n = static_cast<double>(a.approaches);
+  e.notes.push_back({"method.scatter-of-runs",
+                     {{"approaches", n, Quantity::count},
+                      {"percent", std::round(100.0 / std::sqrt(2.0 * (n - 1.0))), Quantity::count}},
+                     {{"values", std::move(values)}}});
 }
 
 }  // namespace nonio::math

@@ -8,6 +8,7 @@
 #include "common/constants.h"
 #include "common/finding_builder.h"
 #include "nonio/math/budget.h"
+#include "nonio/math/compensated.h"
 #include "nonio/math/distributions.h"
 #include "nonio/math/drift.h"
 #include "nonio/math/iso230_2.h"
@@ -44,13 +45,14 @@ const char* positive_reversal(std::optional<double> active) {
 }  // namespace
 
 void reversal_findings(const AxisTest& test, std::vector<Finding>& findings,
-                       std::optional<double> active, double U_mean) {
+                       std::optional<double> active, ReversalUncertainty of_budget) {
   using Kind = Reversal::Kind;
   const Reversal r = assess_reversal(test);
   const bool attention = !std::isnan(r.largest) && matters(test, r.largest);
   // A single value is not recommended if it leaves a larger reversal somewhere than exists now.
   const bool constant = r.kind == Kind::lost_motion || r.kind == Kind::over_compensated;
-  const double U = std::max(drift_share(test).B_mean, U_mean);
+  const DriftShare seen = drift_share(test);
+  const double U = std::max(seen.B_mean, of_budget.B_mean);
   const char* id = constant && !(r.largest_left < r.largest) ? "reversal.one-value-worse"
                    : r.kind == Kind::lost_motion && is_reversal_known(r.mean, U)
                        ? "reversal.lost-motion"
@@ -59,8 +61,7 @@ void reversal_findings(const AxisTest& test, std::vector<Finding>& findings,
                    : r.kind == Kind::not_constant     ? "reversal.not-constant"
                                                       : nullptr;
   if (id != nullptr) {
-    // A correction is not better than the uncertainty of its value.
-    const double left = std::max(r.largest_left, U);
+    const double left = predicted_after(r.largest, r.largest_left, std::max(seen.B, of_budget.B));
     FindingBuilder finding(id, attention, test.rotary);
     finding.deviation("mean", r.mean)
         .deviation("u_mean", r.u_mean)
@@ -104,10 +105,10 @@ void common_offset(const AxisTest& test, std::vector<Finding>& findings) {
 }  // namespace
 
 std::vector<Finding> axis_findings(const AxisTest& test, const Observations& o, const Axis* axis,
-                                   double U_mean) {
+                                   ReversalUncertainty U) {
   std::vector<Finding> findings;
-  drift_findings(test, findings);
-  reversal_findings(test, findings, axis != nullptr ? axis->active_backlash : std::nullopt, U_mean);
+  drift_findings(test, findings, U);
+  reversal_findings(test, findings, axis != nullptr ? axis->active_backlash : std::nullopt, U);
   scatter_findings(test, findings);
   turn_findings(test, findings);
   plan_findings(test, o, axis, findings);
@@ -198,24 +199,51 @@ constexpr double beyond_scatter = 0.002;
 // Steps between five runs, to which a drift is extrapolated: docs/dev/constants.md, A25.
 constexpr double steps_of_five_runs = 4.0;
 
-bool steady(const Drift::Part& part, std::size_t runs) {
-  return significant(part.p_runs, significance) ||
-         (runs >= 5 && part.monotone && significant(part.p_passes, significance));
+// Each of the three courses that slow down has this part of the level of the even one:
+// docs/dev/constants.md, M61.
+constexpr double of_slowing = 0.1;
+
+double share_of_level(const Drift& drift) {
+  return std::isinf(drift.time_constant) ? 1.0 : of_slowing;
+}
+
+bool shows(double fraction, double p, double level) {
+  return significant(p, level) && std::fabs(fraction - 1.0) <= 0.5;
+}
+
+bool steady(const Drift::Part& part, const Drift& drift) {
+  const double level = significance * share_of_level(drift);
+  if (significant(part.p_runs, level)) return true;
+  const bool by_passes = std::isinf(drift.time_constant)
+                             ? drift.runs >= 5 && part.monotone
+                             : part.monotone && shows(part.seen_in_pairs, part.p_pairs, level);
+  return by_passes && significant(part.p_passes, level);
 }
 
 bool parallel_found(const Drift& drift) {
   const Drift::Part& part = drift.offset;
-  if (!part.known || !significant(part.p_scatter, beyond_scatter)) return false;
-  const bool shown =
-      significant(drift.p_reversal, significance) && std::fabs(drift.seen_in_reversal - 1.0) <= 0.5;
-  return steady(part, drift.runs) || (shown && part.agree);
+  const double level = share_of_level(drift);
+  if (!part.known || !significant(part.p_scatter, beyond_scatter * level)) return false;
+  const bool shown = shows(drift.seen_in_reversal, drift.p_reversal, significance * level);
+  return steady(part, drift) || (shown && part.agree);
 }
 
 bool wedge_found(const Drift& drift) {
   const Drift::Part& part = drift.slope;
-  if (!part.known || !significant(part.p_scatter, beyond_scatter)) return false;
-  return steady(part, drift.runs) ||
-         (part.agree && (drift.runs == 2 || significant(part.p_passes, significance)));
+  const double level = share_of_level(drift);
+  if (!part.known || !significant(part.p_scatter, beyond_scatter * level)) return false;
+  return steady(part, drift) ||
+         (part.agree && (drift.runs == 2 || significant(part.p_passes, significance * level)));
+}
+
+// Of the courses with which a drift is found, the one that fits best; without one the even course.
+const Drift& course_of(const std::vector<Drift>& drifts) {
+  const Drift* best = nullptr;
+  for (const Drift& drift : drifts)
+    if ((parallel_found(drift) || wedge_found(drift)) &&
+        (best == nullptr || drift.misfit() < best->misfit()))
+      best = &drift;
+  return best != nullptr ? *best : drifts.front();
 }
 
 double smallest_p(const Drift::Part& part) {
@@ -224,9 +252,12 @@ double smallest_p(const Drift::Part& part) {
 
 }  // namespace
 
-void drift_findings(const AxisTest& test, std::vector<Finding>& findings) {
-  const Drift drift = estimate_drift(test);
-  if (!drift.offset.known) return;
+void drift_findings(const AxisTest& test, std::vector<Finding>& findings,
+                    ReversalUncertainty of_budget) {
+  const std::vector<Drift> drifts = estimate_drifts(test);
+  if (drifts.empty()) return;
+  const Drift& drift = course_of(drifts);
+  const double steps = static_cast<double>(drift.runs) - 1.0;
   const double scatter = std::max(drift.scatter, rounding);
   const Drift::Part &shift = drift.offset, &turn = drift.slope;
   const double wedge = turn.total * test.length();
@@ -239,21 +270,21 @@ void drift_findings(const AxisTest& test, std::vector<Finding>& findings) {
       wedge_found(drift) && std::fabs(wedge) > scatter && std::fabs(wedge) >= 0.25 * largest;
   const bool is_parallel = parallel_found(drift) && std::fabs(shift.total) > scatter &&
                            (!is_wedge || common > std::max(scatter, 0.5 * std::fabs(wedge)));
-  const auto finding = [&](const char* id, double total, const Drift::Part& part, double per_run) {
+  const auto finding = [&](const char* id, double total, const Drift::Part& part) {
+    const double per_run = total / steps;
     const double size = std::max(std::fabs(total), steps_of_five_runs * std::fabs(per_run));
     return FindingBuilder(id, matters(test, size), test.rotary)
         .deviation("total", total)
         .deviation("per_run", per_run)
         .slope("wedge", turn.total)
-        .deviation("in_B", std::fabs(drift.in_B_mean))
+        .deviation("in_B", std::max(drift_share(test).B_mean, of_budget.B_mean))
         .deviation("scatter", scatter)
         .number("p", smallest_p(part), Quantity::probability)
         .count("runs", static_cast<double>(drift.runs))
         .done();
   };
-  if (is_parallel) findings.push_back(finding("drift.parallel", shift.total, shift, shift.per_run));
-  if (is_wedge)
-    findings.push_back(finding("drift.wedge", wedge, turn, turn.per_run * test.length()));
+  if (is_parallel) findings.push_back(finding("drift.parallel", shift.total, shift));
+  if (is_wedge) findings.push_back(finding("drift.wedge", wedge, turn));
 }
 
 namespace {

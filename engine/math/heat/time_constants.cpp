@@ -57,7 +57,7 @@ Means means_of(const Track& k) {
   return out;
 }
 
-struct Curve {
+struct Settling {
   std::vector<double> log_tau;
   Vector beta;
   Matrix jacobian;
@@ -77,23 +77,23 @@ Matrix columns_for(const Means& m, const std::vector<double>& log_tau) {
   return X;
 }
 
-Curve linear(const Means& m, const std::vector<double>& log_tau, const PathNoise& noise) {
+Settling linear(const Means& m, const std::vector<double>& log_tau, const PathNoise& noise) {
   Matrix both = with_column(columns_for(m, log_tau), m.d);
   whiten(both, m.place, noise);
   const Eigen::Index k = both.cols() - 1;
   const Matrix X = left_columns(both, k);
   const Vector y = both.col(k);
-  Curve out{log_tau, least_squares(X, y), {}, 0.0};
+  Settling out{log_tau, least_squares(X, y), {}, 0.0};
   out.rss = squared_residual(y, X, out.beta);
   if (!std::isfinite(out.rss)) out.rss = INFINITY;
   return out;
 }
 
-Vector left_of(const Means& m, const Curve& c) {
+Vector left_of(const Means& m, const Settling& c) {
   return residual(m.d, columns_for(m, c.log_tau), c.beta);
 }
 
-Matrix jacobian_of(const Means& m, const Curve& c) {
+Matrix jacobian_of(const Means& m, const Settling& c) {
   Matrix J(m.t.size(), at(1 + 2 * c.log_tau.size()));
   const Matrix X = columns_for(m, c.log_tau);
   for (Eigen::Index k = 0; k < X.cols(); ++k) J.col(k) = X.col(k);
@@ -114,10 +114,10 @@ std::vector<double> grid(const Means& m, int count) {
   return out;
 }
 
-Curve searched(const Means& m, std::size_t parts, const PathNoise& noise) {
-  Curve best;
+Settling searched(const Means& m, std::size_t parts, const PathNoise& noise) {
+  Settling best;
   const auto attempt = [&](std::vector<double> log_tau) {
-    Curve c = linear(m, log_tau, noise);
+    Settling c = linear(m, log_tau, noise);
     if (c.rss < best.rss) best = std::move(c);
   };
   const auto one = grid(m, parts == 1 ? 40 : 18);
@@ -130,7 +130,7 @@ Curve searched(const Means& m, std::size_t parts, const PathNoise& noise) {
 
 /// Gauss-Newton steps in ln tau are halved while they increase the residuals. Small steps are
 /// always accepted, so that rounding does not decide where the search ends.
-void refine(const Means& m, const PathNoise& noise, Curve& c) {
+void refine(const Means& m, const PathNoise& noise, Settling& c) {
   constexpr int most = 60;
   constexpr double near = 1e-4, reached = 1e-11;
   const std::size_t parts = c.log_tau.size();
@@ -149,7 +149,7 @@ void refine(const Means& m, const PathNoise& noise, Curve& c) {
         log_tau[k] += change, largest = std::max(largest, std::fabs(change));
         log_tau[k] = std::clamp(log_tau[k], std::log(m.step / 20.0), std::log(100.0 * m.duration));
       }
-      Curve next = linear(m, log_tau, noise);
+      Settling next = linear(m, log_tau, noise);
       better = next.rss < c.rss || largest < near;
       if (better) c = std::move(next);
     }
@@ -159,14 +159,14 @@ void refine(const Means& m, const PathNoise& noise, Curve& c) {
 }
 
 struct Fitted {
-  Curve curve;
+  Settling curve;
   PathNoise noise;
 };
 
 Fitted fitted(const Means& m, std::size_t parts) {
   Fitted out;
   for (int round = 0; round < 3; ++round) {
-    Curve c = searched(m, parts, out.noise);
+    Settling c = searched(m, parts, out.noise);
     refine(m, out.noise, c);
     const Vector linearised = left_of(m, c);
     out.curve = std::move(c);
@@ -178,7 +178,7 @@ Fitted fitted(const Means& m, std::size_t parts) {
   return out;
 }
 
-double rss_with(const Means& m, const Curve& c, const PathNoise& noise) {
+double rss_with(const Means& m, const Settling& c, const PathNoise& noise) {
   Matrix rest = left_of(m, c);
   whiten(rest, m.place, noise);
   return rest.squaredNorm();
@@ -187,7 +187,7 @@ double rss_with(const Means& m, const Curve& c, const PathNoise& noise) {
 /// Returns whether a second time constant is significant and differs by a factor of `apart` or
 /// more. Both curves are compared under the noise estimated with two time constants.
 bool two_parts(const Means& m, const Fitted& two) {
-  Curve one = searched(m, 1, two.noise);
+  Settling one = searched(m, 1, two.noise);
   refine(m, two.noise, one);
   const double n = static_cast<double>(m.t.size()), dof = n / two.noise.slow() - 5.0;
   const double rss = rss_with(m, two.curve, two.noise);
@@ -198,7 +198,7 @@ bool two_parts(const Means& m, const Fitted& two) {
 }
 
 void put_parts(const Means& m, const Fitted& f, TimeConstants& out) {
-  const Curve& c = f.curve;
+  const Settling& c = f.curve;
   Matrix J = c.jacobian;
   whiten(J, m.place, f.noise);
   const double n = static_cast<double>(m.t.size()), p = static_cast<double>(J.cols()),

@@ -93,4 +93,14 @@ double shape_factor(double excess) {
   return (low + high) / 4.0;
 }
 
+double factor_of_largest(std::size_t values, double dof) {
+  const double tail = 0.0455 / static_cast<double>(values);
+  double low = 2.0, high = 30.0;
+  for (int halved = 0; halved < 40; ++halved) {
+    const double k = (low + high) / 2.0;
+    (t_two_sided(k, dof) / 2.0 > tail ? low : high) = k;
+  }
+  return low;
+}
+
 }  // namespace nonio::math

@@ -22,9 +22,10 @@ CompensatedUncertainty compensated_uncertainty(const Campaign& campaign, const M
   auto budget = uncertainty_budget(campaign, limits.environment, m.axis, test).budget;
   if (budget && !has_drift) budget->seen = {};
   const DriftShare seen = has_drift ? drift_share(test) : DriftShare{};
+  if (budget) budget->seen.E = seen.E_after, budget->seen.M = seen.M_after;
   if (!budget) return {seen.B_mean, seen.B, not_known, not_known};
   const auto U = iso230_2_uncertainty(*budget, approaches_per_mean(test), 2.0);
-  return {std::max(U.B_mean, seen.B_mean), std::max(U.B, seen.B), U.E, U.M};
+  return {std::max(U.B_mean.U, seen.B_mean), std::max(U.B.U, seen.B), U.E, U.M};
 }
 
 double compensated_uncertainty_along(const Campaign& campaign, const Measurement& m,

@@ -92,13 +92,17 @@ Iso230Uncertainty iso230_2_uncertainty(const Budget& b, std::size_t n, double k)
   const double root_n = std::sqrt(static_cast<double>(n));
   const double two_means = std::sqrt(2.0) * b.U_EVE / root_n;
   Iso230Uncertainty U{};
-  U.B = root(two_means, b.seen.B);
-  U.B_mean = root(two_means, b.seen.B_mean);
-  U.M = root(b.systematic(), b.U_EVE / root_n);
-  U.E = U.E_plus = U.E_minus = root(b.systematic(), two_means);
-  U.R_plus = U.R_minus = root(k * b.U_EVE, 2.0 * k * b.seen.s);
-  U.R = root(U.R_plus, U.B);
-  U.A = U.A_plus = U.A_minus = root(U.E, k * b.U_EVE);
+  const auto of = [](double others, double readings) {
+    return ResultUncertainty{root(others, readings), readings};
+  };
+  const double S = b.systematic(), s = 2.0 * k * b.seen.s;
+  U.B = of(two_means, b.seen.B);
+  U.B_mean = of(two_means, b.seen.B_mean);
+  U.M = of(root(S, b.U_EVE / root_n), b.seen.M);
+  U.E = U.E_plus = U.E_minus = of(root(S, two_means), b.seen.E);
+  U.R_plus = U.R_minus = of(k * b.U_EVE, s);
+  U.R = of(root(k * b.U_EVE, two_means), root(s, b.seen.B));
+  U.A = U.A_plus = U.A_minus = of(root(root(S, two_means), k * b.U_EVE), b.seen.E);
   return U;
 }
 
@@ -106,26 +110,40 @@ Iso230Uncertainty iso230_2_uncertainty(const Budget& b, std::size_t n, double k)
 // Ps_j and P contain 3 s_j on each side of the mean.
 VdiUncertainty vdi3441_uncertainty(const Budget& b, std::size_t n) {
   const Iso230Uncertainty iso = iso230_2_uncertainty(b, n, 3.0);
-  return {iso.A, iso.M, iso.R_plus, iso.R_plus, iso.B, iso.B};
+  const double two_means = std::sqrt(2.0 / static_cast<double>(n)) * b.U_EVE;
+  return {iso.A,      iso.M, iso.R_plus,
+          iso.R_plus, iso.B, {root(two_means, b.seen.U_mean), b.seen.U_mean}};
 }
 
-double rule_uncertainty(const Budget& b, std::size_t n, const RuleShare& share) {
+ResultUncertainty rule_uncertainty(const Budget& b, std::size_t n, const RuleShare& share) {
   const double S = share.systematic ? b.systematic() : 0.0, E_VE = b.U_EVE / of_range;
   const double of_s = share.systematic ? 0.0 : 2.0 * share.scatter * b.seen.s,
-               of_B = share.B * b.seen.B, of_mean = share.B_mean * b.seen.B_mean;
-  return std::sqrt(S * S + share.means * b.U_EVE * b.U_EVE / static_cast<double>(n) +
-                   share.scatter * share.scatter * b.U_EVE * b.U_EVE + share.band * E_VE * E_VE +
-                   of_s * of_s + of_B * of_B + of_mean * of_mean);
+               of_means = share.seen != nullptr ? share.seen_factor * b.seen.*share.seen : 0.0,
+               of_readings = root(of_s, of_means);
+  return {std::sqrt(S * S + share.means * b.U_EVE * b.U_EVE / static_cast<double>(n) +
+                    share.scatter * share.scatter * b.U_EVE * b.U_EVE + share.band * E_VE * E_VE +
+                    of_readings * of_readings),
+          of_readings};
 }
 
-double slope_uncertainty(const Budget& b, std::size_t n) {
-  return root(b.systematic(), b.U_EVE / std::sqrt(static_cast<double>(n))) / b.length;
+ResultUncertainty slope_uncertainty(const Budget& b, std::size_t n) {
+  const ResultUncertainty M = iso230_2_uncertainty(b, n, 2.0).M;
+  return {M.U / b.length, M.of_readings / b.length};
 }
 
 Budget slope_budget(const Budget& b) {
   Budget out = b;
   out.U_MIS = b.U_MIS / of_range * 2.0 * of_limit;
   return out;
+}
+
+std::optional<double> common_scale_uncertainty(const Campaign& campaign, const std::string& axis,
+                                               double length) {
+  AxisTest ends;
+  ends.targets = {0.0, length};
+  const auto of = uncertainty_budget(campaign, campaign.environment, axis, ends);
+  if (!of.budget || !(length > 0.0)) return std::nullopt;
+  return slope_budget(*of.budget).systematic() / length / 2.0;
 }
 
 UncertaintyBudget contributions_of(const Budget& b, const std::string& axis, bool rotary) {
@@ -143,9 +161,13 @@ UncertaintyBudget contributions_of(const Budget& b, const std::string& axis, boo
   };
   using D = Distribution;
   using C = Correlation;
+  const auto add_readings = [&] {
+    add("repetition", 2.0 * b.seen.scatter, D::normal, C::readings, false, "readings");
+  };
   if (rotary) {
     add("device-angle", b.U_DEV, D::normal, C::lines, false, "instrument.U_arcsec");
     add("drift-angle", b.U_EVE, D::rectangular, C::readings, false, "environment.drift_arcsec");
+    add_readings();
     return out;
   }
   add("device", b.U_DEV, D::normal, C::lines, true, "instrument.U_fixed_um, instrument.U_per_m_um");
@@ -161,19 +183,23 @@ UncertaintyBudget contributions_of(const Budget& b, const std::string& axis, boo
     add("device-expansion", b.U_ED, D::rectangular, C::lines, true,
         "environment.temperature_difference_K, instrument.expansion_range_um_per_m_K");
   add("drift", b.U_EVE, D::rectangular, C::readings, false, "environment.drift_um");
+  add_readings();
   return out;
 }
 
-std::vector<double> shares_of(const Budget& b, double U, bool systematic) {
-  const double S = systematic ? b.systematic() : 0.0;
+std::vector<double> shares_of(const Budget& b, const ResultUncertainty& of, bool systematic) {
   std::vector<double> out;
   const auto add = [&](double part) { out.push_back(systematic ? part / 2.0 : 0.0); };
   add(b.U_DEV);
-  if (b.rotary) return out.push_back(std::sqrt(std::max(0.0, U * U - S * S)) / 2.0), out;
-  for (const double part : {b.U_MIS, b.U_M, b.U_E}) add(part);
-  for (const double part : {b.U_MD, b.U_ED})
-    if (part > 0.0) add(part);
-  out.push_back(std::sqrt(std::max(0.0, U * U - S * S)) / 2.0);
+  if (!b.rotary) {
+    for (const double part : {b.U_MIS, b.U_M, b.U_E}) add(part);
+    for (const double part : {b.U_MD, b.U_ED})
+      if (part > 0.0) add(part);
+  }
+  const double S = systematic ? b.systematic() : 0.0;
+  out.push_back(std::sqrt(std::max(0.0, of.U * of.U - S * S - of.of_readings * of.of_readings)) /
+                2.0);
+  out.push_back(of.of_readings / 2.0);
   return out;
 }
 

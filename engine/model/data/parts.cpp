@@ -441,4 +441,15 @@ Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
   return terms;
 }
 
+std::vector<std::string> unstated_positions(const Part& part) {
+  std::vector<bool> unstated(part.measurements.size(), false);
+  for (const auto& axis : part.table.axes)
+    for (std::size_t i = 0; i < axis.position.size(); ++i)
+      if (std::isnan(axis.position[i])) unstated[part.measurement[i]] = true;
+  std::vector<std::string> out;
+  for (std::size_t m = 0; m < unstated.size(); ++m)
+    if (unstated[m]) out.push_back(part.measurements[m]);
+  return out;
+}
+
 }  // namespace nonio::model

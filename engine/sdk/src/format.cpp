@@ -117,8 +117,9 @@ std::string fixed_text(double value, int decimals) {
 
 std::optional<RoundedResult> rounded_result(double value, double U) {
   if (!(U > 0.0) || !std::isfinite(U) || !std::isfinite(value)) return std::nullopt;
-  const int place = std::max(place_of_second_digit(U), -9);
-  return RoundedResult{rounded_text(value, place), rounded_text(U, place)};
+  constexpr int last = -9;
+  const int place = std::max(place_of_second_digit(U), last);
+  return RoundedResult{rounded_text(value, place), rounded_text(std::max(U, 1e-9), place)};
 }
 
 std::string short_text(double value, int significant) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "nonio/math/budget.h"
 #include "nonio/math/diagonals.h"
@@ -152,10 +153,7 @@ class Report {
     }
     add_squareness();
     compare_squares();
-    if (c_.mirrored)
-      series("ECY", c_.y_axis, r_.ECX, Quantity::small_angle);
-    else
-      series("ECX", c_.x_axis, r_.ECX, Quantity::small_angle);
+    add_yaw();
     if (r_.separable())
       add_both();
     else
@@ -246,6 +244,18 @@ class Report {
       e_.findings.push_back({.id = "diagonals.racking-noise",
                              .evidence = {{"racking", racking.value, Quantity::deviation},
                                           {"noise", noise, Quantity::deviation}}});
+  }
+
+  void add_yaw() {
+    const std::string &axis = c_.mirrored ? c_.y_axis : c_.x_axis,
+                      name = c_.mirrored ? "ECY" : "ECX";
+    series(name.c_str(), axis, r_.ECX, Quantity::small_angle);
+    const auto& yaw = r_.ECX.value;
+    if (yaw.empty()) return;
+    const double sum = std::accumulate(yaw.begin(), yaw.end(), 0.0);
+    e_.notes.push_back({"method.squareness-place",
+                        {{"mean", sum / static_cast<double>(yaw.size()), Quantity::small_angle}},
+                        {{"axis", axis}, {"yaw", name}}});
   }
 
   void add_both() {

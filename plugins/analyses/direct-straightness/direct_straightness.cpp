@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "nonio/math/budget.h"
+#include "nonio/math/distributions.h"
 #include "nonio/math/measured_line.h"
 #include "nonio/math/straightness.h"
 #include "nonio/sdk/error.h"
@@ -237,6 +238,20 @@ class Report {
     e_.values.push_back(budget_.value(name, v, q, u, shares));
   }
 
+  /// Noise alone makes a width too large, the more, the more pairs of points compete for it: those
+  /// within three standard uncertainties of an end.
+  void width(const char* name, const math::Straightness& s) {
+    if (!known_) return e_.values.push_back({name, s.width, Quantity::deviation});
+    const auto [u, shares] = of(s.width_by);
+    const auto near = [&, scatter = 3.0 * u](double end) {
+      return static_cast<std::size_t>(std::count_if(
+          s.rest.begin(), s.rest.end(), [&](double d) { return std::fabs(d - end) <= scatter; }));
+    };
+    const auto [low, high] = std::minmax_element(s.rest.begin(), s.rest.end());
+    const double of_many = math::factor_of_largest(near(*low) * near(*high), 1e6) / 2.0;
+    e_.values.push_back(budget_.value(name, s.width, Quantity::deviation, of_many * u, shares));
+  }
+
   /// The points about the least-squares line: d = (I - H) e, with the hat matrix H.
   void series(const math::Straightness& s, const std::string& axis) {
     Series out{p_.name + "_LSQ", axis, Quantity::length, Quantity::deviation, p_.x, s.rest, {}};
@@ -337,12 +352,9 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   if (!model.missing.empty()) e.findings.push_back(math::missing_finding(model.missing));
   if (p.dof == 0.0) e.findings.push_back({.id = "straightness.no-uncertainty", .attention = true});
   Report report(p, model, e);
-  report.value("straightness_MZ", lines.minimum_zone.width, Quantity::deviation,
-               lines.minimum_zone.width_by);
-  report.value("straightness_LSQ", lines.least_squares.width, Quantity::deviation,
-               lines.least_squares.width_by);
-  report.value("straightness_ends", lines.end_points.width, Quantity::deviation,
-               lines.end_points.width_by);
+  report.width("straightness_MZ", lines.minimum_zone);
+  report.width("straightness_LSQ", lines.least_squares);
+  report.width("straightness_ends", lines.end_points);
   report.value("slope", lines.least_squares.b, Quantity::small_angle, lines.least_squares.slope_by);
   report.series(lines.least_squares, in.measurement.axis);
   report.close();

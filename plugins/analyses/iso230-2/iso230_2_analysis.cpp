@@ -72,6 +72,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
                      {{"edition", static_cast<double>(edition), Quantity::count},
                       {"k", result.k, Quantity::count},
                       {"two_k", 2.0 * result.k, Quantity::count}}});
+  note_scatter(e, begun, "A, A+, A-, R, R+, R-");
   return e;
 }
 

@@ -165,7 +165,8 @@ std::vector<std::string> missing_of(const std::vector<Diagonal>& set) {
 void put_machine(const AnalysisInput& in, const AxisAnalysis& a, const std::vector<Diagonal>& set,
                  Evaluation& e) {
   struct Largest {
-    double value = -1.0, U = NAN;
+    double value = -1.0;
+    ResultUncertainty U;
     std::string of;
   } E, B;
   std::vector<std::string> measured;
@@ -175,9 +176,9 @@ void put_machine(const AnalysisInput& in, const AxisAnalysis& a, const std::vect
     if (!t) continue;
     ++counted;
     measured.push_back(d.name);
-    const double U_E = t->budget.budget ? t->U.E : NAN, U_B = t->budget.budget ? t->U.B : NAN;
-    if (t->result.E > E.value) E = {t->result.E, U_E, d.name};
-    if (t->result.B > B.value) B = {t->result.B, U_B, d.name};
+    const Iso230Uncertainty U = t->budget.budget ? t->U : Iso230Uncertainty{};
+    if (t->result.E > E.value) E = {t->result.E, U.E, d.name};
+    if (t->result.B > B.value) B = {t->result.B, U.B, d.name};
   }
   if (E.value >= 0.0) add_value(e, a, "E_d", E.value, E.U, Made::of_all);
   if (B.value >= 0.0) add_value(e, a, "B_d", B.value, B.U, Made::of_environment);

@@ -163,7 +163,8 @@ std::string add_values(Evaluation& e, const AxisAnalysis& a, const AxisStatistic
     for (const RuleValue& v : evaluate_rule(*rule, statistics, offset)) {
       std::string name = std::string(rule->name) + ":" + std::string(v.name);
       if (!std::isfinite(v.value)) absent += (absent.empty() ? "" : ", ") + name;
-      const double U = rule_uncertainty(a.budget.value_or(Budget{}), a.approaches, v.share);
+      const ResultUncertainty U =
+          rule_uncertainty(a.budget.value_or(Budget{}), a.approaches, v.share);
       add_value(e, a, std::move(name), v.value, U,
                 v.share.systematic ? Made::of_all : Made::of_environment);
     }
@@ -178,8 +179,10 @@ void add_slopes(Evaluation& e, const AxisAnalysis& a, const AxisStatistics& stat
     Value v{name, value, slope_of(a.test.rotary)};
     if (a.budget && e.budget) {
       const Budget of_slope = slope_budget(*a.budget);
-      v.U = slope_uncertainty(of_slope, a.approaches);
-      std::vector<double> parts = shares_of(of_slope, *v.U * a.budget->length, true);
+      const ResultUncertainty U = slope_uncertainty(of_slope, a.approaches);
+      v.U = U.U;
+      std::vector<double> parts =
+          shares_of(of_slope, {U.U * a.budget->length, U.of_readings * a.budget->length}, true);
       for (double& part : parts) part /= a.budget->length;
       e.budget->results.push_back({v.name, v.quantity, std::move(parts), 2.0, INFINITY});
     }
@@ -200,7 +203,8 @@ PointTable table(const AxisAnalysis& a, const AxisStatistics& statistics) {
     points.columns.push_back(std::move(c));
   };
   using T = AxisStatistics::Target;
-  const double of_mean = U_of({true, 1.0, 0.0, 0.0}), of_B = U_of({false, 2.0, 0.0, 0.0, 1.0}),
+  const double of_mean = U_of({true, 1.0, 0.0, 0.0, &DriftShare::M}),
+               of_B = U_of({false, 2.0, 0.0, 0.0, &DriftShare::B}),
                of_s = U_of({false, 0.0, 0.5, 0.0}), of_range = U_of({false, 0.0, 0.0, 1.0});
   column("target", a.position, NAN, [](const T& t) { return t.target; });
   column("mean+", a.deviation, of_mean, [](const T& t) { return t.plus.mean; });

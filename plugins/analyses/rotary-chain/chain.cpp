@@ -11,6 +11,7 @@
 
 #include "nonio/math/distributions.h"
 #include "nonio/math/rotary.h"
+#include "nonio/sdk/format.h"
 
 namespace nonio::rotary_chain {
 
@@ -61,6 +62,7 @@ class Solver {
       with_sigma();
       out_.given = true;
       tell_angles();
+      tell_suspect();
     }
     return std::move(out_);
   }
@@ -192,6 +194,61 @@ class Solver {
                     {um("along", f.along), um("rest", f.rest), {"p", p, Quantity::probability}},
                     {{"axis", chain_.axes[j]}}));
     }
+  }
+
+  /// F of what a centre that is left out takes off the residuals, from their derivatives: r' Q^-1 r
+  /// with its residual r and its block Q. Bonferroni over the centres.
+  void tell_suspect() {
+    const math::ChainFit& fit = out_.fit;
+    const std::size_t n = places_.readings.size();
+    if (fit.residual_by.empty() || fit.dof < 6) return;
+    const double all = fit.dof * fit.s * fit.s;
+    double best = 1.0, off = 0.0;
+    std::size_t which = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto left = left_out(fit, i, n);
+      const double w = places_.readings[i].weight, less = w * left.less, rest = all - less;
+      if (!left.known || !(rest > 0.0)) continue;
+      const double p = math::f_upper(less / 3.0 / (rest / (fit.dof - 3.0)), 3.0, fit.dof - 3.0);
+      if (p < best) best = p, off = left.away, which = i;
+    }
+    best = std::min(1.0, best * static_cast<double>(n));
+    if (!math::significant(best, surely)) return;
+    Finding f = finding("rotary-chain.suspect-centre",
+                        {um("away", off), {"p", best, Quantity::probability}});
+    std::string at;
+    for (std::size_t j = 0; j < chain_.axes.size(); ++j)
+      at += (at.empty() ? "" : ", ") + chain_.axes[j] + " = " +
+            evidence_text({"", places_.readings[which].angle[j], Quantity::angle});
+    f.texts = {{"at", at + " " + std::string(unit_of(Quantity::angle).symbol)}};
+    out_.findings.push_back(std::move(f));
+  }
+
+  struct LeftOut {
+    bool known = false;
+    double less = 0.0, away = 0.0;  ///< m^2; m
+  };
+
+  static LeftOut left_out(const math::ChainFit& fit, std::size_t i, std::size_t n) {
+    math::Vector3 row[3];
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t b = 0; b < 3; ++b) row[a][b] = fit.residual_by[a * n + i][b * n + i];
+    const math::Vector3& r = fit.residual[i];
+    const auto cross = [](const math::Vector3& a, const math::Vector3& b) {
+      return math::Vector3{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                           a[0] * b[1] - a[1] * b[0]};
+    };
+    const auto product = [](const math::Vector3& a, const math::Vector3& b) {
+      return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    };
+    const math::Vector3 c[3] = {cross(row[1], row[2]), cross(row[2], row[0]),
+                                cross(row[0], row[1])};
+    const double det = product(row[0], c[0]);
+    if (!(det > 1e-6)) return {};  // the other centres do not determine this one
+    math::Vector3 d{};
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t a = 0; a < 3; ++a) d[k] += c[a][k] * r[a] / det;
+    return {true, product(r, d), std::sqrt(product(d, d))};
   }
 
   const AnalysisInput& in_;

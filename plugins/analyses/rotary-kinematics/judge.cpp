@@ -130,6 +130,7 @@ class Judge {
     if (!out_.U_known) return std::move(out_);
     tell_points();
     tell_waves();
+    tell_suspect();
     tell_two_points();
     tell_tolerances();
     return std::move(out_);
@@ -271,6 +272,31 @@ class Judge {
                                        deg("at", axial_.phase),
                                        {"p", axial_.p, Quantity::probability}}));
     if (wish_.use_angles) tell_angles();
+  }
+
+  /// Leaves out each centre in turn: F of what that takes off the residuals, Bonferroni over the
+  /// centres. A wave over the turn would make its largest deviation suspect.
+  void tell_suspect() {
+    constexpr int fewest_left = 3;
+    if (math::significant(radial_.p, significant) || math::significant(axial_.p, significant))
+      return;
+    const double all = out_.fit.dof * out_.fit.s * out_.fit.s;
+    double best = 1.0, off = 0.0, angle = 0.0;
+    for (std::size_t i = 0; i < out_.centres.size(); ++i) {
+      std::vector<math::BallCentre> others = out_.centres;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+      const auto fit = math::fit_rotary(others, wish_.use_angles);
+      if (!fit || fit->dof < fewest_left || !(fit->s > 0.0)) continue;
+      const double less = std::max(0.0, all - fit->dof * fit->s * fit->s),
+                   dof = out_.fit.dof - fit->dof,
+                   p = math::f_upper(less / dof / (fit->s * fit->s), dof, fit->dof);
+      if (p < best) best = p, off = std::sqrt(less), angle = out_.centres[i].angle;
+    }
+    best = std::min(1.0, best * points());
+    if (math::significant(best, significant))
+      out_.findings.push_back(
+          finding("rotary.suspect-centre", true,
+                  {deg("angle", angle), um("away", off), {"p", best, Quantity::probability}}));
   }
 
   /// Result and U of the classic method for the same readings: two positions p and q, the angle

@@ -96,6 +96,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   for (Finding& f : e.findings) f.measurement = in.measurement.id;
   e.notes.push_back({from_range ? "method.vdi-from-range" : "method.vdi-direct"});
   if (begun.budget) e.notes.push_back({"method.vdi-uncertainty"});
+  note_scatter(e, begun, "P, Ps_max, Ps_mean");
   return e;
 }
 

@@ -49,7 +49,7 @@ Expected<Line> line(const AnalysisInput& in, std::size_t i) {
 struct Of {
   const char* name;
   double math::Iso230Result::*value;
-  double math::Iso230Uncertainty::*U;
+  math::ResultUncertainty math::Iso230Uncertainty::*U;
   Made made;
 };
 constexpr Of values[] = {

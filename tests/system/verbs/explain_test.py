@@ -113,6 +113,22 @@ class Explain(VerbTest):
             complete += self.explain()["verdict"]["kind"] == "nothing"
         self.assertGreaterEqual(complete, 2)
 
+    def test_a_reversal_that_steps_is_not_taken_for_random_zeros_of_passes(self):
+        """Passes with zeros of their own are complete only where no cause explains them down to the noise."""
+        for step, named in ((8.0, True), (None, False)):
+            rng = random.Random(31)
+            rows = ["run,direction,target_mm,deviation_um"]
+            for run in range(1, 6):
+                for sign in (1, -1):
+                    zero = rng.gauss(0, 2.2) if step is None else -sign * (3 + (step / 2 if run > 3 else 0))
+                    for target in range(0, 850, 50)[::sign]:
+                        rows.append(f"{run},{'+' if sign > 0 else '-'},{target},{zero + rng.gauss(0, 0.4):.3f}")
+            self.campaign(manifest(["backlash:X"]), x="\n".join(rows) + "\n")
+            answer = self.explain()
+            self.assertEqual(answer["verdict"]["kind"], "missing" if named else "nothing", step)
+            if named:
+                self.assertEqual(answer["together"], ["play-after-run:X"])
+
     def test_several_campaigns_have_the_cause_that_each_has(self):
         """The catalogue alone describes it by a drift and a jump."""
         self.explain_with(774, lambda z, d, run: d * 12 * (1 - z * z))

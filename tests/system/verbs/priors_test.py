@@ -5,6 +5,7 @@ import json
 import os
 import pathlib
 import random
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -87,6 +88,20 @@ class Priors(unittest.TestCase):
         found = {e["name"]: e["found"] for e in of_all["effect"]}
         self.assertIn("c0020", found["backlash"])
         self.assertNotIn("c0020", found.get("scale", []))
+
+    def test_the_pose_of_a_part_is_no_effect(self):
+        out = self.root / "out-of-part"
+        shutil.copytree(self.out, out)
+        path = out / "c0000" / "results.json"
+        results = json.loads(path.read_text())
+        (fit,) = [a for a in results["analyses"] if a["plugin"] == "model-fit"]
+        fit.setdefault("values", {}).update({name: {"value": 100.0, "unit": "urad", "U": 1.0} for name in ("body-turn:P.a", "worn:X.a")})
+        path.chmod(0o644)
+        path.write_text(json.dumps(results))
+        nonio("export", "--format", "fleet", "--out", out, "--to", self.root)
+        names = [e["name"] for e in tomllib.loads((self.root / "fleet.toml").read_text())["machines"][0]["effect"]]
+        self.assertIn("worn", names)
+        self.assertNotIn("body-turn", names)
 
     def test_the_answer_states_the_counts_and_no_other_evidence(self):
         folder = self.new(1, size=0.5)

@@ -47,6 +47,34 @@ TEST(Findings, NoBacklashValueIsAdvisedThatMakesTheLargestReversalLarger) {
   EXPECT_GT(advised, 0);
 }
 
+// What one value leaves is a reversal at a target: its bound has the U of that, not of the mean.
+TEST(Findings, OneBacklashValueLeavesNoMoreThanStated) {
+  constexpr std::uint32_t seed = 5306;
+  made::Random random(seed);
+  made::Plan plan{{0.0, 0.11, 0.19, 0.31, 0.43, 0.5, 0.62, 0.74}, 3};
+  int stated = 0, held = 0;
+  for (int round = 0; round < 400; ++round) {
+    const auto B = [](double x) { return (-5.0 + 0.4 * std::cos(9.0 * x)) * um; };
+    const auto test = made::arranged(
+        plan, [&](double x, int d, std::uint32_t) { return d * B(x) / 2.0; }, {0.5 * um}, random);
+    std::vector<Finding> findings;
+    reversal_findings(test, findings);
+    const Finding* f = find(findings, "reversal.lost-motion");
+    if (f == nullptr) continue;
+    ++stated;
+    const auto value = [&](const char* name) {
+      return std::find_if(f->evidence.begin(), f->evidence.end(),
+                          [&](const Number& n) { return n.name == name; })
+          ->value;
+    };
+    double left = 0.0;
+    for (const double x : test.targets) left = std::max(left, std::fabs(B(x) - value("mean")));
+    held += left <= value("left");
+  }
+  EXPECT_GE(stated, 390) << "seed " << seed;
+  EXPECT_GE(held, stated * 95 / 100) << "seed " << seed;
+}
+
 // Noise-free readings, as a simulation gives them: no test may stumble over 0/0.
 TEST(Findings, WithoutAnyScatter) {
   made::Random random(1);
@@ -88,7 +116,7 @@ TEST(Findings, ATinyReversalIsNoReasonToAct) {
   }
 }
 
-// Likewise a drift; and half of its step from run to run is in the mean reversal.
+// Likewise a drift; and at least half of its step from run to run can be in the mean reversal.
 TEST(Findings, ASmallDriftIsNoReasonToAct) {
   made::Random random(5);
   made::Plan plan{{0.0, 0.11, 0.19, 0.31, 0.43, 0.5}, 5};
@@ -104,7 +132,8 @@ TEST(Findings, ASmallDriftIsNoReasonToAct) {
     const auto in_B = std::find_if(f->evidence.begin(), f->evidence.end(),
                                    [](const Number& n) { return n.name == "in_B"; });
     ASSERT_NE(in_B, f->evidence.end());
-    EXPECT_NEAR(in_B->value, step / 2.0, 0.03 * um);
+    EXPECT_GT(in_B->value, step / 2.0);
+    EXPECT_NEAR(in_B->value, step / 2.0, 0.06 * um);
   }
 }
 

@@ -178,7 +178,7 @@ TEST(Parts, RunsOfAnAxisAreOnePartEach) {
     ASSERT_EQ(part.table.axes.size(), 1u);
     EXPECT_EQ(part.along, part.table.axes[0].position);
     EXPECT_EQ(part.way, part.table.axes[0].approach);
-    EXPECT_FALSE(has_unstated_position(part));
+    EXPECT_TRUE(unstated_positions(part).empty());
     expect_traceable(part, t);
   }
 }
@@ -269,7 +269,7 @@ TEST(Parts, DiagonalsAndTheirAxesAreOnePart) {
   EXPECT_EQ(part.table.axes[1].position[0], 0.5);                                // X1: at
   EXPECT_TRUE(std::isnan(part.table.axes[0].position[std::size_t{6} * stops]));  // Y: not stated
   EXPECT_EQ(part.table.axes[0].approach[std::size_t{6} * stops], 0);
-  EXPECT_TRUE(has_unstated_position(part));
+  EXPECT_EQ(unstated_positions(part), Ids{"Y"});
   expect_traceable(part, t);
 }
 
@@ -278,7 +278,7 @@ TEST(Parts, ThePlaceOnADiagonalIsTheWayFromItsStart) {
   t.diagonals();
   const auto parts = t.parts();
   ASSERT_EQ(names(parts), Ids{"XY"});
-  EXPECT_FALSE(has_unstated_position(parts[0]));
+  EXPECT_TRUE(unstated_positions(parts[0]).empty());
   for (int line = 0; line < 2; ++line)
     for (int i = 0; i < 2 * stops; ++i) {
       const auto row =

@@ -24,8 +24,8 @@ constexpr Key campaign_keys[] = {
     {"received", day<&Manifest::campaign, &Campaign::received>,
      "Day on which the item was received, for the certificate."},
     {"purpose", into<&Manifest::purpose>,
-     "Reason for the measurements. Checks are a series of their own in the machine's history; the "
-     "other reasons are shown in it.",
+     "Reason for the measurements. Checks continue the series of the machine's history, where they "
+     "are marked: so it shows what a table did.",
      otherwise("periodic"), purposes},
 };
 

@@ -308,6 +308,10 @@ TEST(DiagonalPlugin, ASingleColumnNeverBowsTheOtherWay) {
   ASSERT_NE(series(with_yaw, "EYX_even"), nullptr) << ids(with_yaw);
   EXPECT_NEAR(series(with_yaw, "EYX_even")->value[15], 40 * um, 0.05 * um);
   EXPECT_NEAR(series(with_yaw, "ECX")->value[30], w.errors.ECX(12.0), 1e-9);
+  const auto place = std::find_if(with_yaw.notes.begin(), with_yaw.notes.end(),
+                                  [](const auto& n) { return n.id == "method.squareness-place"; });
+  ASSERT_NE(place, with_yaw.notes.end());
+  EXPECT_NEAR(place->evidence.at(0).value, w.errors.ECX(6.0), 1e-9);
   w.campaign.measurements[0].at.clear();
   expect_refused(w, "refused-place");
 

@@ -410,16 +410,34 @@ TEST(RotaryJudge, FalseAlarmsAreAsRareAsTheirLevel) {
   SCOPED_TRACE("seed " + std::to_string(seed));
   Noise noise(seed);
   const Table t;
-  int ellipse = 0, axial = 0;
+  int ellipse = 0, axial = 0, suspect = 0;
   for (int i = 0; i < 2000; ++i) {
     const Evaluation e = Workshop().measured("C", noise.on(t.at(full_turn(8)), 1 * um)).last();
     ellipse += found(e, "rotary.ellipse") != nullptr;
     axial += found(e, "rotary.axial-run-out") != nullptr;
+    suspect += found(e, "rotary.suspect-centre") != nullptr;
   }
   EXPECT_GE(ellipse, 5);  // 20 expected of 2,000 at 1 %
   EXPECT_LE(ellipse, 38);
   EXPECT_GE(axial, 5);
   EXPECT_LE(axial, 38);
+  EXPECT_GE(suspect, 5);
+  EXPECT_LE(suspect, 38);
+}
+
+TEST(RotaryJudge, AMisprobedCentreIsNamed) {
+  const unsigned seed = 101;
+  Noise noise(seed);
+  const Table t;
+  int named = 0;
+  for (int i = 0; i < 200; ++i) {
+    auto centres = noise.on(t.at(full_turn(12)), 1 * um);
+    centres[5].at[static_cast<std::size_t>(i % 3)] += 15 * um;
+    const Evaluation e = Workshop().measured("C", centres).last();
+    const Finding* f = found(e, "rotary.suspect-centre");
+    named += f != nullptr && std::fabs(evidence(*f, "angle") - centres[5].angle) < 1e-6;
+  }
+  EXPECT_GE(named, 120) << "seed " << seed;  // along the path of the ball nothing shows it
 }
 
 TEST(RotaryJudge, ScatterBeyondTheStatedSigma) {

@@ -196,6 +196,27 @@ TEST(RotaryChainPlugin, LinearAxesBeyondTheirBoundAreFound) {
   EXPECT_NE(found(e, "rotary-chain.linear-axes"), nullptr) << ids(e);
 }
 
+TEST(RotaryChainPlugin, AMisprobedCentreIsNamed) {
+  Builder builder(21);
+  const Machine m = builder.tables();
+  int accused = 0;
+  for (int i = 0; i < 50; ++i) {
+    auto all = noisy(m, grid(tilts, turns), builder);
+    Workshop clean(m);
+    clean.stated(5 * um, 0.5 * um, 3.0).measured(observed(all, m));
+    accused += found(said(clean), "rotary-chain.suspect-centre") != nullptr;
+    all[7].at[static_cast<std::size_t>(i % 3)] += 20 * um;
+    Workshop shop(m);
+    const Evaluation e = said(shop.stated(5 * um, 0.5 * um, 3.0).measured(observed(all, m)));
+    const Finding* f = found(e, "rotary-chain.suspect-centre");
+    ASSERT_NE(f, nullptr) << ids(e);
+    for (const Number& n : f->evidence)
+      if (n.name == "away") EXPECT_NEAR(n.value, 20 * um, 6 * um);
+    EXPECT_EQ(text_of(*f, "at").substr(0, 4), "B = ");
+  }
+  EXPECT_LE(accused, 1) << "seed 21";
+}
+
 /// A head tells the pivot length and the tool together; apart only by a stated length.
 TEST(RotaryChainPlugin, APivotNeedsAStatedTool) {
   Builder builder(16);

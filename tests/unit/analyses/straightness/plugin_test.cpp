@@ -239,7 +239,37 @@ TEST(StraightnessPlugin, IntervalsCoverTheTruthOfBentLines) {
     const double percent = 100.0 * covered[k] / campaigns;
     std::cout << names[k] << ' ' << percent << " %\n";
     EXPECT_GE(percent, 94.0) << names[k];
-    EXPECT_LE(percent, 96.9) << names[k];
+    EXPECT_LE(percent, k < 3 ? 99.0 : 96.9) << names[k];  // a bow is flat at its top
+  }
+}
+
+/// Where the line is straight or nearly so, every pair of points can be the extremes.
+TEST(StraightnessPlugin, IntervalsCoverTheTruthOfStraightLines) {
+  constexpr int campaigns = 400;
+  std::mt19937 rng(seed + 2);
+  std::normal_distribution<double> noise(0.0, 0.6 * um);
+  for (const double height : {0.0, 0.4, 1.0}) {
+    const auto truth = [&](double x) { return height / 8.0 * bow(x); };
+    const Plan plan{.stops = 21, .runs = 3, .step = 0.04};
+    std::vector<double> x, y;
+    for (std::size_t i = 0; i < plan.stops; ++i)
+      x.push_back(plan.at(i)), y.push_back(truth(x.back()));
+    using Line = math::StraightLine;
+    for (const auto& [name, line] : {std::pair{"straightness_MZ", Line::minimum_zone},
+                                     {"straightness_LSQ", Line::least_squares},
+                                     {"straightness_ends", Line::end_points}}) {
+      const double width = math::straightness_about(line, x, y)->width;
+      int covered = 0;
+      for (int trial = 0; trial < campaigns; ++trial) {
+        Bench b;
+        b.measure("S", plan, truth, [&] { return noise(rng); });
+        const Value v = value(b.evaluate(), name);
+        covered += std::fabs(v.value - width) <= *v.U ? 1 : 0;
+      }
+      std::cout << name << ", height " << height << " um: " << 100.0 * covered / campaigns
+                << " %\n";
+      EXPECT_GE(covered, campaigns * 94 / 100) << name << ", seed " << seed + 2;
+    }
   }
 }
 

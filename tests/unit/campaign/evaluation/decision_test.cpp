@@ -135,6 +135,7 @@ TEST(Format, AResultHasTheDigitsThatItsUncertaintyAllows) {
   EXPECT_EQ(text(-4.56789, 0.123456), "-4.57 +- 0.12");
   EXPECT_EQ(text(1.5, 0.0996), "1.50 +- 0.10");
   EXPECT_EQ(text(12345.0, 1234.0), "12300 +- 1200");
+  EXPECT_EQ(text(0.5, 2e-10), "0.500000000 +- 0.000000001");
   EXPECT_EQ(text(1.0, 0.0), "none");
 }
 

@@ -57,6 +57,21 @@ TEST(WorklistChanges, AStepIsNamedAtItsPlaceWithItsOtherEffects) {
   EXPECT_EQ(significant({m}), 2U);
 }
 
+TEST(WorklistChanges, ARenamedCampaignCountsOnce) {
+  MadeMachine m("S-1", 4);
+  m.follow("X", "B_mean", {-5.1, -5.0, -5.2, -5.15}, 0.1);
+  m.add_campaign(MadeMachine::day(3), 2);
+  store::StoredResult renamed = m.stored().results.back();
+  renamed.campaign = 4;
+  m.stored().results.push_back(renamed);
+  auto series = m.series();
+  ASSERT_EQ(series.size(), 1U);
+  ASSERT_EQ(series[0].results.size(), 4U);
+  EXPECT_EQ(m.stored().results[series[0].results.back()].campaign, 4U);
+  m.stored().results.back().value = -5.16;  // other readings of the same day
+  EXPECT_EQ(m.series()[0].results.size(), 5U);
+}
+
 TEST(WorklistChanges, WhatIsKnownIsNotSaidToBeUnknown) {
   std::mt19937_64 random(12);
   std::cout << "seed 12\n";

@@ -543,7 +543,9 @@ TEST(WorklistLines, EachHasWordsInEachLanguage) {
   lab.machines[7].judge("X", "B", {5});
   lab.machines[7].stored().asked = {
       {{"", "plausibility", "traceability.calibration-expired", "attention"},
-       {"D1", "diagonal-straightness", "diagonals.refused-place", "attention"}}};
+       {"D1", "diagonal-straightness", "diagonals.refused-place", "attention"},
+       {"X", "iso230-2", "reading.suspect", "attention"},
+       {"X", "vdi-dgq-3441", "reading.suspect", "attention"}}};
   lab.machines.emplace_back("S-48", 1);
   lab.machines[8].judge("X", "B", {8});
   lab.machines[8].stored().results.back().expanded.reset();
@@ -579,7 +581,7 @@ TEST(WorklistLines, EachHasWordsInEachLanguage) {
                          "worklist.no-table",       "worklist.certificate",
                          "worklist.no-uncertainty", "worklist.draft",
                          "worklist.failed-several", "worklist.calibration",
-                         "worklist.no-result"})
+                         "worklist.no-result",      "worklist.misreading"})
     EXPECT_TRUE(ids.contains(id)) << id;
 }
 

@@ -109,13 +109,8 @@ std::optional<std::size_t> time_constant_shape(const Effect& effect);
 /// Whether the term uses the value of a shape that another measurement states.
 bool has_stated(const Term& term);
 
-/// Whether a reading has an axis position that the manifest does not state (NaN).
-inline bool has_unstated_position(const Part& part) {
-  for (const auto& axis : part.table.axes)
-    for (const double x : axis.position)
-      if (!(x == x)) return true;
-  return false;
-}
+/// Names of the measurements with an axis position that the manifest does not state (NaN).
+std::vector<std::string> unstated_positions(const Part& part);
 
 /// Parts in the order of their first measurements. If the campaign has diagonals, each state of the
 /// machine has one part in space, which contains the runs of its axes; otherwise one for each axis

@@ -55,7 +55,8 @@ struct RoundedResult {
 };
 
 /// Rounds U to two significant digits (GUM, JCGM 100:2008, 7.2.6) and the value to the same place,
-/// with at most 9 decimals. Returns std::nullopt if U is not above 0, or if a number is not finite.
+/// with at most 9 decimals; a smaller U is 1e-9, because no U is 0. Returns std::nullopt if U is not
+/// above 0, or if a number is not finite.
 std::optional<RoundedResult> rounded_result(double value, double U);
 
 /// Uses an exponent only for an absolute value below 1e-4 (except 0) or of at least 1e9. Empty if

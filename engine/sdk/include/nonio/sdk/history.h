@@ -78,6 +78,13 @@ struct HistorySeries {
     double from = 0.0, to = 0.0;
   };
   std::optional<Over> compared_over{};
+
+  /// Quantity of positions of the axis.
+  Quantity position() const {
+    return unit == Quantity::angular_deviation || unit == Quantity::deviation_per_angle
+               ? Quantity::angle
+               : Quantity::length;
+  }
 };
 
 struct MachineEvent {

@@ -19,12 +19,12 @@ inline bool is_failed_compensation(std::string_view finding) {
 }
 
 /// Whether a finding of severity `attention` requires action: a table or certificate was not made
-/// or must not be used, a compensation failed, the instrument had no valid calibration, or there is
-/// no result. Other findings are warnings.
+/// or must not be used, a compensation failed, the instrument had no valid calibration, there is no
+/// result, or results include a suspected misreading. Other findings are warnings.
 inline bool is_withholding(std::string_view finding) {
   return finding.starts_with("table.") || finding.starts_with("certificate.") ||
          finding.starts_with("traceability.") || finding == "signature.not-released" ||
-         is_failed_compensation(finding) || is_refusal(finding);
+         finding == "reading.suspect" || is_failed_compensation(finding) || is_refusal(finding);
 }
 
 }  // namespace nonio

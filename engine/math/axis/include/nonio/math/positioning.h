@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "nonio/math/axis_statistics.h"
+#include "nonio/math/drift.h"
 
 /// Rules for the positioning of an axis, computed from the same statistics. docs/formulas.md states
 /// the confidence of every formula; the texts of the standards were not available.
@@ -57,8 +58,8 @@ struct RuleShare {
   double means = 0.0;       ///< coefficient of the variance of a mean of n readings
   double scatter = 0.0;     ///< half of the number of standard deviations in the value
   double band = 0.0;        ///< coefficient of the squared range of the environment
-  /// coefficients of the possible contribution of drift to the reversal (drift.h)
-  double B = 0.0, B_mean = 0.0;
+  double DriftShare::*seen = nullptr;  ///< contribution of drift and repetition, and its factor
+  double seen_factor = 1.0;
 };
 
 struct RuleValue {

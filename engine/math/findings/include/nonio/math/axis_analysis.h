@@ -28,6 +28,10 @@ enum class Made { of_all, of_environment };
 
 /// Omits a value that is not finite. Adds U, and its contributions to the budget of the evaluation,
 /// if the budget is known and U is above 0.
-void add_value(Evaluation&, const AxisAnalysis&, std::string name, double value, double U, Made);
+void add_value(Evaluation&, const AxisAnalysis&, std::string name, double value,
+               const ResultUncertainty& U, Made);
+
+/// States what U of values with a standard deviation does not contain; `values`: their names.
+void note_scatter(Evaluation&, const AxisAnalysis&, std::string values);
 
 }  // namespace nonio::math

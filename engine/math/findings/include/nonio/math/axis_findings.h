@@ -16,16 +16,20 @@
 /// no finding. Evidence is SI.
 namespace nonio::math {
 
-/// Returns all findings that do not depend on the standard. `U_mean`: expanded uncertainty of the
-/// mean reversal by the budget, m or rad; 0: not known.
+/// Expanded uncertainties of the reversal by the budget, m or rad; 0: not known.
+struct ReversalUncertainty {
+  double B = 0.0, B_mean = 0.0;
+};
+
+/// Returns all findings that do not depend on the standard.
 std::vector<Finding> axis_findings(const AxisTest&, const Observations&, const Axis* axis,
-                                   double U_mean = 0.0);
+                                   ReversalUncertainty = {});
 
 /// Each function below appends findings of one topic; scatter_findings includes suspect readings.
-void drift_findings(const AxisTest&, std::vector<Finding>&);
+void drift_findings(const AxisTest&, std::vector<Finding>&, ReversalUncertainty = {});
 /// `active`: backlash value of the control during the measurement, m or rad, if it is stated.
 void reversal_findings(const AxisTest&, std::vector<Finding>&,
-                       std::optional<double> active = std::nullopt, double U_mean = 0.0);
+                       std::optional<double> active = std::nullopt, ReversalUncertainty = {});
 void scatter_findings(const AxisTest&, std::vector<Finding>&);
 void suspect_findings(const AxisTest&, std::vector<Finding>&);
 /// Compares the deviations of a rotary axis at positions that are one turn apart.

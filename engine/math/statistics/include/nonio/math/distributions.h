@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+
 namespace nonio::math {
 
 /// P(F > f) of Fisher's distribution; 1 if a dof is not positive and finite, NaN for NaN.
@@ -23,5 +25,9 @@ double coverage_factor(double dof);
 /// rectangular quantity: 1 for an excess (kurtosis minus 3) of 0, and 0.827 for -1.2, the excess of
 /// the rectangular quantity alone.
 double shape_factor(double excess);
+
+/// Factor of the scatter that the largest of `values` exceeds at 4.55 %, at least 2; `dof`: of the
+/// scatter.
+double factor_of_largest(std::size_t values, double dof);
 
 }  // namespace nonio::math

@@ -35,7 +35,7 @@ struct Budget {
   double U_EVE = 0.0;
   double length = 0.0;  ///< measured length to which the contributions apply, m or rad
   bool rotary = false;  ///< if true, only U_DEV and U_EVE exist
-  /// possible contribution of drift that these readings do not exclude; 0 if U_EVE is 0
+  /// contributions of drift and repetition that these readings do not exclude; 0 if U_EVE is 0
   DriftShare seen;
   /// S: root of the sum of squares of all except U_EVE, which do not average out over approaches.
   double systematic() const;
@@ -53,9 +53,14 @@ BudgetOrGap uncertainty_budget(const Campaign&, const Environment&, const std::s
 
 /// The budget has no results.
 UncertaintyBudget contributions_of(const Budget&, const std::string& axis, bool rotary);
-/// Standard uncertainties in a result with U. `systematic`: the result contains the contributions
-/// that do not average out (A, E, M, P, Pa); otherwise only the environment contributes.
-std::vector<double> shares_of(const Budget&, double U, bool systematic);
+/// Expanded uncertainty (k = 2) of a result, and the part of it by drift and repetition (`seen`).
+struct ResultUncertainty {
+  double U = 0.0, of_readings = 0.0;
+  operator double() const { return U; }  // NOLINT(google-explicit-constructor)
+};
+/// Standard uncertainties in a result. `systematic`: the result contains the contributions that do
+/// not average out (A, E, M, P, Pa); otherwise only environment and readings contribute.
+std::vector<double> shares_of(const Budget&, const ResultUncertainty&, bool systematic);
 
 /// Smallest number of readings in a mean, over targets and directions with readings; 0 without
 /// readings.
@@ -66,40 +71,46 @@ std::size_t approaches_per_mean(const AxisTest&);
 ///
 ///     U(B)^2 = 2 U_EVE^2/n + D_B^2          U(R+)^2 = U(R-)^2 = (k U_EVE)^2 + (2 k D_s)^2
 ///     U(B_mean)^2 = 2 U_EVE^2/n + D_mean^2  U(R)^2 = U(R+)^2 + U(B)^2
-///     U(M) = sqrt(S^2 + U_EVE^2/n)          U(A) = U(A+) = U(A-) = sqrt(U(E)^2 + (k U_EVE)^2)
-///     U(E) = U(E+) = U(E-) = sqrt(S^2 + 2 U_EVE^2/n)
+///     U(M)^2 = S^2 + U_EVE^2/n + D_M^2      U(A) = U(A+) = U(A-) = sqrt(U(E)^2 + (k U_EVE)^2)
+///     U(E)^2 = U(E+)^2 = U(E-)^2 = S^2 + 2 U_EVE^2/n + D_E^2
 ///
-/// D_B, D_mean, D_s: contributions of drift that the readings do not exclude (drift.h). Derived
-/// according to the GUM (docs/uncertainty.md, confidence L): compare with the standard before
-/// claiming conformity to it.
+/// D: contributions of drift and repetition that the readings do not exclude (drift.h). s in A and
+/// R is that of the runs of the test: how well it estimates the axis is not in U. Derived according
+/// to the GUM (docs/uncertainty.md, confidence L): compare with the standard before claiming
+/// conformity to it.
 struct Iso230Uncertainty {
-  double A, A_plus, A_minus, E, E_plus, E_minus, M, R, R_plus, R_minus, B, B_mean;
+  ResultUncertainty A, A_plus, A_minus, E, E_plus, E_minus, M, R, R_plus, R_minus, B, B_mean;
 };
 Iso230Uncertainty iso230_2_uncertainty(const Budget&, std::size_t n, double k);
 
 /// Expanded uncertainties of the results of VDI/DGQ 3441, which contains no rule for them. They are
 /// derived according to the GUM from those of ISO 230-2 with k = 3.
 ///
-///     U(Pa) = U(M)    U(U_max) = U(U_mean) = U(B)    U(Ps_max) = U(Ps_mean) = U(R+)
-///     U(P) = U(A) = sqrt(S^2 + 2 U_EVE^2/n + (3 U_EVE)^2)
+///     U(Pa) = U(M)    U(U_max) = U(B)    U(Ps_max) = U(Ps_mean) = U(R+)    U(P) = U(A)
+///     U(U_mean) = U(B_mean) if all reversals have one sign, otherwise U(B)
 struct VdiUncertainty {
-  double P, Pa, Ps_max, Ps_mean, U_max, U_mean;
+  ResultUncertainty P, Pa, Ps_max, Ps_mean, U_max, U_mean;
 };
 VdiUncertainty vdi3441_uncertainty(const Budget&, std::size_t n);
 
 /// Returns the expanded uncertainty (k = 2) of a value of any rule of positioning (positioning.h),
 /// derived according to the GUM. The members of RuleShare are its coefficients:
 ///
-///     U^2 = means U_EVE^2/n + (scatter U_EVE)^2 + band E_VE^2 + (B D_B)^2 + (B_mean D_mean)^2
+///     U^2 = means U_EVE^2/n + (scatter U_EVE)^2 + band E_VE^2 + (seen_factor D)^2
 ///           + S^2 if `systematic`, otherwise + (2 scatter D_s)^2
 ///
 /// E_VE = U_EVE/0.6 limits the error of a difference of two readings.
-double rule_uncertainty(const Budget&, std::size_t n, const RuleShare&);
+ResultUncertainty rule_uncertainty(const Budget&, std::size_t n, const RuleShare&);
 
 /// U(M)/L of `slope_budget`, an upper bound for the slope of a least-squares line of means.
-double slope_uncertainty(const Budget& of_slope, std::size_t n);
+ResultUncertainty slope_uncertainty(const Budget& of_slope, std::size_t n);
 /// A misaligned beam makes every distance too short. In a slope its limit acts from one side, so it
 /// contributes 2/sqrt 3 of the limit instead of 0.6.
 Budget slope_budget(const Budget&);
+
+/// Returns the standard uncertainty of the scale of an axis that all readings of a test over `length`
+/// have in common: instrument, misalignment and temperatures; std::nullopt if a key is missing.
+std::optional<double> common_scale_uncertainty(const Campaign&, const std::string& axis,
+                                               double length);
 
 }  // namespace nonio::math
